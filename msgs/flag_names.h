@@ -14,7 +14,7 @@ struct FlagName {
   std::string_view name;
 };
 
-inline constexpr std::array<FlagName, 16> kFlagNames{{{rate_t::FLAG_AT_REST, "at rest"},
+inline constexpr std::array<FlagName, 17> kFlagNames{{{rate_t::FLAG_AT_REST, "at rest"},
                                                       {rate_t::FLAG_MANOEUVRE, "manoeuvre"},
                                                       {rate_t::FLAG_NOISE_UNKNOWN, "noise not yet known"},
                                                       {rate_t::FLAG_GAP, "gap"},
@@ -28,6 +28,7 @@ inline constexpr std::array<FlagName, 16> kFlagNames{{{rate_t::FLAG_AT_REST, "at
                                                       {rate_t::FLAG_OUT_OF_RANGE, "out of the model's range"},
                                                       {rate_t::FLAG_RAMP_UNKNOWN, "ramp's phase not known"},
                                                       {rate_t::FLAG_NOT_COMPENSATED, "not compensated"},
+                                                      {rate_t::FLAG_BEYOND_STATED, "beyond the stated range"},
                                                       {rate_t::FLAG_CLOCK_STEP, "clock step"},
                                                       {rate_t::FLAG_SENSOR_CLOCK_SET, "sensor's clock set"}}};
 

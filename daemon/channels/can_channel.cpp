@@ -2,7 +2,6 @@
 #include "daemon/channels/can_channel.h"
 
 #include <filesystem>
-#include <limits>
 #include <stdexcept>
 
 #include "drivers/capture/text_file.h"
@@ -45,7 +44,6 @@ bool CanChannel::decode(const ifog_can_frame& frame, double& value) const noexce
   const std::span<const std::uint8_t> data(frame.data, frame.length);
   if (data.size() < dbc::bytes_needed(signal) || !dbc::selected(message_, signal, data)) return false;
   value = dbc::physical(signal, dbc::raw_bits(signal, data));
-  if (!dbc::in_range(signal, value)) value = std::numeric_limits<double>::quiet_NaN();
   return true;
 }
 

@@ -42,6 +42,9 @@ std::string of_lcm(const ChannelConfig& channel, const ChannelFault& fault) {
       return from + "what comes is no ifog.channel_t, ifog.rate_t or ifog.status_t";
     case ChannelFault::Kind::late:
       return from + "what comes was measured before what is held, by its utime";
+    case ChannelFault::Kind::clock_behind:
+      return from + "the clock that dates it is " + std::to_string(fault.error) +
+             " s behind this computer's: ages are counted from the newest that has come";
     case ChannelFault::Kind::no_field:
       return from + "its messages have no " + in_quotes(field);
     case ChannelFault::Kind::impossible:

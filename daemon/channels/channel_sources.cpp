@@ -131,20 +131,37 @@ class LcmChannel {
     if (dated && !again) last_ns_ = measured_ns;
     // What was measured in the future was measured when it came first: else it would never grow old. What is
     // refused is not held, whatever its date: those before it are not late for it.
-    if (!again) at_ns_ = arrival_clock_ns() - std::max<std::int64_t>(0, now_ns - measured_ns);
+    if (!again) at_ns_ = arrival_clock_ns() - age_ns(now_ns - measured_ns, dated);
     const bool held = in_.put(value, at_ns_, again);
     if (held && dated && !again) held_ns_ = measured_ns;
+    if (held && behind_ns_ > kBehind_ns)
+      in_.miss(
+          {.kind = ChannelFault::Kind::clock_behind, .error = static_cast<int>(behind_ns_ / kSecond_ns)});
   }
 
  private:
   // A status tells ages, from which the same time comes back to within its rounding.
   static constexpr std::int64_t kSameTime_ns = 2'000;
+  static constexpr std::int64_t kSecond_ns = 1'000'000'000, kBehind_ns = kSecond_ns;
+  static constexpr std::int64_t kFollows_ns = 1'000'000;  // a message: clocks drift
+
+  // How old what was measured is. Values that are each new and all seem to be as old come from a computer
+  // whose clock is behind: the least age of them is its clock's, and what is more is theirs.
+  std::int64_t age_ns(std::int64_t by_date_ns, bool dated) noexcept {
+    if (!dated) return std::max<std::int64_t>(0, by_date_ns);
+    const std::int64_t least_ns = std::min(by_date_ns, least_ns_ + kFollows_ns);
+    behind_ns_ = std::exchange(dated_before_, true) ? least_ns : 0;
+    least_ns_ = dated_before_ && behind_ns_ != 0 ? least_ns : by_date_ns;
+    return std::max<std::int64_t>(0, by_date_ns - (behind_ns_ > kBehind_ns ? behind_ns_ : 0));
+  }
 
   Entrance in_;
   LcmField field_;
   std::int64_t last_ns_ = 0,
                held_ns_ = 0;  // by its own clock, of the last and of the value held; 0: none that tells
   std::int64_t at_ns_ = 0;    // of the last, on the clock of arrivals
+  std::int64_t least_ns_ = 0, behind_ns_ = 0;  // age by date, of those with a new one; of its clock
+  bool dated_before_ = false;
 };
 
 // All signals wanted from one CAN interface.

@@ -8,6 +8,7 @@
 #include <cerrno>
 #include <cmath>
 #include <iterator>
+#include <utility>
 
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/ifog/quoted.h"
@@ -75,8 +76,12 @@ std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const
         from_frame ? of_frame(status.channel_name[c], configured_) : outside_[place];
     const ChannelFault fault = from_frame ? ChannelFault{} : outside.fault(static_cast<int>(place));
     Seen& seen = seen_[c];
+    if (fault.kind == ChannelFault::Kind::clock_behind && !std::exchange(seen.behind_told, true))
+      out.push_back({false, describe(channel, fault)});
     seen.looked_s += 1.0;
-    seen.faulty_s = fault.kind == ChannelFault::Kind::silent ? 0.0 : seen.faulty_s + 1.0;
+    const bool faulty =
+        fault.kind != ChannelFault::Kind::silent && fault.kind != ChannelFault::Kind::clock_behind;
+    seen.faulty_s = faulty ? seen.faulty_s + 1.0 : 0.0;
     const double age_s = status.channel_age_s[c];
     const bool never = std::isinf(age_s);
     const bool old = !never && channel.max_age_s > 0.0 && age_s > channel.max_age_s;

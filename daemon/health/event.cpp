@@ -3,6 +3,8 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog {
 
 std::string describe(const Event& event) {
@@ -41,9 +43,15 @@ std::string describe(const Event& event) {
           event.sequence);
     case EventKind::label_moved:
       return fmt::format(
-          "the device did not count on for a while, or whole rounds of its counter were lost: times of day "
+          "the device stood still for a while, or its deliveries take longer or shorter than before: times "
+          "of day "
           "follow from number {} on, intervals and angles do not",
           event.sequence);
+    case EventKind::beyond_stated:
+      return fmt::format(
+          "{} is {:g}, beyond the {:g} that the file states: kept, counted and flagged; only range_radps, "
+          "minimum and maximum of the configuration make a value invalid",
+          printable(event.name.data()), event.a, event.b);
     case EventKind::publish_failed:
       return fmt::format("LCM did not take number {}", event.sequence);
   }

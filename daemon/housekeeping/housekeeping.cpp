@@ -94,6 +94,8 @@ Housekeeping::~Housekeeping() = default;
 
 void Housekeeping::notify(const std::string& state) { sd_notify(0, state.c_str()); }
 
+// A device that is absent is waited for, also where it is the only one: a gyro may be powered later than its
+// computer. A file that is not there is none that comes. False: no sensor is there or may come.
 bool Housekeeping::open_all() {
   bool any = false;
   for (const auto& sensor : sensors_) {
@@ -104,6 +106,7 @@ bool Housekeeping::open_all() {
       throw;
     } catch (const std::exception& error) {
       sensor->log->error("{}", error.what());
+      any = any || sensor->config.transport.kind != TransportConfig::Kind::file;
     }
   }
   return any;
@@ -216,9 +219,6 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   if (const std::string moved = sensor.report.moved(); !moved.empty()) sensor.log->warn("{}", moved);
   for (const ChannelWatch::News& news : sensor.channels.look(message, *sensor.parts.outside))
     sensor.log->log(news.good ? spdlog::level::info : spdlog::level::warn, "{}", news.words);
-  if (const std::string vain = sensor.report.nothing_of_it(); !vain.empty())
-    sensor.log->warn("{}: are driver {} and its options those of the device? (ifog drivers {})", vain,
-                     sensor.config.driver, sensor.config.driver);
   if (const std::string wrong = sensor.report.wrong_rate(); !wrong.empty())
     sensor.log->warn("{}: is rate_hz of its options (or nominal_rate_hz) that of the device?", wrong);
   if (const std::string unseen = sensor.report.unseen_axes(); !unseen.empty()) sensor.log->info("{}", unseen);
@@ -258,6 +258,8 @@ void Housekeeping::stop_all() {
           recorder->entries_unwritten());
     sensor->log->info("{} samples read, {} published, {} missing, {} merged", message.samples_in,
                       message.samples_published, message.sequence_missing, message.samples_merged);
+    if (const auto beyond = sensor->parts.pipeline->reader().counters().values_beyond.value(); beyond > 0)
+      sensor->log->info("{} values beyond the range that the file states: kept", beyond);
   }
 }
 

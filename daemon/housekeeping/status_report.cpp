@@ -25,8 +25,7 @@ constexpr const char* kFrozen =
     "taken";
 // What the counter shows.
 constexpr const char* kMixed =
-    "frames of two devices come mixed on one line: their counters go to and fro, which of them is wanted "
-    "nobody knows, and nothing of either is taken";
+    "the sequence runs to and fro: two devices send on one line, and nothing of either is taken";
 
 struct Named {
   const char* name;
@@ -70,14 +69,18 @@ std::int64_t as_signed(std::uint64_t count) { return static_cast<std::int64_t>(c
 std::string fault_of(const Reader& reader) {
   const Transport& transport = reader.transport();
   const TransportFault fault = transport.fault();
+  const std::string words =
+      fault.what == nullptr
+          ? ""
+          : std::string(fault.what) + (fault.text.empty() ? "" : ", found " + in_quotes(fault.text));
   if (transport.state() != TransportState::open && transport.reason() != 0)
-    return transport.name() + ": " + std::strerror(transport.reason());
+    return transport.name() + ": " + std::strerror(transport.reason()) +
+           (words.empty() || fault.line > 0 ? "" : " (" + words + ")");
   if (const std::uint64_t left = reader.counters().bytes_at_end.value(); left != 0)
     return transport.name() + ": ends within a frame, its last " + std::to_string(left) +
            " bytes are no whole one (is the file cut off?)";
   if (fault.what == nullptr) return "";
-  return transport.name() + (fault.line > 0 ? ":" + std::to_string(fault.line) : "") + ": " + fault.what +
-         (fault.text.empty() ? "" : ", found " + in_quotes(fault.text));
+  return transport.name() + (fault.line > 0 ? ":" + std::to_string(fault.line) : "") + ": " + words;
 }
 
 }  // namespace
@@ -238,6 +241,7 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   in_vain_ = now_.frames_good + now_.samples_decoded == 0 && now_.bytes_read + now_.frames_read > 0
                  ? in_vain_ + 1
                  : 0;
+  if (now_.fault.empty() && in_vain_ >= kInVain) now_.fault = nothing_of_it();
   watch_.take(snapshot.rest, pipeline.filter().counters().published.value(),
               pipeline.filter().counters().out_of_range.value());
   now_.noticed = watch_.noticed();
@@ -269,8 +273,7 @@ std::string StatusReport::came() const {
 }
 
 std::string StatusReport::nothing_of_it() const {
-  if (in_vain_ != kInVain) return "";
-  return came() + " came and no frame of the sensor was in them";
+  return came() + " came and no frame of the sensor was in them: are driver, options and baud the device's?";
 }
 
 std::string StatusReport::unseen_axes() const {

@@ -27,10 +27,6 @@ class StatusReport {
   // Which fault counters moved with the last update(): "frames_crc +3, sequence_gaps +1"; "" for none.
   [[nodiscard]] std::string moved() const;
 
-  // Once, when for some seconds something has come and never a frame of the sensor's: what came, in words; ""
-  // else. So are a wrong driver, wrong options, another baud rate seen, which counters alone do not say.
-  [[nodiscard]] std::string nothing_of_it() const;
-
   // Once, some seconds after the first sample, when an axis has had no value in any; "" else.
   [[nodiscard]] std::string unseen_axes() const;
 
@@ -59,6 +55,8 @@ class StatusReport {
   [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
   [[nodiscard]] bool nothing_in_file(const Pipeline& pipeline) const;
   [[nodiscard]] std::string came() const;  // in words
+  // Of a wrong driver, wrong options or another baud rate, which counters alone do not say.
+  [[nodiscard]] std::string nothing_of_it() const;
 
   ifog::status_t before_, now_;
   SensorWatch watch_;

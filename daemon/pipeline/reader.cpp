@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/pipeline/reader.h"
 
+#include <algorithm>
 #include <span>
 #include <thread>
 #include <utility>
@@ -90,6 +91,16 @@ void Reader::report(const Increment& increment, const IncrementerCounts& before)
   }
 }
 
+void Reader::tell_beyond(const ifog_driver_counters& driver) noexcept {
+  Event event;
+  event.kind = EventKind::beyond_stated;
+  event.a = driver.beyond_value;
+  event.b = driver.beyond_value > driver.beyond_maximum ? driver.beyond_maximum : driver.beyond_minimum;
+  std::copy_n(driver.beyond_name, event.name.size(), event.name.begin());
+  event.name.back() = '\0';
+  events_.report(event);
+}
+
 void Reader::publish_counters() noexcept {
   const IncrementerCounts& counts = incrementer_.counts();
   counters_.samples.set(counts.samples);
@@ -106,6 +117,8 @@ void Reader::publish_counters() noexcept {
   counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
   counters_.interval_error.store(incrementer_.interval_error(), std::memory_order_relaxed);
   const ifog_driver_counters driver = driver_.counters();
+  if (driver.values_beyond != 0 && !std::exchange(beyond_told_, true)) tell_beyond(driver);
+  counters_.values_beyond.set(driver.values_beyond);
   counters_.frames_crc.set(driver.frames_crc);
   counters_.bytes_skipped.set(driver.bytes_skipped);
   counters_.frames_repeated.set(driver.frames_repeated);

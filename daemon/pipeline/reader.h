@@ -30,6 +30,7 @@ namespace ifog {
 struct ReaderCounters {
   Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
   Counter saturated, implausible, channel_implausible, channel_drops;
+  Counter values_beyond;  // of ifog_driver_counters
   Counter frames_crc, bytes_skipped, frames_repeated, samples_incomplete;
   Counter stood_back;                       // times it had used its share of a processor, see ProcessorShare
   Counter bytes_at_end;                     // of a file that ends within a frame; also in bytes_skipped
@@ -65,6 +66,7 @@ class Reader {
   void record(const Delivery& delivery) noexcept;
   void report(const Increment& increment, const IncrementerCounts& before) noexcept;
   void publish_counters() noexcept;
+  void tell_beyond(const ifog_driver_counters& driver) noexcept;
   void stand_back() noexcept;
 
   std::unique_ptr<Transport> transport_;
@@ -85,6 +87,7 @@ class Reader {
   ProcessorShare share_;
   std::int64_t turn_ns_ = 0;  // arrival clock, of the present turn
   std::uint64_t overflows_seen_ = 0;
+  bool beyond_told_ = false;
   std::uint64_t pushed_ = 0;  // samples
   ReaderBooks now_;
   ReaderCounters counters_;

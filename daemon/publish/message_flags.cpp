@@ -15,6 +15,7 @@ std::int32_t message_flags(const Increment& in, const ChainOutput& out) noexcept
   pass(in.flags, kInvalid, rate_t::FLAG_INVALID);
   pass(in.flags, kClockStep, rate_t::FLAG_CLOCK_STEP);
   pass(in.flags, kSensorClockSet, rate_t::FLAG_SENSOR_CLOCK_SET);
+  pass(in.flags, kBeyondStated, rate_t::FLAG_BEYOND_STATED);
   pass(in.flags, kAtFullScale, rate_t::FLAG_SATURATED);
   pass(out.compensator_flags, kStaleChannel | kNoChannelYet, rate_t::FLAG_STALE_CHANNEL);
   pass(out.compensator_flags, kOutOfRange, rate_t::FLAG_OUT_OF_RANGE);

@@ -25,7 +25,6 @@ SensorFacts sensor_facts(const ifog_description& description, double nominal_rat
                                                       : SensorKind::angle;
   facts.axes = static_cast<int>(description.axes);
   facts.sequence_modulus = description.sequence_modulus;
-  facts.on_bus = description.can_ids > 0;
   facts.nominal_rate_hz = nominal_rate_hz > 0.0 ? nominal_rate_hz : description.nominal_rate_hz;
   if (!(facts.nominal_rate_hz > 0.0))
     throw KeyError("nominal_rate_hz",
@@ -65,6 +64,7 @@ void read_sample(const ifog_sample& sample, int frame_channels, Reading& out) no
   out.at_once = sample.at_once;
   out.sequence = sample.sequence;
   out.has_sequence = (sample.flags & IFOG_SAMPLE_SEQUENCE) != 0;
+  out.beyond_stated = (sample.flags & IFOG_SAMPLE_BEYOND) != 0;
   out.status = sample.status;
   out.valid_axes = sample.valid_axes;
   std::copy_n(sample.value, kMaxAxes, out.value.begin());

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "drivers/ifog/turn.h"
+#include "drivers/units/turn.h"
 
 namespace ifog {
 namespace {
@@ -75,10 +75,9 @@ void CaptureBuilder::add_rates(const ifog_sample& sample, const SampleTimes::Tak
         const std::vector<double>& before = capture_.rate_radps[i];
         const double rate_before = before.empty() || std::isnan(before.back()) ? 0.0 : before.back();
         const double usual = description_.nominal_rate_hz > 0.0 ? period_of(description_) : taken.period_s;
-        const double elapsed = taken.turned_s;
+        const double elapsed = taken.elapsed_s;
         if (elapsed <= kGap * usual || turn_is_known(rate_before, elapsed, wrap))
           rate = (wrap > 0.0 ? std::remainder(turned, wrap) : turned) / elapsed;
-        if (taken.undecided && hides_more(rate, rate_before)) rate = kMissing;
       }
     }
     capture_.rate_radps[i].push_back(rate);

@@ -10,8 +10,8 @@
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/shell_word.h"
-#include "drivers/ifog/turn.h"
+#include "drivers/system/shell_word.h"
+#include "drivers/units/turn.h"
 
 namespace ifog {
 namespace {

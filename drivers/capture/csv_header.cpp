@@ -14,7 +14,7 @@
 #include "drivers/capture/column_times.h"
 #include "drivers/capture/column_words.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 
 namespace ifog {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "drivers/capture/measurable.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"
 
 namespace ifog {

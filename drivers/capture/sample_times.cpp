@@ -15,8 +15,8 @@ namespace {
 constexpr double kNsPerSecondExact =
     1e9;  // divided by, so that the result is the double nearest to the decimal time
 
-DeviceTimeline timeline_of(const ifog_description& description) {
-  return {description.sequence_modulus, description.nominal_rate_hz, description.can_ids > 0};
+Timeline timeline_of(const ifog_description& description) {
+  return {description.sequence_modulus, description.nominal_rate_hz};
 }
 
 // Whatever a device says: what has no room wraps, and is a clock that jumps.
@@ -80,12 +80,10 @@ void SampleTimes::count_from(const ifog_sample& sample) {
   }
 }
 
-DeviceTimeline::Step SampleTimes::step_to(const ifog_sample& sample) {
-  const DeviceTimeline::Frame frame = timeline_frame(sample, description_.axes);
-  if (timeline_.tells(frame)) return timeline_.next(frame);
-  DeviceTimeline::Step step;
-  step.time_ns = timeline_.first(frame);
-  return step;
+Timeline::Frame SampleTimes::frame_of(const ifog_sample& sample) const {
+  Timeline::Frame frame = timeline_frame(sample, description_.axes);
+  frame.recorded = zero_of_stamps_ns_.has_value();
+  return frame;
 }
 
 double SampleTimes::seconds(const ifog_sample& sample) const {
@@ -111,7 +109,7 @@ void SampleTimes::begin_anew(const ifog_sample& sample) {
 
 // The time of the next sample of a device with neither counter nor clock, by when it arrived. What comes in
 // one delivery was measured one after the other. How it comes shows in the first few samples.
-double SampleTimes::spread(const ifog_sample& sample, double arrived_s) {
+double SampleTimes::spread(const ifog_sample& sample, const Timeline::Step& step, double arrived_s) {
   constexpr double kFollows = 0.02;             // of what a time is beside its arrival, a sample
   constexpr double kLeast = 0.5, kMost = 1.25;  // periods between two samples
   constexpr double kEven = 0.85;                // at least, where each comes as it was measured
@@ -119,19 +117,16 @@ double SampleTimes::spread(const ifog_sample& sample, double arrived_s) {
   constexpr double kResolution_s = 1e-9;        // of times of arrival
   const double period_s = 1.0 / description_.nominal_rate_hz;
   const double next_s = last_s_ + period_s, late_s = arrived_s - next_s;
-  const Silence::Next next{static_cast<double>(sample.arrival_ns - last_arrival_ns_) / kNsPerSecondExact,
-                           late_s, sample.at_once};
-  const Silence::Ends ends = silence_.look(next, period_s);
-  silence_.take(next, ends);
-  bunched_ =
-      bunched_ || next.elapsed_s < kEven * period_s || sample.at_once > 1 || ends == Silence::Ends::hold_up;
-  if (ends == Silence::Ends::hold_up) return next_s;
-  if (ends == Silence::Ends::hole || std::abs(late_s) < kResolution_s) return arrived_s;
+  const double elapsed_s = static_cast<double>(sample.arrival_ns - last_arrival_ns_) / kNsPerSecondExact;
+  const bool delayed = step.late_s > 0.0;
+  bunched_ = bunched_ || elapsed_s < kEven * period_s || sample.at_once > 1 || delayed;
+  if (delayed) return next_s;
+  if (step.gap || step.clock_moved || std::abs(late_s) < kResolution_s) return arrived_s;
   // Each by itself: its arrival, without a leap to where the first ones were behind it, or before it where
   // more come than the rate says.
   if (!bunched_ && taken_ >= kShows)
-    return std::clamp(arrived_s, last_s_ + next.elapsed_s / kMost,
-                      last_s_ + kMost * std::max(period_s, next.elapsed_s));
+    return std::clamp(arrived_s, last_s_ + elapsed_s / kMost,
+                      last_s_ + kMost * std::max(period_s, elapsed_s));
   return last_s_ + std::clamp(period_s + kFollows * late_s, kLeast * period_s, kMost * period_s);
 }
 
@@ -153,13 +148,13 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   if (clock_ == Clock::undecided) choose_clock(sample);
   if (first) count_from(sample);
   bool anew = broken_ && !first;
-  DeviceTimeline::Step step;
+  Timeline::Step step;
   if (first || anew)
-    step.time_ns = timeline_.first(timeline_frame(sample, description_.axes));
+    step.time_ns = timeline_.first(frame_of(sample));
   else
-    step = step_to(sample);
+    step = timeline_.next(frame_of(sample));
   if (step.out_of_turn) {
-    ++(timeline_.mixed() ? mixed_ : repeated_);
+    ++(timeline_.two_devices() ? mixed_ : repeated_);
     return std::nullopt;
   }
   const std::uint64_t steps = first || anew ? 0 : step.samples;
@@ -181,7 +176,7 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   double now = seconds(sample);
   const bool by_arrival =
       clock_ == Clock::arrival && !zero_of_stamps_ns_ && description_.nominal_rate_hz > 0.0;
-  if (!first && !anew && by_arrival && sample.arrival_ns >= last_arrival_ns_) now = spread(sample, now);
+  if (!first && !anew && by_arrival && sample.arrival_ns >= last_arrival_ns_) now = spread(sample, step, now);
   if (!first && now <= last_s_) {
     if (!restarts_) refuse(now);
     if (now == last_s_) {
@@ -199,10 +194,6 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   taken.period_s = taken.elapsed_s / static_cast<double>(std::max<std::uint64_t>(steps, 1));
   if ((first || anew || bunched_) && description_.nominal_rate_hz > 0.0)
     taken.period_s = 1.0 / description_.nominal_rate_hz;
-  const bool told = step.same_gap || (undecided_ && step.samples >= description_.sequence_modulus);
-  taken.undecided = step.undecided && !undecided_;
-  taken.turned_s = told ? taken.period_s : taken.elapsed_s;
-  undecided_ = step.undecided;
   last_s_ = now;
   last_arrival_ns_ = sample.arrival_ns;
   ++taken_;

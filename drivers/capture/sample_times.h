@@ -17,9 +17,8 @@
 #include <optional>
 
 #include "drivers/capture/time_stamps.h"
-#include "drivers/ifog/device_timeline.h"
 #include "drivers/ifog/driver.h"
-#include "drivers/ifog/silence.h"
+#include "drivers/timeline/timeline.h"
 
 namespace ifog {
 
@@ -32,9 +31,6 @@ class SampleTimes {
     double elapsed_s = 0.0;  // since the sample before; NaN of the first
     double period_s = 0.0;   // of the sample itself, also behind a gap
     bool anew = false;       // it does not join what came before
-    // It ends a silence that may have been longer: that is told, with the time, at a later sample.
-    bool undecided = false;
-    double turned_s = 0.0;  // elapsed_s, less what is so told
   };
   // Nothing: it came twice, or after one that follows it. Throws std::runtime_error with one line when time
   // does not go on (the sample's number, both times, the cause), or where there is none.
@@ -72,15 +68,15 @@ class SampleTimes {
   enum class Clock { undecided, device, counter, arrival, number };
   void choose_clock(const ifog_sample& sample);
   void count_from(const ifog_sample& sample);
-  DeviceTimeline::Step step_to(const ifog_sample& sample);
+  [[nodiscard]] Timeline::Frame frame_of(const ifog_sample& sample) const;
   [[nodiscard]] double seconds(const ifog_sample& sample) const;
-  [[nodiscard]] double spread(const ifog_sample& sample, double arrived_s);
+  [[nodiscard]] double spread(const ifog_sample& sample, const Timeline::Step& step, double arrived_s);
   void begin_anew(const ifog_sample& sample);
   void refuse(double now) const;
 
   ifog_description description_;
   Clock clock_ = Clock::undecided;
-  DeviceTimeline timeline_;
+  Timeline timeline_;
   TimeOrigin origin_;
   TimeOrigin device_from_;      // of the device's clock, that its times are counted from
   std::int64_t device_ns_ = 0;  // the device's clock at the sample at hand, over its wraps
@@ -91,9 +87,7 @@ class SampleTimes {
   double last_s_ = 0.0;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
   bool broken_ = false, restarts_ = false;
-  bool undecided_ = false;  // how long the last silence was
-  bool bunched_ = false;    // several samples have one time of arrival, or times that scatter
-  Silence silence_;         // of arrival times
+  bool bunched_ = false;  // several samples have one time of arrival, or times that scatter
   std::optional<std::int64_t> zero_of_stamps_ns_;
 };
 

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/system/nanoseconds.h"
+
 namespace ifog {
 namespace {
 
@@ -102,7 +104,7 @@ FlightReader::Item FlightReader::begin_file() {
   finish_file(!first && !same_run);
   if (!same_run) {
     ++counts_.runs;
-    between_runs_ = !first;
+    end_run();
   }
   header_ = std::move(fresh);
   file_at_ = passed_;
@@ -141,18 +143,31 @@ void FlightReader::take_block() {
   }
 }
 
-// From one run to the next; a clock that was set back says nothing.
+// By the wall clock, as it was when each run ended: a computer without a clock of its own begins in 1970 and
+// is set some seconds later. A clock that was set back, or never, says nothing of the time between two runs.
 void FlightReader::note_arrival() {
   const FlightEntryHead& head = entry_.head;
+  if (std::int64_t set_ns = 0; head.kind == FlightKind::wall && entry_.value(set_ns)) wall_set_ns_ = set_ns;
   const bool came =
       head.kind == FlightKind::bytes || head.kind == FlightKind::can || head.kind == FlightKind::message;
   if (!came || head.time_ns <= 0) return;
-  if (std::exchange(between_runs_, false) && arrived_ns_ > 0 && head.time_ns > arrived_ns_) {
-    const double pause_s = (static_cast<double>(head.time_ns) - static_cast<double>(arrived_ns_)) * 1e-9;
+  if (run_began_ns_ == 0) run_began_ns_ = head.time_ns;
+  arrived_ns_ = head.time_ns;
+}
+
+void FlightReader::end_run() {
+  constexpr std::int64_t kClockIsSet_ns = 631'152'000'000'000'000;  // 1990: no such computer is older
+  if (run_began_ns_ == 0) return;
+  const std::int64_t began_ns = ns_after(run_began_ns_, wall_set_ns_);
+  const std::int64_t pause_ns = ns_between(last_run_ended_ns_, began_ns);
+  const bool alike = (last_run_ended_ns_ < kClockIsSet_ns) == (began_ns < kClockIsSet_ns);
+  if (last_run_ended_ns_ > 0 && alike && pause_ns > 0) {
+    const double pause_s = static_cast<double>(pause_ns) * 1e-9;
     counts_.between_runs_s += pause_s;
     counts_.longest_between_runs_s = std::max(counts_.longest_between_runs_s, pause_s);
   }
-  arrived_ns_ = head.time_ns;
+  last_run_ended_ns_ = ns_after(arrived_ns_, wall_set_ns_);
+  run_began_ns_ = wall_set_ns_ = 0;
 }
 
 // False: it says what is missing, which is a hole.
@@ -186,6 +201,7 @@ FlightReader::Item FlightReader::next() {
     const Found found = next_block();
     if (found == Found::end) {
       finish_file(false);
+      end_run();
       ended_ = true;
     } else if (header_block_) {
       return begin_file();

@@ -66,6 +66,7 @@ class FlightReader {
   bool take_entry_ahead();
   void finish_file(bool another_run);
   void note_arrival();
+  void end_run();
   [[nodiscard]] std::span<const std::uint8_t> ahead() const {
     return {reinterpret_cast<const std::uint8_t*>(held_.data()) + at_, held_.size() - at_};
   }
@@ -82,9 +83,10 @@ class FlightReader {
   std::uint64_t file_entries_ = 0;                        // of the present file, so far
   bool in_file_ = false, closed_ = false, whole_ = true;  // whole_: nothing of the file is missing
   bool goes_on_ = false;                                  // by its end, the run of the file before does
-  bool between_runs_ = false;                             // nothing has come yet in this run
-  std::int64_t arrived_ns_ = 0;                           // what came last; 0: nothing of a known time
-  std::int64_t closed_ns_ = 0;                            // wall clock, of the file before once it is closed_
+  // Of what came first and last in this run, 0: nothing of a known time; by how much its wall clock was set.
+  std::int64_t run_began_ns_ = 0, arrived_ns_ = 0, wall_set_ns_ = 0;
+  std::int64_t last_run_ended_ns_ = 0;  // by the wall clock; 0: there was none
+  std::int64_t closed_ns_ = 0;          // wall clock, of the file before once it is closed_
   bool header_due_ = false, ended_ = false;
   BlockHead block_;
   bool header_block_ = false;

@@ -101,13 +101,14 @@ class DriverInstance {
   };
 
   // About how many samples a portion of bytes brings, by what a sample of this device has taken so far. Asked
-  // by who has neither counter nor clock to tell a late delivery by.
+  // always of a device with neither counter nor clock to tell a late delivery by, of others where it is many.
   struct Portion {
     bool asked = false;
     std::uint64_t bytes = 0, samples = 0;
 
     [[nodiscard]] std::uint32_t at_once(std::size_t now) const noexcept {
-      if (!asked || samples == 0) return 0;
+      constexpr std::uint64_t kMany = 3;
+      if (samples == 0 || (!asked && now * samples < kMany * bytes)) return 0;
       const double about =
           static_cast<double>(now) * static_cast<double>(samples) / static_cast<double>(bytes);
       return static_cast<std::uint32_t>(std::clamp(std::round(about), 1.0, 1e9));

@@ -26,7 +26,7 @@
 extern "C" {
 #endif
 
-#define IFOG_DRIVER_ABI 5u
+#define IFOG_DRIVER_ABI 6u
 #define IFOG_MAX_AXES 3
 #define IFOG_MAX_ENVIRONMENT 16
 #define IFOG_NAME_LENGTH 48
@@ -49,7 +49,8 @@ enum ifog_transport { IFOG_TRANSPORT_BYTES = 1, IFOG_TRANSPORT_CAN = 2 };
 
 enum ifog_sample_flags {
   IFOG_SAMPLE_DEVICE_TIME = 1, /* device_time_ns is set */
-  IFOG_SAMPLE_SEQUENCE = 2     /* sequence is set */
+  IFOG_SAMPLE_SEQUENCE = 2,    /* sequence is set */
+  IFOG_SAMPLE_BEYOND = 4       /* a value is beyond the range that the format states; it is kept */
 };
 
 /* One reading of the sensor. */
@@ -94,6 +95,11 @@ typedef struct ifog_driver_counters {
   uint64_t values_refused; /* environment values beyond what the format states; the last good one stays */
   uint64_t frames_other;   /* CAN frames that are none of the sensor's. Every CAN frame that was fed is in
                               frames_good, frames_format or frames_other; the host checks it */
+  /* Values beyond the range that a description of the format states: such ranges are information, often
+   * wrong, and the values are kept. The first of them, in the format's unit, with its name and that range. */
+  uint64_t values_beyond;
+  char beyond_name[IFOG_NAME_LENGTH];
+  double beyond_value, beyond_minimum, beyond_maximum;
 } ifog_driver_counters;
 
 /* What a configured instance will deliver. Filled by `describe`, constant afterwards. */

@@ -2,8 +2,10 @@
 #include "drivers/transport/clock.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <ctime>
+#include <utility>
 
 namespace ifog {
 namespace {
@@ -18,16 +20,62 @@ std::int64_t clock_ns(clockid_t clock) noexcept {
   return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
-// Wall clock less CLOCK_BOOTTIME, of a few tries the one that was held up least, and how far off it may be.
-struct WallLessBoot {
+// A slewed clock gains or loses at most this against the crystal (chrony's maxslewrate, a twelfth).
+constexpr std::int64_t kSlews = 8;
+constexpr std::int64_t kShortestSleep_ns = 1'000'000;
+constexpr std::int64_t kLook_ns = 1'000'000'000;
+
+// Time that the machine has slept since it was switched on: looked at where CLOCK_BOOTTIME has run ahead of
+// the crystal by more than slewing can make of the time between. Both ends of the interval are known to be
+// right, however long the thread was held up between two readings.
+class TimeAsleep {
+ public:
+  std::int64_t at(std::int64_t raw_ns) noexcept {
+    if (raw_ns - asked_ns_.load(std::memory_order_relaxed) < kAsk_ns)
+      return asleep_ns_.load(std::memory_order_relaxed);
+    asked_ns_.store(raw_ns, std::memory_order_relaxed);
+    const std::int64_t boot_ns = clock_ns(CLOCK_BOOTTIME);
+    const std::int64_t since_ns = raw_ns - raw_ns_.load(std::memory_order_relaxed);
+    const std::int64_t ahead_ns = boot_ns - boot_ns_.load(std::memory_order_relaxed) - since_ns;
+    if (since_ns > kLook_ns || ahead_ns > kShortestSleep_ns + since_ns / kSlews) look(raw_ns, boot_ns);
+    return asleep_ns_.load(std::memory_order_relaxed);
+  }
+
+ private:
+  void look(std::int64_t raw_ns, std::int64_t boot_ns) noexcept {
+    const std::int64_t before = clock_ns(CLOCK_MONOTONIC);
+    const std::int64_t boot = clock_ns(CLOCK_BOOTTIME);
+    const std::int64_t after = clock_ns(CLOCK_MONOTONIC);
+    const std::int64_t now = asleep_ns_.load(std::memory_order_relaxed);
+    if (now < boot - after || now > boot - before)
+      asleep_ns_.store(std::max<std::int64_t>(0, boot - after), std::memory_order_relaxed);
+    raw_ns_.store(raw_ns, std::memory_order_relaxed);
+    boot_ns_.store(boot_ns, std::memory_order_relaxed);
+  }
+
+  static constexpr std::int64_t kAsk_ns =
+      1'000'000;  // a clock costs 80 ns to read, a machine sleeps for longer
+
+  std::atomic<std::int64_t> asleep_ns_{0}, raw_ns_{0}, boot_ns_{0}, asked_ns_{0};
+};
+
+// CLOCK_MONOTONIC_RAW plus the time asleep.
+std::int64_t unslewed_ns() noexcept {
+  static TimeAsleep asleep;
+  const std::int64_t raw_ns = clock_ns(CLOCK_MONOTONIC_RAW);
+  return raw_ns + asleep.at(raw_ns);
+}
+
+// Wall clock less the unslewed one, of a few tries the one that was held up least, and how far off it may be.
+struct WallLess {
   std::int64_t ns, doubt_ns;
 };
-WallLessBoot wall_less_boot() noexcept {
+WallLess wall_less_unslewed() noexcept {
   std::int64_t best = 0, least = INT64_MAX;
   for (int i = 0; i < kTries; ++i) {
-    const std::int64_t before = clock_ns(CLOCK_BOOTTIME);
+    const std::int64_t before = unslewed_ns();
     const std::int64_t wall = clock_ns(CLOCK_REALTIME);
-    const std::int64_t took = clock_ns(CLOCK_BOOTTIME) - before;
+    const std::int64_t took = unslewed_ns() - before;
     if (took >= least) continue;
     least = took;
     best = wall - before - took / 2;
@@ -35,8 +83,8 @@ WallLessBoot wall_less_boot() noexcept {
   return {best, least / 2};
 }
 
-const WallLessBoot& at_start() noexcept {
-  static const WallLessBoot taken = wall_less_boot();
+const WallLess& at_start() noexcept {
+  static const WallLess taken = wall_less_unslewed();
   return taken;
 }
 std::int64_t epoch_ns() noexcept { return at_start().ns; }
@@ -49,7 +97,7 @@ std::int64_t epoch_ns() noexcept { return at_start().ns; }
 std::int64_t realtime_ns() noexcept { return clock_ns(CLOCK_REALTIME); }
 std::int64_t monotonic_ns() noexcept { return clock_ns(CLOCK_MONOTONIC); }
 std::int64_t thread_time_ns() noexcept { return clock_ns(CLOCK_THREAD_CPUTIME_ID); }
-std::int64_t arrival_clock_ns() noexcept { return clock_ns(CLOCK_BOOTTIME) + epoch_ns(); }
+std::int64_t arrival_clock_ns() noexcept { return unslewed_ns() + epoch_ns(); }
 std::int64_t arrival_clock_at_boot_ns() noexcept { return epoch_ns(); }
 
 std::int64_t WallShift::from(std::int64_t realtime, std::int64_t arrival, std::int64_t doubt_ns) noexcept {
@@ -60,7 +108,7 @@ std::int64_t WallShift::from(std::int64_t realtime, std::int64_t arrival, std::i
 
 std::int64_t WallShift::at(std::int64_t arrival) noexcept {
   if (std::abs(realtime_ns() - arrival - shift_ns_) <= kSame_ns) return shift_ns_;
-  const WallLessBoot now = wall_less_boot();
+  const WallLess now = wall_less_unslewed();
   return from(now.ns - epoch_ns(), 0, now.doubt_ns + at_start().doubt_ns);
 }
 
@@ -68,8 +116,10 @@ void KernelStamps::begin(std::int64_t realtime, std::int64_t arrival) noexcept {
   now_ns_ = arrival;
   before_ns_ = started_ ? after_ns_ : realtime - arrival;
   after_ns_ = realtime - arrival;
-  // Until a stamp says otherwise what waited was stamped before the clock was set.
-  stepped_ = std::abs(after_ns_ - before_ns_) <= kSame_ns;
+  // Until a stamp says otherwise what waited was stamped before the clock was set. What slewing makes of the
+  // time between is no setting.
+  const std::int64_t slewed_ns = (arrival - std::exchange(begun_ns_, arrival)) / kSlews;
+  stepped_ = std::abs(after_ns_ - before_ns_) <= kSame_ns + slewed_ns;
   if (!started_) latest_ns_ = INT64_MIN;
   started_ = true;
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clocks of everything that arrives.
 //
-// Intervals come from a clock that nobody sets: what is integrated, counted or timed out must not move when
-// somebody sets the date. The arrival clock is CLOCK_BOOTTIME (which also runs while the machine sleeps)
-// counted from the epoch as the wall clock had it when the process started, so that its numbers read like
-// times of day, and recorded times (a log's) and live ones are of one kind. The wall clock only labels: a
-// time of day is a time of the arrival clock plus wall_shift_ns().
+// Intervals come from a clock that nobody sets and nobody slews: what is integrated or counted must not move
+// when somebody sets the date, and NTP may slew CLOCK_MONOTONIC and CLOCK_BOOTTIME by 8 %. The arrival clock
+// is CLOCK_MONOTONIC_RAW plus the time that the machine slept (CLOCK_BOOTTIME less CLOCK_MONOTONIC), counted
+// from the epoch as the wall clock had it when the process started. So its numbers read like times of day,
+// and recorded times (a log's) and live ones are of one kind. The wall clock only labels: a time of day is a
+// time of the arrival clock plus wall_shift_ns(), which follows a slewed wall clock in small steps.
 #pragma once
 
 #include <cstdint>
@@ -49,7 +50,7 @@ class KernelStamps {
   std::int64_t on_arrival_clock(std::int64_t stamp_ns) noexcept;
 
  private:
-  std::int64_t now_ns_ = 0, latest_ns_ = 0;
+  std::int64_t now_ns_ = 0, begun_ns_ = 0, latest_ns_ = 0;
   std::int64_t before_ns_ = 0, after_ns_ = 0;  // wall clock less arrival clock, at the read before and now
   bool started_ = false, stepped_ = false;
 };

@@ -10,18 +10,22 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <ctime>
 #include <stdexcept>
+#include <string_view>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/ip_socket.h"
 #include "drivers/transport/receiving_socket.h"
+#include "drivers/transport/server_words.h"
 
 namespace ifog {
 namespace {
 
 // The kernel's own limit is minutes, and its later attempts are up to a minute apart.
 constexpr std::int64_t kAttempt_ns = 500'000'000;
+constexpr std::int64_t kHearOut_ns = 300'000'000;
 constexpr int kQuietBeforeProbe_s = 1, kProbeEvery_s = 1, kProbes = 2;
 
 class TcpTransport final : public Transport {
@@ -41,6 +45,8 @@ class TcpTransport final : public Transport {
   void begin();
   void check_answer();
   void send_opening();
+  void hear_out(std::int64_t until_ns);
+  void hung_up(int error) noexcept;
   [[noreturn]] void refuse(const std::string& what, int error, const std::string& expected);
 
   TcpSettings settings_;
@@ -48,6 +54,9 @@ class TcpTransport final : public Transport {
   IpSocket socket_;
   bool blocks_ = false;
   std::int64_t limit_ns_ = 0;  // of the attempt under way
+  ServerWords words_;
+  bool turned_away_ = false;  // the last connection brought words and was closed
+  bool telnet_told_ = false;
   KernelStamps stamps_;
   ControlRoom control_{};
   std::array<std::uint8_t, 16384> buffer_{};
@@ -74,6 +83,8 @@ bool TcpTransport::connect(std::string& warning, std::int64_t until_ns) {
   check_answer();
   ask_for_times(socket_.fd(), name(), warning);
   stamps_.begin(realtime_ns(), arrival_clock_ns());
+  words_.connected();
+  if (turned_away_) hear_out(monotonic_ns() + kHearOut_ns);
   send_opening();
   blocks_ = let_block(socket_.fd());
   return true;
@@ -111,6 +122,37 @@ void TcpTransport::check_answer() {
   if (error != 0) refuse("cannot connect", error, "a device or server that listens there");
 }
 
+// A server that turned us away may do so again: its line is taken for open when it does not, for a while.
+void TcpTransport::hear_out(std::int64_t until_ns) {
+  std::array<std::uint8_t, 256> said{};
+  for (ssize_t n = 0;;) {
+    short happened = 0;
+    if (wait(socket_.fd(), POLLIN | POLLRDHUP, until_ns, happened) != Wake::ready) break;
+    n = recv(socket_.fd(), said.data(), said.size(), MSG_PEEK | MSG_DONTWAIT);
+    words_.connected();
+    if (n > 0) words_.came(std::span(said).first(static_cast<std::size_t>(n)));
+    if (n == 0 || (happened & (POLLRDHUP | POLLHUP)) != 0)
+      refuse("the server closes the connection", ECONNREFUSED, "that no other program has its line");
+    if (words_.sentence().empty()) break;
+    timespec pause{0, 10'000'000};
+    nanosleep(&pause, nullptr);
+    if (monotonic_ns() >= until_ns) break;
+  }
+  words_.connected();
+  turned_away_ = false;
+}
+
+void TcpTransport::hung_up(int error) noexcept {
+  const std::string_view sentence = words_.sentence();
+  turned_away_ = !sentence.empty();
+  if (turned_away_) {
+    report("the server said, and closed the connection", 0, sentence);
+    error = ECONNREFUSED;
+  }
+  socket_.close();
+  lost(error);
+}
+
 // 64 bytes at most: a fresh socket has room for them.
 void TcpTransport::send_opening() {
   if (opening().empty()) return;
@@ -137,12 +179,14 @@ Delivery TcpTransport::receive(std::int64_t until_ns) noexcept {
     if (const ReceiveControl said = receive_control(message); said.arrival_ns != 0)
       delivery.arrival_ns = stamps_.on_arrival_clock(said.arrival_ns);
     delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(got.n));
+    words_.came(delivery.bytes);
+    if (words_.telnet() && !std::exchange(telnet_told_, true))
+      report("the server speaks telnet, which doubles every byte FF: set its port to raw", 0);
     return delivery;
   }
   const int error = got.n < 0 ? got.error : ECONNRESET;
   if (error == EINTR || error == EAGAIN) return {};
-  socket_.close();
-  lost(error);
+  hung_up(error);
   return {};
 }
 

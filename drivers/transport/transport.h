@@ -176,6 +176,8 @@ class Transport {
   static bool let_block(int fd) noexcept;
 
   [[nodiscard]] std::span<const std::uint8_t> opening() const { return opening_; }
+  // For take_warning().
+  void keep_warning(std::string&& warning);
   // The device went away: connect() will be tried again.
   void lost(int reason) noexcept;
   // It is open but nobody is at its other end until the next delivery.
@@ -197,7 +199,6 @@ class Transport {
   static short happened_to(int fd) noexcept;
 
   bool regain(std::int64_t until_ns) noexcept;
-  void keep_warning(std::string&& warning);
   void enter(TransportState state, int reason) noexcept;
 
   std::string name_;

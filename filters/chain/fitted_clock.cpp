@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/ifog/arrivals.h"
+#include "drivers/system/nanoseconds.h"
 
 namespace ifog {
 namespace {
@@ -14,6 +14,7 @@ constexpr double kLatenessLimit = 4.0;
 constexpr double kShortest = 0.5;  // of the nominal period, that the true one can be
 constexpr double kTells_ns = 1e9;  // that a line has to span to say what a period is
 constexpr double kMost_ns = 9e18;
+constexpr double kPrompt_s = 0.05;  // scheduling and an adapter's portions together
 
 }  // namespace
 

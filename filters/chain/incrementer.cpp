@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <utility>
 
-#include "drivers/ifog/turn.h"
+#include "drivers/system/nanoseconds.h"
 
 namespace ifog {
 namespace {
@@ -15,7 +16,10 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kClockMemory_s = 20.0;
 constexpr std::uint64_t kGapsThatShow = 64;
 constexpr double kGapsAreNone = 5.0;  // s of samples that all come behind one
-constexpr double kSetBack_s = 1.0;    // of the times of arrival: more than any order of delivery
+constexpr int kEarly = 8;             // arrivals in a row: no single stamp that was damaged
+constexpr double kApart_s = 0.1;      // from the line of labels: less is scheduling's
+constexpr double kScatters = 4.0;     // times the mean is not by chance
+constexpr double kStands_s = 1.0;     // a delivery that was delayed drains within this
 
 int clock_memory(double rate_hz) {
   return static_cast<int>(std::clamp(kClockMemory_s * rate_hz, 64.0, 100000.0));
@@ -27,7 +31,7 @@ Incrementer::Incrementer(const SensorFacts& facts) noexcept
     : facts_(facts),
       period_s_(1.0 / facts.nominal_rate_hz),
       clock_(period_s_, clock_memory(facts.nominal_rate_hz)),
-      timeline_(facts.sequence_modulus, facts.nominal_rate_hz, facts.on_bus) {
+      timeline_(facts.sequence_modulus, facts.nominal_rate_hz) {
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
     rate_[axis] = PlausibleRate(facts.rate, facts.full_scale_radps[axis]);
   for (std::size_t c = 0; c < kMaxChannels; ++c)
@@ -48,76 +52,27 @@ double Incrementer::interval_error() const noexcept {
   return nominal && clock_.settled() ? clock_.period_s() / period_s_ - 1.0 : 0.0;
 }
 
-// Whole rounds were lost where a silence was, as this sample tells.
-bool Incrementer::rounds_told(const Step& step) const noexcept {
-  return step.same_gap || (undecided_ && step.samples >= facts_.sequence_modulus);
-}
-
-DeviceTimeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
-  DeviceTimeline::Frame frame;
+Timeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
+  Timeline::Frame frame;
   frame.counts = reading.has_sequence;
   frame.sequence = reading.sequence;
   frame.clocked = reading.device_time_ns.has_value();
-  frame.stamp = {reading.device_time_ns.value_or(0), reading.device_wrap_ns};
-  // Half of what a signed stamp goes through is below 0: of its rounds those from there on are published.
-  if (frame.stamp.ns < 0 && frame.stamp.wrap_ns > 0) frame.stamp.ns += frame.stamp.wrap_ns;
+  frame.stamp_ns = reading.device_time_ns.value_or(0);
+  frame.wrap_ns = reading.device_wrap_ns;
+  // A signed stamp below 0: published times begin at the rollover before it.
+  if (frame.stamp_ns < 0 && frame.wrap_ns > 0) frame.stamp_ns += frame.wrap_ns;
   frame.arrival_ns = reading.arrival_ns;
+  frame.recorded = reading.arrival_recorded;
+  frame.at_once = reading.at_once;
   frame.reopened = reopened_;
   frame.values = {reading.value.data(), static_cast<std::size_t>(facts_.axes)};
   return frame;
 }
 
-Incrementer::Step Incrementer::step_by_arrival(const Reading& reading) noexcept {
-  Step step;
-  const double elapsed_s = arrivals_.elapsed_s(reading.arrival_ns);
-  const double period_s = clock_.period_s();
-  const double late_s = clock_.lateness_s(1, reading.arrival_ns);
-  const Silence::Next next{elapsed_s, late_s, reading.at_once};
-  Silence::Ends ends = Silence::Ends::none;
-  if (elapsed_s > 0.0 && reopened_)
-    step.samples = at_least_one(elapsed_s / period_s);
-  else
-    ends = silence_.look(next, period_s);
-  if (ends == Silence::Ends::hole) step.samples = at_least_one(late_s / period_s + 1.0);
-  if (ends == Silence::Ends::hold_up) step.late_s = late_s;
-  silence_.take(next, ends);
-  step.gap = step.samples > 1;
-  step.dt_s = static_cast<double>(step.samples) * period_s;
-  return step;
-}
-
-Incrementer::Step Incrementer::step(const Reading& reading, const DeviceTimeline::Frame& frame) noexcept {
-  if (timeline_.tells(frame)) return timeline_.next(frame);
-  Step step = step_by_arrival(reading);
-  step.gap = step.gap || reopened_;
-  step.time_ns = timeline_.first(frame);
-  return step;
-}
-
-Verdict Incrementer::turn_of_angle(std::size_t axis, double value, Turn& out) noexcept {
-  PlausibleAngle& angle = angle_[axis];
-  OpenTurn& open = open_turn_[axis];
-  if (silence_begins_s_ > 0.0) {
-    const std::optional<Turn> turned = angle.proposed(value, facts_.angle_wrap_rad);
-    if (turned && hides_more(turned->angle_rad / turned->covered_s, angle.rate_radps())) {
-      const bool known = angle.take_unjudged(value, facts_.angle_wrap_rad, silence_begins_s_);
-      open.begin(*turned, silence_begins_s_, known);
-      out = {};
-      return Verdict::plausible;
-    }
-  }
-  Verdict verdict = angle.take(value, facts_.angle_wrap_rad, rate_[axis], out);
-  if (verdict == Verdict::plausible && out.covered_s > 0.0 && open.open() && !undecided_) {
-    mean_radps_[axis] = open.close(out);
-    verdict = rate_[axis].take(*mean_radps_[axis]);
-  }
-  return verdict;
-}
-
 Verdict Incrementer::turn(std::size_t axis, double value, double own_s, Turn& out) noexcept {
   switch (facts_.kind) {
     case SensorKind::angle:
-      return turn_of_angle(axis, value, out);
+      return angle_[axis].take(value, facts_.angle_wrap_rad, rate_[axis], out);
     case SensorKind::delta_angle:
       out = {value, own_s};
       return rate_[axis].take(value / period_s_);
@@ -136,12 +91,7 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
     counts_.invalid += std::exchange(without_unseen_, 0);
   for (int i = 0; i < facts_.axes; ++i) {
     const auto axis = static_cast<std::size_t>(i);
-    // What is found to be missing where a silence was is no time of this sample's turn.
-    const double belated_s = belated_ ? step.dt_s - own_s : 0.0;
-    angle_[axis].pass(step.dt_s - belated_s);
-    open_turn_[axis].lost(belated_s);
-    if (silence_ends_) open_turn_[axis].rest_was(step.clock_moved);
-    mean_radps_[axis].reset();
+    angle_[axis].pass(step.dt_s);
     Turn turned;
     if (((reading.valid_axes >> i) & 1u) == 0) {
       const bool known = axes_seen_ == 0 || ((axes_seen_ >> i) & 1u) != 0;
@@ -157,16 +107,15 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
     out.covered_s[axis] = turned.covered_s;
     // A rate is passed on as sent: dividing the product again would cost its last bit.
     if (turned.covered_s > 0.0) {
-      out.rate_radps[axis] = facts_.kind == SensorKind::rate
-                                 ? reading.value[axis]
-                                 : mean_radps_[axis].value_or(turned.angle_rad / turned.covered_s);
+      out.rate_radps[axis] =
+          facts_.kind == SensorKind::rate ? reading.value[axis] : turned.angle_rad / turned.covered_s;
       out.valid_axes |= 1u << i;
       if (check_.stuck(axis, reading.value[axis])) out.stuck_axes |= 1u << i;
     } else {
       out.rate_radps[axis] = kNaN;
     }
   }
-  if (invalid || unseen) out.flags |= kInvalid;
+  if (invalid) out.flags |= kInvalid;  // an axis that the device has never had is absent
   if (saturated) out.flags |= kAtFullScale;
   counts_.invalid += invalid ? 1 : 0;
   without_unseen_ += unseen && !invalid ? 1 : 0;
@@ -216,34 +165,52 @@ double Incrementer::periods_of(const Step& step, bool clocked) noexcept {
   return periods;
 }
 
+// Slewing moves the wall clock, too, by a twelfth of the time at most (chrony): the labels follow it.
+bool Incrementer::wall_was_set(const Reading& reading) const noexcept {
+  constexpr std::int64_t kSlews = 8, kLeast_ns = 1'000'000;
+  const std::int64_t by_ns = std::abs(ns_between(last_.wall_shift_ns, reading.wall_shift_ns));
+  const std::int64_t since_ns = std::max<std::int64_t>(0, ns_between(last_.came_ns, reading.came_ns));
+  return by_ns > kLeast_ns + since_ns / kSlews;
+}
+
+// Whether the line of labels is to begin anew at this arrival: nothing comes before it was taken, and what
+// stays late is not delayed any more. A single stamp that is early or late moves no label.
+bool Incrementer::apart(double late_s, std::int64_t arrival_ns) noexcept {
+  const double usual_s = std::max(kApart_s, kScatters * clock_.spread_s());
+  early_ = late_s < -usual_s ? early_ + 1 : 0;
+  if (late_s <= usual_s)
+    late_since_ns_ = 0;
+  else if (late_since_ns_ == 0)
+    late_since_ns_ = arrival_ns;
+  const bool stands =
+      late_since_ns_ != 0 && static_cast<double>(ns_between(late_since_ns_, arrival_ns)) > kStands_s * 1e9;
+  return early_ >= kEarly || stands;
+}
+
 // When the sample was taken, by a line through the times of arrival.
 void Incrementer::label(const Reading& reading, const Step& step, Increment& out) noexcept {
-  using Says = LabelLateness::Says;
-  // A clock that was set back says nothing of what has passed.
-  const bool set_back = reading.arrival_ns > 0 &&
-                        static_cast<double>(arrivals_.latest_ns() - reading.arrival_ns) * 1e-9 > kSetBack_s;
   const double periods = periods_of(step, reading.device_time_ns.has_value());
-  Says says = Says::follow;
-  if (reading.arrival_ns > 0 && step.late_s == 0.0 && !step.clock_moved && !set_back)
-    says = label_lateness_.next(clock_.lateness_s(periods, reading.arrival_ns), clock_.spread_s(),
-                                arrivals_.elapsed_s(reading.arrival_ns));
-  else if (reading.arrival_ns > 0)
-    label_lateness_.forget();
-  const bool stood = step.clock_moved || says == Says::stood;
-  const bool moved = started_ && (stood || set_back);
-  if (stood || set_back || says == Says::ahead) clock_.restart();
-  // Of recorded times nobody knows whether the clock was set or the device did not count on; by one that
-  // nobody sets it was the device.
-  if (started_ &&
-      (reading.wall_shift_ns != last_.wall_shift_ns || set_back || (moved && reading.arrival_recorded))) {
+  bool moved = step.clock_moved;
+  bool unlike = false;
+  if (reading.arrival_ns > 0 && step.late_s == 0.0 && !step.gap) {
+    moved = apart(clock_.lateness_s(periods, reading.arrival_ns), reading.arrival_ns) || moved;
+    unlike = early_ > 0 || late_since_ns_ != 0;
+  }
+  if (moved || step.gap) {
+    early_ = 0;
+    late_since_ns_ = 0;
+  }
+  moved = moved && started_;
+  if (moved) clock_.restart();
+  // The stamps of a log are a wall clock's, which was set; by an unslewed clock it was the line.
+  if (started_ && (wall_was_set(reading) || (moved && reading.arrival_recorded))) {
     out.flags |= kClockStep;
     ++counts_.clock_steps;
   } else if (moved) {
     ++counts_.pauses;
   }
-  // What is held up on its way says nothing of the clock, but for where a clock that was set has to begin.
-  const bool held_up = (step.late_s > 0.0 || says == Says::wait) && !set_back;
-  out.utime_ns = ns_after(clock_.advance(periods, held_up ? 0 : reading.arrival_ns), reading.wall_shift_ns);
+  const bool delayed = step.late_s > 0.0 || (unlike && !moved);
+  out.utime_ns = ns_after(clock_.advance(periods, delayed ? 0 : reading.arrival_ns), reading.wall_shift_ns);
   // Later than the one before also in the message's microseconds: a line that has few samples yet goes to and
   // fro by as much as arrival times scatter.
   if (started_ && (out.flags & kClockStep) == 0)
@@ -253,10 +220,9 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
 void Incrementer::pass_gap(const Step& now, Increment& out) noexcept {
   out.flags |= kGapBefore;
   for (PlausibleRate& rate : rate_) rate.forget();
-  if (!belated_)
-    for (PlausibleAngle& angle : angle_) angle.miss();
+  for (PlausibleAngle& angle : angle_) angle.miss();
   for (PlausibleValue& channel : frame_channel_) channel.forget();
-  counts_.gaps += now.same_gap ? 0 : 1;
+  ++counts_.gaps;
   counts_.missing += now.samples - 1;
   counts_.untold += now.untold ? now.samples - 1 : 0;
   clock_.restart();
@@ -266,17 +232,16 @@ void Incrementer::pass_gap(const Step& now, Increment& out) noexcept {
 void Incrementer::begin_anew() noexcept {
   ++counts_.restarts;
   for (PlausibleAngle& angle : angle_) angle.forget();
-  for (OpenTurn& open : open_turn_) open.forget();
 }
 
 bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
-  const DeviceTimeline::Frame frame = frame_of(reading);
+  const Timeline::Frame frame = frame_of(reading);
   Step now;
   if (started_) {
-    now = step(reading, frame);
+    now = timeline_.next(frame);
     if (now.out_of_turn) {
       ++counts_.repeated;
-      counts_.mixed += timeline_.mixed() ? 1 : 0;
+      counts_.mixed += timeline_.two_devices() ? 1 : 0;
       return false;
     }
     sequence_ += now.samples;
@@ -285,7 +250,6 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     sequence_ = reading.has_sequence ? reading.sequence : 0;
     now.time_ns = timeline_.first(frame);
   }
-  belated_ = rounds_told(now);
   out.flags = 0;
   if (started_ && now.gap) pass_gap(now, out);
   if (now.restarted) begin_anew();
@@ -296,9 +260,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     out.flags |= kSensorClockSet;
     ++counts_.sensor_clock_sets;
   }
-  silence_begins_s_ = now.undecided && !undecided_ ? now.late_s : 0.0;
-  silence_ends_ = undecided_ && !now.undecided;
-  undecided_ = now.undecided;
+  if (reading.beyond_stated) out.flags |= kBeyondStated;
   out.samples = 1;
   out.status = reading.status;
   out.sequence = sequence_;
@@ -308,11 +270,10 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   out.device_time_ns = frame.clocked ? now.time_ns : -1;
   out.dt_s = now.dt_s;
   label(reading, now, out);
-  arrivals_.came(reading.arrival_ns, now.dt_s);
   measure(reading, now, out);
   hold_channels(reading, now.samples, out);
   ++counts_.samples;
-  last_ = {reading.wall_shift_ns, out.utime_ns, frame.clocked};
+  last_ = {reading.wall_shift_ns, out.utime_ns, reading.came_ns, frame.clocked};
   started_ = true;
   reopened_ = false;
   return true;

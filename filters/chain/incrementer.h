@@ -5,20 +5,15 @@
 // counter; the fitted period for a device that has neither. So a replay of the same frames gives the same
 // bits, whatever the scheduling did to arrival times, for every device that counts.
 //
-// What is new, came again or late, and how many samples are missing: drivers/ifog/device_timeline.h for a
-// device that counts or has a clock, drivers/ifog/silence.h for one with neither.
+// What is new, a duplicate or overtaken, and how many samples are missing: drivers/timeline/timeline.h.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <optional>
 
-#include "drivers/ifog/arrivals.h"
-#include "drivers/ifog/device_timeline.h"
-#include "drivers/ifog/silence.h"
+#include "drivers/timeline/timeline.h"
 #include "filters/chain/fitted_clock.h"
-#include "filters/chain/label_lateness.h"
-#include "filters/chain/open_turn.h"
 #include "filters/chain/plausibility.h"
 #include "filters/chain/reading.h"
 #include "filters/estimator/sensor_check.h"
@@ -58,7 +53,7 @@ class Incrementer {
   // Bits of the axes that the device has marked good at least once.
   [[nodiscard]] std::uint32_t axes_seen() const noexcept { return axes_seen_; }
   // Frames of two devices come on one line, and none is taken.
-  [[nodiscard]] bool mixed() const noexcept { return timeline_.mixed(); }
+  [[nodiscard]] bool mixed() const noexcept { return timeline_.two_devices(); }
   // Fitted against nominal period, 1e-6; 0 until the line has settled.
   [[nodiscard]] double clock_offset_ppm() const noexcept;
   // By which part of it the true interval is longer than the nominal one, where that is used: of a device
@@ -67,48 +62,39 @@ class Incrementer {
   [[nodiscard]] double interval_error() const noexcept;
 
  private:
-  using Step = DeviceTimeline::Step;
-  [[nodiscard]] Step step(const Reading& reading, const DeviceTimeline::Frame& frame) noexcept;
-  [[nodiscard]] bool rounds_told(const Step& step) const noexcept;
-  [[nodiscard]] DeviceTimeline::Frame frame_of(const Reading& reading) const noexcept;
-  [[nodiscard]] Step step_by_arrival(const Reading& reading) noexcept;
+  using Step = Timeline::Step;
+  [[nodiscard]] Timeline::Frame frame_of(const Reading& reading) const noexcept;
   void pass_gap(const Step& step, Increment& out) noexcept;
   void begin_anew() noexcept;
   void label(const Reading& reading, const Step& step, Increment& out) noexcept;
+  [[nodiscard]] bool wall_was_set(const Reading& reading) const noexcept;
+  [[nodiscard]] bool apart(double late_s, std::int64_t arrival_ns) noexcept;
   [[nodiscard]] double periods_of(const Step& step, bool clocked) noexcept;
   void measure(const Reading& reading, const Step& step, Increment& out) noexcept;
   void hold_channels(const Reading& reading, std::uint64_t samples, Increment& out) noexcept;
   [[nodiscard]] Verdict turn(std::size_t axis, double value, double own_s, Turn& out) noexcept;
-  [[nodiscard]] Verdict turn_of_angle(std::size_t axis, double value, Turn& out) noexcept;
 
   SensorFacts facts_;
   double period_s_;
   FittedClock clock_;
-  LabelLateness label_lateness_;
+  int early_ = 0;                   // arrivals before the line of labels, in a row
+  std::int64_t late_since_ns_ = 0;  // arrivals have been behind it since then; 0: they are not
   // Of late, by a device's own clock: its samples take so much longer than a nominal period.
   double clocked_periods_ = 0.0, clocked_samples_ = 0.0;
-  DeviceTimeline timeline_;  // of a device that counts or has a clock
+  Timeline timeline_;
   bool started_ = false;
   bool reopened_ = false;
   // Of the reading before; its channels are kept below.
   struct Last {
-    std::int64_t wall_shift_ns = 0, utime_ns = 0;
+    std::int64_t wall_shift_ns = 0, utime_ns = 0, came_ns = 0;
     bool clocked = false;
   };
   Last last_;
-  Arrivals arrivals_;
   std::uint64_t gaps_in_a_row_ = 0;  // of a device with a clock alone
   double row_s_ = 0.0;
-  Silence silence_;  // of a device that does not count
   std::uint64_t sequence_ = 0;
   std::array<PlausibleRate, kMaxAxes> rate_;
   std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle
-  std::array<OpenTurn, kMaxAxes> open_turn_;
-  std::array<std::optional<double>, kMaxAxes> mean_radps_;  // of a sample that closes one
-  bool undecided_ = false;                                  // so is how long the last silence was
-  bool belated_ = false;                                    // whole rounds are told that were lost in it
-  bool silence_ends_ = false;                               // it was, until this sample
-  double silence_begins_s_ = 0.0;  // by so much at most, of the sample that ends it; else 0
   SensorCheck check_;
   std::uint32_t axes_seen_ = 0;
   std::uint64_t without_unseen_ = 0;  // samples that lack nothing but axes that have never been there

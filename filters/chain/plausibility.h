@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "drivers/ifog/turn.h"
+#include "drivers/units/turn.h"
 #include "filters/chain/reading.h"
 
 namespace ifog {
@@ -113,21 +113,6 @@ class PlausibleAngle {
     suspect_since_s_ = 0.0;
     return verdict;
   }
-  // What was turned since the last good one, by a value that is not taken.
-  [[nodiscard]] std::optional<Turn> proposed(double angle_rad, double wrap_rad) const noexcept {
-    if (!known_ || !(std::abs(angle_rad) <= kMostAngle_rad) || !(since_s_ > 0.0)) return std::nullopt;
-    const double turned = angle_rad - angle_rad_;
-    return Turn{wrap_rad > 0.0 ? std::remainder(turned, wrap_rad) : turned, since_s_};
-  }
-  // Instead of take(), behind a silence that may be longer than the time that went by, by silence_s at most:
-  // over which time it was turned is not known, so it is not judged. False: nor is known which way round.
-  [[nodiscard]] bool take_unjudged(double angle_rad, double wrap_rad, double silence_s) noexcept {
-    const bool told = turn_is_known(rate_radps_, since_s_ + silence_s, wrap_rad);
-    settle(angle_rad);
-    return told;
-  }
-  // Over the last two that are good.
-  [[nodiscard]] double rate_radps() const noexcept { return rate_radps_; }
   // The device started anew: its angle counts from another origin.
   void forget() noexcept { known_ = suspected_ = false; }
   // Samples are missing before the next one.

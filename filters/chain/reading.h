@@ -35,7 +35,6 @@ struct SensorFacts {
   int axes = 1;                        // 1 … kMaxAxes
   std::uint32_t sequence_modulus = 0;  // the device's counter counts modulo this; 0: it sends none
   double nominal_rate_hz = 0.0;        // > 0
-  bool on_bus = false;                 // arrival times are those of frames on their bus
   double angle_wrap_rad = 0.0;         // SensorKind::angle: wraps modulo this; 0: it does not
   int frame_channels = 0;              // channels 0 … frame_channels − 1 come in the sensor's own frames
   int channels = 0;                    // all of them, ≤ kMaxChannels
@@ -59,6 +58,7 @@ struct Reading {
   std::uint32_t at_once = 0;   // about how many samples came in one portion with it; 0: not known
   std::uint32_t sequence = 0;  // as sent
   bool has_sequence = false;
+  bool beyond_stated = false;  // a value is beyond the range that the format's description states
   std::uint32_t status = 0;
   std::uint32_t valid_axes = 0;  // bit i
   Axes value{};
@@ -75,6 +75,7 @@ enum IncrementFlags : std::uint32_t {
   kClockStep = 8,        // the wall clock has been set: utime has moved against the sample before, dt has not
   kAtFullScale = 16,     // the value reaches the end of the sensor's range, or is beyond; also kInvalid
   kSensorClockSet = 32,  // the device's own clock has been set: device_time_ns has moved, nothing else has
+  kBeyondStated = 64,    // a value is beyond the range that the format's description states; it is kept
 };
 
 // The angle turned over one step, and what came with it.

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "drivers/capture/output_file.h"
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/lcm_log.h"

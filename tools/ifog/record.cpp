@@ -107,6 +107,11 @@ void LcmRecorder::tell_books() const {
       static_cast<unsigned long long>(books.heard),
       static_cast<unsigned long long>(messages_.archive().bytes_written()),
       static_cast<unsigned long long>(books.lost_here), static_cast<unsigned long long>(books.lost_on_way));
+  if (!books.two_publishers.empty())
+    warn(
+        "%s: two publishers sent on %s (two daemons, or a log that was played beside one): their messages "
+        "are mixed\n",
+        options_.folder.c_str(), books.two_publishers.c_str());
   if (books.began_anew > 0)
     warn(
         "%s: %llu times a message's seq was beyond what its sensor can have counted: taken for a new count\n",

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 #include "filters/effects/form.h"
 #include "filters/model_file/toml_text.h"
 #include "filters/units/field_units.h"

@@ -17,7 +17,7 @@
 #include "drivers/capture/measurable.h"
 #include "drivers/capture/row_checks.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"
 
 namespace ifog {

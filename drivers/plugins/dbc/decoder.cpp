@@ -9,10 +9,12 @@
 #include <utility>
 
 #include "drivers/dbc/codec.h"
-#include "drivers/ifog/same_values.h"
 
 namespace ifog::dbc {
 namespace {
+
+// Also of what is no number: a frame that comes twice brings the same NaN.
+bool same_value(double a, double b) noexcept { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
@@ -182,11 +184,8 @@ void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
     case Role::kAxis: {
       const double value = physical(*entry.signal, bits) * entry.si_per_unit;
       sample_.value[entry.index] = value;
-      // A rate at its full scale passes: the host knows it for saturated.
-      const bool plausible =
-          in_range(*entry.signal, physical(*entry.signal, bits)) ||
-          (picks_.kind == IFOG_RATE && std::abs(value) >= full_scale(*entry.signal, entry.si_per_unit));
-      if (std::isfinite(value) && plausible) good_ |= bit(entry.index);
+      if (std::isfinite(value)) good_ |= bit(entry.index);
+      judge(*entry.signal, physical(*entry.signal, bits));
       present_ |= bit(entry.index);
       break;
     }
@@ -204,10 +203,7 @@ void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
     case Role::kEnvironment: {
       const double value = physical(*entry.signal, bits);
       if (!std::isfinite(value)) break;
-      if (!in_range(*entry.signal, value)) {
-        ++counters_.values_refused;
-        break;
-      }
+      judge(*entry.signal, value);
       sample_.environment[entry.index] = value;
       sample_.environment_fresh |= bit(entry.index);
       break;
@@ -215,11 +211,24 @@ void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
   }
 }
 
+// Ranges in real files are often wrong, of signed signals most: a value beyond is kept and said.
+void Decoder::judge(const Signal& signal, double value) noexcept {
+  if (!has_range(signal) || !std::isfinite(value) || in_range(signal, value)) return;
+  beyond_ = true;
+  if (++counters_.values_beyond != 1) return;
+  const std::string& name = display_name(signal);
+  std::copy_n(name.data(), std::min(name.size(), sizeof counters_.beyond_name - 1), counters_.beyond_name);
+  counters_.beyond_value = value;
+  counters_.beyond_minimum = signal.minimum;
+  counters_.beyond_maximum = signal.maximum;
+}
+
 void Decoder::complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sink) noexcept {
   sample_.arrival_ns = arrival_ns;
   sample_.flags = 0;
   if (counted_) sample_.flags |= IFOG_SAMPLE_SEQUENCE;
   if (timed_) sample_.flags |= IFOG_SAMPLE_DEVICE_TIME;
+  if (std::exchange(beyond_, false)) sample_.flags |= IFOG_SAMPLE_BEYOND;
   const bool good = !picks_.status_good || (sample_.status & picks_.status_mask) == *picks_.status_good;
   sample_.valid_axes = good ? good_ : 0;
   emit(sink, &sample_);

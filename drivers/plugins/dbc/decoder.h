@@ -19,9 +19,9 @@ namespace ifog::dbc {
 //     frames queued together leave in the order of their ids (arbitration).
 // So when a frame is lost, no sample is made of two: what is left of it is dropped and counted. A frame that
 // comes twice, same counter and same values, changes nothing and is counted too; a sample of one frame passes
-// on, and whoever counts samples sees it. A value beyond the range that the file states ([min|max]) is none:
-// an axis is not valid, an environment channel keeps its last. Environment, status and time may be in frames
-// of their own; they go with the next sample that completes.
+// on, and whoever counts samples sees it. A value beyond the range that the file states ([min|max]) is kept,
+// counted and flagged. Environment, status and time may be in frames of their own; they go with the next
+// sample that completes.
 class Decoder {
  public:
   explicit Decoder(const Picks& picks);
@@ -57,6 +57,7 @@ class Decoder {
   [[nodiscard]] bool repeats(const Wanted& wanted, std::span<const std::uint8_t> data,
                              const double* known) const noexcept;
   [[nodiscard]] bool repeats_last() const noexcept;
+  void judge(const Signal& signal, double value) noexcept;
   void begin_sample() noexcept;
   void give_up() noexcept;
   void complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sink) noexcept;
@@ -75,7 +76,8 @@ class Decoder {
   std::uint32_t last_sequence_ = 0;
   std::array<double, IFOG_MAX_AXES> last_value_{};
   ifog_sample sample_{};
-  bool timed_ = false;  // its clock has been read
+  bool timed_ = false;   // its clock has been read
+  bool beyond_ = false;  // since the last sample
   ifog_driver_counters counters_{};
 };
 

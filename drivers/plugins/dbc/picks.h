@@ -26,12 +26,6 @@ struct Axis {
   double si_per_unit = 1.0;  // rad or rad/s per physical unit of the signal
 };
 
-// What the file says the signal reaches, rad or rad/s; 0: it states no range.
-inline double full_scale(const Signal& signal, double si_per_unit) {
-  return std::max(std::abs(signal.minimum), std::abs(signal.maximum)) *
-         (has_range(signal) ? si_per_unit : 0.0);
-}
-
 struct Environment {
   std::string column;  // as in a capture: "temperature_degC"
   Pick pick;

@@ -35,8 +35,6 @@ class Driver {
     out.has_device_time = picks_.time ? 1 : 0;
     out.nominal_rate_hz = picks_.rate_hz;
     out.angle_wrap_rad = picks_.angle_wrap_rad;
-    for (std::size_t i = 0; i < picks_.axes.size() && picks_.kind == IFOG_RATE; ++i)
-      out.full_scale[i] = full_scale(*picks_.axes[i].pick.signal, picks_.axes[i].si_per_unit);
     out.environments = static_cast<std::uint32_t>(picks_.environments.size());
     for (std::size_t i = 0; i < picks_.environments.size(); ++i)
       plugin::set_name(out.environment[i], picks_.environments[i].column);

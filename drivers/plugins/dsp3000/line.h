@@ -5,8 +5,8 @@
 //   (-)xxx.xxxxxx y CR LF      y is 1 for valid data, 0 for a fault
 //
 // There is no checksum and no counter: a lost or changed digit is a wrong value that nothing can tell. What
-// can be held to is the form, six decimals exactly and both line ends, which catches most of what a bad line
-// does.
+// can be held to is the form, six decimals exactly, which catches most of what a bad line does. Loggers write
+// other line ends: any is taken.
 #pragma once
 
 #include <cstddef>

@@ -4,8 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include "drivers/plugins/dsp3000/line.h"
 
@@ -17,14 +19,23 @@ class LineFinder {
     std::uint64_t good = 0;
     std::uint64_t malformed = 0;      // lines that have not the form
     std::uint64_t bytes_skipped = 0;  // bytes that are part of no good line
-    std::uint64_t bytes_framed = 0;   // bytes of good lines, and of an empty one that comes first
+    std::uint64_t bytes_framed = 0;   // bytes of good lines and of line ends
   };
 
-  // Calls found(Reading) for each good line, in order. No allocation.
+  // Calls found(Reading) for each good line, in order. No allocation. A line ends with CR, LF or any row of
+  // them, as loggers write it; or with its datagram.
   template <typename Found>
   void feed(std::span<const std::uint8_t> bytes, Found&& found) noexcept {
+    if (bytes.empty()) return;
+    // A whole line was left, and what follows does not end it: each comes in a datagram of its own.
+    if (length_ > 0 && !ends(static_cast<char>(bytes.front())) && parse_line({line_.data(), length_})) {
+      datagrams_ = true;
+      if (const std::optional<Reading> reading = end(0)) found(*reading);
+    }
     for (const std::uint8_t byte : bytes)
       if (const std::optional<Reading> reading = take(static_cast<char>(byte))) found(*reading);
+    if (datagrams_ && length_ > 0 && parse_line({line_.data(), length_}))
+      if (const std::optional<Reading> reading = end(0)) found(*reading);
   }
 
   // The next line is not trusted until a line end has gone by: the tail of a number is a number too.
@@ -44,30 +55,33 @@ class LineFinder {
       length_ = 0;
       in_step_ = false;
     }
+    if (ends(c)) return end(1);
     line_[length_++] = c;
-    if (c != '\n') return {};
-    const std::size_t length = length_;
-    const bool whole = in_step_;
-    length_ = 0;
-    in_step_ = true;
-    if (whole && length >= 2 && line_[length - 2] == '\r') {
-      if (const std::optional<Reading> reading = parse_line({line_.data(), length - 2})) {
-        ++counters_.good;
-        counters_.bytes_framed += length;
-        return reading;
-      }
-    }
-    // What comes before the first line end is no fault of the line's, and nothing is no loss: the encoder
-    // begins with a line end.
-    if (whole) ++counters_.malformed;
-    const bool empty = length == 2 && line_.front() == '\r';
-    (!whole && empty ? counters_.bytes_framed : counters_.bytes_skipped) += length;
     return {};
   }
 
-  std::array<char, kLongestLine + 2> line_{};
+  [[nodiscard]] static bool ends(char c) noexcept { return c == '\r' || c == '\n'; }
+  // ending: bytes that end the line, and are part of it.
+  std::optional<Reading> end(std::size_t ending) noexcept {
+    const std::string_view line(line_.data(), std::exchange(length_, 0));
+    const bool whole = std::exchange(in_step_, true);
+    if (line.empty()) {
+      counters_.bytes_framed += ending;
+      return {};
+    }
+    const std::optional<Reading> reading = whole ? parse_line(line) : std::nullopt;
+    (reading ? counters_.bytes_framed : counters_.bytes_skipped) += line.size() + ending;
+    if (reading)
+      ++counters_.good;
+    else if (whole)  // what comes before the first line end is no fault of the line's
+      ++counters_.malformed;
+    return reading;
+  }
+
+  std::array<char, kLongestLine> line_{};
   std::size_t length_ = 0;
   bool in_step_ = false;
+  bool datagrams_ = false;
   Counters counters_;
 };
 

@@ -44,9 +44,9 @@ TEST(CaptureBuilder, OverAGapInWhichAnAngleMayHaveGoneRoundNoRateIsMadeUp) {
   }
 }
 
-// Ten seconds of 1 °/s are lost, some rounds of the counter, which only what follows can tell: no row turns
-// faster, and the one that tells is not slower.
-TEST(CaptureBuilder, OfAnAngleOverASilenceThatIsNotDecidedNoRateIsMadeUp) {
+// Ten seconds of 1 °/s are lost, some rollovers of the counter: no row turns faster or slower, and one that
+// may have gone half way round has no rate.
+TEST(CaptureBuilder, OfAnAngleOverASilenceNoRateIsMadeUp) {
   constexpr double kRate = std::numbers::pi / 180.0;
   for (const double wrap : {0.0, 8.0 * std::numbers::pi / 180.0}) {
     ifog_description d{};
@@ -75,7 +75,7 @@ TEST(CaptureBuilder, OfAnAngleOverASilenceThatIsNotDecidedNoRateIsMadeUp) {
       without += std::isnan(rate) ? 1 : 0;
       EXPECT_FALSE(std::abs(rate - kRate) > 1e-6) << i << ": " << rate;
     }
-    EXPECT_EQ(without, 1) << wrap;
+    EXPECT_EQ(without, wrap > 0.0 ? 1 : 0) << wrap;
   }
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "drivers/ifog/device_timeline.h"
+#include "drivers/timeline/timeline.h"
 #include "filters/chain/incrementer.h"
 #include "tests/unit/chain/sent_times.h"
 
@@ -54,18 +54,18 @@ TEST(DevicesClock, ThatTicksHardlyMoreOftenThanItSamplesLosesNothing) {
 
 // The least and the most of a capture's own clock are further apart than 64 bits hold.
 TEST(DeviceTimeline, AClockMayJumpAcrossAllThatHasRoom) {
-  DeviceTimeline timeline(0, 100.0);
+  Timeline timeline(0, 100.0);
   const double value = 0.5;
-  DeviceTimeline::Frame frame;
+  Timeline::Frame frame;
   frame.clocked = true;
   frame.values = {&value, 1};
-  frame.stamp.ns = -8'999'999'999'000'000'000;
+  frame.stamp_ns = -8'999'999'999'000'000'000;
   timeline.first(frame);
-  frame.stamp.ns = 8'999'999'999'000'000'000;
-  const DeviceTimeline::Step step = timeline.next(frame);
+  frame.stamp_ns = 8'999'999'999'000'000'000;
+  const Timeline::Step step = timeline.next(frame);
   EXPECT_FALSE(step.out_of_turn);
   EXPECT_TRUE(step.restarted);
-  EXPECT_EQ(step.time_ns, frame.stamp.ns);
+  EXPECT_EQ(step.time_ns, frame.stamp_ns);
 }
 
 }  // namespace

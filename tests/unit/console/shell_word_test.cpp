@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 
 #include <gtest/gtest.h>
 

@@ -6,10 +6,13 @@
 #include <lcm/lcm.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -18,6 +21,7 @@
 #include <ifog/status_t.hpp>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "drivers/host/driver_instance.h"
@@ -175,14 +179,28 @@ TEST_F(Ifogd, ASensorThatIsNotOpenIsNotSaidToBeRead) {
   EXPECT_EQ(lines_with("tail: trying again to open /dev/no-gyro at "), 1) << all_said();
 }
 
-TEST_F(Ifogd, WithoutADeviceNothingCanRun) {
+// A gyro may be powered later than its computer: the service is ready, and waits.
+TEST_F(Ifogd, WithoutItsOnlyDeviceItIsReadyAndWaits) {
   configure("[sensor.transport]\ntype = \"serial\"\ndevice = \"/dev/no-gyro\"\nbaud = 921600\n");
-  EXPECT_EQ(ifogd(), 1);
+  const int manager = socket(AF_UNIX, SOCK_DGRAM | SOCK_NONBLOCK | SOCK_CLOEXEC, 0);
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  path("notify").copy(address.sun_path, sizeof address.sun_path - 1);
+  ASSERT_EQ(bind(manager, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+  const std::string command = "NOTIFY_SOCKET=" + path("notify") +
+                              " timeout -s TERM 3 " IFOG_BINARY_DIR "/daemon/ifogd --config " +
+                              path("ifogd.toml") + " >" + path("said") + " 2>&1";
+  (void)std::system(command.c_str());
+  std::array<char, 256> state{};
+  const ssize_t length = recv(manager, state.data(), state.size(), 0);
+  close(manager);
+  EXPECT_TRUE(std::string_view(state.data(), static_cast<std::size_t>(std::max<ssize_t>(0, length)))
+                  .starts_with("READY=1"));
   EXPECT_EQ(
       lines_with("nose: /dev/no-gyro: cannot open: No such file or directory, expected a serial device"), 1)
       << all_said();
-  EXPECT_EQ(lines_with("no sensor can run"), 1) << all_said();
-  EXPECT_EQ(said().size(), 2U) << all_said();
+  EXPECT_EQ(lines_with("nose: trying again to open /dev/no-gyro at "), 1) << all_said();
+  EXPECT_EQ(lines_with("stopping on SIGTERM"), 1) << all_said();
 }
 
 TEST_F(Ifogd, AFileIsReadToItsEnd) {

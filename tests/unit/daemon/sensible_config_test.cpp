@@ -5,6 +5,8 @@
 #include <unistd.h>
 
 #include <filesystem>
+#include <fstream>
+#include <set>
 #include <string>
 
 #include "daemon/config/config.h"
@@ -221,6 +223,16 @@ TEST(SensibleConfig, ARecordedConfigurationIsReadAsItWas) {
       channel("name = \"foo\"\nsource = \"file\"\npath = \"b\"\nscale = 0\nmax_step = 0\n");
   EXPECT_NE(complaint(text), "");
   EXPECT_EQ(parse_recorded_config(text, "f.toml").sensors.at(0).channels.at(0).name, "foo");
+}
+
+// Serial lines of ARM boards have other names than those of a PC.
+TEST(Unit, LetsTheDaemonToTheSerialLinesOfArmBoards) {
+  std::ifstream unit(IFOG_SOURCE_DIR "/systemd/ifogd.service.in");
+  std::set<std::string> allowed;
+  for (std::string line; std::getline(unit, line);)
+    if (line.starts_with("DeviceAllow=")) allowed.insert(line);
+  for (const char* name : {"ttyS", "ttyAMA", "ttymxc", "ttyTHS", "ttyPS", "ttySC"})
+    EXPECT_EQ(allowed.count(std::string("DeviceAllow=char-") + name + " rw"), 1U) << name;
 }
 
 }  // namespace

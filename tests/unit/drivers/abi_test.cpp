@@ -44,6 +44,11 @@ std::map<std::string, std::size_t> layout() {
           FIELD(ifog_driver_counters, bytes_pending),
           FIELD(ifog_driver_counters, values_refused),
           FIELD(ifog_driver_counters, frames_other),
+          FIELD(ifog_driver_counters, values_beyond),
+          FIELD(ifog_driver_counters, beyond_name),
+          FIELD(ifog_driver_counters, beyond_value),
+          FIELD(ifog_driver_counters, beyond_minimum),
+          FIELD(ifog_driver_counters, beyond_maximum),
           {"ifog_description", sizeof(ifog_description)},
           FIELD(ifog_description, kind),
           FIELD(ifog_description, axes),
@@ -87,10 +92,10 @@ std::map<std::string, std::size_t> layout() {
 #undef FIELD
 
 // Of a machine with pointers of eight bytes, x86-64 and AArch64 alike.
-TEST(DriverAbi, VersionFiveIsWhatItWas) {
+TEST(DriverAbi, VersionSixIsWhatItWas) {
   static_assert(sizeof(void*) == 8);
-  ASSERT_EQ(IFOG_DRIVER_ABI, 5U) << "another version: write its layout here";
-  const std::map<std::string, std::size_t> five = {
+  ASSERT_EQ(IFOG_DRIVER_ABI, 6U) << "another version: write its layout here";
+  const std::map<std::string, std::size_t> six = {
       {"ifog_can_frame", 80},
       {"ifog_can_frame.arrival_ns", 0},
       {"ifog_can_frame.data", 14},
@@ -129,7 +134,11 @@ TEST(DriverAbi, VersionFiveIsWhatItWas) {
       {"ifog_driver.summary", 24},
       {"ifog_driver.transports", 4},
       {"ifog_driver.version", 16},
-      {"ifog_driver_counters", 80},
+      {"ifog_driver_counters", 160},
+      {"ifog_driver_counters.beyond_maximum", 152},
+      {"ifog_driver_counters.beyond_minimum", 144},
+      {"ifog_driver_counters.beyond_name", 88},
+      {"ifog_driver_counters.beyond_value", 136},
       {"ifog_driver_counters.bytes_framed", 48},
       {"ifog_driver_counters.bytes_pending", 56},
       {"ifog_driver_counters.bytes_skipped", 24},
@@ -139,6 +148,7 @@ TEST(DriverAbi, VersionFiveIsWhatItWas) {
       {"ifog_driver_counters.frames_other", 72},
       {"ifog_driver_counters.frames_repeated", 32},
       {"ifog_driver_counters.samples_incomplete", 40},
+      {"ifog_driver_counters.values_beyond", 80},
       {"ifog_driver_counters.values_refused", 64},
       {"ifog_option", 32},
       {"ifog_option.default_value", 16},
@@ -159,7 +169,7 @@ TEST(DriverAbi, VersionFiveIsWhatItWas) {
       {"ifog_sample.value", 40},
       {"ifog_setting", 16},
   };
-  EXPECT_EQ(layout(), five) << "the layout has changed: IFOG_DRIVER_ABI must grow";
+  EXPECT_EQ(layout(), six) << "the layout has changed: IFOG_DRIVER_ABI must grow";
 }
 
 }  // namespace

@@ -15,7 +15,7 @@
 
 #include "drivers/host/driver_instance.h"
 #include "drivers/host/timeline_frame.h"
-#include "drivers/ifog/device_timeline.h"
+#include "drivers/timeline/timeline.h"
 
 namespace {
 
@@ -262,23 +262,21 @@ TEST_F(DbcText, HowOftenAClockWentRoundInAGapTheTimesOfArrivalSay) {
       "BO_ 2 B: 8 X\n SG_ R : 0|16@1- (0.01,0) [0|0] \"deg/s\" X\n SG_ T : 16|8@1+ (1,0) [0|0] \"ms\" X\n";
   ifog::DriverInstance b = driver(text, {{"signal", "B.R"}, {"time", "T"}, {"rate_hz", "125"}});
   EXPECT_EQ(b.description().has_device_time, 1U);
-  ifog::DeviceTimeline timeline(0, 125.0);
+  ifog::Timeline timeline(0, 125.0);
   std::int64_t taken = 0, last_ns = 0;
-  const auto step_ns = [&](std::int64_t samples, std::int64_t late_ns = 0) {
+  const auto step_ns = [&](std::int64_t samples) {
     taken += samples;
     ifog_can_frame sent = frame(2, {1, 0, static_cast<std::uint8_t>(taken * 8), 0, 0, 0, 0, 0});
-    sent.arrival_ns = 1'000'000'000 + taken * 8'000'000 + late_ns;
+    sent.arrival_ns = 1'000'000'000 + taken * 8'000'000;
     const std::vector<ifog_sample> got = decode(b, {sent});
     EXPECT_EQ(got.size(), 1U);
-    const ifog::DeviceTimeline::Frame one = ifog::timeline_frame(got.front(), 1);
-    const std::int64_t now_ns = timeline.tells(one) ? timeline.next(one).time_ns : timeline.first(one);
+    const ifog::Timeline::Frame one = ifog::timeline_frame(got.front(), 1);
+    const std::int64_t now_ns = taken > 1 ? timeline.next(one).time_ns : timeline.first(one);
     return now_ns - std::exchange(last_ns, now_ns);
   };
   step_ns(1);
   for (const std::int64_t samples : {1, 21, 1, 41, 1, 1, 301, 1, 34, 2})
     EXPECT_EQ(step_ns(samples), samples * 8'000'000);
-  // Late, and nothing is lost.
-  for (int held = 31; held >= 0; --held) EXPECT_EQ(step_ns(1, held * 8'000'000), 8'000'000);
 }
 
 TEST_F(DbcText, AnIntegerAngleWrapsAtItsRange) {
@@ -291,39 +289,36 @@ TEST_F(DbcText, AnIntegerAngleWrapsAtItsRange) {
   EXPECT_EQ(f.description().angle_wrap_rad, 0.0);
 }
 
-// [min|max] as a Vector DBC file states it, [0|0] being none; limits themselves are in. Of a rate the larger
-// of the two is the full scale, which the host judges.
-TEST_F(DbcText, AValueBeyondTheStatedRangeIsNone) {
+// Ranges of real files are often wrong, as [0|127.5] of a signed speed: they are information. Each value is
+// kept; those beyond are counted, their samples flagged, and the first is told with both numbers.
+TEST_F(DbcText, AValueBeyondTheStatedRangeIsKeptCountedAndFlagged) {
   const std::string text =
-      "BO_ 1 A: 8 X\n SG_ R : 0|16@1- (0.01,0) [-100|50] \"deg/s\" X\n SG_ T : 16|8@1- (1,0) [-40|85] "
-      "\"degC\" X\n"
-      " SG_ U : 24|8@1- (1,0) [0|0] \"V\" X\n";
+      "BO_ 1 A: 8 X\n SG_ R : 0|16@1- (0.01,0) [0|50] \"deg/s\" X\n SG_ T : 16|8@1- (1,0) [-40|85] "
+      "\"degC\" X\n";
   ifog::DriverInstance d =
-      driver(text, {{"signal", "R"}, {"environment", "temperature_degC=T,supply_V=U"}, {"rate_hz", "100"}});
-  const auto sent = [](int hundredths, int temperature, int supply) {
-    return frame(
-        1, {hundredths & 0xFF, (hundredths >> 8) & 0xFF, temperature & 0xFF, supply & 0xFF, 0, 0, 0, 0});
-  };
+      driver(text, {{"signal", "R"}, {"environment", "temperature_degC=T"}, {"rate_hz", "100"}});
   struct Case {
-    int hundredths;
-    bool valid;
-    int temperature;
-    double held_degC;
-    std::uint64_t refused;
+    int hundredths, temperature;
+    std::uint64_t beyond;
   };
-  // Above the maximum and yet below full scale; at each limit; the temperature likewise.
-  for (const Case& c :
-       {Case{5000, true, 85, 85.0, 0}, Case{5001, false, 86, 85.0, 1}, Case{-9999, true, -40, -40.0, 1},
-        Case{0, true, -41, -40.0, 2}, Case{9999, false, 20, 20.0, 2}}) {
-    const std::vector<ifog_sample> s = decode(d, {sent(c.hundredths, c.temperature, -128)});
+  std::uint64_t before = 0;
+  for (const Case& c : {Case{5000, 85, 0}, Case{0, -40, 0}, Case{-9999, 20, 1}, Case{5001, 86, 3}}) {
+    const std::vector<ifog_sample> s = decode(
+        d,
+        {frame(1, {c.hundredths & 0xFF, (c.hundredths >> 8) & 0xFF, c.temperature & 0xFF, 0, 0, 0, 0, 0})});
     ASSERT_EQ(s.size(), 1U);
-    EXPECT_EQ(s[0].valid_axes, c.valid ? 1U : 0U) << c.hundredths;
-    EXPECT_EQ(s[0].environment[0], c.held_degC) << c.temperature;
-    EXPECT_EQ(s[0].environment_fresh & 1U, c.held_degC == c.temperature ? 1U : 0U) << c.temperature;
-    EXPECT_EQ(s[0].environment[1], -128.0);
-    EXPECT_EQ(d.counters().values_refused, c.refused) << c.temperature;
+    EXPECT_EQ(s[0].valid_axes, 1U) << c.hundredths;
+    EXPECT_NEAR(s[0].value[0], c.hundredths * 0.01 * std::numbers::pi / 180.0, 1e-12);
+    EXPECT_EQ(s[0].environment[0], c.temperature);
+    EXPECT_EQ((s[0].flags & IFOG_SAMPLE_BEYOND) != 0, c.beyond != before) << c.hundredths;
+    before = c.beyond;
+    EXPECT_EQ(d.counters().values_beyond, c.beyond);
   }
-  EXPECT_EQ(d.counters().frames_good, 5U);
+  EXPECT_EQ(std::string(d.counters().beyond_name), "R");
+  EXPECT_DOUBLE_EQ(d.counters().beyond_value, -99.99);
+  EXPECT_EQ(d.counters().beyond_minimum, 0.0);
+  EXPECT_EQ(d.counters().beyond_maximum, 50.0);
+  EXPECT_EQ(d.description().full_scale[0], 0.0);
 }
 
 // Axes in one message, told apart by a multiplexor; CAN FD; what is encoded decodes to the same sample.

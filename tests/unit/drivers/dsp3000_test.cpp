@@ -61,7 +61,25 @@ TEST(Dsp3000, APieceOfALineIsNoReading) {
   driver.reset();
   EXPECT_EQ(decode(driver, "3.500000 1\r\n").size(), 0U);
   EXPECT_EQ(driver.counters().frames_format, 0U);
-  EXPECT_EQ(driver.counters().bytes_skipped, 12U + 2U + 12U);
+  EXPECT_EQ(driver.counters().bytes_skipped, 11U + 2U + 11U);
+}
+
+// As loggers write them: all but the first line, whose beginning nobody saw where no line end precedes it.
+TEST(Dsp3000, AnyLineEndIsTaken) {
+  for (const std::string end : {"\n", "\r", "\r\n", "\n\n", "\r\r\n", "\n\r"}) {
+    ifog::DriverInstance driver = ifog::make_driver("dsp3000", {});
+    std::string text;
+    for (int i = 0; i < 5; ++i) text += "  1.00000" + std::to_string(i) + " 1" + end;
+    const std::vector<ifog_sample> s = decode(driver, text);
+    ASSERT_EQ(s.size(), 4U) << end.size();
+    EXPECT_DOUBLE_EQ(s[3].value[0], 1.000004 * kDegree);
+    EXPECT_EQ(driver.counters().frames_format, 0U);
+    EXPECT_EQ(driver.counters().bytes_framed + driver.counters().bytes_skipped, text.size());
+  }
+  ifog::DriverInstance datagrams = ifog::make_driver("dsp3000", {});
+  std::size_t taken = 0;
+  for (int i = 0; i < 5; ++i) taken += decode(datagrams, "  1.000000 1").size();
+  EXPECT_EQ(taken, 4U);
 }
 
 TEST(Dsp3000, OnlyTheMakersFormIsAccepted) {

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "drivers/ifog/device_timeline.h"
+#include "drivers/timeline/timeline.h"
 
 namespace ifog {
 namespace {
@@ -34,7 +34,7 @@ class Gyro {
   void send(int frames, bool opened) {
     for (int i = 0; i < frames; ++i, ++sample_) {
       const double value = 0.1 * std::sin(0.0157 * static_cast<double>(sample_)), at_s = arrival_s();
-      DeviceTimeline::Frame frame;
+      Timeline::Frame frame;
       frame.counts = true;
       frame.sequence = static_cast<std::uint32_t>(sample_ % cable_.modulus);
       frame.reopened = opened && i == 0;
@@ -45,7 +45,7 @@ class Gyro {
         timeline_.first(frame);
         continue;
       }
-      const DeviceTimeline::Step step = timeline_.next(frame);
+      const Timeline::Step step = timeline_.next(frame);
       ASSERT_FALSE(step.out_of_turn || step.restarted) << "sample " << sample_;
       told_ += static_cast<std::int64_t>(step.samples) - 1;
     }
@@ -72,7 +72,7 @@ class Gyro {
   std::uniform_real_distribution<double> even_{0.0, 1.0};
   std::int64_t sample_, told_ = 0, lost_ = 0;
   double latest_s_ = 0.0;
-  DeviceTimeline timeline_;
+  Timeline timeline_;
 };
 
 class Pulled : public testing::TestWithParam<Cable> {};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counters of every width, with a clock and without, values that repeat and that do not, in every pattern of
-// arrival, undisturbed and disturbed: each frame is judged as the making of the stream knows it, by the
-// daemon's chain and by a reader of recordings alike.
+// The truth table of device time: what happens on a line or bus, and what the daemon's chain must make of it.
+// The making of each stream knows when every sample was taken, and is the oracle.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,279 +11,230 @@
 #include <vector>
 
 #include "daemon/sensor/facts.h"
-#include "drivers/capture/capture_builder.h"
 #include "filters/chain/incrementer.h"
 
 namespace ifog {
 namespace {
 
-enum class Comes { one_by_one, in_twos, in_fours, in_eights, untimed, every_16_ms };
-enum class Trouble { none, lost, twice, exchanged, held_up, clock_set };
-
-struct Stream {
-  int bits = 8;  // of the counter; 0: it has none
-  double rate_hz = 200.0;
-  std::int64_t wrap_ns = 0, tick_ns = 0;  // of the clock; tick 0: it has none
-  double noise_lsb = 0.0;                 // of the values; 0: none of them is another's
-  Comes comes = Comes::one_by_one;
-  Trouble trouble = Trouble::none;
+enum class Event {
+  none,
+  off_and_on,   // silent for `seconds`; counter and clock begin at 0 again
+  unplugged,    // likewise, and the device counts on
+  held_up,      // nothing is delivered for so long, then all at once
+  early_stamp,  // one time of arrival is so much too early
+  late_stamp,   // or too late
+  late_stamps,  // one in seven is
+  clock_set,    // the device's clock is set by so much
+  wall_set,     // of a log: the clock that stamps arrivals is set by so much
+  twice,        // every 40th frame comes a second time
+  exchanged,    // every 40th changes places with the next
+  lost,         // every 40th is lost
+  stray_count,  // one counter is damaged
+  second_device
 };
 
-std::ostream& operator<<(std::ostream& out, const Stream& s) {
-  return out << s.bits << " bits, " << s.rate_hz << " Hz, wrap " << s.wrap_ns << " ns, tick " << s.tick_ns
-             << " ns, noise " << s.noise_lsb << " LSB, comes " << static_cast<int>(s.comes) << ", trouble "
-             << static_cast<int>(s.trouble);
-}
+struct Case {
+  const char* name;
+  std::uint32_t modulus;
+  double rate_hz;
+  Event event;
+  double seconds = 0.0;
+  std::int64_t tick_ns = 0;   // of the device's clock; 0: it has none
+  std::int64_t wrap_ns = 0;   // it rolls over after this; 0: never
+  double portion_s = 0.0;     // deliveries come so often
+  bool recorded = false;      // arrivals are the stamps of a log
+  double dt_doubt_s = 0.002;  // of the step over the event
+  double label_doubt_s = 0.02;
+  std::uint64_t restarts = 0;
+};
+
+std::ostream& operator<<(std::ostream& out, const Case& one) { return out << one.name; }
+
+constexpr double kBefore_s = 20.0, kAfter_s = 10.0;
+constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 struct Sent {
-  std::uint64_t number = 0;
-  ifog_sample sample{};
-  bool taken = true;
-  std::uint64_t missing = 0;
+  double taken_s = 0.0, arrives_s = 0.0;  // when it came, and what the log says of it
+  double stamped_s = 0.0, clock_s = 0.0;
+  std::uint64_t count = 0;
+  bool first_again = false;  // the first behind the event
+  bool surplus = false;      // must not be taken
 };
 
-constexpr std::uint64_t kSamples = 3000;
-constexpr std::int64_t kArrive_ns = 1'700'000'000'000'000'000;
-
-// Their numbers as they come. Short of what no count tells: half a round lost, or a quarter of one back.
-std::vector<std::uint64_t> order(const Stream& stream, std::mt19937& random) {
-  const auto any = [&](std::uint64_t least, std::uint64_t most) {
-    return std::uniform_int_distribution<std::uint64_t>(least, most)(random);
-  };
-  const std::uint64_t half = stream.bits > 0 ? std::uint64_t{1} << (stream.bits - 1) : 10;  // 0: no counter
-  const std::uint64_t most_lost = std::min<std::uint64_t>(9, half - 1);
-  std::vector<std::uint64_t> out;
-  for (std::uint64_t n = 0; n < kSamples; ++n) {
-    const bool now = n > 100 && n % 40 == 7;
-    if (now && stream.trouble == Trouble::lost) n += any(1, most_lost);
-    out.push_back(n);
-    if (now && stream.trouble == Trouble::twice) out.push_back(out[out.size() - any(1, 3)]);
-    if (now && stream.trouble == Trouble::exchanged) out.insert(out.end() - 1, ++n);
-  }
-  return out;
-}
-
-// When what is measured at that time comes, the `n`th.
-double comes_s(const Stream& stream, std::uint64_t n, std::mt19937& random) {
-  const auto in_portions = [&](std::uint64_t of) {
-    return static_cast<double>(n / of * of + of - 1) / stream.rate_hz + 1e-4 * static_cast<double>(n % of);
-  };
-  switch (stream.comes) {
-    case Comes::in_twos:
-      return in_portions(2);
-    case Comes::in_fours:
-      return in_portions(4);
-    case Comes::in_eights:
-      return in_portions(8);
-    case Comes::every_16_ms:
-      return std::ceil(static_cast<double>(n) / stream.rate_hz / 0.016) * 0.016;
-    default:
-      return static_cast<double>(n) / stream.rate_hz +
-             std::uniform_real_distribution<double>(0.0, 4e-4)(random);
-  }
-}
-
-std::vector<double> values(const Stream& stream, std::mt19937& random) {
-  std::normal_distribution<double> noise(0.0, stream.noise_lsb > 0.0 ? stream.noise_lsb : 10.0);
-  std::vector<double> out(kSamples + 16);
-  for (double& value : out)
-    value = 0.05 + 1e-4 * (stream.noise_lsb > 0.0 ? std::round(noise(random)) : noise(random));
-  return out;
-}
-
-std::vector<Sent> make(const Stream& stream, double set_s, std::uint32_t seed) {
-  std::mt19937 random(seed);
-  const std::vector<double> value = values(stream, random);
+std::vector<Sent> frames_of(const Case& one) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> jitter_s(0.0, 5e-4);
   std::vector<Sent> out;
-  std::uint64_t highest = 0;
-  double latest_s = 0.0;
-  for (const std::uint64_t n : order(stream, random)) {
+  const double period_s = 1.0 / one.rate_hz;
+  const bool silent = one.event == Event::off_and_on || one.event == Event::unplugged;
+  const auto before = static_cast<std::uint64_t>(kBefore_s * one.rate_hz);
+  const auto dark = silent ? static_cast<std::uint64_t>(std::llround(one.seconds * one.rate_hz)) : 0;
+  const auto all = before + dark + static_cast<std::uint64_t>(kAfter_s * one.rate_hz);
+  for (std::uint64_t n = 0; n < all; ++n) {
+    if (n >= before && n < before + dark) continue;
     Sent sent;
-    sent.number = n;
-    sent.taken = out.empty() || n > highest;
-    sent.missing = sent.taken && !out.empty() ? n - highest - 1 : 0;
-    highest = std::max(highest, n);
-    const bool held = stream.trouble == Trouble::held_up && highest % 900 >= 700 &&
-                      static_cast<double>(highest % 900 - 700) < 0.5 * stream.rate_hz;
-    const double at_s = comes_s(stream, highest, random);
-    const double held_until_s = static_cast<double>(highest / 900 * 900 + 700) / stream.rate_hz + 0.5;
-    latest_s = std::max(latest_s, held ? held_until_s : at_s);
-    sent.sample.arrival_ns = stream.comes == Comes::untimed ? 0 : kArrive_ns + std::llround(latest_s * 1e9);
-    if (stream.bits > 0) {
-      sent.sample.sequence = static_cast<std::uint32_t>(n % (std::uint64_t{1} << stream.bits));
-      sent.sample.flags = IFOG_SAMPLE_SEQUENCE;
-    }
-    if (stream.tick_ns > 0) {
-      const double own_s = 300.0 + static_cast<double>(n) / stream.rate_hz + (n > kSamples / 2 ? set_s : 0.0);
-      std::int64_t stamp_ns = std::llround(own_s * 1e9) / stream.tick_ns * stream.tick_ns;
-      if (stream.wrap_ns > 0) stamp_ns = (stamp_ns % stream.wrap_ns + stream.wrap_ns) % stream.wrap_ns;
-      sent.sample.flags |= IFOG_SAMPLE_DEVICE_TIME;
-      sent.sample.device_time_ns = stamp_ns;
-      sent.sample.device_wrap_ns = stream.wrap_ns;
-    }
-    sent.sample.value[0] = value[n];
-    sent.sample.valid_axes = 1;
+    sent.taken_s = static_cast<double>(n) * period_s;
+    const bool again = one.event == Event::off_and_on && n >= before;
+    sent.count = again ? n - before - dark : n + 77;
+    sent.clock_s = again ? static_cast<double>(n - before - dark) * period_s : 300.0 + sent.taken_s;
+    if (one.event == Event::clock_set && n >= before) sent.clock_s += one.seconds;
+    sent.first_again = n == before + dark;
+    sent.arrives_s = sent.taken_s + jitter_s(random);
+    if (one.portion_s > 0.0) sent.arrives_s = std::ceil(sent.taken_s / one.portion_s) * one.portion_s;
+    const double held_until_s = kBefore_s + one.seconds;
+    if (one.event == Event::held_up && n >= before && sent.arrives_s < held_until_s)
+      sent.arrives_s = held_until_s + 1e-5 * static_cast<double>(n - before);
+    sent.stamped_s = sent.arrives_s;
+    if (one.event == Event::early_stamp && n == before) sent.stamped_s -= one.seconds;
+    if (one.event == Event::late_stamp && n == before) sent.stamped_s += one.seconds;
+    if (one.event == Event::late_stamps && n % 7 == 3) sent.stamped_s += one.seconds;
+    if (one.event == Event::wall_set && n >= before) sent.stamped_s += one.seconds;
+    if (one.event == Event::stray_count && n == before) sent.count += 55;
+    const bool now = n > 100 && n % 40 == 7;
+    if (now && one.event == Event::lost) continue;
     out.push_back(sent);
-  }
-  return out;
-}
-
-ifog_description description_of(const Stream& stream) {
-  ifog_description out{};
-  out.kind = IFOG_RATE;
-  out.axes = 1;
-  out.sequence_modulus = stream.bits > 0 ? 1U << static_cast<unsigned>(stream.bits) : 0;
-  out.has_device_time = stream.tick_ns > 0 ? 1 : 0;
-  out.nominal_rate_hz = stream.rate_hz;
-  return out;
-}
-
-void expect_truth(const Stream& stream, double set_s = 0.0) {
-  const std::vector<Sent> sent = make(stream, set_s, 11);
-  const ifog_description description = description_of(stream);
-  const SensorFacts facts = sensor_facts(description, 0.0, 0);
-  Incrementer chain(facts);
-  CaptureBuilder builder(description);
-  std::uint64_t wrong_turn = 0, wrong_missing = 0, taken = 0, missing = 0, last = 0;
-  double dt_s = 0.0, angle = 0.0, truth = 0.0;
-  for (const Sent& one : sent) {
-    Reading reading;
-    read_sample(one.sample, 0, reading);
-    Increment increment;
-    const std::uint64_t before = chain.counts().missing;
-    const bool took = chain.next(reading, increment);
-    wrong_turn += took != one.taken ? 1 : 0;
-    wrong_missing += chain.counts().missing - before != one.missing ? 1 : 0;
-    dt_s += took ? increment.dt_s : 0.0;
-    angle += took ? increment.delta_theta_rad[0] : 0.0;
-    builder.add(one.sample);
-    if (!one.taken) continue;
-    ++taken;
-    missing += one.missing;
-    truth += one.sample.value[0] / stream.rate_hz;
-    last = one.number;
-  }
-  const double tick_s = 1e-9 * static_cast<double>(stream.tick_ns);
-  EXPECT_EQ(wrong_turn, 0U) << "of " << sent.size();
-  EXPECT_EQ(wrong_missing, 0U);
-  EXPECT_EQ(chain.counts().missing, missing);
-  EXPECT_EQ(chain.counts().restarts, 0U);
-  EXPECT_NEAR(dt_s, static_cast<double>(last + 1) / stream.rate_hz, 1e-6 + 2.0 * tick_s);
-  EXPECT_NEAR(angle, truth, 0.05 * (1e-6 + 6.0 * tick_s));
-  EXPECT_EQ(builder.clock_sets(), set_s == 0.0 ? 0U : 1U);
-  EXPECT_EQ(chain.counts().sensor_clock_sets, set_s == 0.0 ? 0U : 1U);
-  EXPECT_EQ(chain.counts().gaps == 0, missing == 0);
-  EXPECT_EQ(builder.missing(), missing);
-  if (stream.comes != Comes::untimed) {
-    EXPECT_EQ(chain.counts().untold + builder.untold(), 0U);
-  }
-  EXPECT_EQ(builder.restarts(), 0U);
-  EXPECT_EQ(builder.repeated(), sent.size() - taken);
-  const Capture made = builder.finish();
-  EXPECT_EQ(made.size(), taken);
-  EXPECT_NEAR(made.time_s.back() - made.time_s.front(), dt_s - 1.0 / stream.rate_hz, 1e-6 + 2.0 * tick_s);
-}
-
-class TimelineTruthOf : public testing::TestWithParam<Trouble> {};
-
-TEST_P(TimelineTruthOf, EachFrameIsJudgedAsItWasMade) {
-  constexpr std::int64_t kWrap_ns = 4'294'967'296'000;
-  for (const int bits : {4, 7, 8, 16})
-    for (const double rate_hz : {200.0, 1000.0})
-      for (const std::int64_t tick_ns : {0, 1000, 1'000'000})
-        for (const double noise_lsb : {0.0, 0.7, 10.0})
-          for (const Comes comes : {Comes::one_by_one, Comes::in_twos, Comes::in_fours, Comes::in_eights,
-                                    Comes::untimed, Comes::every_16_ms}) {
-            const std::int64_t wrap_ns = tick_ns == 0 ? 0 : tick_ns == 1000 ? kWrap_ns : 65'536'000'000;
-            const Stream stream{bits, rate_hz, wrap_ns, tick_ns, noise_lsb, comes, GetParam()};
-            SCOPED_TRACE(testing::Message() << stream);
-            expect_truth(stream);
-          }
-}
-
-// A stamp of 16 bits of microseconds, which goes round before ten samples are lost, and hardly after one.
-TEST_P(TimelineTruthOf, AStampThatGoesRoundWithinFewSamplesIsFollowedByTheCounter) {
-  for (const int bits : {7, 8, 16})
-    for (const double rate_hz : {20.0, 100.0, 200.0})
-      for (const Comes comes : {Comes::one_by_one, Comes::in_fours, Comes::untimed, Comes::every_16_ms}) {
-        const Stream stream{bits, rate_hz, 65'536'000, 1000, 0.0, comes, GetParam()};
-        SCOPED_TRACE(testing::Message() << stream);
-        expect_truth(stream);
-      }
-}
-
-// By a clock that is set, once, while the device counts on, no sample is lost and no angle is made.
-TEST(TimelineTruth, AClockThatIsSetMakesNeitherTimeNorAngle) {
-  for (const int bits : {4, 7, 8, 16})
-    for (const double rate_hz : {200.0, 1000.0})
-      for (const std::int64_t tick_ns : {1000, 1'000'000, 10'000'000, 100'000'000})
-        for (const std::int64_t wrap_ns : {std::int64_t{0}, std::int64_t{4'294'967'296'000'000}})
-          for (const Comes comes : {Comes::one_by_one, Comes::in_fours, Comes::untimed})
-            for (const double set_s : {-36000.0, -100.0, -0.5, 0.5, 5.0, 20.0, 1000.0, 36000.0}) {
-              // Of short steps forward alone nothing says whether rounds were lost.
-              if (comes == Comes::untimed && set_s > 0.0 && set_s < 10.0) continue;
-              const Stream stream{bits, rate_hz, wrap_ns, tick_ns, 0.0, comes, Trouble::clock_set};
-              SCOPED_TRACE(testing::Message() << stream << ", set by " << set_s);
-              expect_truth(stream, set_s);
-            }
-}
-
-// By less than the arrival times of a read are known to, where counter and clock both go on; and of a device
-// whose clock is all that it has.
-TEST(TimelineTruth, AClockThatIsSetByLittleOrAloneMakesNeitherTimeNorAngle) {
-  for (const int bits : {0, 7, 16})
-    for (const double rate_hz : {200.0, 500.0, 1000.0})
-      for (const std::int64_t wrap_ns : {std::int64_t{0}, std::int64_t{4'294'967'296'000}})
-        for (const Comes comes : {Comes::one_by_one, Comes::in_twos, Comes::in_fours, Comes::every_16_ms})
-          for (const double set_s : {-3.0, -0.5, 0.025, 0.04, 0.1, 0.5, 3.0, 20.0}) {
-            // Short of a portion's length nothing but a counter tells it from samples that are missing.
-            if (bits == 0 && std::abs(set_s) < 0.1) continue;
-            const Stream stream{bits, rate_hz, wrap_ns, 1000, 0.0, comes, Trouble::clock_set};
-            SCOPED_TRACE(testing::Message() << stream << ", set by " << set_s);
-            expect_truth(stream, set_s);
-          }
-}
-
-// Of a recording without times of arrival, and of one that is read at another pace than it was made, a clock
-// alone that leaps forward is samples that are missing or a clock that was set: no angle is made, what is
-// missing is told with that doubt, and where arrivals tell there is none.
-TEST(TimelineTruth, WhereNothingTellsAClockThatWasSetFromALossThatIsSaid) {
-  for (const bool at_once : {false, true})
-    for (const bool lost : {false, true}) {
-      const Comes comes = at_once ? Comes::one_by_one : Comes::untimed;
-      const Stream stream{
-          0, 200.0, 4'294'967'296'000, 1000, 0.0, comes, lost ? Trouble::lost : Trouble::none};
-      std::vector<Sent> sent = make(stream, lost ? 0.0 : 3.0, 11);
-      std::uint64_t missing = lost ? 0 : 600;
-      double truth = 0.0, turned = 0.0;
-      Incrementer chain(sensor_facts(description_of(stream), 0.0, 0));
-      CaptureBuilder builder(description_of(stream));
-      for (std::size_t i = 0; i < sent.size(); ++i) {
-        if (at_once) sent[i].sample.arrival_ns = kArrive_ns + static_cast<std::int64_t>(i) * 1000;
-        missing += sent[i].missing;
-        truth += sent[i].sample.value[0] / stream.rate_hz;
-        Reading reading;
-        read_sample(sent[i].sample, 0, reading);
-        Increment increment;
-        if (chain.next(reading, increment)) turned += increment.delta_theta_rad[0];
-        builder.add(sent[i].sample);
-      }
-      SCOPED_TRACE(testing::Message() << (at_once ? "at once" : "untimed") << (lost ? ", lost" : ", set"));
-      EXPECT_EQ(chain.counts().missing, missing);
-      EXPECT_EQ(chain.counts().untold, missing);
-      EXPECT_EQ(builder.missing(), missing);
-      EXPECT_EQ(builder.untold(), missing);
-      EXPECT_NEAR(turned, truth, 1e-6);
+    if (now && one.event == Event::twice) {
+      out.push_back(sent);
+      out.back().surplus = true;
     }
+    if (n > 101 && n % 40 == 8 && one.event == Event::exchanged) {
+      std::swap(out[out.size() - 1], out[out.size() - 2]);
+      std::swap(out[out.size() - 1].stamped_s, out[out.size() - 2].stamped_s);
+      out.back().surplus = true;
+    }
+    if (one.event == Event::second_device && n >= before) {
+      sent.count = n + 5000;
+      sent.surplus = true;
+      out.push_back(sent);
+    }
+  }
+  return out;
 }
 
-constexpr const char* kName[] = {"None", "Lost", "Twice", "Exchanged", "HeldUp", "ClockSet"};
-INSTANTIATE_TEST_SUITE_P(Troubles, TimelineTruthOf,
-                         testing::Values(Trouble::none, Trouble::lost, Trouble::twice, Trouble::exchanged,
-                                         Trouble::held_up),
-                         [](const testing::TestParamInfo<Trouble>& of) {
-                           return std::string(kName[static_cast<std::size_t>(of.param)]);
-                         });
+Reading reading_of(const Case& one, const Sent& sent, double value) {
+  Reading reading;
+  reading.arrival_ns = kStart_ns + std::llround(sent.stamped_s * 1e9);
+  reading.arrival_recorded = one.recorded;
+  reading.valid_axes = 1;
+  reading.value[0] = value;
+  reading.has_sequence = one.modulus > 0;
+  reading.sequence = one.modulus > 0 ? static_cast<std::uint32_t>(sent.count % one.modulus) : 0;
+  if (one.tick_ns > 0) {
+    std::int64_t stamp_ns = std::llround(sent.clock_s * 1e9) / one.tick_ns * one.tick_ns;
+    if (one.wrap_ns > 0) stamp_ns %= one.wrap_ns;
+    reading.device_time_ns = stamp_ns;
+    reading.device_wrap_ns = one.wrap_ns;
+  }
+  reading.at_once = 1;
+  return reading;
+}
+
+class TimelineTruth : public testing::TestWithParam<Case> {};
+
+TEST_P(TimelineTruth, EachFrameHasItsTimeAndNoOther) {
+  const Case& one = GetParam();
+  ifog_description description{};
+  description.axes = 1;
+  description.sequence_modulus = one.modulus;
+  description.has_device_time = one.tick_ns > 0 ? 1 : 0;
+  description.nominal_rate_hz = one.rate_hz;
+  Incrementer chain(sensor_facts(description, 0.0, 0));
+  std::mt19937 random(5);
+  std::normal_distribution<double> noise(0.1, 1e-3);
+  double told_s = 0.0, last_s = 0.0, worst_label_s = 0.0, worst_dt_s = 0.0;
+  std::uint64_t flagged = 0, wrongly_taken = 0, wrongly_left = 0;
+  bool event_flagged = false;
+  double since_event_s = 0.0;
+  const std::vector<Sent> all = frames_of(one);
+  double value = 0.0, latest_s = 0.0;
+  for (const Sent& sent : all) {
+    if (!sent.surplus || one.event != Event::twice) value = noise(random);
+    Increment increment;
+    latest_s = std::max(latest_s, sent.taken_s);
+    const bool taken = chain.next(reading_of(one, sent, value), increment);
+    if (one.event == Event::second_device) continue;
+    wrongly_taken += taken && sent.surplus ? 1 : 0;
+    wrongly_left += !taken && !sent.surplus ? 1 : 0;
+    if (!taken) continue;
+    told_s += increment.dt_s;
+    flagged += (increment.flags & kClockStep) != 0 ? 1 : 0;
+    if (sent.first_again) {
+      event_flagged = (increment.flags & kGapBefore) != 0;
+      since_event_s = increment.dt_s - (sent.taken_s - last_s);
+    } else {
+      worst_dt_s = std::max(worst_dt_s, std::abs(increment.dt_s - (sent.taken_s - last_s)));
+    }
+    const double label_s = static_cast<double>(increment.utime_ns - kStart_ns) * 1e-9;
+    const bool own = std::abs(sent.stamped_s - sent.arrives_s) > 0.0 && one.event != Event::wall_set;
+    if (sent.taken_s > 2.0 && !own && one.event != Event::wall_set)
+      worst_label_s = std::max(worst_label_s, std::abs(label_s - sent.taken_s));
+    last_s = sent.taken_s;
+  }
+  const IncrementerCounts& counts = chain.counts();
+  if (one.event == Event::second_device) {
+    EXPECT_TRUE(chain.mixed());
+    EXPECT_LT(static_cast<double>(counts.samples), (kBefore_s + 1.0) * one.rate_hz);
+    return;
+  }
+  const double period_s = 1.0 / one.rate_hz;
+  const auto missing = static_cast<double>(
+      all.empty() ? 0 : std::llround(latest_s * one.rate_hz) + 1 - static_cast<std::int64_t>(counts.samples));
+  EXPECT_EQ(wrongly_taken, 0U);
+  EXPECT_EQ(wrongly_left, one.event == Event::stray_count ? 1U : 0U);
+  EXPECT_NEAR(told_s, latest_s + period_s, one.dt_doubt_s + 0.002);
+  EXPECT_NEAR(since_event_s, 0.0, one.dt_doubt_s);
+  EXPECT_LE(worst_dt_s, 1.01 * period_s + 2e-9 * static_cast<double>(one.tick_ns));
+  EXPECT_NEAR(static_cast<double>(counts.missing), missing, 2.0 + one.dt_doubt_s * one.rate_hz);
+  EXPECT_EQ(counts.restarts, one.restarts);
+  EXPECT_EQ(event_flagged, one.event == Event::off_and_on || one.event == Event::unplugged);
+  EXPECT_EQ(flagged, one.event == Event::wall_set ? 1U : 0U);
+  EXPECT_EQ(counts.sensor_clock_sets, one.event == Event::clock_set ? 1U : 0U);
+  EXPECT_LE(worst_label_s, one.label_doubt_s + one.portion_s + period_s);
+  EXPECT_FALSE(chain.mixed());
+}
+
+constexpr std::int64_t kHour71_ns = 4'294'967'296'000;
+constexpr Case kCases[] = {
+    {"Plain", 128, 1000.0, Event::none},
+    {"InPortionsOf16ms", 128, 1000.0, Event::none, 0.0, 0, 0, 0.016},
+    // A gyro that is switched off and on: no counter tells how long, the elapsed time does.
+    {"OffFor10s7At100Hz", 128, 100.0, Event::off_and_on, 10.7, 0, 0, 0.0, false, 0.03, 0.03, 1},
+    {"OffFor6sAt20Hz", 128, 20.0, Event::off_and_on, 6.0, 0, 0, 0.0, false, 0.1, 0.1, 1},
+    {"OffFor100sOfALog", 65536, 200.0, Event::off_and_on, 100.0, 0, 0, 0.0, true, 0.02, 0.02, 1},
+    {"OffFor400sOfALog", 65536, 200.0, Event::off_and_on, 400.0, 0, 0, 0.0, true, 0.02, 0.02, 1},
+    {"OffFor3600sOfALog", 65536, 200.0, Event::off_and_on, 3600.0, 0, 0, 0.0, true, 0.02, 0.02, 1},
+    {"OffFor10s7WithAClock", 128, 1000.0, Event::off_and_on, 10.7, 1000, kHour71_ns, 0.0, false, 0.01, 0.01,
+     1},
+    {"OffFor10s7WithAClockAlone", 0, 200.0, Event::off_and_on, 10.7, 1000, 0, 0.0, false, 0.02, 0.02, 1},
+    {"OffFor10s7WithNeither", 0, 100.0, Event::off_and_on, 10.7, 0, 0, 0.0, false, 0.03, 0.03, 0},
+    // A cable that is pulled: the device counts on.
+    {"UnpluggedFor0s7", 128, 1000.0, Event::unplugged, 0.7},
+    {"UnpluggedFor10s", 128, 1000.0, Event::unplugged, 10.0},
+    {"UnpluggedFor10sAt16Bits", 65536, 1000.0, Event::unplugged, 10.0},
+    {"UnpluggedFor3HoursWithAClock", 128, 200.0, Event::unplugged, 10800.0, 1000, kHour71_ns},
+    // Deliveries that stall lose nothing.
+    {"HeldUpFor3s", 128, 1000.0, Event::held_up, 3.0},
+    {"HeldUpFor3sWithAClock", 128, 1000.0, Event::held_up, 3.0, 1000, kHour71_ns},
+    {"HeldUpFor3sOf16Bits", 65536, 200.0, Event::held_up, 3.0},
+    // One stamp moves its own label alone.
+    {"OneStamp6sEarly", 65536, 200.0, Event::early_stamp, 6.0, 0, 0, 0.0, true},
+    {"OneStamp0s2Early", 128, 200.0, Event::early_stamp, 0.2, 0, 0, 0.0, true},
+    {"OneStamp6sLate", 65536, 200.0, Event::late_stamp, 6.0, 0, 0, 0.0, true},
+    {"OneStampInSevenLate", 65536, 200.0, Event::late_stamps, 0.3, 0, 0, 0.0, true},
+    {"TheClockOfALogIsSet", 65536, 200.0, Event::wall_set, 3600.0, 0, 0, 0.0, true},
+    {"TheClockOfALogIsSetBack", 65536, 200.0, Event::wall_set, -3600.0, 0, 0, 0.0, true},
+    {"TheDevicesClockIsSet", 128, 200.0, Event::clock_set, 36000.0, 1000},
+    {"TheDevicesClockIsSetBack", 65536, 200.0, Event::clock_set, -5.0, 1000},
+    {"FramesComeTwice", 128, 1000.0, Event::twice},
+    {"FramesAreExchanged", 16, 200.0, Event::exchanged},
+    {"FramesAreLost", 16, 200.0, Event::lost, 0.0, 0, 0, 0.0, false, 0.002},
+    {"OneCounterIsDamaged", 65536, 200.0, Event::stray_count},
+    {"TwoDevices", 128, 200.0, Event::second_device},
+};
+static_assert(std::size(kCases) <= 30);
+
+INSTANTIATE_TEST_SUITE_P(Cases, TimelineTruth, testing::ValuesIn(kCases),
+                         [](const auto& of) { return std::string(of.param.name); });
 
 }  // namespace
 }  // namespace ifog

@@ -2,6 +2,8 @@
 // Runs one behind the other: which of them were cut off, and for how long nothing was recorded between them.
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstring>
 #include <memory>
 
 #include "tests/unit/flight/archived.h"
@@ -10,19 +12,25 @@ namespace ifog {
 namespace {
 
 constexpr std::int64_t kTenth = kSecond / 10;
+constexpr std::int64_t kEpoch_s = 1'700'000'000;
 
 class FlightRunsRead : public testing::Test {
  protected:
   enum class End { stopped, killed, killed_between_files };
 
   // Ten entries a second for three seconds from `from_s` on, in files of a second; then it ends.
-  void run(std::int64_t from_s, End end) {
+  void run(std::int64_t from_s, End end) { run_from((kEpoch_s + from_s) * kSecond, end); }
+  // set_ns: by which the wall clock is set one second after the beginning; 0: it is not.
+  void run_from(std::int64_t from_ns, End end, std::int64_t set_ns = 0) {
     ArchiveLimits limits;
     limits.file_ns = kSecond;
     auto archive =
         std::make_unique<FlightArchive>(std::make_unique<MemoryFolder>(disk_), limits, some_header());
-    std::int64_t now_ns = from_s * kSecond;
+    std::int64_t now_ns = from_ns;
     for (int n = 0; n < 30; ++n, now_ns += kTenth) {
+      std::array<std::uint8_t, sizeof set_ns> set{};
+      std::memcpy(set.data(), &set_ns, sizeof set_ns);
+      if (n == 10 && set_ns != 0) archive->add({FlightKind::wall, 0, 0, 0, 0}, set);
       archive->add({FlightKind::bytes, 0, 0, 0, now_ns}, numbered(static_cast<std::uint64_t>(n)));
       archive->turn(now_ns, kWall + now_ns, n % 5 == 4);
     }
@@ -58,6 +66,21 @@ TEST_F(FlightRunsRead, RunsThatWereStoppedAreWholeAndTheTimeBetweenThemIsSaid) {
   EXPECT_EQ(losses(counts), std::vector<std::string>{
                                 "3 runs of what wrote it, with 7.2 s between them that are not recorded, "
                                 "7.1 s at the longest"});
+}
+
+// A board without a battery for its clock begins each run in 1970, and is set some seconds later.
+TEST_F(FlightRunsRead, OfBoardsWithoutAClockTheTimeBetweenRunsIsByTheClockThatWasSet) {
+  run_from(4 * kSecond, End::stopped, kEpoch_s * kSecond);
+  run_from(4 * kSecond, End::stopped, (kEpoch_s + 3600) * kSecond);
+  EXPECT_NEAR(read().between_runs_s, 3600.0 - 2.9, 1e-6);
+  run(7200, End::stopped);
+  EXPECT_NEAR(read().longest_between_runs_s, 3600.0 - 2.9, 1e-6);
+}
+
+TEST_F(FlightRunsRead, OfAClockThatIsNeverSetNothingIsSaid) {
+  run_from(4 * kSecond, End::stopped);
+  run(100, End::stopped);
+  EXPECT_EQ(read().between_runs_s, 0.0);
 }
 
 TEST_F(FlightRunsRead, OneRunHasNothingToSay) {

@@ -72,6 +72,29 @@ TEST(MonitorView, FiguresOfASecondAreThoseOfItsMessages) {
   EXPECT_TRUE(view.axes().empty());
 }
 
+// A daemon that was killed says nothing of its end, and an axis that is not there is no fault.
+TEST(MonitorView, WhatIsStaleOrAbsentIsNotShownAsLive) {
+  SensorView view;
+  view.take(rate(0, {1e-6, std::nan("")}));
+  view.take(status_message());
+  view.end_interval(1.0);
+  std::string text = joined(view_lines("NOSE", view, {}));
+  EXPECT_NE(text.find("running"), std::string::npos) << text;
+  EXPECT_NE(text.find("  y  not measured"), std::string::npos) << text;
+  for (int second = 0; second < 6; ++second) view.end_interval(1.0);
+  text = joined(view_lines("NOSE", view, {}));
+  EXPECT_EQ(text.find("running"), std::string::npos) << text;
+  EXPECT_EQ(text.find("nothing lost"), std::string::npos) << text;
+  EXPECT_NE(text.find("no message for 6 s"), std::string::npos) << text;
+}
+
+TEST(MonitorView, ASensorWithoutSamplesIsShownByItsStatus) {
+  SensorView view;
+  view.take(status_message());
+  view.end_interval(1.0);
+  EXPECT_TRUE(view.shown());
+}
+
 TEST(MonitorView, FlagsAndLossesInWords) {
   SensorView view;
   rate_t message = rate(10, {0.0});

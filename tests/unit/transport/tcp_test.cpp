@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 
+#include <atomic>
 #include <cerrno>
 #include <memory>
 #include <string>
@@ -35,6 +36,14 @@ class Server {
     client_ = ::accept(socket_.fd(), nullptr, nullptr);
     ASSERT_GE(client_, 0);
   }
+  // The next connection within a tenth of a second.
+  void say_and_close(const std::string& text) {
+    pollfd ask{socket_.fd(), POLLIN, 0};
+    if (poll(&ask, 1, 100) <= 0) return;
+    accept();
+    send(text);
+    hang_up();
+  }
   // How many connections were asked for; each is closed at once.
   int turn_away() {
     int count = 0;
@@ -58,6 +67,39 @@ class Server {
   LoopbackSocket socket_;
   int client_ = -1;
 };
+
+// A server that says why it hangs up, or that doubles every FF.
+TEST(TcpServer, WhichSaysItsPortIsTakenIsQuotedAndTakenForOpenOnlyOnce) {
+  Server server(AF_INET);
+  auto transport = make_tcp_transport({.host = "127.0.0.1", .port = server.port()});
+  transport->open({});
+  std::atomic<bool> on{true};
+  std::thread answer([&] {
+    while (on) server.say_and_close("Port already in use\r\n");
+  });
+  const auto until = std::chrono::steady_clock::now() + 2s;
+  while (std::chrono::steady_clock::now() < until) (void)transport->read(20ms);
+  on = false;
+  answer.join();
+  EXPECT_EQ(transport->state(), TransportState::gone);
+  EXPECT_EQ(std::string(transport->fault().text), "Port already in use");
+  EXPECT_EQ(transport->counters().malformed, 1U);
+  EXPECT_EQ(transport->counters().reopened, 0U);
+}
+
+TEST(TcpServer, WhichSpeaksTelnetIsRecognised) {
+  Server server(AF_INET);
+  auto transport = make_tcp_transport({.host = "127.0.0.1", .port = server.port()});
+  std::thread answer([&] { server.accept(); });
+  transport->open({});
+  answer.join();
+  const std::string frame("\xFE\x81\xFF\xFF\x55 some more of it, 36 bytes", 30);
+  for (int n = 0; n < 40; ++n) server.send(frame);
+  std::size_t came = 0;
+  while (came < 40 * frame.size()) came += transport->read(kForever).bytes.size();
+  ASSERT_NE(transport->fault().what, nullptr);
+  EXPECT_NE(std::string(transport->fault().what).find("telnet"), std::string::npos);
+}
 
 std::string read_some(Transport& transport, std::size_t n, bool* restarted = nullptr) {
   std::string text;

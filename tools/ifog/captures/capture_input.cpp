@@ -11,7 +11,7 @@
 #include "drivers/capture/csv_rows.h"
 #include "drivers/capture/hdf5/hdf5_rows.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/driver_of_run.h"
 #include "tools/ifog/captures/flight_input.h"

@@ -24,9 +24,11 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/ifog/unnamed_file.h"
 #include "msgs/channel_name.h"
+#include "msgs/in_order.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_channels.h"
 #include "tools/ifog/captures/lcm_events.h"
+#include "tools/ifog/captures/lcm_loss.h"
 #include "tools/ifog/captures/status_beside.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
@@ -159,6 +161,16 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
   LcmEvents log(chosen.source.name());
   std::size_t number = 0, axes = 0, left_out = 0;
   SensorSeconds seconds;
+  InOrder order;
+  LcmLoss way;
+  bool two_publishers = false;
+  const auto hand_on = [&](const rate_t& message) {
+    const double time_s = seconds.of(message);
+    if (time_s < 0.0)
+      ++left_out;
+    else
+      sink(message, time_s);
+  };
   Progress progress("reading " + std::filesystem::path(path).filename().string(), log.size());
   while (const LcmEvents::Event* event = log.next()) {
     ++number;
@@ -177,12 +189,17 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
     if (first) axes = message.raw.size();
     if (axes == 0 || axes > 3) refuse("has " + std::to_string(axes) + " axes, expected 1 to 3");
     if (message.raw.size() != axes) refuse("has another number of axes");
-    const double time_s = seconds.of(message);
-    if (time_s < 0.0)
-      ++left_out;
-    else
-      sink(message, time_s);
+    way.take(message);
+    two_publishers = two_publishers || way.two_publishers();
+    order.take(std::move(message), hand_on);
   }
+  order.flush(hand_on);
+  if (two_publishers)
+    warn(
+        "%s: two publishers sent on %s (two daemons, or a log that was played beside one): their messages "
+        "are "
+        "mixed\n",
+        path.c_str(), printable(wanted).c_str());
   if (axes == 0) throw std::runtime_error(path + ": has no message on channel " + wanted);
   if (left_out > 0)
     warn(

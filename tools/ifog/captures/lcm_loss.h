@@ -3,16 +3,37 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <ifog/rate_t.hpp>
 #include <optional>
+#include <utility>
+
+#include "drivers/timeline/two_devices.h"
 
 namespace ifog::tools {
 
 class LcmLoss {
  public:
-  // The messages of one sensor, in order. Returns how many are missing before this one.
+  // The messages of one sensor. Returns how many are known to be missing with this one: a message that comes
+  // out of order, within kWindow of its place, was not lost. While two publishers send on the channel nothing
+  // is known to be.
   std::int64_t take(const rate_t& message) {
+    const bool late = comes_late(message.seq);
+    publishers_.saw(static_cast<std::uint32_t>(message.seq), std::uint64_t{1} << 32U, late);
+    if (publishers_.found()) {
+      two_publishers_ = true;
+      suspect_ = 0;
+      last_.reset();
+      came_ = ~std::uint64_t{0};
+      return 0;
+    }
+    if (late) {
+      const std::uint64_t place = std::uint64_t{1} << static_cast<unsigned>(last_->seq - message.seq);
+      if ((came_ & place) == 0) --(suspect_ > 0 ? suspect_ : lost_);
+      came_ |= place;
+      return 0;
+    }
     // A number passed over without the daemon's own gap flag or a merge was lost on the way.
     const bool told = (message.flags & rate_t::FLAG_GAP) != 0 || (message.flags & rate_t::FLAG_MERGED) != 0;
     std::int64_t lost = 0;
@@ -25,14 +46,23 @@ class LcmLoss {
       steps_s_ += message.dt;
       ++steps_;
     }
+    const std::int64_t by = last_ && message.seq > last_->seq ? message.seq - last_->seq : 0;
     last_ = {message.seq, message.utime, message.sensor_time_ns};
-    lost_ += lost;
-    return lost;
+    suspect_ += lost;
+    if (!publishers_.suspected()) lost_ += std::exchange(suspect_, 0);
+    return pass(by == 0 ? kWindow : by, lost);
   }
-  [[nodiscard]] std::int64_t lost() const { return lost_; }
+  [[nodiscard]] std::int64_t lost() const { return lost_ + suspect_; }
+  // Numbers that may yet come, and are lost where nothing more does.
+  [[nodiscard]] std::int64_t awaited() const {
+    return std::popcount(~came_ & ((std::uint64_t{1} << kWindow) - 1));
+  }
   // How often the number was one that no sample of this sensor can have had by then: nothing is known to be
   // lost.
   [[nodiscard]] std::int64_t began_anew() const { return began_anew_; }
+  // Two sequences run on this channel: of two daemons, or of a daemon and a log that is played.
+  [[nodiscard]] bool two_publishers() const { return publishers_.found(); }
+  [[nodiscard]] bool had_two_publishers() const { return two_publishers_; }
 
  private:
   struct Place {
@@ -42,6 +72,21 @@ class LcmLoss {
   // Steps are a mean and times of samples are fitted ones.
   static constexpr double kTimes = 2.0, kSlack_s = 1.0;
 
+  [[nodiscard]] bool comes_late(std::int64_t seq) const {
+    return last_ && seq < last_->seq && seq >= 0 && last_->seq - seq < kWindow;
+  }
+  // The window goes on by so many numbers, of which so many have not come. Returns those that leave it
+  // missing.
+  std::int64_t pass(std::int64_t by, std::int64_t lost) {
+    std::int64_t gone = std::max<std::int64_t>(0, lost - (kWindow - 1));
+    for (std::int64_t place = std::max<std::int64_t>(0, kWindow - by); place < kWindow; ++place)
+      gone += (came_ >> static_cast<unsigned>(place) & 1U) == 0 ? 1 : 0;
+    came_ = by < kWindow ? came_ << static_cast<unsigned>(by) : 0;
+    const std::uint64_t holes =
+        by < kWindow ? (std::uint64_t{1} << static_cast<unsigned>(by)) - 1 : ~std::uint64_t{0};
+    came_ |= lost > 0 ? std::uint64_t{1} : holes | 1U;
+    return gone;
+  }
   // Samples that fit in between at the sensor's rate, by the clock that tells of more; both go back where one
   // of them is set.
   [[nodiscard]] double most_since_last(const rate_t& message) const {
@@ -57,6 +102,12 @@ class LcmLoss {
   }
 
   std::optional<Place> last_;
+  static constexpr std::int64_t kWindow = 16;  // messages: more than a network exchanges
+  std::uint64_t came_ =
+      ~std::uint64_t{0};  // bit n: the message n before the last has come, or was never sent
+  bool two_publishers_ = false;
+  TwoDevices publishers_;
+  std::int64_t suspect_ = 0;  // lost, unless two sequences turn out to cross
   std::int64_t lost_ = 0, began_anew_ = 0, steps_ = 0;
   double steps_s_ = 0.0;
 };

@@ -6,6 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/ifog/quoted.h"
 #include "msgs/channel_name.h"
 
 namespace ifog::tools {
@@ -55,6 +56,7 @@ void MessageArchive::take(const std::string& channel, std::span<const std::uint8
 }
 
 void MessageArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
+  for (const auto& [channel, way] : ways_) untold_ += static_cast<std::uint64_t>(way.awaited());
   if (!archive_.full()) tell_lost(wall_ns);
   archive_.close(now_ns, wall_ns);
   books_.lost_here += archive_.not_taken().deliveries;
@@ -72,6 +74,8 @@ MessageArchive::Books MessageArchive::books() const {
   for (const auto& [channel, way] : ways_) {
     out.lost_on_way += static_cast<std::uint64_t>(way.lost());
     out.began_anew += static_cast<std::uint64_t>(way.began_anew());
+    if (way.had_two_publishers())
+      out.two_publishers += (out.two_publishers.empty() ? "" : ", ") + printable(channel);
   }
   return out;
 }

@@ -23,6 +23,7 @@ class MessageArchive {
     std::uint64_t lost_here = 0;    // heard, and in no recording: the disk was slow or full
     std::uint64_t lost_on_way = 0;  // rates that were not heard, by their numbers
     std::uint64_t began_anew = 0;   // LcmLoss::began_anew()
+    std::string two_publishers;     // channels that had two at a time, with commas; "" for none
   };
 
   MessageArchive(std::unique_ptr<FlightFolder> folder, const ArchiveLimits& limits,

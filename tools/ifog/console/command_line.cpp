@@ -14,7 +14,7 @@
 
 #include "daemon/config/version_text.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/describe.h"
 #include "tools/ifog/console/help_text.h"

@@ -16,7 +16,7 @@
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/ifog/captures/configured_files.h"
 #include "tools/ifog/console/command.h"

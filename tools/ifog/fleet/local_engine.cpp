@@ -8,7 +8,7 @@
 #include <iterator>
 #include <thread>
 
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/interrupt.h"

@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_line.h"

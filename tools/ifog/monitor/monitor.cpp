@@ -9,12 +9,14 @@
 #include <ifog/decode.h>
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <cstdint>
 #include <iterator>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -56,7 +58,8 @@ class Monitor {
         listener_(options.url, [this](const lcm_recv_buf_t& message, const std::string& channel) {
           take(message, channel);
         }) {
-    listener_.listen_to_sensor(options.sensor);
+    // All of them: a name that none has is answered with those that publish.
+    listener_.listen_to_sensor("");
     if (!options.json.empty()) json_.emplace(options.json);
     const bool people = isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1;
     if (people && !options.plain && !options.once && options.json.empty()) screen_.emplace();
@@ -64,6 +67,7 @@ class Monitor {
 
   // False: nothing was heard.
   bool run();
+  [[nodiscard]] std::string who_publishes() const;
 
  private:
   void take(const lcm_recv_buf_t& buffer, const std::string& channel);
@@ -77,6 +81,7 @@ class Monitor {
   void draw();
   [[nodiscard]] std::vector<std::string> lines(const LineStyle& style) const;
   [[nodiscard]] std::vector<std::string> waiting() const;
+  [[nodiscard]] bool wanted(const std::string& name) const;
   [[nodiscard]] std::string foot() const;
   [[nodiscard]] bool all_shown() const;
   [[nodiscard]] bool heard() const;
@@ -86,7 +91,8 @@ class Monitor {
   std::optional<OutputFile> json_;
   std::optional<Screen> screen_;
   std::map<std::string, SensorView> sensors_;
-  std::uint64_t refused_ = 0;  // that are no message of their channel's type
+  std::set<std::string> others_;  // that publish and are not wanted
+  std::uint64_t refused_ = 0;     // that are no message of their channel's type
   Clock::time_point start_ = Clock::now(), last_heard_ = start_;
   // Of the screen.
   LineStyle style_;
@@ -128,9 +134,28 @@ void Monitor::take_message(const lcm_recv_buf_t& buffer, const std::string& name
 void Monitor::take(const lcm_recv_buf_t& buffer, const std::string& channel) {
   const auto [content, sensor] = channel_name(channel);
   const std::string name(sensor);
+  if (!wanted(name)) {
+    if (content != ChannelContent::foreign) others_.insert(name);
+    return;
+  }
   if (content == ChannelContent::rate) take_message<rate_t>(buffer, name);
   if (content == ChannelContent::status) take_message<status_t>(buffer, name);
   if (content == ChannelContent::imu) take_message<imu_t>(buffer, name);
+}
+
+bool Monitor::wanted(const std::string& name) const {
+  return options_.sensor.empty() ||
+         std::equal(name.begin(), name.end(), options_.sensor.begin(), options_.sensor.end(),
+                    [](char a, char b) {
+                      return a == static_cast<char>(std::toupper(static_cast<unsigned char>(b)));
+                    });
+}
+
+// "": none.
+std::string Monitor::who_publishes() const {
+  std::string out;
+  for (const std::string& name : others_) out += (out.empty() ? "" : ", ") + printable(name);
+  return out;
 }
 
 // For what, and since when.
@@ -154,7 +179,10 @@ std::vector<std::string> Monitor::lines(const LineStyle& style) const {
   if (screen_ && !paused_ && (sensors_.empty() || seconds_since(last_heard_) > kSilent_s)) {
     std::vector<std::string> wait = wrapped(waiting(), " ", style.width);
     out.insert(out.begin(), std::make_move_iterator(wait.begin()), std::make_move_iterator(wait.end()));
-    if (sensors_.empty()) {
+    if (const std::string others = who_publishes(); sensors_.empty() && !others.empty()) {
+      for (std::string& line : wrapped({"These publish:", others}, " ", style.width))
+        out.push_back(std::move(line));
+    } else if (sensors_.empty()) {
       for (std::string& line :
            wrapped({"Is ifogd running, with this lcm_url? Is there a route for its multicast:",
                     "ip route add 224.0.0.0/4 dev lo"},
@@ -243,6 +271,10 @@ void Monitor::say_what_is_waited_for() {
   constexpr double kPatience_s = 3.0;
   if (screen_ || told_waiting_ || !sensors_.empty() || seconds_since(start_) < kPatience_s) return;
   told_waiting_ = true;
+  if (const std::string others = who_publishes(); !others.empty()) {
+    warn("%s; these publish: %s\n", (waiting().front() + " " + waiting().back()).c_str(), others.c_str());
+    return;
+  }
   warn(
       "%s; is ifogd running, with this lcm_url, and a route for its multicast "
       "(ip route add 224.0.0.0/4 dev lo)?\n",
@@ -251,7 +283,7 @@ void Monitor::say_what_is_waited_for() {
 
 bool Monitor::heard() const {
   return std::any_of(sensors_.begin(), sensors_.end(),
-                     [](const auto& entry) { return entry.second.messages() > 0; });
+                     [](const auto& entry) { return entry.second.messages() > 0 || entry.second.status(); });
 }
 
 bool Monitor::all_shown() const {
@@ -323,8 +355,13 @@ void add_monitor(const Command& program) {
     constexpr double kPatience_s = 10.0;
     if (options->once && options->seconds == 0.0) options->seconds = kPatience_s;
     will_write("--json", options->json, kJsonEndings);
-    if (!Monitor(*options).run()) {
-      warn("ifog monitor: nothing heard on %s\n", options->url.c_str());
+    Monitor monitor(*options);
+    if (!monitor.run()) {
+      if (const std::string others = monitor.who_publishes(); !others.empty())
+        warn("ifog monitor: --sensor %s: none of that name publishes, expected one of: %s\n",
+             in_quotes(options->sensor).c_str(), others.c_str());
+      else
+        warn("ifog monitor: nothing heard on %s\n", options->url.c_str());
       throw Failed("nothing heard");
     }
   });

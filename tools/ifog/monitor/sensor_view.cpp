@@ -27,6 +27,7 @@ double deviation(std::int64_t count, double square) {
 void SensorView::take(const rate_t& message) {
   ++messages_;
   ++in_interval_;
+  came_ = true;
   model_ = message.model;
   way_.take(message);
   for (std::size_t i = 0; i < kFlagNames.size(); ++i)
@@ -40,12 +41,16 @@ void SensorView::take(const rate_t& message) {
   }
 }
 
-void SensorView::take(status_t message) { status_ = std::move(message); }
+void SensorView::take(status_t message) {
+  status_ = std::move(message);
+  came_ = true;
+}
 
 void SensorView::end_interval(double seconds) {
   rate_hz_ = static_cast<double>(in_interval_) / seconds;
   judged_ = true;
-  shown_ = shown_ || in_interval_ > 0;
+  shown_ = shown_ || in_interval_ > 0 || status_;
+  silent_s_ = std::exchange(came_, false) ? 0.0 : silent_s_ + seconds;
   flagged_before_ = std::exchange(flagged_, {});
   axes_.clear();
   if (in_interval_ > 0) history_.resize(sums_.size());

@@ -36,7 +36,10 @@ class SensorView {
 
   [[nodiscard]] std::int64_t messages() const { return messages_; }
   [[nodiscard]] bool judged() const { return judged_; }  // an interval has ended
-  [[nodiscard]] bool shown() const { return shown_; }    // an interval with messages has ended
+  [[nodiscard]] bool shown() const { return shown_; }    // an interval with rates or a status has ended
+  // The last message came so long ago, s, at the end of the interval.
+  [[nodiscard]] double silent_s() const { return silent_s_; }
+  [[nodiscard]] bool two_publishers() const { return way_.two_publishers(); }
   [[nodiscard]] double message_rate_hz() const { return rate_hz_; }
   [[nodiscard]] const std::string& model() const { return model_; }
   [[nodiscard]] const std::vector<AxisView>& axes() const { return axes_; }  // none: nothing came
@@ -60,6 +63,8 @@ class SensorView {
   [[nodiscard]] std::vector<Count> all_losses() const;
 
   std::int64_t messages_ = 0, in_interval_ = 0;
+  bool came_ = false;  // anything, in the interval
+  double silent_s_ = 0.0;
   bool judged_ = false, shown_ = false;
   double rate_hz_ = 0.0;
   LcmLoss way_;

@@ -19,6 +19,7 @@ namespace ifog::tools {
 namespace {
 
 constexpr std::size_t kLeastWidth = 40;
+constexpr double kStale_s = 2.5;  // two statuses have not come
 
 template <typename... Values>
 std::string text(const char* format, Values... values) {
@@ -70,6 +71,8 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
                     noise = "  noise " + number("", axis.noise_radps),
                     raw = " (raw " + number("", axis.raw_noise_radps) + ")",
                     angle = text("  angle %+.6f°", axis.angle_rad / kDegree);
+  if (!std::isfinite(axis.rate_radps) && axis.angle_rad == 0.0)
+    return "  " + std::string(axis_name(a, sensor.axes().size())) + "  not measured";
   // What there is no room for goes, the least needed first.
   std::string out = rate + noise + raw + angle;
   if (style.width != 0 && columns_of(out) > style.width) out = rate + noise + angle;
@@ -84,7 +87,11 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
 
 std::string head_line(std::string_view name, const SensorView& sensor) {
   std::string out = printable(name);
-  if (sensor.status()) out += std::string("  ") + state_name(sensor.status()->state);
+  // A status comes each second: a daemon that was killed says nothing of its end.
+  if (sensor.silent_s() > kStale_s)
+    out += text("  no message for %.0f s: has ifogd ended?", sensor.silent_s());
+  else if (sensor.status())
+    out += std::string("  ") + state_name(sensor.status()->state);
   if (sensor.judged()) out += "  " + in_hertz(sensor.message_rate_hz());
   out += text("  %lld messages", static_cast<long long>(sensor.messages()));
   if (!sensor.model().empty()) out += "  model " + printable(sensor.model());
@@ -155,10 +162,15 @@ std::vector<std::string> view_lines(std::string_view name, const SensorView& sen
     out.push_back("  its first second is not over");
   else if (sensor.axes().empty())
     out.push_back("  no samples in the last second" +
-                  (sensor.status() ? std::string(": ") + state_name(sensor.status()->state) : ""));
+                  (sensor.status() && sensor.silent_s() <= kStale_s
+                       ? std::string(": ") + state_name(sensor.status()->state)
+                       : ""));
   for (std::size_t a = 0; a < sensor.axes().size(); ++a) out.push_back(axis_line(sensor, a, style));
   // Each line says of when its counts are: a kind of fault may stand in both.
   add(counted("in the last second:", sensor.flags()));
+  if (sensor.two_publishers())
+    add({"two publishers send on this channel: two daemons, or a log that is played?"});
+  if (sensor.silent_s() > kStale_s) return out;
   const auto losses = counted("so far:", sensor.losses());
   add(losses.empty() ? std::vector<std::string>{"nothing lost"} : losses);
   if (sensor.status()) {

@@ -62,6 +62,7 @@ constexpr std::int64_t kLead_ns = 20'000'000;
 constexpr std::int64_t kLongestSleep_ns = 100'000'000;
 // Drawing a progress bar takes time that only a pause in the recording has.
 constexpr std::int64_t kPauseForProgress_ns = 2'000'000;
+constexpr std::int64_t kTold_ns = 500'000'000;  // within a long pause, so often
 
 // False: interrupted.
 bool sleep_until(std::int64_t due_ns, std::int64_t spin_ns) {
@@ -91,7 +92,11 @@ void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, Repl
   const bool paced = settings.speed > 0.0;
   const auto spin_ns = static_cast<std::int64_t>(settings.spin_us * 1e3);
   const std::int64_t round = round_ns(timeline);
-  Progress progress("replay", result.wanted, Progress::Between::nothing);
+  // By the recording's time where it is paced: a pause of an hour is an hour of it, with or without frames.
+  constexpr double kPerSecond = 1e3;
+  const double length_s = static_cast<double>(round) * 1e-9 * static_cast<double>(settings.loops);
+  const auto steps = [&](double recorded_s) { return static_cast<std::size_t>(recorded_s * kPerSecond); };
+  Progress progress("replay", paced ? steps(length_s) : result.wanted, Progress::Between::nothing);
   Pace pace(paced ? settings.speed : 1.0);
   result.begin_ns = monotonic_ns() + (paced ? kLead_ns : 0);
   pace.start(timeline.time_ns(0), result.begin_ns);
@@ -100,8 +105,17 @@ void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, Repl
     const std::int64_t shift = static_cast<std::int64_t>(loop) * round;
     for (std::size_t i = 0; going && i < n; ++i) {
       const std::int64_t due = pace.due_ns(timeline.time_ns(i) + shift);
-      if (settings.loops != 0 && (!paced || due - monotonic_ns() > kPauseForProgress_ns))
-        progress.at(result.sent);
+      const auto tell = [&] {
+        const double since_s = static_cast<double>(monotonic_ns() - result.begin_ns) * 1e-9;
+        progress.at(paced ? steps(std::clamp(since_s * settings.speed, 0.0, length_s)) : result.sent);
+      };
+      if (settings.loops != 0 && (!paced || due - monotonic_ns() > kPauseForProgress_ns)) tell();
+      for (std::int64_t now = monotonic_ns();
+           paced && settings.loops != 0 && due - now > 2 * kTold_ns && going; now = monotonic_ns()) {
+        going = sleep_until(now + kTold_ns, 0);
+        tell();
+      }
+      if (!going) break;
       going = paced ? sleep_until(due, spin_ns) && target.send(i) : !interrupted() && target.send(i);
       if (!going) break;
       if (paced) result.late.add(monotonic_ns() - due);

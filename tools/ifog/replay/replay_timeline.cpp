@@ -12,7 +12,7 @@
 #include "drivers/capture/input_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/host/timeline_frame.h"
-#include "drivers/ifog/device_timeline.h"
+#include "drivers/timeline/timeline.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/console/say.h"
@@ -80,15 +80,14 @@ void cut_by_driver(const ReplaySource& source, ReplayTimeline& timeline) {
     throw std::runtime_error(source.path + ": driver " + source.input.driver_name() + " takes no bytes");
   if (d.has_device_time == 0 && !(d.nominal_rate_hz > 0.0))
     throw std::runtime_error(source.path + ": the frames carry no time, expected --option rate_hz=HZ");
-  DeviceTimeline steps(d.sequence_modulus, d.nominal_rate_hz);
+  Timeline steps(d.sequence_modulus, d.nominal_rate_hz);
   double time_s = 0.0;
   for (std::size_t i = 0; i < timeline.bytes.size(); ++i)
     driver.decode_bytes({&timeline.bytes[i], 1}, 0, [&](const ifog_sample& sample) {
-      const DeviceTimeline::Frame frame = timeline_frame(sample, d.axes);
-      if (timeline.blocks.empty() || !steps.tells(frame)) {
+      const Timeline::Frame frame = timeline_frame(sample, d.axes);
+      if (timeline.blocks.empty()) {
         static_cast<void>(steps.first(frame));
-        if (!timeline.blocks.empty() && d.nominal_rate_hz > 0.0) time_s += 1.0 / d.nominal_rate_hz;
-      } else if (const DeviceTimeline::Step step = steps.next(frame); !step.out_of_turn) {
+      } else if (const Timeline::Step step = steps.next(frame); !step.out_of_turn) {
         time_s += step.dt_s;
       }  // what came again or late is sent where it came
       timeline.blocks.push_back({nanoseconds(time_s), i + 1});

@@ -13,7 +13,7 @@
 
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/shell_word.h"
+#include "drivers/system/shell_word.h"
 #include "drivers/transport/utc_now.h"
 #include "filters/allan/noise_coefficients.h"
 #include "filters/model_file/model.h"

@@ -100,7 +100,7 @@ void Wire::add_frames(std::uint32_t number) {
   ifog_can_frame frame = can_frame(kRateId, arrival_ns);
   auto value = static_cast<float>(rate());
   const Fates fates = draw_fates();
-  constexpr std::array kNoRate{1e30F, -20.5F, std::numeric_limits<float>::quiet_NaN()};
+  constexpr std::array kNoRate{1e30F, -2e4F, std::numeric_limits<float>::quiet_NaN()};
   const bool valid = !fates[kImpossible] && !fates[kInvalid];
   if (!valid) value = kNoRate.at(static_cast<std::size_t>(below(3)));
   put(frame, 0, value);

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// Two devices on one line or bus: each counts for itself, so the sequence runs to and fro between two counts
+// that each go on by one. Which of them is wanted nobody knows.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <utility>
+
+namespace ifog {
+
+class TwoDevices {
+ public:
+  [[nodiscard]] bool found() const noexcept { return found_; }
+  [[nodiscard]] bool suspected() const noexcept { return crossed_ > 0; }
+  // The next frame's count. own: it is of the device that is followed though it does not continue its count.
+  void saw(std::uint32_t sequence, std::uint64_t modulus, bool own) noexcept {
+    const auto continues = [&](std::uint32_t one) { return (one + std::uint64_t{1}) % modulus == sequence; };
+    if (sequence == last_) return;
+    const std::uint32_t before = std::exchange(last_, sequence);
+    plain_ = continues(before) ? plain_ + 1 : 0;
+    if (plain_ >= kGone) found_ = false;
+    if (own || plain_ >= kGone) crossed_ = 0;
+    if (plain_ > 0) return;
+    if (!own && std::any_of(ends_.begin(), ends_.end(), continues)) ++crossed_;
+    found_ = found_ || crossed_ >= kShows;
+    std::rotate(ends_.begin(), ends_.end() - 1, ends_.end());
+    ends_[0] = before;
+  }
+
+ private:
+  static constexpr int kShows = 32;  // changes from one count to another: none of one device by chance
+  static constexpr int kGone = 256;  // frames in order: the other device has been unplugged
+
+  std::uint32_t last_ = 0;
+  std::array<std::uint32_t, 3> ends_{};  // of the last runs that each went on by one
+  int plain_ = 0, crossed_ = 0;
+  bool found_ = false;
+};
+
+}  // namespace ifog
