@@ -6,7 +6,7 @@
 #include <exception>
 #include <filesystem>
 
-#include "drivers/capture/output_file.h"
+#include "daemon/state/state_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 
@@ -71,7 +71,7 @@ std::string NoiseMemory::keep(const LearnedNoise& learned, std::int64_t now_ns, 
   kept_.noise = learned;
   kept_.learned = utc_now();
   try {
-    write_file(path_, kept_noise_text(kept_));
+    write_state_file(path_, kept_noise_text(kept_));
   } catch (const std::exception& error) {
     const bool told = failed_;
     failed_ = true;

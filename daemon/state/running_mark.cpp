@@ -29,7 +29,8 @@ struct flock whole_file(short type) {
 
 bool is_plain(int fd) {
   struct stat what {};
-  return ::fstat(fd, &what) == 0 && S_ISREG(what.st_mode);
+  // With a second name it is somebody else's file, whose rights are not ours to change.
+  return ::fstat(fd, &what) == 0 && S_ISREG(what.st_mode) && what.st_nlink == 1;
 }
 
 }  // namespace

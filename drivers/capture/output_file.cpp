@@ -2,6 +2,7 @@
 #include "drivers/capture/output_file.h"
 
 #include <fcntl.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -9,6 +10,7 @@
 #include <cctype>
 #include <cerrno>
 #include <csignal>
+#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -58,6 +60,15 @@ Destination follow(const fs::path& path, std::error_code& error) {
 Destination destination_of(const std::string& path, std::error_code& error) {
   if (path == "-") return {{}, STDOUT_FILENO};
   return follow(path, error);
+}
+
+// Of a file on its way. Not the process's number: one that a kill left behind would block every later process of that number,
+// the same each day on a computer that starts alike.
+std::string passing_name() {
+  std::uint64_t number = 0;
+  if (::getrandom(&number, sizeof number, 0) != static_cast<ssize_t>(sizeof number))
+    number = static_cast<std::uint64_t>(getpid());
+  return ".ifog-" + std::to_string(number) + ".part";
 }
 
 }  // namespace
@@ -135,7 +146,7 @@ void OutputFile::open_beside() {
   const bool unknown =
       !can_name || errno == EOPNOTSUPP || errno == EISDIR || errno == ENOENT || errno == EINVAL;
   if (!unknown) fail("cannot create");
-  beside_ = folder / (".ifog-" + std::to_string(getpid()) + ".part");
+  beside_ = folder / passing_name();
   fd_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (fd_ < 0) {
     beside_.clear();
@@ -172,8 +183,7 @@ void OutputFile::take_the_name() {
   pthread_sigmask(SIG_SETMASK, &all, &before);
   bool done = true;
   if (beside_.empty()) {
-    const fs::path passing =
-        fs::path(target_).parent_path() / (".ifog-" + std::to_string(getpid()) + ".part");
+    const fs::path passing = fs::path(target_).parent_path() / passing_name();
     const std::string own = "/proc/self/fd/" + std::to_string(fd_);
     done = ::linkat(AT_FDCWD, own.c_str(), AT_FDCWD, passing.c_str(), AT_SYMLINK_FOLLOW) == 0;
     if (done) beside_ = passing;

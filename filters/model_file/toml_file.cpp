@@ -13,6 +13,38 @@
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
+namespace {
+
+// The parser calls itself once for each part of a dotted key: 50 000 parts are the end of its stack. Throws
+// std::runtime_error with the line; text in quotes and comments counts for nothing.
+void require_short_keys(std::string_view text, const std::string& name) {
+  constexpr std::size_t kMostParts = 64;
+  std::size_t dots = 0, line = 1;
+  char quote = 0;
+  bool comment = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (c == '\n') {
+      ++line;
+      comment = false;
+      if (quote == 0) dots = 0;
+    } else if (quote != 0) {
+      if (c == '\\' && quote == '"') ++i;
+      if (c == quote) quote = 0;
+    } else if (comment || c == '#') {
+      comment = true;
+    } else if (c == '"' || c == '\'') {
+      quote = c;
+    } else if (std::string_view("=,[]{}").find(c) != std::string_view::npos) {
+      dots = 0;
+    } else if (c == '.' && ++dots >= kMostParts) {
+      throw std::runtime_error(name + ":" + std::to_string(line) + ": a key of more than " +
+                               std::to_string(kMostParts) + " parts, expected one of a few");
+    }
+  }
+}
+
+}  // namespace
 
 std::string read_toml_text(const std::string& path) {
   constexpr std::size_t kLargest = 16U << 20U;
@@ -38,6 +70,7 @@ std::string read_toml_text(const std::string& path) {
 }
 
 toml::table parse_toml(std::string_view text, const std::string& name) {
+  require_short_keys(text, name);
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "drivers/capture/hdf5/hdf5_attributes.h"
+#include "drivers/capture/hdf5/hdf5_places.h"
 
 namespace ifog {
 namespace {
@@ -23,24 +24,6 @@ constexpr hsize_t kMostOfMatrix = 64;  // columns
 constexpr std::uint64_t kMostGrowth = 1100, kGrowthFree = 256U << 20U;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what); }
-
-const char* kind_of(H5T_class_t kind) {
-  switch (kind) {
-    case H5T_STRING:
-      return "text";
-    case H5T_COMPOUND:
-      return "records of several members";
-    case H5T_ENUM:
-      return "an enumeration";
-    case H5T_ARRAY:
-    case H5T_VLEN:
-      return "arrays";
-    case H5T_TIME:
-      return "times of a form that is no number";
-    default:
-      return "no numbers";
-  }
-}
 
 void demand_numbers(hid_t type, const std::string& name) {
   const H5T_class_t kind = H5Tget_class(type);
@@ -65,56 +48,6 @@ void demand_readable(hid_t properties, const std::string& name) {
            (called[0] != '\0' ? " (" + printable(called.data()) + ")" : "") +
            ", which is not here, expected gzip; 'h5repack -f GZIP=6' makes it so where it is known");
   }
-}
-
-std::string list_of(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
-  return list.empty() ? "none" : printable(list, 300);
-}
-
-// What --group can name: the groups, with all of their path, and the tables of records. A file of very many
-// has more than are looked at.
-struct Places {
-  static constexpr std::size_t kMost = 16, kMostLooked = 4096;
-  std::vector<std::string> names{"/"};
-  std::size_t looked = 0;
-
-  static herr_t look(hid_t root, const char* name, const H5L_info_t* link, void* to) {
-    auto& found = *static_cast<Places*>(to);
-    if (++found.looked > kMostLooked || found.names.size() >= kMost) return 1;
-    H5O_info_t object{};
-    if (link->type != H5L_TYPE_HARD ||
-        H5Oget_info_by_name2(root, name, &object, H5O_INFO_BASIC, H5P_DEFAULT) < 0)
-      return 0;
-    bool place = object.type == H5O_TYPE_GROUP;
-    if (object.type == H5O_TYPE_DATASET) {
-      const Hdf5Id dataset(H5Dopen2(root, name, H5P_DEFAULT));
-      const Hdf5Id type(dataset.good() ? H5Dget_type(dataset) : -1);
-      place = type.good() && H5Tget_class(type) == H5T_COMPOUND;
-    }
-    if (place) found.names.push_back("/" + std::string(name));
-    return 0;
-  }
-};
-
-std::vector<std::string> places_of(hid_t file) {
-  Places found;
-  hdf5_demand(H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, Places::look, &found) >= 0,
-              "its groups cannot be read");
-  return found.names;
-}
-
-std::vector<std::string> members_of(hid_t type) {
-  std::vector<std::string> names;
-  const int count = H5Tget_nmembers(type);
-  for (int i = 0; i < count; ++i) {
-    char* const name = H5Tget_member_name(type, static_cast<unsigned>(i));
-    if (name == nullptr) refuse("its records cannot be read: " + hdf5_reason());
-    names.emplace_back(name);
-    H5free_memory(name);
-  }
-  return names;
 }
 
 // What reads one member of a record.

@@ -11,7 +11,7 @@
 
 #include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/running_mark.h"
-#include "drivers/capture/output_file.h"
+#include "daemon/state/state_file.h"
 #include "drivers/ifog/quoted.h"
 #include "msgs/state_name.h"
 
@@ -78,7 +78,7 @@ ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, con
 
 void ModelExchange::put(const std::optional<Model>& model) const {
   if (model) {
-    write_file(path_, model_text(*model));
+    write_state_file(path_, model_text(*model));
     return;
   }
   std::error_code error;

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
+#include "daemon/state/state_file.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {

@@ -8,6 +8,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "daemon/state/state_file.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/field/state_json.h"

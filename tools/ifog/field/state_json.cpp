@@ -4,19 +4,43 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "drivers/capture/output_file.h"
-#include "drivers/capture/text_file.h"
+#include "daemon/state/state_file.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog::tools {
+namespace {
+
+// Far more than any file of ours has, and far less than the stack of a parser that calls itself holds.
+void require_depth(const std::string& path, std::string_view text) {
+  constexpr std::size_t kMostDepth = 64;
+  std::size_t depth = 0;
+  bool quoted = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (quoted) {
+      if (c == '\\') ++i;
+      quoted = c != '"';
+    } else if (c == '"') {
+      quoted = true;
+    } else if (c == '[' || c == '{') {
+      if (++depth > kMostDepth)
+        throw std::runtime_error(path +
+                                 ": is JSON nested deeper than 64, which no file of the state folder is");
+    } else if ((c == ']' || c == '}') && depth > 0) {
+      --depth;
+    }
+  }
+}
+
+}  // namespace
 
 std::optional<nlohmann::json> read_state_json(const std::string& path, const std::string& schema) {
   std::error_code none;
   if (!std::filesystem::exists(path, none)) return std::nullopt;
-  // A FIFO would hold up who reads it.
-  if (!std::filesystem::is_regular_file(path, none))
-    throw std::runtime_error(path + ": is no regular file, expected JSON of schema " + schema);
-  const nlohmann::json json = nlohmann::json::parse(read_text_file(path), nullptr, false);
+  constexpr std::size_t kMost = std::size_t{64} << 20U;  // bytes; a history of a year of nights has 1 MB
+  const std::string text = read_state_file(path, kMost);
+  require_depth(path, text);
+  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
   if (json.is_discarded() || !json.is_object())
     throw std::runtime_error(path + ": is no JSON object, expected schema " + schema);
   const auto found = json.find("schema");
@@ -28,14 +52,6 @@ std::optional<nlohmann::json> read_state_json(const std::string& path, const std
              : printable(found->dump(-1, ' ', true, nlohmann::json::error_handler_t::replace))) +
         ", expected " + schema);
   return json;
-}
-
-void write_state_file(const std::string& path, std::string_view bytes) {
-  std::error_code none;
-  const std::filesystem::file_status there = std::filesystem::symlink_status(path, none);
-  if (std::filesystem::exists(there) && !std::filesystem::is_regular_file(there))
-    throw std::runtime_error(path + ": is no regular file, which is not written in a state folder");
-  write_file(path, bytes);
 }
 
 void refuse_keys(const std::string& path, const nlohmann::json::exception& error) {

@@ -5,17 +5,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
-#include <string_view>
 
 namespace ifog::tools {
 
 // Nothing: no such file. Throws std::runtime_error with one line: unreadable, no JSON, another schema.
 [[nodiscard]] std::optional<nlohmann::json> read_state_json(const std::string& path,
                                                             const std::string& schema);
-
-// A file of the state folder, whole. Others may write into that folder: what is a link or a device there is
-// refused, as write_file() would follow it. Throws std::runtime_error with one line.
-void write_state_file(const std::string& path, std::string_view bytes);
 
 // Throws std::runtime_error with one line: the file and what is wrong in it.
 [[noreturn]] void refuse_keys(const std::string& path, const nlohmann::json::exception& error);

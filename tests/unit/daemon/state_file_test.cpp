@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files of a folder that others may write: what stands under a name there is never followed.
+#include "daemon/state/state_file.h"
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <thread>
+
+namespace ifog {
+namespace {
+
+namespace fs = std::filesystem;
+
+class StateFile : public testing::Test {
+ protected:
+  StateFile() {
+    std::string name = "/tmp/state_file.XXXXXX";
+    root_ = ::mkdtemp(name.data());
+    fs::create_directory(root_ / "state");
+    std::ofstream(victim()) << "secret";
+  }
+  ~StateFile() override { fs::remove_all(root_); }
+
+  [[nodiscard]] fs::path victim() const { return root_ / "victim"; }
+  [[nodiscard]] fs::path file() const { return root_ / "state" / "nose.model.toml"; }
+  static std::string text_of(const fs::path& path) {
+    std::ifstream in(path);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+  [[nodiscard]] std::string refusal() const {
+    try {
+      (void)read_state_file(file().string(), 100);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "read";
+  }
+
+  fs::path root_;
+};
+
+TEST_F(StateFile, IsWrittenAndReadWhole) {
+  write_state_file(file().string(), "one");
+  write_state_file(file().string(), "two");
+  EXPECT_EQ(read_state_file(file().string(), 100), "two");
+  EXPECT_EQ(std::distance(fs::directory_iterator(file().parent_path()), fs::directory_iterator()), 1);
+  EXPECT_NE(refusal().find("read"), std::string::npos);
+  EXPECT_THROW((void)read_state_file(file().string(), 2), std::runtime_error);
+}
+
+TEST_F(StateFile, ALinkIsNeitherFollowedNorRead) {
+  fs::create_symlink(victim(), file());
+  EXPECT_NE(refusal().find("is a link"), std::string::npos);
+  EXPECT_THROW(write_state_file(file().string(), "ours"), std::runtime_error);
+  EXPECT_EQ(text_of(victim()), "secret");
+  fs::remove(file());
+  fs::create_hard_link(victim(), file());
+  EXPECT_NE(refusal().find("other names"), std::string::npos);
+  write_state_file(file().string(), "ours");
+  EXPECT_EQ(text_of(victim()), "secret");
+  EXPECT_EQ(text_of(file()), "ours");
+  fs::remove(file());
+  ASSERT_EQ(::mkfifo(file().c_str(), 0600), 0);
+  EXPECT_NE(refusal().find("no regular file"), std::string::npos);
+}
+
+// Somebody swaps the file with a link to another's at each moment.
+TEST_F(StateFile, ASwapBetweenLookingAndWritingGainsNothing) {
+  write_state_file(file().string(), "ours");
+  const fs::path link = root_ / "state" / "link";
+  fs::create_symlink(victim(), link);
+  std::atomic<bool> done = false;
+  std::thread swaps([&] {
+    while (!done) ::renameat2(AT_FDCWD, link.c_str(), AT_FDCWD, file().c_str(), RENAME_EXCHANGE);
+  });
+  for (int i = 0; i < 200; ++i) {
+    try {
+      write_state_file(file().string(), "ours " + std::to_string(i));
+    } catch (const std::runtime_error&) {  // the link was seen
+    }
+  }
+  done = true;
+  swaps.join();
+  EXPECT_EQ(text_of(victim()), "secret");
+}
+
+}  // namespace
+}  // namespace ifog
