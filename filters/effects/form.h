@@ -11,6 +11,7 @@
 //   dead_zone c where |c| is below the half width, else 0
 // and of the time t since the record's start (or the daemon's):
 //   line a cos 2 pi f t + b sin 2 pi f t      step (t >= t0)   rate_ramp t       warm_up exp(-t/tau)
+//   bias 1, known where a reference rate stood beside
 //   rebuilt_ramp: a closed loop's feedback ramp, its phase rebuilt from the angle turned; see ramp_tracker.h
 // earth_rate is the Earth's rate turning into a tilting gyro's axis; on one heading it is linear in
 // acceleration. gauss_markov, outliers, noise_change, quantisation say what the noise is; there is nothing to
@@ -47,6 +48,7 @@ enum class Form {
   kStep,
   kRateRamp,
   kWarmUp,
+  kBias,
   kRebuiltRamp,
   kEarthRate,
   kGaussMarkov,
