@@ -120,9 +120,19 @@ std::vector<Effect> drop_what_does_not_hold(const BlockData& data, const BlockDa
       drop(i);
   }
   while (!holds(reconstructed, found, errors, &EvenError::held_out)) {
-    const std::optional<std::size_t> least = least_certain(found.chosen);
-    if (!least) break;
-    drop(*least);
+    // The one without which least is left on held-out data.
+    std::optional<std::size_t> worst;
+    double least = 0.0;
+    for (std::size_t i = 0; i < found.chosen.size(); ++i) {
+      if (!found.chosen[i].candidate.corrected()) continue;
+      const SearchResult rest = without_effect(data, reconstructed, found, i);
+      subtract_found(data, rest, errors);
+      double left = 0.0;
+      for (const EvenError& error : errors) left += variance_of(error.held_out);
+      if (!worst || left < least) worst = i, least = left;
+    }
+    if (!worst) break;
+    drop(*worst);
   }
   return dropped;
 }
