@@ -29,6 +29,10 @@ struct DiagnoseOptions {
   std::size_t most_effects = 8;
   bool subtract_earth_rate = false;    // what the Earth's rate explains; otherwise it is shown, no more
   std::optional<double> latitude_rad;  // bounds its size further
+  // Without a reference rate a channel that senses motion explains nothing of the rate, unless this is set.
+  bool allow_motion_channels = false;
+  // A coefficient beyond what makers specify is shown as a proxy and not corrected, unless this is set.
+  bool allow_proxies = false;
   std::function<void(std::size_t done, std::size_t total)> progress;
 };
 

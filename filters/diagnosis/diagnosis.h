@@ -63,11 +63,11 @@ struct Unexplained {
   double fraction =
       0.0;  // of the variance of the error that is neither white noise nor harmonic nor explained
   double means_s = 1.0;  // length of the means whose variance that is
-  // "nothing", "slow", "line", "moving_line", "bursts", "changing_variance", "hysteresis", "two_states",
+  // "nothing", "slow", "line", "bursts", "changing_variance", "hysteresis", "two_states",
   // "uncorrelated"
   std::string kind;
   std::string hint;
-  double frequency_hz = 0.0;    // "line", "moving_line"
+  double frequency_hz = 0.0;    // "line"
   std::vector<double> times_s;  // "bursts"
 };
 
@@ -89,8 +89,6 @@ struct ReferenceDelay {
   std::string record;
   double delay_s = 0.0;  // below zero: early, or the rate late
   double std_error_s = 0.0;
-  // s by which it grows each second, of a clock of its own; delay_s is that at the record's beginning then.
-  double drift = 0.0;
 };
 
 // Of a channel that was logged late: what it says at a time was so delay_s before.
@@ -127,6 +125,7 @@ struct Diagnosis {
   std::optional<MarkovNoise> markov;            // a bias that comes back; K is then no law of long times
   std::vector<NoiseChangeIn> noise_changes;     // which make noise an average of unlike parts
   std::vector<FoundEffect> effects;             // traced to channels, then ramps, then lines of the samples
+  std::optional<ModelParameter> bias;           // beside a reference: corrected; an effect where it is clear
   std::vector<double> covariance;               // of all parameters of all effects in order, row-major
   std::vector<ChannelRange> ranges;             // of the channels the effects use
   std::map<std::string, double> before, after;  // held-out figures, units in their names

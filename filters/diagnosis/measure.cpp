@@ -6,11 +6,10 @@
 #include <optional>
 #include <stdexcept>
 
+#include "filters/diagnosis/channels/derived_channels.h"
+#include "filters/diagnosis/channels/reconstruct.h"
 #include "filters/diagnosis/checks/channel_delay.h"
-#include "filters/diagnosis/record/derived_channels.h"
-#include "filters/diagnosis/record/prepared_records.h"
-#include "filters/diagnosis/record/reconstruct.h"
-#include "filters/diagnosis/record/stuck_blocks.h"
+#include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/uncertainty.h"
 #include "filters/diagnosis/report/findings.h"
@@ -68,19 +67,16 @@ std::vector<Candidate> events_named(const BlockData& data, const Effect& effect)
   return found;
 }
 
-// Early channels as the daemon has them once it has waited; and those delays.
-std::vector<ChannelDelay> wait_for_early(const std::vector<ChannelRange>& ranges, BlockData& data) {
-  std::vector<ChannelDelay> waited;
-  for (const ChannelRange& range : ranges) {
-    if (!(range.early_s > 0.0)) continue;
+// Early channels as the daemon has them once it has waited.
+void wait_for_early(const std::vector<ChannelRange>& ranges, BlockData& data) {
+  bool any = false;
+  for (const ChannelRange& range : ranges)
     for (FineChannel& channel : data.channels) {
-      if (channel.name != range.channel) continue;
+      if (!(range.early_s > 0.0) || channel.name != range.channel) continue;
       undo_delay(data.grid, -range.early_s, channel);
-      waited.push_back({channel.name, -range.early_s, 0.0});
+      any = true;
     }
-  }
-  if (!waited.empty()) rebuild_differences(data);
-  return waited;
+  if (any) rebuild_differences(data);
 }
 
 bool is_event(const Effect& effect) {
@@ -90,9 +86,8 @@ bool is_event(const Effect& effect) {
 
 class Measuring {
  public:
-  Measuring(const BlockData& data, const EffectsToMeasure& wanted, const std::string& axis,
-            const std::vector<ChannelDelay>& waited)
-      : data_(data), wanted_(wanted), axis_(axis), waited_(waited) {
+  Measuring(const BlockData& data, const EffectsToMeasure& wanted, const std::string& axis)
+      : data_(data), wanted_(wanted), axis_(axis) {
     result_.together.resize(wanted.together.size());
     for (std::size_t i = 0; i < wanted.together.size(); ++i) take(i);
     for (const Effect& effect : wanted.beside) take_beside(effect);
@@ -190,13 +185,15 @@ class Measuring {
       for (Eigen::Index j = 0; j < count; ++j)
         result_.covariance.push_back(joint.covariance(first + i, first + j));
     }
-    result_.ranges = ranges_of(data_, found, waited_);
+    result_.ranges = ranges_of(data_, found);
+    for (ChannelRange& range : result_.ranges)
+      for (const ChannelRange& known : wanted_.ranges)
+        if (known.channel == range.channel) range.early_s = known.early_s;
   }
 
   const BlockData& data_;
   const EffectsToMeasure& wanted_;
   const std::string& axis_;
-  const std::vector<ChannelDelay>& waited_;
   std::vector<std::size_t> place_;  // in `together`, of the first effects of the model
   std::vector<Candidate> model_, events_;
   NoiseFit noise_;
@@ -211,12 +208,9 @@ MeasuredEffects measure_effects(const std::vector<Record>& records, const Effect
     throw std::invalid_argument("others in the place of effects, expected a list for each");
   const PreparedRecords prepared(records, {}, significance);
   BlockData data = cut_to_blocks(prepared.without_ramps().records);
-  std::vector<std::string> used;
-  for (const Effect& effect : wanted.together) used.insert(used.end(), {effect.channel, effect.with_channel});
-  leave_out_stuck(prepared.stuck(), used, data.grid);
-  const std::vector<ChannelDelay> waited = wait_for_early(wanted.ranges, data);
+  wait_for_early(wanted.ranges, data);
   const BlockData reconstructed = with_reconstructed_channels(data);
-  return Measuring(reconstructed, wanted, axis, waited).run();
+  return Measuring(reconstructed, wanted, axis).run();
 }
 
 }  // namespace ifog

@@ -19,14 +19,26 @@ void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& mo
     }
     all = next;
   }
-  const std::size_t added = rows.size();
+  const bool named = std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
+                                 [](const FoundEffect& found) { return found.effect.form == "bias"; });
+  const bool bias = diagnosis.bias && !named;
+  const std::size_t fitted = rows.size();
+  const std::size_t added = fitted + (bias ? 1 : 0);
+  if (bias) {
+    Effect effect;
+    effect.form = "bias";
+    effect.axis = axis;
+    effect.parameters = {*diagnosis.bias};
+    model.effects.push_back(std::move(effect));
+  }
   // Axes are fitted apart, so nothing is known of covariances across them: zero.
   std::vector<double> covariance((old + added) * (old + added), 0.0);
   for (std::size_t i = 0; i < old && model.covariance.size() == old * old; ++i) {
     for (std::size_t j = 0; j < old; ++j) covariance[i * (old + added) + j] = model.covariance[i * old + j];
   }
-  for (std::size_t i = 0; i < added; ++i) {
-    for (std::size_t j = 0; j < added; ++j) {
+  if (bias) covariance.back() = diagnosis.bias->std_error * diagnosis.bias->std_error;
+  for (std::size_t i = 0; i < fitted; ++i) {
+    for (std::size_t j = 0; j < fitted; ++j) {
       covariance[(old + i) * (old + added) + old + j] = diagnosis.covariance[rows[i] * all + rows[j]];
     }
   }

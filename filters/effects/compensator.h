@@ -104,7 +104,7 @@ class Compensator {
     void times(double factor, const Shape& shape, const Reach& reach) noexcept {
       if (reach.outside() || !surely()) [[unlikely]]
         doubt(factor, shape, reach);
-      value *= factor;
+      value *= factor * reach.weight;
     }
     void doubt(double factor, const Shape& shape, const Reach& reach) noexcept;
   };

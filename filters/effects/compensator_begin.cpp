@@ -8,6 +8,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/effects/arc.h"
 #include "filters/effects/compensator.h"
+#include "filters/effects/meaning.h"
 
 namespace ifog {
 namespace {
@@ -19,6 +20,13 @@ ChannelRange range_of(const std::string& channel, const std::vector<ChannelRange
   ChannelRange found{channel, -kEverywhere, kEverywhere};
   for (const ChannelRange& range : known)
     if (range.channel == channel) found = range;
+  return found;
+}
+
+// Of a channel that comes beside the rates.
+ChannelRange range_of_channel(const std::string& channel, const std::vector<ChannelRange>& known) {
+  ChannelRange found = range_of(channel, known);
+  found.fades = motion_of(channel) != Motion::kNone;
   return found;
 }
 
@@ -56,14 +64,14 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
   }
   if (model.covariance.size() == parameters_ * parameters_) covariance_ = model.covariance;
   held_.resize(channels_.size());
-  for (const std::string& name : channels_) ranges_.push_back(range_of(name, model.ranges));
+  for (const std::string& name : channels_) ranges_.push_back(range_of_channel(name, model.ranges));
   // Where an angle is in its arc, each effect of it says; what is nothing but an angle has no range.
   for (const bool turns : {true, false})
     for (const Term& term : terms_)
       for (const Factor& factor : term.factors)
         if (factor.channel < channels_.size() && (factor.turn > 0.0) == turns)
           ranges_[factor.channel] =
-              turns ? range_of("", {}) : range_of(channels_[factor.channel], model.ranges);
+              turns ? range_of("", {}) : range_of_channel(channels_[factor.channel], model.ranges);
   for (const std::string& name : channels_) delayed_.emplace_back(range_of(name, model.ranges).early_s);
   arrange_terms();
 }

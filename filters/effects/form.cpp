@@ -7,7 +7,7 @@
 namespace ifog {
 namespace {
 
-constexpr std::array<std::pair<Form, std::string_view>, 26> kNames = {{
+constexpr std::array<std::pair<Form, std::string_view>, 27> kNames = {{
     {Form::kLinear, "linear"},
     {Form::kQuadratic, "quadratic"},
     {Form::kCubic, "cubic"},
@@ -28,6 +28,7 @@ constexpr std::array<std::pair<Form, std::string_view>, 26> kNames = {{
     {Form::kStep, "step"},
     {Form::kRateRamp, "rate_ramp"},
     {Form::kWarmUp, "warm_up"},
+    {Form::kBias, "bias"},
     {Form::kRebuiltRamp, "rebuilt_ramp"},
     {Form::kEarthRate, "earth_rate"},
     {Form::kGaussMarkov, "gauss_markov"},
@@ -61,7 +62,7 @@ bool has_memory(Form form) {
 
 bool describes_noise(Form form) { return form >= Form::kGaussMarkov; }
 
-bool is_of_time(Form form) { return form == Form::kWarmUp || form == Form::kRateRamp; }
+bool is_of_time(Form form) { return form == Form::kWarmUp || form == Form::kRateRamp || form == Form::kBias; }
 
 bool carries_over(Form form) {
   return (has_channel(form) && form != Form::kDeadZone) || is_of_time(form) || form == Form::kRebuiltRamp;

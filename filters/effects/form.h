@@ -19,6 +19,7 @@
 //   rate_ramp     t
 //   warm_up       exp(-t/tau)
 //   rebuilt_ramp  a closed loop's feedback ramp, its phase rebuilt from the angle turned; see ramp_tracker.h
+//   bias          1, known where a reference rate stood beside
 // earth_rate is the Earth's rate turning into a tilting gyro's axis; on one heading it is linear in
 // acceleration. gauss_markov, outliers, noise_change, quantisation say what the noise is; there is nothing to
 // subtract.
@@ -54,6 +55,7 @@ enum class Form {
   kStep,
   kRateRamp,
   kWarmUp,
+  kBias,
   kRebuiltRamp,
   kEarthRate,
   kGaussMarkov,

@@ -216,20 +216,38 @@ bool is_angle_by_unit(std::string_view channel) {
   return unit == "rad" || unit == "deg" || unit == "turns";
 }
 
-bool tells_motion(std::string_view channel) {
-  const auto any = [&](std::initializer_list<std::string_view> parts) {
-    return std::any_of(parts.begin(), parts.end(), [&](std::string_view part) { return has(channel, part); });
+Motion motion_of(std::string_view channel) {
+  const auto any = [&](std::initializer_list<std::string_view> words) {
+    const std::string whole = "_" + std::string(channel) + "_";
+    return std::any_of(words.begin(), words.end(),
+                       [&](std::string_view word) { return has(whole, "_" + std::string(word)); });
   };
   const auto in = [&](std::initializer_list<std::string_view> units) {
     return std::any_of(units.begin(), units.end(),
                        [&](std::string_view unit) { return channel.ends_with(unit); });
   };
-  if (any({"steer", "curvature", "odometer"}) || in({"_radps", "_degps", "_dps"})) return true;
+  const ChannelKind kind = kind_of(channel);
+  if (kind == ChannelKind::kReferenceRate || kind == ChannelKind::kTemperature ||
+      kind == ChannelKind::kPressure)
+    return Motion::kNone;
+  if (kind == ChannelKind::kOtherAxis) return Motion::kRate;
+  if (any({"seis", "geophone"}) && !in({"_m", "_mm", "_um", "_nm", "_mps2"})) return Motion::kVelocity;
+  if (kind == ChannelKind::kAcceleration || in({"_mg", "_ug"})) return Motion::kAcceleration;
+  if (kind != ChannelKind::kOther) return Motion::kNone;
+  if (in({"_radps", "_degps", "_dps"})) return Motion::kRate;
   // Machines beside a gyro at rest turn as well, and air and water go past.
   if (in({"_rpm"}))
-    return any({"motor", "wheel", "drive", "axle", "shaft", "servo", "gimbal", "mount", "winch"});
-  return in({"_mps", "_kmh", "_kmph", "_mph", "_knots", "_kn"}) && any({"speed", "veloc"}) &&
-         !any({"wind", "airspeed", "flow", "fan"});
+    return any({"motor", "wheel", "drive", "axle", "shaft", "servo", "gimbal", "mount", "winch"})
+               ? Motion::kRate
+               : Motion::kNone;
+  if (in({"_mps", "_kmh", "_kmph", "_mph", "_knots", "_kn", "_mmps", "_umps", "_nmps"}))
+    return any({"wind", "airspeed", "flow", "fan"}) ? Motion::kNone : Motion::kVelocity;
+  if (in({"_rad", "_deg", "_turns", "_mrad", "_urad", "_nrad", "_arcsec"}))
+    return any({"phase"}) ? Motion::kNone : Motion::kAngle;
+  if (in({"_m", "_mm", "_um", "_nm"}))
+    return any({"wave", "lambda", "level", "fibre", "fiber"}) ? Motion::kNone : Motion::kPosition;
+  if (any({"tilt", "inclin", "heading", "yaw", "pitch", "encoder", "steer"})) return Motion::kAngle;
+  return any({"curvature", "odometer", "wheel", "position"}) ? Motion::kPosition : Motion::kNone;
 }
 
 ChannelKind kind_of(std::string_view channel) {
@@ -277,6 +295,8 @@ std::string meaning_of(const Effect& effect) {
       return "the bias jumped once";
     case Form::kRateRamp:
       return "the bias drifts steadily with time";
+    case Form::kBias:
+      return "constant bias: what the rate reads beyond the reference";
     case Form::kWarmUp:
       return "warm-up: the bias settles exponentially after the start of the record, which is taken for "
              "power-up";

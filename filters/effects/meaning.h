@@ -28,8 +28,9 @@ enum class ChannelKind {
 // Degrees, radians or turns: what comes round.
 [[nodiscard]] bool is_angle_by_unit(std::string_view channel);
 
-// How the sensor is carried about: a speed, a shaft's revolutions, what is steered, how a track bends.
-[[nodiscard]] bool tells_motion(std::string_view channel);
+// What of the sensor's own motion a channel senses, by its unit and, where that leaves it open, its name.
+enum class Motion { kNone, kAngle, kRate, kPosition, kVelocity, kAcceleration };
+[[nodiscard]] Motion motion_of(std::string_view channel);
 
 // The channel's value at which effects are zero by convention, so that coefficients of different records
 // compare: 25 degC, 12 V, 0 otherwise and for differences of two.

@@ -4,6 +4,7 @@
 // Holding a well-known linear effect at the edge leaves the whole of what the channel does beyond it, so
 // polynomial forms go on: linear as they are, higher ones by their tangent (curve_reach.h), for as much again
 // as the range is wide. Beyond that, and for what is only known where it was looked up, the value is held.
+// What goes with the sensor's motion fades instead: what was fitted while it stood says nothing of a ride.
 #pragma once
 
 #include <algorithm>
@@ -18,6 +19,7 @@ struct Reach {
   double value = 0.0;   // as far as a polynomial form follows
   double beyond = 0.0;  // the channel less that
   double span = 0.0;    // width of the range
+  double weight = 1.0;  // of the correction: of what fades 0 from one span beyond the range on
 
   [[nodiscard]] bool outside() const noexcept { return value != edge || beyond != 0.0; }
   [[nodiscard]] double past_the_edge() const noexcept { return value - edge; }
@@ -32,6 +34,8 @@ struct Reach {
   const double more = std::isfinite(reach.span) ? reach.span : 0.0;
   reach.value = std::clamp(value, reach.edge - more, reach.edge + more);
   reach.beyond = value - reach.value;
+  if (range.fades && value != reach.edge)
+    reach.weight = more > 0.0 ? std::max(0.0, 1.0 - std::abs(value - reach.edge) / more) : 0.0;
   return reach;
 }
 

@@ -165,6 +165,8 @@ double Shape::step_over(double value, double scatter, double dt_s) noexcept {
     case Form::kWarmUp:
       elapsed_ = fresh ? settings_.elapsed_s : elapsed_ + dt_s;
       return std::exp(-elapsed_ / settings_.time_constant_s);
+    case Form::kBias:
+      return 1.0;
     case Form::kRateRamp:
       return elapsed_ = fresh ? 0.0 : elapsed_ + dt_s;
     case Form::kLookup: {

@@ -42,6 +42,7 @@ const std::vector<FormRules>& form_rules() {
       {"line", {{"cosine"}, {"sine"}, {"frequency_hz", false, Values::kNotNegative}}},
       {"step", {{"coefficient"}, {"time_s"}}},
       {"rate_ramp", {kCoefficient}},
+      {"bias", {kCoefficient}},
       {"warm_up", {kCoefficient, {"time_constant_s", true, Values::kPositive}}},
       {"rebuilt_ramp",
        {{"cycles_per_rad", true, Values::kNotZero},

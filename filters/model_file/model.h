@@ -54,6 +54,8 @@ struct ChannelRange {
   std::string channel;  // or the difference of two, as in an effect
   double low = 0.0, high = 0.0;
   double early_s = 0.0;  // what it says acts so much later: logged early, or on a way of its own
+  bool fades =
+      false;  // of a channel that senses motion, whose correction ends beyond the range; not in files
 };
 
 inline constexpr double kMostEarly_s = 60.0;

@@ -16,7 +16,12 @@ inline std::string toml_number(double value) {
   if (value != value) return "nan";
   std::array<char, 40> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
-  return {text.data(), end};
+  std::string number(text.data(), end);
+  // Without a point it would be an integer, and TOML has those of 64 bits only.
+  constexpr double kExact = 9007199254740992.0;  // 2^53, up to which an integer is as good
+  if (value > kExact || value < -kExact)
+    if (number.find_first_of(".ei") == std::string::npos) number += ".0";
+  return number;
 }
 
 inline std::string toml_quoted(std::string_view value) {

@@ -23,7 +23,7 @@ bool can_be_of_a_type(const Effect& effect) {
   if (!form || effect.shown_only || describes_noise(*form) || !carries_over(*form)) return false;
   // What ages does so at a slope of its own, and where a transition is belongs to one coil.
   return *form != Form::kLookup && *form != Form::kRebuiltRamp && *form != Form::kEarthRate &&
-         *form != Form::kRateRamp && *form != Form::kTransition;
+         *form != Form::kRateRamp && *form != Form::kTransition && *form != Form::kBias;
 }
 
 using Family = std::tuple<std::string, std::string, std::string>;  // axis, channels in order

@@ -3,8 +3,8 @@
 the right channel?
 
 A claim is *founded* when each channel it uses carries the hidden effect (both thermometers of one path do), or, for a
-form without a channel, when that form was hidden. `line`, `outliers`, `noise_change`, `gauss_markov` and
-`quantisation` describe and correct nothing: a line is founded where a line, a sway or a ramp that was not logged is
+form without a channel, when that form was hidden. `bias` beside a reference is about the mean, which nothing here counts; `line`,
+`outliers`, `noise_change`, `gauss_markov` and `quantisation` describe and correct nothing: a line is founded where a line, a sway or a ramp that was not logged is
 within 3 %; the others are not judged.
 
 Verdict of a sensor, on RMS of 10 s means about their mean in the second capture (single samples for a feedback ramp):
@@ -28,7 +28,7 @@ import numpy as np
 
 import signals
 
-DESCRIBE = {"line", "outliers", "noise_change", "gauss_markov", "quantisation"}
+DESCRIBE = {"bias", "line", "outliers", "noise_change", "gauss_markov", "quantisation"}
 WHITE_KINDS = ("nothing", "white")
 
 

@@ -34,7 +34,7 @@ ALLOWED = {
 # Rooms that stand in an order: each may include those before it in its list, never one behind it. Last, what lies in
 # the folder itself, under its own name.
 ORDERED = {
-    "filters/diagnosis": ["record", "regression", "checks", "search", "residual", "report", "."],
+    "filters/diagnosis": ["record", "channels", "ramp", "cleaning", "regression", "checks", "search", "residual", "report", "."],
 }
 
 # Headers that every room of their folder may include, the data they share or the list that they are entered in: they

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "filters/diagnosis/record/even_error.h"
+#include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/regression/design.h"
 
 namespace ifog {

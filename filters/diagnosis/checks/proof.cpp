@@ -6,44 +6,16 @@
 #include <cmath>
 #include <numeric>
 
-#include "filters/diagnosis/checks/hausman_test.h"
 #include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {
 
-constexpr double kWorse = 1.25;    // chance makes slow noise and an effect run together or against each other
-constexpr double kGradual = 4.0;   // twice the log-likelihood
-constexpr double kDisagree = 3.0;  // standard deviations
+constexpr double kGradual = 4.0;  // twice the log-likelihood
 // Of a step's size, what the means before and after have to differ by, all of them and the halves farther
 // from it.
 constexpr double kLasting = 0.4;
 constexpr double kLastingFar = 0.25;
-
-// Sum of squares of the block means less the effects, about each record's mean.
-double left_over(const BlockData& data, const Claimed& claimed) {
-  const Columns columns = design(data, claimed.model);
-  const Eigen::Index p = columns.cols() - 1 - constants(data.grid).cols();
-  const Eigen::VectorXd c = solve(data.grid, claimed.noise.shape, columns);
-  Eigen::VectorXd left = columns.col(0);
-  if (p > 0) left -= columns.rightCols(p) * c.tail(p);
-  double sum = 0.0;
-  for (const BlockRange& record : data.grid.records) {
-    double mean = 0.0;
-    double square = 0.0;
-    double n = 0.0;
-    for (std::size_t b = record.first; b < record.end; ++b) {
-      if (!data.grid.valid[b]) continue;
-      const double value = left[static_cast<Eigen::Index>(b)];
-      n += 1.0;
-      const double step = value - mean;
-      mean += step / n;
-      square += step * (value - mean);
-    }
-    sum += square;
-  }
-  return sum;
-}
 
 // Whether a change spread over some time around the step explains more than the step itself.
 bool gradual(const BlockData& data, const Claimed& claimed) {
@@ -128,15 +100,6 @@ bool step_persists(const BlockData& data, const Claimed& claimed) {
     return (mean[1] - mean[0]) / c[last - 1];
   };
   return change(false) > kLasting && change(true) > kLastingFar;
-}
-
-bool agrees_with_plain_fit(const BlockData& data, const Claimed& claimed, const Claimed& without) {
-  if (left_over(data, claimed) <= kWorse * left_over(data, without)) return true;
-  const Columns columns = design(data, claimed.model);
-  Eigen::MatrixXd covariance;
-  const Eigen::VectorXd c = solve(data.grid, claimed.noise.shape, columns, &covariance);
-  return disagreement(data.grid, claimed.noise, columns, constants(data.grid).cols(), c, covariance) <
-         kDisagree;
 }
 
 }  // namespace ifog

@@ -22,9 +22,4 @@ bool predicts_held_out(const BlockData& data, const Claimed& claimed);
 // change spread over a part of the record must not explain more.
 bool step_persists(const BlockData& data, const Claimed& claimed);
 
-// A correction must not make the error larger than slow noise makes it by chance: where it does grow against
-// the model without the last effect, the coefficient that plain least squares finds has to agree with the one
-// found in innovations.
-bool agrees_with_plain_fit(const BlockData& data, const Claimed& claimed, const Claimed& without);
-
 }  // namespace ifog

@@ -26,6 +26,9 @@ constexpr std::size_t kMostFine = 16;
 // A block counts when this share of its samples is there.
 constexpr double kLeastShare = 0.5;
 constexpr std::size_t kLeastBlocks = 32;
+// Points of a rate table: a calibration by IEEE Std 952 has 11 or more.
+constexpr std::size_t kLeastDwells = 11;
+constexpr double kSlowest_s = 1.0;  // between samples of a time series beside a reference; dwells are slower
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -153,6 +156,48 @@ void describe(FineChannel& channel) {
   channel.varies = channel.high - channel.low > 1e-9 * scale;
 }
 
+// The error's slope over the reference, from changes between neighbouring means of m samples.
+struct MeansSlope {
+  double value = 0.0, error = 0.0, pairs = 0.0;
+};
+
+MeansSlope slope_of_means(const std::vector<Record>& records, std::size_t m) {
+  double xx = 0.0, xy = 0.0, yy = 0.0, n = 0.0;
+  for (const Record& record : records) {
+    double x_before = std::nan(""), y_before = std::nan("");
+    for (std::size_t i = 0; i + m <= record.time_s.size(); i += m) {
+      double x = 0.0, y = 0.0;
+      for (std::size_t k = i; k < i + m; ++k) {
+        x += record.reference_radps[k];
+        y += record.rate_radps[k] - record.reference_radps[k];
+      }
+      const double dx = (x - std::exchange(x_before, x)) / static_cast<double>(m);
+      const double dy = (y - std::exchange(y_before, y)) / static_cast<double>(m);
+      if (std::isfinite(dx) && std::isfinite(dy)) xx += dx * dx, xy += dx * dy, yy += dy * dy, n += 1.0;
+    }
+  }
+  if (!(xx > 0.0)) return {};
+  const double value = xy / xx;
+  return {value, std::sqrt(std::max(0.0, yy - value * xy) / n / xx), n};
+}
+
+// Samples that a mean needs beside a reference with noise of its own (interpolated, or read from angles).
+// That noise draws the slope of short means away from the scale factor (errors in variables) and averages out
+// in longer ones: they are long enough when means of twice the length have the same slope.
+std::size_t long_enough(const std::vector<Record>& records) {
+  constexpr std::size_t kLongest = 128;
+  constexpr double kFewest = 60.0;  // changes, that tell a slope to an eighth of its scatter
+  constexpr double kSame = 0.01;    // of the rate: nonlinearity and rounding change slopes by as much
+  constexpr double kWithin = 4.0;   // standard errors
+  for (std::size_t m = 1; m < kLongest; m *= 2) {
+    const MeansSlope one = slope_of_means(records, m), twice = slope_of_means(records, 2 * m);
+    const double apart = std::abs(one.value - twice.value);
+    if (twice.pairs < kFewest || apart <= std::max(kSame, kWithin * std::hypot(one.error, twice.error)))
+      return m;
+  }
+  return kLongest;
+}
+
 // Lengths of blocks and of the fine grid's steps, so that there are at most so many blocks.
 BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_blocks) {
   BlockGrid grid;
@@ -161,7 +206,14 @@ BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_
   double span = 0.0;
   for (const Record& record : records) span += record.time_s.back() - record.time_s.front() + grid.sample_s;
   const double samples = span / grid.sample_s;
-  const auto a_block = static_cast<std::size_t>(std::ceil(samples / static_cast<double>(most_blocks)));
+  auto a_block = static_cast<std::size_t>(std::ceil(samples / static_cast<double>(most_blocks)));
+  const bool all_referenced = std::all_of(
+      records.begin(), records.end(), [](const Record& record) { return !record.reference_radps.empty(); });
+  if (all_referenced && grid.sample_s <= kSlowest_s) {
+    const std::size_t least = long_enough(records);
+    grid.noisy_reference = least > 1;
+    a_block = std::max(a_block, least);
+  }
   const std::size_t a_step = (a_block + kMostFine - 1) / kMostFine;
   grid.fine = (a_block + a_step - 1) / a_step;
   grid.fine_s = static_cast<double>(a_step) * grid.sample_s;
@@ -285,8 +337,6 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   starts.reserve(records.size());
   for (const Record& record : records) starts.push_back(add_blocks_of(record, data.grid, error));
   data.grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
-  if (data.grid.used() < kLeastBlocks) throw std::invalid_argument(too_few(records, data.grid));
-
   for (std::size_t r = 0; r < records.size(); ++r)
     means_of(records[r], *starts[r], data.grid).prepare(records[r].channels);
   for (const RecordChannel& channel : records.front().channels) {
@@ -305,8 +355,10 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
     data.channels.push_back(fine_channel(records, data.grid, starts, records.front().reference_name,
                                          [](const Record& record) { return record.reference_radps; }));
     // Averages of seconds at rates that were set: whatever drifts between them is not sampled as drift.
-    data.grid.dwells = data.grid.sample_s > 1.0 && data.channels.back().varies;
+    data.grid.dwells = data.grid.sample_s > kSlowest_s && data.channels.back().varies;
   }
+  if (data.grid.used() < (data.grid.dwells ? kLeastDwells : kLeastBlocks))
+    throw std::invalid_argument(too_few(records, data.grid));
   return data;
 }
 

@@ -37,6 +37,7 @@ struct BlockGrid {
   double sample_s = 0.0;             // median period of the samples
   bool dwells = false;               // points of a rate table, no time series: their noise is white
   double white_variance = 0.0;       // of one sample, from differences of neighbours
+  bool noisy_reference = false;      // blocks had to be lengthened for it: its powers are mostly its noise
 
   [[nodiscard]] std::size_t size() const { return valid.size(); }
   [[nodiscard]] std::size_t used() const;     // valid blocks
@@ -68,12 +69,13 @@ struct FineChannel {
   bool varies = false;
   bool still = false;       // no more than reading noise: its averages are those of white noise
   bool smooth = false;      // moves smoothly, so that it has no power of its own above its slope
-  bool rotates = false;     // follows the sensor's own rotation; a linear use of it would cancel rotation
+  bool moves = false;       // senses motion, and no reference rate tells rotation from error; see motion.h
+  bool held = false;        // of such an acceleration: it stays for half a minute at a time
   bool two_valued = false;  // a switch: its powers are itself
   bool of_axis = false;     // the rate of another axis of the sensor
   double period = 0.0;      // of an angle without its wraps: only what repeats with it is a function of it
   // A quantity of the surroundings, that any form may be made of.
-  [[nodiscard]] bool environment() const { return !rotates && !of_axis && period == 0.0; }
+  [[nodiscard]] bool environment() const { return (!moves || held) && !of_axis && period == 0.0; }
 };
 
 struct BlockData {

@@ -122,17 +122,19 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
     const double time_s = data.grid.origin_of(candidate.record).told(candidate.time_s);
     effect.parameters.push_back({"time_s", time_s, 0.0, "s"});
   }
-  if (candidate.first_reading != FirstReading::kError && candidate.form == Form::kLinear)
-    effect.form = name_of(Form::kEarthRate);
-  effect.shown_only = candidate.first_reading == FirstReading::kEarthRateShown;
-  effect.meaning =
-      candidate.first_reading == FirstReading::kError ? meaning_of(effect) : meaning_of_earth_rate(effect);
+  if (candidate.is_earth_rate() && candidate.form == Form::kLinear) effect.form = name_of(Form::kEarthRate);
+  effect.shown_only = candidate.shown();
+  effect.meaning = candidate.is_earth_rate() ? meaning_of_earth_rate(effect) : meaning_of(effect);
+  if (candidate.first_reading == FirstReading::kProxyShown)
+    effect.meaning = "a proxy: larger than any gyro's " + std::string(name_of(candidate.form)) +
+                     " effect of " + effect.channel + ", which drifts with the cause";
   return effect;
 }
 
 std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effect) {
   const std::optional<Form> form = form_named(effect.form);
-  if (!form || *form == Form::kLookup || *form == Form::kRebuiltRamp || describes_noise(*form))
+  if (!form || *form == Form::kLookup || *form == Form::kRebuiltRamp || *form == Form::kBias ||
+      describes_noise(*form))
     return std::nullopt;
   Candidate candidate;
   candidate.form = *form == Form::kEarthRate ? Form::kLinear : *form;

@@ -6,7 +6,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "filters/diagnosis/record/derived_channels.h"
+#include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {
@@ -116,6 +116,16 @@ void add_switch(const BlockData& data, std::size_t channel, std::vector<Candidat
     found.push_back(candidate_of(Form::kLagged, channel, tau));
 }
 
+// Of a smooth channel, what is above the low-pass is its slope.
+void add_vibration(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
+  const FineChannel& source = data.channels[channel];
+  if (source.smooth || source.period > 0.0 || motion_of(source.name) == Motion::kAngle) return;
+  for (const double tau : time_constants(data.grid, Form::kBandPower))
+    found.push_back(candidate_of(Form::kBandPower, channel, tau));
+  if (source.power.empty())
+    found.push_back(candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s));
+}
+
 void add_channel(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   const auto add = [&](Form form, double tau) { found.push_back(candidate_of(form, channel, tau)); };
   const FineChannel& source = data.channels[channel];
@@ -132,15 +142,11 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
     const bool moved = data.reference < 0 || data.channels[static_cast<std::size_t>(data.reference)].varies;
     const bool is_rotation = moved && kind_of(source.name) == ChannelKind::kAcceleration;
     for (const Form form : {Form::kRate, Form::kSecondRate, Form::kLagged}) {
-      if (is_rotation && form != Form::kLagged) continue;
+      if (is_rotation && (form != Form::kLagged || source.moves)) continue;
       for (const double tau : time_constants(data.grid, form)) add(form, tau);
     }
   }
-  // Of a smooth one, what is above the low-pass is its slope.
-  if (!source.smooth) {
-    for (const double tau : time_constants(data.grid, Form::kBandPower)) add(Form::kBandPower, tau);
-    if (source.power.empty()) add(Form::kBandPower, kHighest * data.grid.fine_s);
-  }
+  add_vibration(data, channel, found);
 }
 
 // The coil makes the scale factor, and a thermometer beside it is ahead of it. product: of the reference.
@@ -161,6 +167,7 @@ void add_reference(const BlockData& data, std::vector<Candidate>& found) {
   candidate.channel = reference;
   for (const Form form :
        {Form::kLinear, Form::kQuadratic, Form::kCubic, Form::kQuintic, Form::kSeptic, Form::kAbsolute}) {
+    if (data.grid.noisy_reference && form != Form::kLinear) continue;
     candidate.form = form;
     found.push_back(candidate);
   }
@@ -169,6 +176,7 @@ void add_reference(const BlockData& data, std::vector<Candidate>& found) {
     const FineChannel& source = data.channels[channel];
     if (channel == reference || !source.varies || !source.environment() || source.still) continue;
     if (is_difference(source)) continue;
+    if (data.grid.noisy_reference && kind_of(source.name) != ChannelKind::kTemperature) continue;
     // The channel's own scale factor sensitivity, its nonlinearity's, and its square's.
     candidate.channel = channel;
     candidate.with_channel = reference;
@@ -259,8 +267,9 @@ std::vector<Candidate> library(const BlockData& data) {
   for (std::size_t channel = 0; channel < data.channels.size(); ++channel) {
     if (static_cast<std::ptrdiff_t>(channel) == data.reference || !data.channels[channel].varies) continue;
     const FineChannel& source = data.channels[channel];
-    if (source.rotates) continue;
-    if (source.of_axis)
+    if (source.moves && !source.held)
+      add_vibration(data, channel, found);
+    else if (source.of_axis)
       add_other_axis(data, channel, found);
     else if (source.period > 0.0)
       add_angle(data, channel, found);
@@ -292,7 +301,7 @@ namespace {
 // one band beside another: a resonance of the coil answers one machine and not the next.
 void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPair>& pairs) {
   const FineChannel& source = data.channels[channel];
-  if (source.smooth || !source.power.empty()) return;
+  if (source.smooth || !source.power.empty() || motion_of(source.name) == Motion::kAngle) return;
   for (const double tau : time_constants(data.grid, Form::kBandPower))
     pairs.push_back({candidate_of(Form::kBandPower, channel, tau),
                      candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
@@ -322,8 +331,9 @@ std::vector<NaturalPair> natural_pairs(const BlockData& data) {
       add_angle(data, channel, turns);
       for (std::size_t i = 0; i + 1 < turns.size(); i += 2) pairs.push_back({turns[i], turns[i + 1]});
     }
+    if (source.moves && source.varies) add_band(data, channel, pairs);
     if (!may_be_factor(data, channel) || source.two_valued) continue;
-    add_band(data, channel, pairs);
+    if (!source.moves) add_band(data, channel, pairs);
     pairs.push_back({candidate_of(Form::kLinear, channel), candidate_of(Form::kQuadratic, channel)});
   }
   for (const auto& [gate, other] : switched(data))

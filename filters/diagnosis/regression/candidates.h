@@ -10,9 +10,10 @@
 
 namespace ifog {
 
-// What an effect is by its first reading: an error, or the Earth's rate turning into an axis that tilts. That
-// is rotation: it is shown, and subtracted only when asked for.
-enum class FirstReading { kError, kEarthRateShown, kEarthRateSubtracted };
+// What an effect is by its first reading: an error; the Earth's rate turning into an axis that tilts, which
+// is rotation; or a channel that stands for another one, by a coefficient that no gyro has. Rotation and
+// proxies are shown, and subtracted only when asked for.
+enum class FirstReading { kError, kEarthRateShown, kEarthRateSubtracted, kProxyShown };
 
 struct Candidate {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
@@ -28,7 +29,6 @@ struct Candidate {
   double period = 0.0;                  // cosine, sine
   double centre = 0.0;                  // transition: the channel's value in its middle
   double half_width = 0.0;  // transition; dead_zone, which no search tries, see residual/dead_zone.h
-  double expected = 0.0;    // size of its coefficient, standard deviation about zero; 0: any
   double of_channel = 0.0;  // what its channel adds to the complexity: one that no logger wrote
   FirstReading first_reading = FirstReading::kError;
 
@@ -37,8 +37,13 @@ struct Candidate {
   [[nodiscard]] bool is_transition() const { return form == Form::kTransition; }
   [[nodiscard]] bool uses(std::size_t of) const { return channel == of || with_channel == of; }
   // Whether the model will take it away, in this record and the next.
-  [[nodiscard]] bool corrected() const {
-    return carries_over(form) && first_reading != FirstReading::kEarthRateShown;
+  [[nodiscard]] bool corrected() const { return carries_over(form) && !shown(); }
+  [[nodiscard]] bool shown() const {
+    return first_reading == FirstReading::kEarthRateShown || first_reading == FirstReading::kProxyShown;
+  }
+  [[nodiscard]] bool is_earth_rate() const {
+    return first_reading == FirstReading::kEarthRateShown ||
+           first_reading == FirstReading::kEarthRateSubtracted;
   }
   [[nodiscard]] bool same_shape(
       const Candidate& other) const;  // but for time constants and where a transition is

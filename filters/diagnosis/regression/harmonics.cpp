@@ -156,12 +156,12 @@ NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& 
 NoiseFit with_less(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, std::size_t harmonic) {
   NoiseShape shape = fit.shape;
   shape.harmonics.erase(shape.harmonics.begin() + static_cast<std::ptrdiff_t>(harmonic));
-  const NoiseFit without = climb(grid, columns, shape, kFine, true);
+  const NoiseFit without = climb(grid, columns, shape, kRough, true);
   if (is_better(grid, without, fit)) return without;
   if (fit.shape.harmonics[harmonic].is_angle()) return fit;
   shape = fit.shape;
   shape.harmonics[harmonic].return_instead(1.0);
-  const NoiseFit angle = climb(grid, columns, shape, kFine, true);
+  const NoiseFit angle = climb(grid, columns, shape, kRough, true);
   return is_better(grid, angle, fit) ? angle : fit;
 }
 
@@ -196,13 +196,13 @@ NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const Noi
     best = more;
   }
   if (best.shape.harmonics.empty()) return fit;
-  best = climb(grid, columns, best.shape, kFine, true);
   for (std::size_t i = 0; i < best.shape.harmonics.size();) {
     const std::size_t before = best.shape.harmonics.size();
     best = with_less(grid, columns, best, i);
     if (best.shape.harmonics.size() == before) ++i;
   }
-  return best;
+  best = climb(grid, columns, best.shape, kFine, true);
+  return best.shape.harmonics.empty() && !is_better(grid, best, fit) ? fit : best;
 }
 
 }  // namespace ifog

@@ -98,17 +98,8 @@ NoiseFit with_markov(const BlockGrid& grid, const Columns& columns, const NoiseF
 
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
   if (grid.dwells) return fit_noise(grid, columns, {});
-  const NoiseFit plain = fit_walk_and_flicker(grid, columns);
-  const NoiseFit markov = with_markov(grid, columns, plain);
-  NoiseFit last = with_harmonics(grid, columns, markov);
-  if (markov.shape.markov == 0.0) {
-    return last.shape.harmonics.empty() ? last : with_markov(grid, columns, last);
-  }
-  // What a process of its own was taken for may have been a resonance.
-  const NoiseFit first = with_harmonics(grid, columns, plain);
-  if (first.shape.harmonics.empty()) return last;
-  const NoiseFit both = with_markov(grid, columns, first);
-  return information_criterion(grid, both) < information_criterion(grid, last) ? both : last;
+  // Resonances first: what a process of its own is taken for may be one.
+  return with_markov(grid, columns, with_harmonics(grid, columns, fit_walk_and_flicker(grid, columns)));
 }
 
 }  // namespace ifog

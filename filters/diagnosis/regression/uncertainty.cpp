@@ -209,14 +209,6 @@ void fit_over_noise(const BlockGrid& grid, const Columns& columns, const Eigen::
           fit);
 }
 
-// What is known of the columns after the measurement before the record is looked at.
-Eigen::VectorXd known_before(const BlockGrid& grid, const std::vector<Candidate>& effects, Eigen::Index p) {
-  Eigen::VectorXd known = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::infinity());
-  for (std::size_t i = 0; i < effects.size(); ++i)
-    if (effects[i].expected > 0.0) known[column_of(grid, effects, i) - 1] = effects[i].expected;
-  return known;
-}
-
 }  // namespace
 
 JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
@@ -228,7 +220,7 @@ JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
   Columns columns(base.rows(), base.cols() + more.cols());
   columns << base, more;
   const Eigen::Index p = columns.cols() - 1;
-  Eigen::VectorXd known = known_before(grid, effects, p);
+  Eigen::VectorXd known = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::infinity());
   for (std::size_t j = 0; j < fit.searched.size(); ++j) {
     if (effects[fit.searched[j]].form != Form::kLine) {
       known[p - static_cast<Eigen::Index>(fit.searched.size() - j)] = kLogRange;
@@ -241,7 +233,9 @@ JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
 JointFit joint_fit_at(const BlockData& data, const std::vector<Candidate>& effects, const NoiseFit& best) {
   const Columns columns = design(data, effects);
   JointFit fit;
-  fit_over_noise(data.grid, columns, known_before(data.grid, effects, columns.cols() - 1), best, fit);
+  const Eigen::VectorXd unknown =
+      Eigen::VectorXd::Constant(columns.cols() - 1, std::numeric_limits<double>::infinity());
+  fit_over_noise(data.grid, columns, unknown, best, fit);
   return fit;
 }
 

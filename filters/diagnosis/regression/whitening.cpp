@@ -5,8 +5,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "filters/linear/symmetric.h"
-
 namespace ifog {
 namespace {
 
@@ -98,43 +96,6 @@ void Whitening::design_gain() {
   innovation_variance_ = states.seen.dot(ph) + 1.0;
   const Eigen::VectorXd gain = states.step * ph / innovation_variance_;
   gain_.assign(gain.begin(), gain.end());
-}
-
-Columns Whitening::doubt_at_start() const {
-  const auto n = static_cast<Eigen::Index>(grid_.size());
-  const bool walks = !factor_.empty() && factor_.front() == 1.0;
-  const Eigen::Index first = walks ? 1 : 0;
-  const auto m = static_cast<Eigen::Index>(drive_.size());
-  if (m <= first) return Columns(n, 0);
-  const StateSpace states = state_space();
-  // Of what has gone on for ever: P = F P F' + D, by doubling.
-  const Eigen::Index k = m - first;
-  Eigen::MatrixXd power = states.step.bottomRightCorner(k, k);
-  Eigen::MatrixXd stationary = states.drive.tail(k).asDiagonal();
-  for (int round = 0; round < 40; ++round) {
-    stationary += (power * stationary * power.transpose()).eval();
-    power = (power * power).eval();
-  }
-  const Eigen::MatrixXd steady = steady_covariance(states.step, states.drive, states.seen);
-  const SymmetricEigen unknown = symmetric_eigen(stationary - steady.bottomRightCorner(k, k));
-  const Eigen::VectorXd size = unknown.values.cwiseMax(0.0).cwiseSqrt();
-  const Eigen::MatrixXd starts = unknown.vectors * size.asDiagonal();
-  const Eigen::Map<const Eigen::VectorXd> gain(gain_.data(), m);
-  Columns doubt = Columns::Zero(n, k * grid_.constants());
-  Eigen::Index column = 0;
-  for (const BlockRange& record : grid_.records) {
-    Eigen::MatrixXd state = Eigen::MatrixXd::Zero(m, k);
-    state.bottomRows(k) = starts;
-    for (std::size_t b = record.first; b < record.end; ++b) {
-      const Eigen::RowVectorXd seen = states.seen.transpose() * state;
-      state = (states.step * state).eval();
-      if (!grid_.valid[b]) continue;
-      state -= gain * seen;
-      doubt.row(static_cast<Eigen::Index>(b)).segment(column, k) = seen;
-    }
-    column += k;
-  }
-  return doubt;
 }
 
 // A fixed number of columns at once, so that their states stay in registers.

@@ -76,12 +76,6 @@ class Whitening {
   [[nodiscard]] double innovation_variance() const { return innovation_variance_; }
   [[nodiscard]] std::size_t states() const { return gain_.size(); }
 
-  // A steady filter begins a record as if it had known the one before it: flicker and harmonics have a state
-  // then that it does not know, and its first innovations are as large as that. Columns of that doubt, one a
-  // state of each record, each with unit prior variance in units of the white variance: what was whitened may
-  // be any sum of them. The walk's level is not among them; it is a constant's.
-  [[nodiscard]] Columns doubt_at_start() const;
-
  private:
   template <int Width>
   void apply_some(Columns& columns, Eigen::Index first) const;

@@ -9,6 +9,7 @@
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/report/separate.h"
+#include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fit_to_readings.h"
 #include "filters/effects/curve_reach.h"
 #include "filters/effects/meaning.h"
@@ -173,6 +174,13 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
           parameter.std_error = sigma * (chosen.candidate.form == Form::kLine ? 1.0 : parameter.value);
       }
     }
+    // By the same fit that gives the error bars, when that is less certain than the likelihood's loss.
+    const ModelParameter& size = effect.effect.parameters.front();
+    if (chosen.candidate.width() == 1 && size.std_error > 0.0) {
+      const double z = size.value / size.std_error;
+      const double tries = chosen.of_a_law ? 1.0 : found.tries;
+      effect.p_value = std::max(effect.p_value, std::min(1.0, kProfiled * tail(z * z, 1) * tries));
+    }
     const double share = total > 0.0 ? variance_of(used_values(grid, part)) / total : 0.0;
     effect.variance_explained = std::min(1.0, share);
     findings.parts.push_back(std::move(part));
@@ -222,7 +230,7 @@ void add_alternatives(const BlockData& data, const BlockData& reconstructed, con
         capture_that_separates(data, found.chosen[alternative.of].candidate, alternative.candidate);
     findings.pairs.push_back(std::move(pair));
     // What stands in for rotation says nothing of the error.
-    const bool shown = found.fitted[alternative.of].first_reading == FirstReading::kEarthRateShown;
+    const bool shown = found.fitted[alternative.of].shown();
     if (alternative.loss < kNoRival && !shown) findings.others.push_back(std::move(other));
   }
 }
@@ -323,31 +331,7 @@ bool known_all_round(const FineChannel& angle, int harmonics_told, const std::ve
   return halves == 0 && doubt < most * most * size;
 }
 
-namespace {
-
-// The daemon has an early channel's readings before they act, those of a difference as well.
-void wait_for(const ChannelDelay& delay, const BlockData& data, const std::vector<FoundEffect>& effects,
-              std::vector<ChannelRange>& ranges) {
-  const auto made_of = [&](const std::string& channel) {
-    const ChannelNames names = names_in(channel);
-    return names.of == delay.channel || names.less == delay.channel;
-  };
-  const auto uses = [&](const FoundEffect& found) {
-    return made_of(found.effect.channel) || made_of(found.effect.with_channel);
-  };
-  const auto channel = std::find_if(data.channels.begin(), data.channels.end(),
-                                    [&](const FineChannel& each) { return each.name == delay.channel; });
-  if (channel == data.channels.end() || std::none_of(effects.begin(), effects.end(), uses)) return;
-  auto range = std::find_if(ranges.begin(), ranges.end(),
-                            [&](const ChannelRange& each) { return each.channel == delay.channel; });
-  if (range == ranges.end()) range = ranges.insert(range, {channel->name, channel->low, channel->high});
-  range->early_s = std::min(range->early_s - delay.delay_s, kMostEarly_s);
-}
-
-}  // namespace
-
-std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects,
-                                    const std::vector<ChannelDelay>& delays) {
+std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects) {
   std::vector<ChannelRange> ranges;
   const bool ramp = std::any_of(effects.begin(), effects.end(), [](const FoundEffect& found) {
     return found.effect.form == name_of(Form::kRateRamp);
@@ -366,8 +350,6 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
     if (std::any_of(effects.begin(), effects.end(), uses))
       ranges.push_back({channel.name, channel.low, channel.high});
   }
-  for (const ChannelDelay& delay : delays)
-    if (delay.delay_s < 0.0) wait_for(delay, data, effects, ranges);
   return ranges;
 }
 

@@ -36,8 +36,7 @@ Findings findings_of(const BlockData& data, const BlockData& reconstructed, cons
 std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const JointFit& joint,
                                   Eigen::Index nuisances, std::size_t jointly);
 
-std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects,
-                                    const std::vector<ChannelDelay>& delays = {});
+std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects);
 
 // The joint fit of what the search chose, put into `found` and brought to the readings the daemon will have.
 // By how far that moves a coefficient or a time constant from the effect's own counts as an error of it.

@@ -14,6 +14,8 @@ namespace {
 
 constexpr double kGrown = 1.02;
 constexpr double kMany = 100.0;  // an RMS of so many is known to 7 %
+// Of fewer, the standard errors of an RMS that chance may add.
+constexpr double kByChance = 1.5;
 
 struct Figure {
   const char* key;
@@ -54,10 +56,11 @@ double samples_of(const std::vector<EvenError>& errors) {
 }
 
 bool grows_over_many(const Diagnosis& diagnosis, const std::vector<EvenError>& errors) {
-  for (const Figure& figure : kFigures)
-    if (growth_of(diagnosis, figure.key) > kGrown && count_of(figure, diagnosis, samples_of(errors)) >= kMany)
-      return true;
-  return false;
+  return std::any_of(kFigures.begin(), kFigures.end(), [&](const Figure& figure) {
+    const double count = count_of(figure, diagnosis, samples_of(errors));
+    const double most = count >= kMany ? kGrown : 1.0 + kByChance / std::sqrt(2.0 * std::max(count, 1.0));
+    return growth_of(diagnosis, figure.key) > most;
+  });
 }
 
 std::string grown_in_words(const Diagnosis& diagnosis, double samples) {

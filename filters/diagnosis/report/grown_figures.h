@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/diagnosis.h"
-#include "filters/diagnosis/record/even_error.h"
 
 namespace ifog {
 
-// Whether the RMS of single samples, or of means of which there are a hundred or more, has grown by more than
-// a fiftieth. diagnosis: before and after are filled.
+// Whether the RMS of single samples or of means has grown by more than a fiftieth where there are a hundred
+// or more, and of fewer by more than chance makes of so many. diagnosis: before and after are filled.
 bool grows_over_many(const Diagnosis& diagnosis, const std::vector<EvenError>& errors);
 
 // One sentence of the figures that have grown; empty when there are none. samples: that they are of.

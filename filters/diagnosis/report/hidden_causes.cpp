@@ -27,20 +27,6 @@ std::string named(const Effect& effect) {
 
 }  // namespace
 
-std::string change_in_words(const Effect& effect, const ByCapture& by, const std::vector<Record>& records) {
-  const std::string unit = coefficient_unit(effect);
-  const bool earth = effect.form == name_of(Form::kEarthRate);
-  std::string words = named(effect) + (by.changes_sign() ? " changes its sign between the captures:"
-                                                         : " changes its size between the captures:");
-  for (std::size_t i = 0; i < by.records.size(); ++i)
-    words += text("%s %.4g ± %.2g %s in ", i ? "," : "", by.value[i], by.std_error[i], unit.c_str()) +
-             records[by.records[i]].name;
-  if (earth) return words + ": as the Earth's rate does from heading to heading, and g-sensitivity does not";
-  return words + (by.changes_sign()
-                      ? ": that is no effect of this channel but of something that ran beside it, left out"
-                      : ": part of it is of another form, or of something that was not logged");
-}
-
 std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,
                             const std::vector<Record>& records) {
   std::string words;

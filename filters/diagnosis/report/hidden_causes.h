@@ -5,15 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "filters/diagnosis/checks/between_captures.h"
 #include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/record.h"
 
 namespace ifog {
-
-// An effect whose coefficient is another one in another capture, with each capture's own.
-std::string change_in_words(const Effect& effect, const ByCapture& by, const std::vector<Record>& records);
 
 // Effects of one channel that a capture denies.
 std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,

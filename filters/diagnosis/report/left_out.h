@@ -19,6 +19,4 @@ std::string harmful_in_words(const Effect& effect);
 // Resonances and lines that move, of the noise; empty without any.
 std::string judged_beside(std::size_t harmonics);
 
-std::string delay_in_words(const ChannelDelay& delay);
-
 }  // namespace ifog

@@ -235,7 +235,10 @@ HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::ve
       *std::max_element(records.begin(), records.end(),
                         [&](const Record& a, const Record& b) { return span_of(a) < span_of(b); });
   const double aligned = std::min(300.0, span_of(longest) / 10.0);
-  const std::vector<double> after_s = {60.0, 300.0, 600.0, 1800.0, 3600.0};
+  std::vector<double> after_s = {60.0, 300.0, 600.0, 1800.0, 3600.0};
+  // A record says nothing of what is a hundred times as long, and to add it up takes as many steps.
+  constexpr double kFarthest = 100.0;
+  std::erase_if(after_s, [&](double after) { return after > kFarthest * span_of(longest); });
   return data ? predicted(diagnosis, *data, aligned, after_s)
               : predict_heading(diagnosis, longest, aligned, after_s);
 }

@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/diagnosis.h"
-#include "filters/diagnosis/record/even_error.h"
 #include "filters/diagnosis/record/known_angles.h"
 #include "filters/diagnosis/residual/lines.h"
 #include "filters/diagnosis/search/search.h"

@@ -7,7 +7,9 @@
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
+#include "filters/distributions/chi_squared.h"
 #include "filters/effects/form.h"
+#include "filters/effects/meaning.h"
 
 namespace ifog {
 namespace {
@@ -33,8 +35,41 @@ double bias_of(const std::vector<EvenError>& errors) {
 
 }  // namespace
 
-void count_rates_from_the_bias(const std::vector<EvenError>& errors, std::vector<FoundEffect>& effects) {
-  const double bias = bias_of(errors);
+void name_bias(const BlockGrid& grid, const JointFit& joint, const std::vector<EvenError>& errors,
+               double uncorrected, const std::string& axis, Diagnosis& diagnosis) {
+  constexpr double kClear = 5.0;  // standard deviations
+  // A walk from zero has a third of its last variance on the mean; each Gauss-Markov process keeps its own.
+  const double span_s = static_cast<double>(grid.used()) * grid.block_s;
+  double variance = joint.covariance(0, 0) / static_cast<double>(grid.records.size());
+  for (const NoisePosterior::Part& part : joint.noise.parts)
+    variance += part.weight * (part.white / span_s + part.walk * span_s / 3.0 + part.markov +
+                               part.flicker * static_cast<double>(joint.noise.flicker_s.size()));
+  const double value = bias_of(errors) + uncorrected, sigma = std::sqrt(variance);
+  const bool clear = std::abs(value) > kClear * sigma;
+  // One that the noise may have made is corrected by the share of its square that is beyond the noise's.
+  const double share = clear ? 1.0 : value * value / (value * value + variance);
+  diagnosis.bias = ModelParameter{"coefficient", share * value, sigma, "rad/s"};
+  if (!clear) return;
+  FoundEffect found;
+  found.effect.form = name_of(Form::kBias);
+  found.effect.axis = axis;
+  found.effect.meaning = meaning_of(found.effect);
+  found.effect.parameters = {*diagnosis.bias};
+  found.likelihood_ratio = value * value / variance;
+  found.p_value = chi_squared_above(found.likelihood_ratio, 1.0);
+  diagnosis.effects.push_back(std::move(found));
+  std::size_t n = 0;
+  while (n * n < diagnosis.covariance.size()) ++n;
+  std::vector<double> covariance((n + 1) * (n + 1), 0.0);
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = 0; j < n; ++j) covariance[i * (n + 1) + j] = diagnosis.covariance[i * n + j];
+  covariance.back() = variance;
+  diagnosis.covariance = std::move(covariance);
+}
+
+void count_rates_from_the_bias(const std::vector<EvenError>& errors, std::vector<FoundEffect>& effects,
+                               bool corrected) {
+  const double bias = corrected ? 0.0 : bias_of(errors);
   for (FoundEffect& found : effects) {
     if (is_reference_rate(found.effect.channel)) found.effect.reference = bias;
     if (is_reference_rate(found.effect.with_channel)) found.effect.with_reference = bias;

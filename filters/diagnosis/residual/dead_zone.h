@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
+#include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/record/blocks.h"
-#include "filters/diagnosis/record/even_error.h"
 
 namespace ifog {
 

@@ -108,29 +108,6 @@ Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid
   return found;
 }
 
-std::optional<MovingLine> line_of_the_rotation(const std::vector<Record>& rates,
-                                               const std::vector<EvenError>& errors, double sample_s,
-                                               double significance, KnownPeriodograms& known) {
-  for (std::size_t r = 0; r < errors.size(); ++r) {
-    const std::vector<SpectralLine> peaks =
-        find_lines(errors[r].after, errors[r].start_s, sample_s, significance, known);
-    if (!any_to_follow(errors[r].after.size(), sample_s, peaks)) continue;
-    Samples room;
-    const std::span<const double> even = even_samples(rates[r], sample_s, rates[r].rate_radps, room);
-    if (auto moving = find_moving_line(errors[r].after, even, sample_s, peaks)) return moving;
-  }
-  return std::nullopt;
-}
-
-void leave_out_harmonics(const MovingLine& moving, Lines& lines) {
-  const auto harmonic = [&](double frequency) {
-    const double times = frequency / moving.frequency_hz;
-    return times > 0.5 && std::abs(times - std::round(times)) < 0.01 * std::max(1.0, times);
-  };
-  std::erase_if(lines.slow, [&](const Candidate& line) { return harmonic(line.frequency_hz); });
-  std::erase_if(lines.fast, [&](const FastLine& line) { return harmonic(line.line.frequency_hz); });
-}
-
 void keep_proven(const SearchResult& found, std::size_t samples, double significance, Lines& lines) {
   const double tries = 0.5 * static_cast<double>(samples);
   std::vector<Candidate> kept;

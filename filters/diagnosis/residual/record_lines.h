@@ -5,10 +5,9 @@
 
 #include <optional>
 
-#include "filters/diagnosis/record/even_error.h"
+#include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/diagnosis/residual/lines.h"
-#include "filters/diagnosis/residual/moving_line.h"
 #include "filters/diagnosis/search/search.h"
 
 namespace ifog {
@@ -30,14 +29,6 @@ void leave_out_periodic(const BlockData& data, Lines& lines);
 // Of what is left of each record's error.
 Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance,
                      KnownPeriodograms& known);
-
-// The first record's line that follows the rotation: the closed loop's own. rates: as measured.
-std::optional<MovingLine> line_of_the_rotation(const std::vector<Record>& rates,
-                                               const std::vector<EvenError>& errors, double sample_s,
-                                               double significance, KnownPeriodograms& known);
-
-// Fixed lines cannot stand for one that moves, nor for its harmonics.
-void leave_out_harmonics(const MovingLine& moving, Lines& lines);
 
 // Of the slow lines, which the search was given first, those that are still lines beside slow noise and
 // effects. samples: of all records.

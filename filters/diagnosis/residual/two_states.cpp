@@ -156,24 +156,4 @@ std::optional<TwoStates> find_two_states(std::span<const double> left, double pe
   return found;
 }
 
-bool steps_are_jumps(const std::vector<EvenError>& errors, const BlockGrid& grid, const SearchResult& found) {
-  const EvenError& longest = longest_of(errors);
-  const auto record = static_cast<std::size_t>(&longest - errors.data());
-  const auto of_it = [&](const Chosen& each) {
-    return each.candidate.form == Form::kStep && each.candidate.record == record;
-  };
-  if (std::none_of(found.chosen.begin(), found.chosen.end(), of_it)) return false;
-  Samples left = longest.after.values();
-  Eigen::Index at = grid.constants();
-  for (const Chosen& each : found.chosen) {
-    const Candidate& step = each.candidate;
-    const double size = found.coefficients[at];
-    at += step.width();
-    if (!of_it(each)) continue;
-    const double from = std::ceil((step.time_s - longest.start_s) / grid.sample_s);
-    for (auto i = static_cast<std::size_t>(std::max(0.0, from)); i < left.size(); ++i) left[i] += size;
-  }
-  return find_two_states(left, grid.sample_s).has_value();
-}
-
 }  // namespace ifog

@@ -5,10 +5,6 @@
 
 #include <optional>
 #include <span>
-#include <vector>
-
-#include "filters/diagnosis/record/even_error.h"
-#include "filters/diagnosis/search/search.h"
 
 namespace ifog {
 
@@ -23,10 +19,5 @@ struct TwoStates {
 // Welch) against a random walk with white noise, both at their greatest likelihood, over a thousand means.
 // Nothing where the walk is as likely, the levels overlap, or there are fewer than four jumps.
 std::optional<TwoStates> find_two_states(std::span<const double> left, double period_s);
-
-// Whether the steps among the effects found are some of the jumps of such a bias: with them put back, the
-// longest record has two states. Of a search that knows steps and no jumps the largest ones come out as
-// steps.
-bool steps_are_jumps(const std::vector<EvenError>& errors, const BlockGrid& grid, const SearchResult& found);
 
 }  // namespace ifog

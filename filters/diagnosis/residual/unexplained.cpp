@@ -339,17 +339,6 @@ void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {
       2.0 * loop.half_width * std::abs(loop.coefficient) / kDegreePerHour);
 }
 
-void describe_moving(const MovingLine& line, Unexplained& found) {
-  found.kind = "moving_line";
-  found.frequency_hz = line.frequency_hz;
-  found.times_s.clear();
-  found.hint = text(
-      "a line near %.4g Hz, with its harmonics, whose frequency moves with the rate: %.4g cycles a radian "
-      "turned. That is the closed loop's own doing, most likely the feedback ramp (phase modulator, 2 pi "
-      "reset), and no channel given shows it. Log the feedback ramp at the sensor's own rate.",
-      line.frequency_hz, line.cycles_per_rad);
-}
-
 void describe_two_states(const std::vector<EvenError>& errors, const BlockGrid& grid, bool turned,
                          Unexplained& found) {
   if (grid.dwells || turned) return;

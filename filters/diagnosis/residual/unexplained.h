@@ -5,11 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/diagnosis.h"
-#include "filters/diagnosis/record/even_error.h"
 #include "filters/diagnosis/regression/noise_fit.h"
 #include "filters/diagnosis/residual/lines.h"
-#include "filters/diagnosis/residual/moving_line.h"
 
 namespace ifog {
 
@@ -23,8 +22,7 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
 Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
                           double significance, KnownPeriodograms& known);
 
-// A line that follows the rotation, or a loop, takes the description's place.
-void describe_moving(const MovingLine& line, Unexplained& found);
+// A loop takes the description's place.
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found);
 
 // So does a bias that jumps between two levels, of the longest record.

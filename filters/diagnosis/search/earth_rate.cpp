@@ -17,7 +17,6 @@ constexpr double kGravity = 9.80665;    // m/s^2
 constexpr double kWithin = 2.0;         // standard errors
 constexpr double kOfGravity = 0.05;     // by which a resting triad may miss g: scale and mounting errors
 constexpr double kSteady = 0.2;         // change of the whole force over that of one of its parts
-constexpr double kLeftByTurn = 0.1;     // of once a turn, that may be twice a turn
 constexpr double kUndone = 0.5;         // share of an acceleration's square that the others may leave
 
 double gravity_in(const std::string& channel) { return unit_of(channel) == "g" ? 1.0 : kGravity; }
@@ -82,52 +81,6 @@ bool is_left_by_the_line(const BlockData& data, const Candidate& candidate, doub
   return swing <= kEarth / gravity_in(channel.name) * (channel.high - channel.low);
 }
 
-// Of an angle by which the sensor is turned to other headings, where no reference stands beside: once a turn
-// it meets the horizontal part of the Earth's rate, and what bends that little is left of it.
-bool is_of_turn(const BlockData& data, const Candidate& candidate) {
-  return (candidate.form == Form::kCosine || candidate.form == Form::kSine) && data.reference < 0 &&
-         data.channels[candidate.channel].period > 0.0;
-}
-
-bool is_once_a_turn(const BlockData& data, const Candidate& candidate) {
-  return is_of_turn(data, candidate) && candidate.period > 0.75 * data.channels[candidate.channel].period;
-}
-
-struct OfHeading {
-  double size = 0.0, error = 0.0;
-};
-
-// Of once a turn of this angle.
-OfHeading swing_of_turn(const BlockData& data, std::size_t channel, const SearchResult& found) {
-  double square = 0.0, doubt = 0.0;
-  Eigen::Index at = data.grid.constants();
-  for (const Candidate& each : found.fitted) {
-    if (each.channel == channel && is_once_a_turn(data, each)) {
-      square += found.fitted_coefficients[at] * found.fitted_coefficients[at];
-      doubt += std::max(0.0, found.covariance(at, at));
-    }
-    at += each.width();
-  }
-  return {std::sqrt(square), std::sqrt(doubt)};
-}
-
-// However the turn's axis lies it meets no more than the whole of the Earth's rate. Of twice a turn it makes
-// nothing: that is what is left by the angle's own errors while it is small, and else an effect.
-void read_turns(const BlockData& data, FirstReading reading, SearchResult& found) {
-  Eigen::Index at = data.grid.constants();
-  for (std::size_t i = 0; i < found.fitted.size(); ++i) {
-    Candidate& mine = found.fitted[i];
-    const double coefficient = found.fitted_coefficients[at];
-    at += mine.width();
-    if (!is_of_turn(data, mine)) continue;
-    const OfHeading once = swing_of_turn(data, mine.channel, found);
-    if (!(once.size > 0.0) || once.size - kWithin * once.error > kEarth) continue;
-    if (!is_once_a_turn(data, mine) && std::abs(coefficient) > kLeftByTurn * once.size) continue;
-    mine.first_reading = reading;
-    found.chosen[i].candidate.first_reading = reading;
-  }
-}
-
 }  // namespace
 
 bool may_be_tilt(const BlockData& data, std::size_t channel) {
@@ -168,7 +121,6 @@ double largest_earth_rate(const std::string& channel, const EarthRateOptions& op
 void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, SearchResult& found) {
   const FirstReading reading =
       options.subtract ? FirstReading::kEarthRateSubtracted : FirstReading::kEarthRateShown;
-  read_turns(data, reading, found);
   bool line = false;
   for (const bool first : {true, false}) {
     Eigen::Index at = data.grid.constants();
@@ -204,21 +156,11 @@ std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& o
   for (const Candidate& each : found.fitted) {
     const double coefficient = found.fitted_coefficients[at];
     at += each.width();
-    if (each.first_reading == FirstReading::kError || order_of(data, each) != 1) continue;
+    if (!each.is_earth_rate() || order_of(data, each) != 1) continue;
     const std::string& name = data.channels[each.channel].name;
     const double scale = gravity_in(name) / kDegreePerHour;
     words += (words.empty() ? "" : " and ") + in_figures("%.3g °/h per g of ", coefficient * scale) + name +
              in_figures(" (at most %.3g)", largest_earth_rate(name, options) * scale);
-  }
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    const bool read = std::any_of(found.fitted.begin(), found.fitted.end(), [&](const Candidate& each) {
-      return each.channel == c && is_once_a_turn(data, each) && each.first_reading != FirstReading::kError;
-    });
-    if (!read) continue;
-    words += (words.empty() ? "" : " and ") +
-             in_figures("%.3g °/h once a turn of ", swing_of_turn(data, c, found).size / kDegreePerHour) +
-             data.channels[c].name +
-             in_figures(" (at most %.3g; a magnetic field would make it as well)", kEarth / kDegreePerHour);
   }
   if (words.empty()) return "";
   return words + " is what the Earth's rate makes in a gyro that is turned or tilts: that is rotation, " +

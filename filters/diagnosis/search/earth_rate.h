@@ -29,8 +29,8 @@ bool may_be_tilt(const BlockData& data, std::size_t channel);
 // Of a linear (or lagged) effect of this acceleration, rad/s per unit of the channel.
 double largest_earth_rate(const std::string& channel, const EarthRateOptions& options);
 
-// Sets the reading of the effects of acceleration, and of an angle of heading without a reference beside it,
-// that the Earth's rate would explain, within two standard errors of their coefficients. data: reconstructed.
+// Sets the reading of the effects of acceleration that the Earth's rate would explain, within two standard
+// errors of their coefficients. data: reconstructed.
 void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, SearchResult& found);
 
 // For people: what is read as the Earth's rate, and how that would be told; empty without.

@@ -8,174 +8,134 @@
 
 #include "filters/diagnosis/checks/proof.h"
 #include "filters/diagnosis/regression/harmonics.h"
-#include "filters/diagnosis/search/channels_first.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fit_to_readings.h"
 #include "filters/diagnosis/search/fringes.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
 #include "filters/diagnosis/search/unfold.h"
+#include "filters/effects/meaning.h"
 
 namespace ifog {
 namespace {
 
-constexpr std::size_t kShortlist = 4;  // candidates of different shape that are refined at each step
-constexpr double kSwapGain = 3.0;      // twice the log-likelihood a swap or a pair has to gain
-constexpr double kLikeness = 6.0;      // loss below which another effect cannot be told from the chosen one
-constexpr double kTrialFactor = 1.3;   // noise parameters need no more precision before the shape is refined
-constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
-// What a natural pair has to bring beyond its two effects' complexity: it has one more coefficient than a
-// form about a known point.
-constexpr double kSecondOfPair = 6.0;
+constexpr std::size_t kShortlist = 4;   // candidates of different shape that are refined at each step
 constexpr std::size_t kPairsTried = 2;  // beside the shortlist
-constexpr double kCorrelated = 0.2;     // correlation of two coefficients
-constexpr double kAlike = 0.98;         // or this correlation of the whitened regressors
+constexpr double kRise = 1.0;         // twice the log-likelihood that any change has to gain beyond its price
+constexpr double kLikeness = 6.0;     // loss below which another effect cannot be told from the chosen one
+constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision before the shape is refined
+constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
+constexpr double kCorrelated = 0.2;       // correlation of two coefficients
+constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
 
 bool is_event(const Candidate& candidate) {
   return candidate.form == Form::kLine || candidate.form == Form::kStep;
 }
 
+bool has(const std::vector<Candidate>& model, const Candidate& wanted) {
+  return std::any_of(model.begin(), model.end(),
+                     [&](const Candidate& each) { return each.same_shape(wanted); });
+}
+
+std::vector<Candidate> without(std::vector<Candidate> model, std::size_t at) {
+  model.erase(model.begin() + static_cast<std::ptrdiff_t>(at));
+  return model;
+}
+
+// One score: twice the log-likelihood less the price of each effect. Effects are added, swapped and removed
+// only where the score rises by kRise or more, and it is bounded, so the search ends.
 class EffectSearch {
  public:
-  EffectSearch(const BlockData& data, const SearchOptions& options, std::vector<Candidate> candidates)
-      : data_(data), options_(options), scan_(data, std::move(candidates)), model_(options.given) {
-    scan_.pair(natural_pairs(data));
+  EffectSearch(const BlockData& data, const SearchOptions& options)
+      : data_(data),
+        options_(options),
+        scan_(data, library(data)),
+        laws_(natural_pairs(data)),
+        first_(options.given.size()),
+        model_(options.given) {
+    scan_.pair(laws_);
   }
 
   SearchResult run() {
     SearchResult result;
-    noise_ = fit_noise(data_.grid, design(data_, model_));
+    const Columns columns = design(data_, model_);
+    noise_ =
+        options_.noise ? fit_noise(data_.grid, columns, *options_.noise) : fit_noise(data_.grid, columns);
     result.noise_without = noise_;
     count_tries();
-    do add_effects();
+    start_with_basics();
+    do improve();
     while (add_fringe());
     // Beside the effects there may be fewer harmonics, or one that they had hidden.
-    noise_ = with_harmonics(data_.grid, design(data_, model_), noise_);
-    revise_pairs();
-    drop_what_slow_denies();
-    unfold();
+    if (model_.size() > first_) noise_ = with_harmonics(data_.grid, design(data_, model_), noise_);
+    FittedModel unfolded{model_, noise_};
+    try_second_time_constants(data_, first_, unfolded);
+    model_ = std::move(unfolded.effects);
+    noise_ = std::move(unfolded.noise);
     finish(result);
     return result;
   }
 
  private:
-  void add_effects() {
-    while (model_.size() < options_.most_effects + options_.given.size()) {
-      if (options_.progress) options_.progress(model_.size(), options_.most_effects + 1);
-      if (!add_one() && !add_pair()) break;
-      revise();
-    }
-  }
-
-  // When all else is in: what polynomials of a temperature stood for, or what is still slow.
-  bool add_fringe() {
-    if (model_.size() + 1 >= options_.most_effects + options_.given.size()) return false;
-    std::optional<FittedModel> found = with_fringe(data_, options_.given.size(), {model_, noise_},
-                                                   {options_.significance, tries_of_channels_});
-    if (!found) return false;
-    model_ = std::move(found->effects);
-    noise_ = std::move(found->noise);
-    return true;
-  }
-
   // The chance of a false effect is shared out between channels and steps.
   void count_tries() {
     const double level = 20.0;  // near what will be asked for
     const double independent = scan_.independent(model_, noise_.shape) + static_cast<double>(scan_.pairs());
-    tries_of_channels_ = independent / kShareOfChannels;
+    tries_of_channels_ = independent / (data_.grid.dwells ? 1.0 : kShareOfChannels);
     tries_of_steps_ = independent_steps(data_.grid, noise_.shape, level) / (1.0 - kShareOfChannels);
-    if (data_.grid.dwells) tries_of_channels_ *= kShareOfChannels;
-    least_ratio_ = 1.0;
-    while (kProfiled * tail(least_ratio_, 1) * tries_of_channels_ > options_.significance)
-      least_ratio_ += 0.25;
   }
 
   [[nodiscard]] double p_value(const Candidate& candidate, double ratio) const {
-    const int columns = static_cast<int>(candidate.width());
     const double tries = candidate.form == Form::kStep ? tries_of_steps_ : tries_of_channels_;
-    return std::min(1.0, kProfiled * tail(ratio, columns) * tries);
+    return std::min(1.0, kProfiled * tail(ratio, static_cast<int>(candidate.width())) * tries);
+  }
+
+  // The ratio that chance reaches once in 1 / significance searches.
+  [[nodiscard]] double threshold(const Candidate& candidate) const {
+    double ratio = 1.0;
+    while (p_value(candidate, ratio) > options_.significance) ratio += 0.25;
+    return ratio;
+  }
+
+  // Whether with one of those beside it `candidate` is one law: what is proven then needs no second proof,
+  // only what the Bayesian information criterion asks of one coefficient more.
+  [[nodiscard]] bool completes_a_law(const Candidate& candidate, std::span<const Candidate> beside) const {
+    return std::any_of(laws_.begin(), laws_.end(), [&](const NaturalPair& law) {
+      const auto other = candidate.same_shape(law.second)  ? &law.first
+                         : candidate.same_shape(law.first) ? &law.second
+                                                           : nullptr;
+      return other && std::any_of(beside.begin(), beside.end(),
+                                  [&](const Candidate& each) { return each.same_shape(*other); });
+    });
+  }
+
+  [[nodiscard]] double score(const std::vector<Candidate>& model, const NoiseFit& noise) const {
+    const auto n = static_cast<double>(data_.grid.used());
+    double sum = 2.0 * noise.log_likelihood;
+    for (std::size_t i = first_; i < model.size(); ++i) {
+      const bool law = completes_a_law(model[i], std::span(model).first(i));
+      sum -= complexity(model[i]) + (law ? std::log(n) : threshold(model[i]));
+    }
+    // Of few points: Hurvich and Tsai's correction of the criterion, Biometrika 76, 1989.
+    const auto k = static_cast<double>(model.size()) + 2.0;
+    return sum - 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
   }
 
   struct Trial {
     std::vector<Candidate> model;
     NoiseFit noise;
-    double score = -1e300;  // twice the log-likelihood less complexity
-    std::size_t added = 1;  // the last so many effects
+    double score = -1e300;
   };
 
-  Trial refined(std::vector<Candidate> model, std::size_t at, const NoiseShape& start) const {
+  [[nodiscard]] Trial refined(std::vector<Candidate> model, std::size_t at, const NoiseShape& start) const {
     Trial trial;
     if (model[at].searched()) refine_shape(data_, start, model, at);
     trial.noise = fit_noise(data_.grid, design(data_, model), start, kTrialFactor);
     if (model[at].searched()) refine_shape(data_, trial.noise.shape, model, at);
     trial.noise = fit_noise(data_.grid, design(data_, model), trial.noise.shape);
-    if (levels_seen(data_, model)) trial.score = 2.0 * trial.noise.log_likelihood - complexity(model);
+    if (levels_seen(data_, model)) trial.score = score(model, trial.noise);
     trial.model = std::move(model);
     return trial;
-  }
-
-  // The best of the shortlist, fully fitted, as an addition to `base`.
-  Trial best_addition(const std::vector<Candidate>& base, const NoiseFit& noise, bool thorough) const {
-    Trial best;
-    std::vector<Scored> scored = scan_.score(base, noise, thorough, nullptr, nullptr, thorough);
-    if (thorough && !data_.grid.dwells) {
-      for (const Scored& step : scan_.steps(base, noise)) scored.push_back(step);
-    }
-    std::sort(scored.begin(), scored.end(),
-              [](const Scored& a, const Scored& b) { return a.ratio - price(a) > b.ratio - price(b); });
-    const auto among = [](const std::vector<Candidate>& model, const Candidate& candidate) {
-      return std::any_of(model.begin(), model.end(),
-                         [&](const Candidate& other) { return other.same_shape(candidate); });
-    };
-    std::vector<Candidate> tried;
-    std::size_t pairs = 0;
-    for (const Scored& each : scored) {
-      if (tried.size() >= kShortlist || each.ratio < 0.5 * least_ratio_) break;
-      if (each.with && pairs == kPairsTried) continue;
-      const Candidate& last = each.with ? *each.with : each.candidate;
-      if (among(base, each.candidate) || among(base, last) || (!each.with && among(tried, last))) continue;
-      if (each.with)
-        ++pairs;
-      else
-        tried.push_back(last);
-      std::vector<Candidate> model = base;
-      model.push_back(each.candidate);
-      if (each.with) model.push_back(last);
-      Trial trial = refined(model, model.size() - 1, each.shape);
-      if (each.with) trial.score -= kSecondOfPair;
-      if (each.with) trial.added = 2;
-      // A knock that does not last is no effect, nor does it speak against one that is hidden beside it.
-      if (last.form == Form::kStep && !proven(trial)) continue;
-      if (trial.score > best.score) best = trial;
-    }
-    return best;
-  }
-
-  static double price(const Scored& scored) {
-    return complexity(scored.candidate) + (scored.with ? complexity(*scored.with) + kSecondOfPair : 0.0);
-  }
-
-  bool add_one() {
-    Trial best = best_addition(model_, noise_, true);
-    if (best.model.empty()) return false;
-    const double ratio = 2.0 * (best.noise.log_likelihood - noise_.log_likelihood);
-    const std::vector<Candidate> added(best.model.end() - static_cast<std::ptrdiff_t>(best.added),
-                                       best.model.end());
-    const double gain = ratio - complexity(added);
-    const double p = best.added == 2 ? std::min(1.0, kProfiled * tail(gain, 2) * tries_of_channels_)
-                                     : p_value(added.back(), gain);
-    if (p > options_.significance || !proven(best)) return false;
-    model_ = best.model;
-    noise_ = best.noise;
-    for (const Candidate& each : added)
-      if (each.channel != Candidate::kNone) offer_products(each.channel);
-    return true;
-  }
-
-  void offer_products(std::size_t channel) {
-    const std::size_t before = scan_.size();
-    scan_.add(products_of(data_, channel));
-    tries_of_channels_ += static_cast<double>(scan_.size() - before) / kShareOfChannels;
   }
 
   [[nodiscard]] bool proven(const Trial& trial) const {
@@ -185,101 +145,140 @@ class EffectSearch {
                                                   : predicts_held_out(data_, claimed);
   }
 
-  // Judged when all effects are in: one of two that oppose each other makes the error larger until the other
-  // comes.
-  void drop_what_slow_denies() {
-    for (std::size_t i = options_.given.size(); i < model_.size();) {
-      std::vector<Candidate> rest = model_;
-      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-      std::vector<Candidate> ordered = rest;
-      ordered.push_back(model_[i]);
-      const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
-      if (agrees_with_plain_fit(data_, {ordered, noise_}, {rest, without})) {
-        ++i;
-        continue;
-      }
-      model_ = rest;
-      noise_ = without;
-      i = options_.given.size();
-    }
-  }
-
-  void unfold() {
-    FittedModel model{model_, noise_};
-    const std::size_t first = options_.given.size();
-    try_factors_apart(data_, first, model);
-    try_second_time_constants(data_, first, model);
-    try_second_layers(data_, first, model);
-    model_ = std::move(model.effects);
-    noise_ = std::move(model.noise);
-  }
-
-  // Two effects that hide each other: neither passes alone, or a third stood for both.
-  bool add_pair() {
-    const auto pair = scan_.best_pair(model_, noise_);
-    if (!pair) return false;
-    std::vector<Candidate> model = model_;
-    model.push_back(pair->first);
-    model.push_back(pair->second);
-    Trial trial = refined(model, model.size() - 1, noise_.shape);
-    trial = refined(trial.model, model.size() - 2, trial.noise.shape);
-    const double ratio = 2.0 * (trial.noise.log_likelihood - noise_.log_likelihood);
-    // Tries grow as the square, and so does what two have to bring.
-    if (ratio < 2.0 * least_ratio_ +
-                    complexity(std::vector<Candidate>{trial.model.end() - 2, trial.model.end()}) ||
-        !proven(trial))
-      return false;
-    model_ = trial.model;
+  bool take(Trial trial) {
+    if (trial.score < score(model_, noise_) + kRise) return false;
+    model_ = std::move(trial.model);
     noise_ = trial.noise;
     return true;
   }
 
-  // Effects chosen early were chosen without the later ones: try each one's removal and replacement.
-  void revise() {
-    const std::size_t first = options_.given.size();
-    for (std::size_t i = first; i < model_.size() && model_.size() > first + 1;) {
-      std::vector<Candidate> rest = model_;
-      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-      const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
-      if (p_value(model_[i], 2.0 * (noise_.log_likelihood - without.log_likelihood)) >
-          options_.significance) {
-        model_ = rest;
-        noise_ = without;
-        continue;
+  // What every gyro has is fitted jointly with the noise before the noise can swallow it: scale factor,
+  // misalignment, temperature to the second order. What does not pay is left out again, one at a time; the
+  // noise begins at what it is without them and from nothing, and the likelier one is taken.
+  void start_with_basics() {
+    if (data_.reference < 0) return;
+    Trial basics{model_, {}, 0.0};
+    for (const Candidate& each : library(data_))
+      if (is_basic(each)) basics.model.push_back(each);
+    if (basics.model.size() == first_) return;
+    const auto fit = [&](Trial& trial, const NoiseShape& start) {
+      const Columns columns = design(data_, trial.model);
+      const NoiseFit one = fit_noise(data_.grid, columns, start), other = fit_noise(data_.grid, columns, {});
+      trial.noise = one.log_likelihood > other.log_likelihood ? one : other;
+      trial.score = score(trial.model, trial.noise);
+    };
+    fit(basics, noise_.shape);
+    while (basics.model.size() > first_) {
+      Trial best;
+      for (std::size_t i = first_; i < basics.model.size(); ++i) {
+        Trial less{without(basics.model, i), {}, 0.0};
+        fit(less, basics.noise.shape);
+        if (less.score > best.score) best = std::move(less);
       }
-      const Trial other = best_addition(rest, without, false);
-      const double score = 2.0 * noise_.log_likelihood - complexity(model_);
-      if (!other.model.empty() && other.score > score + kSwapGain) {
-        model_ = other.model;
-        noise_ = other.noise;
-      }
-      ++i;
+      if (best.score < basics.score) break;
+      basics = std::move(best);
     }
-    for (std::size_t i = first; i < model_.size(); ++i) {
-      if (!model_[i].searched()) continue;
-      Trial trial = refined(model_, i, noise_.shape);
-      if (levels_seen(data_, trial.model) && trial.noise.log_likelihood > noise_.log_likelihood) {
-        model_ = trial.model;
-        noise_ = trial.noise;
-      }
+    if (basics.model.size() > first_ && take(std::move(basics)))
+      for (std::size_t i = first_; i < model_.size(); ++i) offer_products(model_[i].channel);
+  }
+
+  [[nodiscard]] bool is_basic(const Candidate& each) const {
+    if (each.channel == Candidate::kNone || each.form == Form::kProduct) return false;
+    const FineChannel& source = data_.channels[each.channel];
+    if (static_cast<std::ptrdiff_t>(each.channel) == data_.reference || source.of_axis)
+      return each.form == Form::kLinear;
+    return kind_of(source.name) == ChannelKind::kTemperature && names_in(source.name).less.empty() &&
+           (each.form == Form::kLinear || each.form == Form::kQuadratic);
+  }
+
+  void improve() {
+    while (model_.size() < options_.most_effects + first_) {
+      if (options_.progress) options_.progress(model_.size(), options_.most_effects + 1);
+      if (!add_one() && !add_pair() && !swap_pair()) break;
+      revise();
     }
+  }
+
+  // The best of the shortlist, fully fitted, as an addition to `base`.
+  [[nodiscard]] Trial best_addition(const std::vector<Candidate>& base, const NoiseFit& noise,
+                                    bool thorough) const {
+    std::vector<Scored> scored = scan_.score(base, noise, thorough, nullptr, nullptr, thorough);
+    if (thorough && !data_.grid.dwells)
+      for (const Scored& step : scan_.steps(base, noise)) scored.push_back(step);
+    const double law = std::log(static_cast<double>(data_.grid.used()));
+    const auto price = [&](const Scored& each) {
+      const bool completes = completes_a_law(each.candidate, base);
+      return complexity(each.candidate) + (completes ? law : threshold(each.candidate)) +
+             (each.with ? complexity(*each.with) + law : 0.0);
+    };
+    std::sort(scored.begin(), scored.end(),
+              [&](const Scored& a, const Scored& b) { return a.ratio - price(a) > b.ratio - price(b); });
+    Trial best;
+    std::vector<Candidate> tried;
+    std::size_t pairs = 0;
+    for (const Scored& each : scored) {
+      const Candidate& last = each.with ? *each.with : each.candidate;
+      if (tried.size() >= kShortlist || each.ratio < kLikeness) break;
+      if (has(base, each.candidate) || has(base, last) || (!each.with && has(tried, last))) continue;
+      if (each.with && pairs++ >= kPairsTried) continue;
+      if (!each.with) tried.push_back(last);
+      std::vector<Candidate> model = base;
+      model.push_back(each.candidate);
+      if (each.with) model.push_back(last);
+      Trial trial = refined(model, model.size() - 1, each.shape);
+      // A knock that does not last is no effect, nor does it speak against one that is hidden beside it.
+      if (last.form == Form::kStep && !proven(trial)) continue;
+      if (trial.score > best.score) best = std::move(trial);
+    }
+    return best;
+  }
+
+  bool add_one() {
+    Trial best = best_addition(model_, noise_, true);
+    if (best.model.empty() || !proven(best)) return false;
+    const std::vector<Candidate> added(best.model.begin() + static_cast<std::ptrdiff_t>(model_.size()),
+                                       best.model.end());
+    if (!take(std::move(best))) return false;
+    for (const Candidate& each : added) offer_products(each.channel);
+    return true;
+  }
+
+  // A channel with an effect of its own may change another one's.
+  void offer_products(std::size_t channel) {
+    if (channel == Candidate::kNone) return;
+    const std::size_t before = scan_.size();
+    scan_.add(products_of(data_, channel));
+    tries_of_channels_ += static_cast<double>(scan_.size() - before) / kShareOfChannels;
+  }
+
+  // Two effects that hide each other, so that neither passes alone.
+  bool add_pair() {
+    const auto pair = scan_.best_pair(model_, noise_);
+    return pair && take_pair(model_, *pair);
+  }
+
+  bool take_pair(std::vector<Candidate> model, const std::pair<Candidate, Candidate>& pair) {
+    model.push_back(pair.first);
+    model.push_back(pair.second);
+    const std::size_t last = model.size() - 1;
+    const Trial once = refined(std::move(model), last, noise_.shape);
+    Trial trial = refined(once.model, last - 1, once.noise.shape);
+    return proven(trial) && take(std::move(trial));
   }
 
   // Two effects whose coefficients depend on each other can be two others together: a slow channel with a lag
   // and its settling at the start are the channel and its derivative.
-  void revise_pairs() {
-    const std::size_t first = options_.given.size();
-    for (std::size_t i = first; i < model_.size(); ++i) {
+  bool swap_pair() {
+    for (std::size_t i = first_; i < model_.size(); ++i)
       for (std::size_t j = i + 1; j < model_.size(); ++j) {
         if (is_event(model_[i]) || is_event(model_[j]) || !depend(i, j)) continue;
-        const Trial other = best_instead_of(i, j);
-        if (other.model.empty()) continue;
-        if (other.score < 2.0 * noise_.log_likelihood - complexity(model_) + kSwapGain || !proven(other))
-          continue;
-        model_ = other.model;
-        noise_ = other.noise;
+        const std::vector<Candidate> rest = without(without(model_, j), i);
+        const NoiseFit noise = fit_noise(data_.grid, design(data_, rest), noise_.shape);
+        const auto pair = scan_.best_pair(rest, noise, &noise_.shape);
+        if (pair && !(has(model_, pair->first) && has(model_, pair->second)) && take_pair(rest, *pair))
+          return true;
       }
-    }
+    return false;
   }
 
   [[nodiscard]] bool depend(std::size_t i, std::size_t j) const {
@@ -290,37 +289,42 @@ class EffectSearch {
     return std::abs(covariance(a, b)) > kCorrelated * std::sqrt(covariance(a, a) * covariance(b, b));
   }
 
-  // Empty when the best two are the two there are.
-  [[nodiscard]] Trial best_instead_of(std::size_t i, std::size_t j) const {
-    std::vector<Candidate> model;
-    for (std::size_t k = 0; k < model_.size(); ++k) {
-      if (k != i && k != j) model.push_back(model_[k]);
+  // Effects chosen early were chosen without the later ones: each one's removal, replacement and shape.
+  void revise() {
+    for (std::size_t i = first_; i < model_.size() && model_.size() > first_ + 1;) {
+      const std::vector<Candidate> rest = without(model_, i);
+      const NoiseFit noise = fit_noise(data_.grid, design(data_, rest), noise_.shape);
+      if (take({rest, noise, score(rest, noise)})) continue;
+      Trial other = best_addition(rest, noise, false);
+      if (!other.model.empty()) take(std::move(other));
+      ++i;
     }
-    const NoiseFit without = fit_noise(data_.grid, design(data_, model), noise_.shape);
-    const auto pair = scan_.best_pair(model, without, &noise_.shape);
-    if (!pair) return {};
-    const auto [a, b] = *pair;
-    const auto is = [&](const Candidate& x, const Candidate& y) {
-      return x.same_shape(model_[i]) && y.same_shape(model_[j]);
-    };
-    if (is(a, b) || is(b, a)) return {};
-    model.push_back(a);
-    model.push_back(b);
-    const std::size_t last = model.size() - 1;
-    const Trial once = refined(std::move(model), last, noise_.shape);
-    return refined(once.model, last - 1, once.noise.shape);
+    for (std::size_t i = first_; i < model_.size(); ++i)
+      if (model_[i].searched()) take(refined(model_, i, noise_.shape));
+  }
+
+  // When all else is in: what polynomials of a temperature stood for, or what is still slow.
+  bool add_fringe() {
+    if (model_.size() + 1 >= options_.most_effects + first_) return false;
+    std::optional<FittedModel> found =
+        with_fringe(data_, first_, {model_, noise_}, {options_.significance, tries_of_channels_});
+    if (!found) return false;
+    for (const NaturalPair& law : {NaturalPair{found->effects.end()[-2], found->effects.back()}})
+      laws_.push_back(law);
+    return take({found->effects, found->noise, score(found->effects, found->noise)});
   }
 
   void finish(SearchResult& result) {
-    const std::size_t first = options_.given.size();
     for (std::size_t i = 0; i < model_.size(); ++i) {
-      std::vector<Candidate> rest = model_;
-      rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
-      const NoiseFit without = fit_noise(data_.grid, design(data_, rest), noise_.shape);
-      Chosen chosen{model_[i], 2.0 * (noise_.log_likelihood - without.log_likelihood), 1.0};
-      chosen.p_value = p_value(model_[i], chosen.likelihood_ratio);
+      const std::vector<Candidate> rest = without(model_, i);
+      const NoiseFit noise = fit_noise(data_.grid, design(data_, rest), noise_.shape);
+      Chosen chosen{model_[i], 2.0 * (noise_.log_likelihood - noise.log_likelihood), 1.0};
+      chosen.of_a_law = completes_a_law(model_[i], rest);
+      // Of a law whose other term is proven only this one was tried.
+      chosen.p_value = chosen.of_a_law ? std::min(1.0, kProfiled * tail(chosen.likelihood_ratio, 1))
+                                       : p_value(model_[i], chosen.likelihood_ratio);
       result.chosen.push_back(chosen);
-      if (i >= first) find_alternatives(result, i, rest, without);
+      if (i >= first_) find_alternatives(result, i, rest, noise);
     }
     result.noise = noise_;
     result.tries = tries_of_channels_;
@@ -328,18 +332,17 @@ class EffectSearch {
   }
 
   void find_alternatives(SearchResult& result, std::size_t i, const std::vector<Candidate>& rest,
-                         const NoiseFit& without) const {
+                         const NoiseFit& noise) const {
     const double mine = result.chosen[i].likelihood_ratio;
     std::vector<Candidate> seen = {model_[i]};
-    std::vector<Scored> scored = scan_.score(rest, without, true, &model_[i], &noise_.shape);
+    std::vector<Scored> scored = scan_.score(rest, noise, true, &model_[i], &noise_.shape);
     std::sort(scored.begin(), scored.end(),
               [](const Scored& a, const Scored& b) { return a.ratio > b.ratio; });
     for (const Scored& each : scored) {
       const double loss = mine - each.ratio;
       if (loss > kLikeness && std::abs(each.correlation) < kAlike) continue;
       if (loss > 3.0 * kLikeness) break;
-      const auto alike = [&](const Candidate& other) { return other.same_shape(each.candidate); };
-      if (std::any_of(seen.begin(), seen.end(), alike)) continue;
+      if (has(seen, each.candidate)) continue;
       seen.push_back(each.candidate);
       if (seen.size() > 5) break;
       result.alternatives.push_back({i, each.candidate, each.correlation, loss});
@@ -349,10 +352,11 @@ class EffectSearch {
   const BlockData& data_;
   const SearchOptions& options_;
   Scan scan_;
+  std::vector<NaturalPair> laws_;
+  std::size_t first_;  // effect of the model that was not given
   std::vector<Candidate> model_;
   NoiseFit noise_;
   double tries_of_channels_ = 1.0, tries_of_steps_ = 1.0;  // independent ones over their share
-  double least_ratio_ = 0.0;                               // of a channel's effect
 };
 
 }  // namespace
@@ -364,28 +368,9 @@ std::vector<Candidate> candidates_of(const std::vector<Chosen>& chosen) {
   return candidates;
 }
 
-double score_of(const SearchResult& result) {
-  double score = 2.0 * result.noise.log_likelihood;
-  for (const Chosen& each : result.chosen) score -= complexity(each.candidate);
-  return score;
-}
-
-namespace {
-
-SearchResult searched(const BlockData& reconstructed, const SearchOptions& options) {
-  std::vector<Candidate> candidates = library(reconstructed);
-  SearchResult found = EffectSearch(reconstructed, options, candidates).run();
-  if (!has_warm_up(found)) return found;
-  std::erase_if(candidates, [](const Candidate& each) { return each.form == Form::kWarmUp; });
-  SearchResult by_channels = EffectSearch(reconstructed, options, std::move(candidates)).run();
-  return channels_explain_it(reconstructed.grid, by_channels, found) ? by_channels : found;
-}
-
-}  // namespace
-
 SearchResult search_effects(const BlockData& data, const BlockData& reconstructed,
                             const SearchOptions& options) {
-  SearchResult result = searched(reconstructed, options);
+  SearchResult result = EffectSearch(reconstructed, options).run();
   result.fitted = candidates_of(result.chosen);
   result.fitted_coefficients = result.coefficients;
   fit_to_readings(data, reconstructed, result);

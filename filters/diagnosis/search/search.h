@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search of the diagnosis: score every candidate in the innovations of the noise model, take the one that
-// also predicts held-out blocks, fit everything anew, until nothing passes.
+// The search of the diagnosis: basics first, then one loop that adds, swaps and removes effects by one score
+// in the innovations of the noise model, each fitted anew with the noise. What is added also has to predict
+// held-out blocks.
 #pragma once
 
 #include <functional>
+#include <optional>
 
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/diagnosis/regression/design.h"
@@ -15,6 +17,7 @@ struct Chosen {
   Candidate candidate;
   double likelihood_ratio = 0.0;  // twice the log-likelihood lost without it, noise fitted anew
   double p_value = 1.0;           // after correction for everything tried
+  bool of_a_law = false;          // of two coefficients that are one law; see natural_pairs()
 };
 
 struct Alternative {
@@ -45,15 +48,11 @@ struct SearchOptions {
   double significance = 0.01;
   std::size_t most_effects = 8;
   std::function<void(std::size_t, std::size_t)> progress;
-  std::vector<Candidate> given;  // lines, found elsewhere; in the fit from the start
+  std::optional<NoiseShape> noise;  // of a search before, to begin with; none: from nothing known
+  std::vector<Candidate> given;     // lines, found elsewhere; in the fit from the start
 };
 
-// Twice the log-likelihood less what its effects' complexity costs: by which two searches compare.
-double score_of(const SearchResult& result);
-
-// data: channels as read; reconstructed: as with_reconstructed_channels() makes them of it. A warm-up has no
-// channel to blame and fits whatever a record began with; where channels explain as much without it, it is
-// theirs.
+// data: channels as read; reconstructed: as with_reconstructed_channels() makes them of it.
 SearchResult search_effects(const BlockData& data, const BlockData& reconstructed,
                             const SearchOptions& options);
 

@@ -19,12 +19,4 @@ struct FittedModel {
 // vibration as fast as it may. Effects from `first` on.
 void try_second_time_constants(const BlockData& data, std::size_t first, FittedModel& model);
 
-// Heat comes through layers, quickly through the outer ones and slowly through all of them, and each adds to
-// the bias with the same sign: a second rate of the same channel.
-void try_second_layers(const BlockData& data, std::size_t first, FittedModel& model);
-
-// What two quantities do each by itself their product does about as well where both stay far from zero, with
-// one coefficient, and does nothing like it elsewhere.
-void try_factors_apart(const BlockData& data, std::size_t first, FittedModel& model);
-
 }  // namespace ifog

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What loggers do to a channel is undone, and what only looks like it is left alone.
-#include "filters/diagnosis/record/channel_faults.h"
+#include "filters/diagnosis/cleaning/channel_faults.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,6 @@
 #include <random>
 
 #include "filters/diagnosis/record/blocks.h"
-#include "filters/diagnosis/record/stuck_blocks.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 
 namespace ifog {
@@ -124,27 +123,8 @@ TEST(ChannelFaults, WhatStoodStillAndCameBackIsFoundByItsLength) {
   Logged logged(lively);
   for (std::size_t i = 1500; i < 1900; ++i) logged.channel[i] = logged.channel[1900];
   const RepairedRecords repaired = logged.repaired("temperature_degC");
-  ASSERT_EQ(repaired.stuck.size(), 1U);
-  EXPECT_EQ(repaired.stuck[0].channel, "temperature_degC");
-  EXPECT_NEAR(repaired.stuck[0].from_s, 1500.0, 2.0);
-  EXPECT_NEAR(repaired.stuck[0].to_s, 1900.0, 2.0);
   ASSERT_EQ(repaired.remarks.size(), 1U);
   EXPECT_NE(repaired.remarks[0].find("never else for a twentieth as long"), std::string::npos);
-}
-
-TEST(StuckBlocks, AreLeftOutOfTheFitOfTheirOwnChannelsEffects) {
-  BlockGrid grid = grid_of({400, 400});
-  grid.error.setOnes();
-  const std::vector<StuckStretch> stuck = {{1, "coil_degC", 100.0, 120.0}, {0, "coil_degC", 10.0, 200.0}};
-  EXPECT_TRUE(leave_out_stuck(stuck, {"supply_V"}, grid).empty());
-  EXPECT_EQ(grid.used(), 800U);
-  EXPECT_EQ(leave_out_stuck(stuck, {"base_degC - coil_degC"}, grid).size(), 1U);
-  for (std::size_t b = 0; b < 800; ++b) {
-    const bool in_it = b >= 500 && b <= 520;
-    EXPECT_EQ(grid.valid[b], in_it ? 0 : 1) << b << ": nearly half of the first record stays";
-    EXPECT_EQ(grid.error[static_cast<Eigen::Index>(b)], in_it ? 0.0 : 1.0) << b;
-  }
-  EXPECT_TRUE(leave_out_stuck(stuck, {"coil_degC"}, grid).empty()) << "they are out";
 }
 
 TEST(ChannelFaults, WhatOnlyLooksLikeOneIsLeftAlone) {

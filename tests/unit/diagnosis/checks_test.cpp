@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "filters/diagnosis/checks/cross_validation.h"
-#include "filters/diagnosis/checks/outliers.h"
 #include "filters/diagnosis/checks/proof.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 
@@ -92,46 +91,6 @@ TEST(CrossValidation, LeavesNothingOfASwingThatBeatsWithTheBlocks) {
   EXPECT_LT(std::sqrt(square / static_cast<double>(left.size() - 2 * edge)), 0.004);
 }
 
-TEST(Outliers, AnEffectOfThreeBlocksIsGoneWithoutThem) {
-  BlockData data = white_with_temperature(2000, 4);
-  std::vector<double> spikes(2000, 12.0);
-  for (const std::size_t at : {300U, 900U, 1500U}) {
-    spikes[at] = 13.0;
-    data.grid.error[static_cast<Eigen::Index>(at)] += 12.0;
-  }
-  data.channels = {channel_of("supply_V", spikes)};
-  const std::vector<Candidate> model = {candidate_of(Form::kLinear)};
-  const double with_them = 2.0 * (fit_whitened(data.grid, {}, design(data, model)).log_likelihood -
-                                  fit_whitened(data.grid, {}, design(data, {})).log_likelihood);
-  EXPECT_GT(with_them, 200.0);
-  // Removing an effect lays its outliers bare, so they are left out of both fits only where the model has
-  // them.
-  BlockData not_of_it = data;
-  not_of_it.channels[0].values.assign(2000, 12.0);
-  for (std::size_t i = 0; i < 2000; ++i)
-    not_of_it.channels[0].values[i] = 12.0 + (i % 600 < 5 ? 0.2 : 0.0);  // spreads over twenty blocks
-  for (const Eigen::Index at : {0, 600, 1200, 1800}) not_of_it.grid.error[at] += 40.0;
-  EXPECT_LT(ratio_without_outliers(not_of_it, model, 0, {}), 10.0);
-}
-
-// The squared coefficient over its variance: in noise that is the same all along the ordinary ratio, about.
-TEST(Outliers, ErrorsOfChangingNoiseAreTheOrdinaryOnesInSteadyNoise) {
-  BlockData data = white_with_temperature(4000, 5);
-  add(data, candidate_of(Form::kLinear), 0.05);
-  const std::vector<Candidate> model = {candidate_of(Form::kLinear)};
-  Eigen::MatrixXd covariance;
-  const Eigen::VectorXd c = solve(data.grid, {}, design(data, model), &covariance);
-  const double ordinary = c[1] * c[1] / covariance(1, 1);
-  EXPECT_NEAR(ratio_in_changing_noise(data, model, 0, {}), ordinary, 0.25 * ordinary);
-  // Fifty times the noise where the channel is largest: the coefficient is worth less than it seems.
-  for (Eigen::Index i = 0; i < 4000; ++i) {
-    if (std::abs(data.channels[0].values[static_cast<std::size_t>(i)] - 25.0) > 9.0)
-      data.grid.error[i] *= 50.0;
-  }
-  const Eigen::VectorXd loud = solve(data.grid, {}, design(data, model), &covariance);
-  EXPECT_LT(ratio_in_changing_noise(data, model, 0, {}), 0.7 * loud[1] * loud[1] / covariance(1, 1));
-}
-
 TEST(Proof, AnEffectThatIsThereIsPredictedAndChanceMostlyIsNot) {
   const std::vector<Candidate> model = {candidate_of(Form::kLinear)};
   int of_chance = 0;
@@ -185,26 +144,6 @@ TEST(Proof, TwoStepsThatCancelDoNotPersist) {
     EXPECT_EQ(step_persists(data, claimed({step_at(514.5), step_at(499.5)}, noise)), lasting);
     EXPECT_EQ(step_persists(data, claimed({step_at(499.5), step_at(514.5)}, noise)), lasting);
   }
-}
-
-// What is quick only must not be corrected in what is slow.
-TEST(Proof, ACorrectionThatMakesTheSlowPartLargerHasToAgreeWithPlainLeastSquares) {
-  BlockData data = white_with_temperature(1500, 9);
-  std::vector<double> both(1500);
-  for (std::size_t i = 0; i < both.size(); ++i) {
-    const double quick = std::sin(2.0 * M_PI * static_cast<double>(i) / 20.0);
-    both[i] = 12.0 + quick + 4.0 * std::sin(2.0 * M_PI * static_cast<double>(i) / 1500.0);
-    data.grid.error[static_cast<Eigen::Index>(i)] += 2.0 * quick;
-  }
-  data.channels = {channel_of("supply_V", both)};
-  const std::vector<Candidate> model = {candidate_of(Form::kLinear)};
-  const NoiseFit walking{{0.002, 0.0, 0.0, 0.0}, 0.0, 1.0};  // its innovations see the quick part alone
-  EXPECT_FALSE(agrees_with_plain_fit(data, claimed(model, walking), claimed({}, walking)));
-  data.grid.error += 2.0 * 4.0 * (regressors(data, candidate_of(Form::kLinear)).col(0) / 4.0);
-  for (std::size_t i = 0; i < both.size(); ++i)
-    data.grid.error[static_cast<Eigen::Index>(i)] -=
-        2.0 * std::sin(2.0 * M_PI * static_cast<double>(i) / 20.0);
-  EXPECT_TRUE(agrees_with_plain_fit(data, claimed(model, walking), claimed({}, walking)));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "filters/diagnosis/diagnose.h"
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/figures.h"
-#include "filters/diagnosis/report/balanced_shares.h"
+#include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/grown_figures.h"
 #include "tests/unit/diagnosis/gaussian_deviate.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/record/derived_channels.h"
+#include "filters/diagnosis/channels/derived_channels.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <limits>
 #include <random>
 
+#include "filters/diagnosis/cleaning/other_axes.h"
 #include "filters/diagnosis/diagnose.h"
-#include "filters/diagnosis/record/other_axes.h"
 #include "filters/effects/form.h"
 
 namespace ifog {

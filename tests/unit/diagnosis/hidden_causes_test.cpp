@@ -24,53 +24,6 @@ BlockData captures_with(const std::vector<double>& coefficients, std::uint64_t s
   return data;
 }
 
-ByCapture compared(const BlockData& data) {
-  const std::vector<ByCapture> found = compare_captures(data, {candidate_of(Form::kLinear)}, {});
-  EXPECT_EQ(found.size(), 1U);
-  return found.front();
-}
-
-// In white noise each capture's coefficient is the textbook's slope.
-TEST(BetweenCaptures, ValuesAreTheSlopesOfTheCapturesByThemselves) {
-  const BlockData data = captures_with({0.3, 0.5, 0.1}, 1);
-  const ByCapture by = compared(data);
-  ASSERT_EQ(by.value.size(), 3U);
-  for (std::size_t r = 0; r < 3; ++r) {
-    double mean_x = 0.0, mean_y = 0.0, xy = 0.0, xx = 0.0;
-    const auto y = [&](std::size_t b) { return data.grid.error[static_cast<Eigen::Index>(b)]; };
-    const std::vector<double>& x = data.channels[0].values;
-    for (std::size_t b = 600 * r; b < 600 * (r + 1); ++b) mean_x += x[b] / 600.0, mean_y += y(b) / 600.0;
-    for (std::size_t b = 600 * r; b < 600 * (r + 1); ++b) {
-      xy += (x[b] - mean_x) * (y(b) - mean_y);
-      xx += (x[b] - mean_x) * (x[b] - mean_x);
-    }
-    EXPECT_NEAR(by.value[r], xy / xx, 1e-9);
-    EXPECT_NEAR(by.std_error[r], 1.0 / std::sqrt(xx), 0.1 / std::sqrt(xx));
-  }
-}
-
-TEST(BetweenCaptures, SameCoefficientDoesNotChange) {
-  for (std::uint64_t seed = 0; seed < 40; ++seed)
-    EXPECT_FALSE(compared(captures_with({0.5, 0.5}, seed)).changes()) << seed;
-}
-
-TEST(BetweenCaptures, ChangesOfSizeAndOfSignAreToldApart) {
-  for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    const ByCapture size = compared(captures_with({0.5, 0.2}, seed));
-    EXPECT_TRUE(size.changes() && !size.changes_sign()) << seed;
-    const ByCapture sign = compared(captures_with({0.5, -0.3}, seed));
-    EXPECT_TRUE(sign.changes() && sign.changes_sign()) << seed;
-  }
-}
-
-TEST(BetweenCaptures, ACaptureInWhichTheChannelStandsStillSaysNothing) {
-  BlockData data = captures_with({0.5, 0.5}, 3);
-  for (std::size_t b = 600; b < 1200; ++b) data.channels[0].values[b] = 25.0;
-  const ByCapture by = compared(data);
-  EXPECT_EQ(by.records, (std::vector<std::size_t>{0}));
-  EXPECT_FALSE(by.changes());
-}
-
 std::optional<DeniedEffects> denied(const BlockData& data, const std::vector<Form>& forms) {
   std::vector<Candidate> effects;
   for (const Form form : forms) effects.push_back(candidate_of(form));
@@ -83,12 +36,9 @@ TEST(PredictedCapture, WhereTheChannelOnlyRanAlongNothingOfThePredictionIsThere)
     const BlockData data = captures_with({0.5, 0.0}, seed);
     const auto found = denied(data, {Form::kLinear});
     ASSERT_TRUE(found) << seed;
-    const ByCapture by = compared(data);
     EXPECT_EQ(found->effects, (std::vector<std::size_t>{0}));
     if (found->record == 0) continue;  // nothing was predicted, and much is seen
-    EXPECT_NEAR(found->share, by.value[1] / by.value[0], 1e-6) << seed;
-    EXPECT_NEAR(found->share_error, by.std_error[1] / by.value[0], 0.1 * by.std_error[1] / by.value[0])
-        << seed;
+    EXPECT_NEAR(found->share, 0.0, 5.0 * found->share_error) << seed;
   }
 }
 
@@ -145,23 +95,6 @@ bool said(const Diagnosis& diagnosis, const std::string& part) {
   for (const std::string& remark : diagnosis.remarks)
     if (remark.find(part) != std::string::npos) return true;
   return false;
-}
-
-TEST(Diagnose, AnEffectThatChangesItsSignIsLeftOutAndOneThatChangesItsSizeIsSaid) {
-  const Rows first = capture_of(2e-7, 6.0, 1), same = capture_of(2e-7, 6.0, 2);
-  const Rows smaller = capture_of(1e-7, 6.0, 3), against = capture_of(-1e-7, 3.0, 4);
-  const auto together = [&](const Rows& other) {
-    return diagnose({record_of(first, "first"), record_of(other, "second")}, {});
-  };
-  const Diagnosis agrees = together(same);
-  EXPECT_EQ(agrees.effects.size(), 1U);
-  EXPECT_FALSE(said(agrees, "between the captures"));
-  const Diagnosis shrinks = together(smaller);
-  EXPECT_FALSE(shrinks.effects.empty());
-  EXPECT_TRUE(said(shrinks, "changes its size between the captures"));
-  const Diagnosis opposes = together(against);
-  EXPECT_TRUE(said(opposes, "changes its sign between the captures"));
-  for (const FoundEffect& found : opposes.effects) EXPECT_NE(found.effect.form, "linear");
 }
 
 // A square that is flat where the second capture is would do for both together.

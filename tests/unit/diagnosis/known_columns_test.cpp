@@ -11,8 +11,8 @@
 #include <thread>
 #include <vector>
 
+#include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/record/blocks.h"
-#include "filters/diagnosis/record/prepared_records.h"
 
 namespace ifog {
 namespace {

@@ -9,10 +9,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "filters/diagnosis/record/turned.h"
+#include "filters/diagnosis/cleaning/turned.h"
 #include "filters/diagnosis/report/left_out.h"
 #include "filters/diagnosis/residual/dead_zone.h"
-#include "filters/diagnosis/search/channels_first.h"
 #include "filters/diagnosis/search/earth_rate.h"
 #include "tests/unit/diagnosis/gaussian_deviate.h"
 
@@ -27,19 +26,10 @@ TEST(LeftOut, IsNamedByFormAndChannel) {
   EXPECT_EQ(
       dropped_in_words({of_channel, of_none}).find("the innovations suggest linear of supply_V, step, but "),
       0U);
-  EXPECT_EQ(
-      harmful_in_words(of_channel).find("the innovations suggest linear of supply_V, but the daemon's own "),
-      0U);
+  EXPECT_EQ(harmful_in_words(of_channel).find("the innovations suggest linear of supply_V, but "), 0U);
   EXPECT_EQ(judged_beside(0), "");
   EXPECT_NE(judged_beside(1).find(" 1 resonance or line that moves,"), std::string::npos);
   EXPECT_NE(judged_beside(2).find(" 2 resonances or lines that move,"), std::string::npos);
-  ChannelDelay delay;
-  delay.channel = "table_degC";
-  delay.delay_s = 2.5;
-  delay.std_error_s = 0.1;
-  EXPECT_EQ(delay_in_words(delay).find("table_degC logged 2.5 s late (+-0.1): "), 0U);
-  delay.delay_s = -40.0;
-  EXPECT_EQ(delay_in_words(delay).find("what table_degC says acts 40 s later (+-0.1), "), 0U);
 }
 
 TEST(DeadZone, HidesWhatIsWithinItAndNothingBeyond) {
@@ -52,20 +42,6 @@ TEST(DeadZone, HidesWhatIsWithinItAndNothingBeyond) {
   const std::vector<double> expected{0.0, 0.0, 1.5, 0.0, -1.0, -1.999, 0.0, 0.0, 0.0};
   ASSERT_EQ(hidden.size(), expected.size());
   for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(hidden[i], expected[i]) << i;
-}
-
-TEST(ChannelsFirst, KnowAWarmUpAmongOthers) {
-  SearchResult found;
-  EXPECT_FALSE(has_warm_up(found));
-  Candidate other, warm_up;
-  other.form = Form::kLinear;
-  warm_up.form = Form::kWarmUp;
-  found.chosen.resize(1);
-  found.chosen[0].candidate = other;
-  EXPECT_FALSE(has_warm_up(found));
-  found.chosen.resize(2);
-  found.chosen[1].candidate = warm_up;
-  EXPECT_TRUE(has_warm_up(found));
 }
 
 // The whole of it, 7.292115e-5 rad/s, when the gyro tilts by a right angle and an accelerometer along it

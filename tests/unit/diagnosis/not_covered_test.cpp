@@ -7,7 +7,6 @@
 #include <cmath>
 #include <random>
 
-#include "filters/diagnosis/checks/chow_test.h"
 #include "filters/diagnosis/residual/hysteresis.h"
 
 namespace ifog {
@@ -61,7 +60,7 @@ Candidate linear() {
 
 std::optional<Hysteresis> found_in(const BlockData& data, const std::vector<Candidate>& model) {
   const NoiseFit noise = fit_noise(data.grid, design(data, model));
-  return certain_hysteresis(data, fit_loops(data, model, noise), 0.01);
+  return find_hysteresis(data, model, noise, 0.01);
 }
 
 // Up by 4, down by 4, up again, with a play of 1 either way: the loop's corners by hand.
@@ -89,17 +88,6 @@ TEST(Hysteresis, IsFoundWithItsWidthAndItsSize) {
   EXPECT_NEAR(found->coefficient * found->half_width, 0.4 * 4.2, 0.3);
 }
 
-// Between the widths that are tried, which lie 1.4 apart here.
-TEST(Hysteresis, ItsWidthIsFoundBetweenThoseTried) {
-  for (const double half_width : {3.9, 4.2, 5.5}) {
-    BlockData data = quiet(3);
-    add(data, 3.0 * hysteresis_loop(data, 0, half_width));
-    const auto found = found_in(data, {linear()});
-    ASSERT_TRUE(found) << half_width;
-    EXPECT_NEAR(found->half_width, half_width, 0.15) << half_width;
-  }
-}
-
 // A lag is a loop, too, but of a form that is known, and better described by that.
 TEST(Hysteresis, IsNeitherChanceNorALag) {
   int of_chance = 0;
@@ -115,52 +103,6 @@ TEST(Hysteresis, IsNeitherChanceNorALag) {
   }
   EXPECT_EQ(of_chance, 0);
   EXPECT_EQ(of_a_lag, 0);
-}
-
-Unsteadiness unsteadiness_of(const BlockData& data) {
-  constexpr NoiseShape kAsDrawn{1e-4, 0.0, 0.0, 0.0};
-  return unsteadiness(data, {linear()}, 0, kAsDrawn);
-}
-
-// Chi-square of three degrees of freedom has the mean 3 and the variance 6, also where the noise doubles half
-// way through.
-TEST(Steady, IsChiSquareWhereTheEffectIsTheSame) {
-  for (const double noise_from_half : {1.0, 2.0}) {
-    constexpr int kDraws = 60;
-    double mean = 0.0;
-    double most = 0.0;
-    for (std::uint64_t seed = 100; seed < 100 + kDraws; ++seed) {
-      BlockData data = quiet(seed, noise_from_half);
-      add(data, 0.3 * temperature(data));
-      const double value = unsteadiness_of(data).square;
-      mean += value / kDraws;
-      most = std::max(most, value);
-    }
-    EXPECT_NEAR(mean, 3.0, 4.0 * std::sqrt(6.0 / kDraws)) << noise_from_half;
-    EXPECT_LT(most, 16.27) << noise_from_half;
-  }
-}
-
-TEST(Steady, SeesACoefficientThatChanges) {
-  for (std::uint64_t seed = 200; seed < 210; ++seed) {
-    BlockData data = quiet(seed);
-    Eigen::VectorXd effect = 0.3 * temperature(data);
-    effect.tail(static_cast<Eigen::Index>(kBlocks / 2)) *= 0.3;
-    add(data, effect);
-    const Unsteadiness found = unsteadiness_of(data);
-    EXPECT_GT(found.square, 16.27);
-    EXPECT_GT(found.share, 0.1);
-  }
-}
-
-// A strong effect with a little curvature that its form lacks is not all the same, and yet the same effect.
-TEST(Steady, SmallDeparturesOfAStrongEffectAreASmallShare) {
-  BlockData data = quiet(300);
-  const Eigen::VectorXd t = temperature(data);
-  add(data, 3.0 * t + Eigen::VectorXd(0.03 * t.array().square()));
-  const Unsteadiness found = unsteadiness_of(data);
-  EXPECT_GT(found.square, 16.27);
-  EXPECT_LT(found.share, 0.01);
 }
 
 }  // namespace

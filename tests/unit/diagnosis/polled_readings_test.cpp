@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Channels that are held between readings, polled here at times that the test knows.
-#include "filters/diagnosis/record/polled_readings.h"
+#include "filters/diagnosis/channels/polled_readings.h"
 
 #include <gtest/gtest.h>
 

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
-#include "filters/diagnosis/record/carrier.h"
-#include "filters/diagnosis/record/ramp_comb.h"
-#include "filters/diagnosis/record/ramp_table.h"
+#include "filters/diagnosis/ramp/carrier.h"
+#include "filters/diagnosis/ramp/ramp_comb.h"
+#include "filters/diagnosis/ramp/ramp_table.h"
 
 namespace ifog {
 namespace {

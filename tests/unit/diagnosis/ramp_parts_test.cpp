@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "filters/diagnosis/record/harmonic_sums.h"
-#include "filters/diagnosis/record/unbroken_part.h"
+#include "filters/diagnosis/ramp/harmonic_sums.h"
+#include "filters/diagnosis/ramp/unbroken_part.h"
 
 namespace ifog {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/record/ramp.h"
+#include "filters/diagnosis/ramp/ramp.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/record/ramps_out.h"
+#include "filters/diagnosis/ramp/ramps_out.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A feedback ramp that was not logged, found in the rate. The oracle is the formula that made the rate.
-#include "filters/diagnosis/record/rebuilt_ramp.h"
+#include "filters/diagnosis/ramp/rebuilt_ramp.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <random>
 
 #include "filters/diagnosis/diagnose.h"
-#include "filters/diagnosis/record/ramp_between_captures.h"
+#include "filters/diagnosis/ramp/ramp_between_captures.h"
 #include "filters/effects/form.h"
 #include "filters/units/field_units.h"
 

@@ -9,15 +9,15 @@
 #include <string>
 #include <type_traits>
 
+#include "filters/diagnosis/channels/unused_channels.h"
+#include "filters/diagnosis/cleaning/even_error.h"
+#include "filters/diagnosis/cleaning/prepared_channels.h"
+#include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/compensated_error.h"
-#include "filters/diagnosis/record/even_error.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/record/fitted_part.h"
-#include "filters/diagnosis/record/prepared_channels.h"
-#include "filters/diagnosis/record/prepared_records.h"
 #include "filters/diagnosis/record/record_clock.h"
-#include "filters/diagnosis/record/unused_channels.h"
 
 namespace ifog {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A reference that was logged late is told by how much, to a part of a sample, and is put right.
-#include "filters/diagnosis/record/reference_delay.h"
+#include "filters/diagnosis/cleaning/reference_delay.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <functional>
 #include <random>
 
+#include "filters/diagnosis/cleaning/fractional_shift.h"
 #include "filters/diagnosis/diagnose.h"
-#include "filters/diagnosis/record/fractional_shift.h"
 
 namespace ifog {
 namespace {
@@ -124,101 +124,6 @@ TEST(ReferenceDelay, TheDiagnosisIsThatOfTheShiftedReference) {
     EXPECT_EQ(found.effect.form, "product") << found.effect.form;
   // Noise of 1e-3 a sample, and nothing of the 0.03 rad/s that the delay had put there.
   EXPECT_LT(diagnosis.after.at("residual_rms_radps"), 1.1e-3);
-}
-
-// The columns outlive it.
-Record on_a_table(const std::vector<double>& time, const std::vector<double>& measured,
-                  const std::vector<double>& reference, const std::vector<double>& table) {
-  Record record;
-  record.name = "table";
-  record.time_s = time;
-  record.rate_radps = measured;
-  record.reference_radps = reference;
-  record.channels.push_back({"table_rad", table});
-  record.channels.back().period = 2.0 * M_PI;
-  return record;
-}
-
-// A table that swings over an arc, so that the change of its rate runs against its angle. What comes once a
-// turn looks like a late reference there, and a late reference like that: each, both and neither.
-TEST(ReferenceDelay, IsToldFromWhatRepeatsWithTheTablesAngle) {
-  for (const double second : {0.0, 0.4}) {  // of the first swing: another one beside it
-    const auto angle = [&](double t) { return 1.1 * (std::sin(0.057 * t) + second * std::sin(0.15 * t)); };
-    const auto rate = [&](double t) {
-      return 1.1 * (0.057 * std::cos(0.057 * t) + second * 0.15 * std::cos(0.15 * t));
-    };
-    for (const double delay_s : {0.0, 0.02, 0.2}) {
-      for (const double turn : {0.0, 3e-6}) {
-        std::mt19937_64 random(11);
-        std::normal_distribution<double> normal;
-        std::vector<double> time, measured, reference, table;
-        for (std::size_t i = 0; i < 9000; ++i) {
-          const double t = 0.2 * static_cast<double>(i);
-          time.push_back(t);
-          table.push_back(angle(t));
-          measured.push_back(rate(t) + turn * std::cos(angle(t) - 1.0) + 1e-6 * normal(random));
-          reference.push_back(rate(t - delay_s));
-        }
-        const Record record = on_a_table(time, measured, reference, table);
-        const AlignedRecords aligned = align_references({record});
-        ASSERT_EQ(aligned.delays.size(), delay_s > 0.0 ? 1U : 0U) << second << ' ' << delay_s << ' ' << turn;
-        if (aligned.delays.empty()) continue;
-        const ReferenceDelay& found = aligned.delays[0];
-        EXPECT_NEAR(found.delay_s, delay_s, 5.0 * found.std_error_s) << second << ' ' << turn;
-        // Where there is no turn, as sure as can be: the noise over the energy of the rate's change.
-        double energy = 0.0;
-        for (const double t : time) energy += std::pow((rate(t + 0.1) - rate(t - 0.1)) / 0.2, 2);
-        if (turn == 0.0) {
-          EXPECT_LT(found.std_error_s, 1.5e-6 / std::sqrt(energy)) << second;
-        }
-      }
-    }
-  }
-}
-
-// One reading in thirty of the table's angle is an error code and was left out: what comes once a turn is
-// still no late reference.
-TEST(ReferenceDelay, ATurnOfWhichReadingsAreMissingIsNoDelay) {
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    std::mt19937_64 random(seed);
-    std::normal_distribution<double> normal;
-    std::vector<double> time, measured, reference, table;
-    for (std::size_t i = 0; i < 9000; ++i) {
-      const double t = 0.2 * static_cast<double>(i), angle = 1.1 * std::sin(0.057 * t);
-      const double rate = 1.1 * 0.057 * std::cos(0.057 * t);
-      time.push_back(t);
-      table.push_back(random() % 30 == 0 ? std::nan("") : angle);
-      measured.push_back(rate + 3e-6 * std::sin(angle) + 1e-6 * normal(random));
-      reference.push_back(rate);
-    }
-    const Record record = on_a_table(time, measured, reference, table);
-    EXPECT_TRUE(align_references({record}).delays.empty()) << seed;
-  }
-}
-
-// A logger with a clock of its own: the reference is later and later, and no one delay puts it right.
-TEST(ReferenceDelay, OfAClockOfItsOwnGrows) {
-  for (const double drift : {40e-6, -200e-6}) {
-    const Logged logged(21, 0.02, turning, 0.0);
-    std::vector<double> own_clock;
-    std::mt19937_64 random(5);
-    std::normal_distribution<double> normal;
-    for (const double t : logged.time)
-      own_clock.push_back(turning(t - 0.02 - drift * t) + 1e-4 * normal(random));
-    Record record = logged.record;
-    record.reference_radps = own_clock;
-    const AlignedRecords aligned = align_references({record});
-    ASSERT_EQ(aligned.delays.size(), 1U);
-    EXPECT_NEAR(aligned.delays[0].drift, drift, 1e-6);
-    EXPECT_NEAR(aligned.delays[0].delay_s, 0.02, 3e-4);
-    EXPECT_NE(aligned.remarks[0].find("ppm"), std::string::npos) << aligned.remarks[0];
-    double square = 0.0;
-    for (std::size_t i = 400; i + 400 < kSamples; ++i)
-      square += std::pow(aligned.records[0].reference_radps[i] - turning(logged.time[i]), 2);
-    EXPECT_LT(std::sqrt(square / static_cast<double>(kSamples - 800)), 2e-4) << "1e-4 are its noise";
-  }
-  const Logged steady(22, 0.02);
-  EXPECT_EQ(align_references({steady.record}).delays.at(0).drift, 0.0);
 }
 
 // What an interpolation makes of a jump is no error of the gyro.

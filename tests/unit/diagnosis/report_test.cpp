@@ -9,7 +9,6 @@
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
 #include "filters/diagnosis/report/held_out_part.h"
-#include "filters/diagnosis/report/loop_rivals.h"
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/diagnosis/report/sample_effects.h"
 #include "filters/diagnosis/report/separate.h"
@@ -307,28 +306,6 @@ TEST(Prediction, ATransitionsHalfWidthIsInDoubtToo) {
   };
   const double expected = std::abs(heading(kWidth + 0.5 * kDoubt) - heading(kWidth - 0.5 * kDoubt));
   EXPECT_NEAR(predict_heading(diagnosis, record, 100.0, {600.0}).sigma_rad[0] / expected, 1.0, 0.02);
-}
-
-// While the temperature only rises, a quadratic describes a loop as well as the loop itself.
-TEST(LoopRivals, ALoopThatTheRecordCannotExcludeIsSaid) {
-  BlockData data = white_with_temperature(2000, 6);
-  std::vector<double> rising(2000);
-  for (std::size_t i = 0; i < rising.size(); ++i) {
-    const double t = static_cast<double>(i) / 2000.0;
-    rising[i] = 20.0 + 20.0 * t + 0.2 * std::sin(6.0 * t);
-  }
-  data.channels = {channel_of("temperature_degC", rising)};
-  data.channels[0].smooth = true;
-  data.grid.error += 0.6 * hysteresis_loop(data, 0, 2.4);
-  const std::vector<Candidate> model = {candidate_of(Form::kQuadratic)};
-  const NoiseFit noise = fit_noise(data.grid, design(data, model));
-  Findings findings;
-  add_loop_rivals(data, fit_loops(data, model, noise), noise.shape, "", findings);
-  ASSERT_EQ(findings.pairs.size(), 1U);
-  EXPECT_EQ(findings.pairs[0].effects[0].form, "quadratic");
-  EXPECT_EQ(findings.pairs[0].effects[1].form, "hysteresis");
-  ASSERT_EQ(findings.others.size(), 1U);
-  EXPECT_TRUE(findings.others[0].hysteresis);
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <random>
 
 #include "filters/diagnosis/residual/lines.h"
-#include "filters/diagnosis/residual/moving_line.h"
 #include "filters/diagnosis/residual/record_lines.h"
 #include "filters/diagnosis/residual/unexplained.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
@@ -56,54 +55,6 @@ TEST(Lines, WhiteNoiseHasNoneAndItsSpectrumIsFlat) {
   const Spectrum spectrum = averaged_spectrum(white(65536, 5), kPeriod, 40);
   // One-sided: 2 sigma^2 dt. The last bands hold thousands of bins.
   EXPECT_NEAR(spectrum.density.back(), 2.0 * kPeriod, 0.05 * 2.0 * kPeriod);
-}
-
-struct Turning {
-  std::vector<double> rate, error;
-};
-
-// Three harmonics of a ramp that turns `cycles_per_rad` times with the angle, or at its mean frequency.
-Turning turning(bool follows) {
-  Turning made{{}, white(40000, 11)};
-  constexpr double kCyclesPerRad = 1000.0;
-  double angle = 0.0;
-  for (std::size_t i = 0; i < made.error.size(); ++i) {
-    const double t = kPeriod * static_cast<double>(i);
-    made.rate.push_back(4e-3 * (1.0 + 0.001 * std::sin(2.0 * M_PI * t / 400.0)));
-    angle += made.rate.back() * kPeriod;
-    const double cycles = kCyclesPerRad * (follows ? angle : 4e-3 * t);
-    for (const double harmonic : {1.0, 2.0, 3.0})
-      made.error[i] += 1.0 / harmonic * std::sin(2.0 * M_PI * harmonic * cycles);
-  }
-  return made;
-}
-
-TEST(MovingLine, FollowsTheAngleTurned) {
-  const Turning moving = turning(true);
-  const auto found =
-      find_moving_line(moving.error, moving.rate, kPeriod, find_lines(moving.error, 0.0, kPeriod, 0.01));
-  ASSERT_TRUE(found);
-  EXPECT_NEAR(found->cycles_per_rad, 1000.0, 10.0);
-  const Turning still = turning(false);
-  EXPECT_FALSE(
-      find_moving_line(still.error, still.rate, kPeriod, find_lines(still.error, 0.0, kPeriod, 0.01)));
-}
-
-TEST(RecordLines, HarmonicsOfTheMovingLineAreLeftOut) {
-  Lines lines;
-  Candidate slow;
-  slow.form = Form::kLine;
-  for (const double frequency : {1.0, 2.0, 2.5}) {
-    slow.frequency_hz = frequency;
-    lines.slow.push_back(slow);
-  }
-  SpectralLine fast;
-  fast.frequency_hz = 30.01;
-  lines.fast = {{0, fast}};
-  leave_out_harmonics({1.0, 250.0, 100.0}, lines);
-  ASSERT_EQ(lines.slow.size(), 1U);
-  EXPECT_EQ(lines.slow[0].frequency_hz, 2.5);
-  EXPECT_TRUE(lines.fast.empty());
 }
 
 // exp(-ratio/2) times half the samples against the significance: 2 log(0.5 n / p) is the least ratio.
@@ -259,9 +210,6 @@ TEST(Unexplained, OfTheLongestRecordAndALoopTakesThePlace) {
   describe_hysteresis(loop, found);
   EXPECT_EQ(found.kind, "hysteresis");
   EXPECT_NE(found.hint.find("4 °/h high"), std::string::npos) << found.hint;
-  describe_moving({4.2, 350.0, 100.0}, found);
-  EXPECT_EQ(found.kind, "moving_line");
-  EXPECT_EQ(found.frequency_hz, 4.2);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
+#include "filters/diagnosis/channels/reconstruct.h"
 #include "filters/diagnosis/checks/hausman_test.h"
-#include "filters/diagnosis/record/reconstruct.h"
 #include "filters/diagnosis/residual/record_lines.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fit_to_readings.h"

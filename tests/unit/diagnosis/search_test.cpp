@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "filters/diagnosis/record/reconstruct.h"
+#include "filters/diagnosis/channels/reconstruct.h"
 #include "filters/diagnosis/search/acceptance.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
@@ -114,17 +114,6 @@ TEST(Scan, ScoresAreLikelihoodRatios) {
   EXPECT_EQ(best_of(scored).candidate.channel, 1U);
 }
 
-// Their coefficients would be the difference of two large numbers, and their covariance no matrix.
-TEST(Acceptance, TwoOfOneShapeAtOneTimeConstantAreOne) {
-  const Chosen quick{of(0, Form::kBandPower, 1.0), 50.0, 0.0}, near{of(0, Form::kBandPower, 1.05), 40.0, 0.0},
-      slow{of(0, Form::kBandPower, 2.0), 30.0, 0.0}, other{of(1, Form::kBandPower, 1.0), 20.0, 0.0};
-  EXPECT_EQ(standing_twice({quick, slow, other}), std::nullopt);
-  EXPECT_EQ(standing_twice({quick, slow, near}), 2U);
-  EXPECT_EQ(standing_twice({near, quick}), 0U);
-  const Chosen level{of(0, Form::kLinear), 50.0, 0.0};
-  EXPECT_EQ(standing_twice({level, level}), std::nullopt);  // has no time constant to come near
-}
-
 // A form that no column is made of is refused; one was once written past its matrix.
 TEST(Candidates, WhatHasNoColumnIsRefused) {
   const BlockData data = with_supply(1);
@@ -206,25 +195,6 @@ std::vector<EvenError> errors_of(const BlockData& data) {
   error.before.own().assign(data.grid.error.begin(), data.grid.error.end());
   error.rest = error.rest_held_out = error.before;
   return {error};
-}
-
-TEST(Acceptance, KeepsWhatStandsAndDropsWhatIsNot) {
-  BlockData data = with_supply(6);
-  add(data, of(1, Form::kLinear), 0.5);
-  const std::vector<Candidate> model = {of(0, Form::kLinear), of(1, Form::kLinear)};
-  SearchResult found = chosen(data, model);
-  std::vector<EvenError> errors = errors_of(data);
-  subtract_found(data, found, errors);
-  EXPECT_FALSE(stands(data, found, 0, 1e-4));
-  EXPECT_TRUE(stands(data, found, 1, 1e-4));
-  EXPECT_TRUE(holds(data, found, errors, &EvenError::held_out));
-  const std::vector<Effect> dropped = drop_what_does_not_hold(data, data, 1e-4, found, errors);
-  ASSERT_EQ(dropped.size(), 1U);
-  EXPECT_EQ(dropped[0].channel, "temperature_degC");
-  ASSERT_EQ(found.chosen.size(), 1U);
-  const SearchResult alone = chosen(data, {of(1, Form::kLinear)});
-  EXPECT_NEAR(found.coefficients[1], alone.coefficients[1], 1e-9);
-  EXPECT_NEAR(variance_of(errors[0].after), 1.0, 0.15);
 }
 
 // Coefficients that are not those of the data make the error on held-out blocks larger: nothing holds.

@@ -53,38 +53,5 @@ TEST(TwoStates, NoiseAWalkASwingAndOneStepHaveNone) {
   }
 }
 
-// What a search makes of jumps: one of them a step, whose size is taken away behind it.
-SearchResult with_step(double at_s, double size) {
-  SearchResult found;
-  Candidate step;
-  step.form = Form::kStep;
-  step.time_s = at_s;
-  found.chosen.push_back({step, 100.0, 0.0});
-  found.coefficients = Eigen::Vector2d(0.0, size);
-  return found;
-}
-
-TEST(TwoStates, StepsThatAreJumpsOfATelegraphAreToldFromOneThatStays) {
-  BlockGrid grid;
-  grid.sample_s = 0.5;
-  grid.records = {{0, kSamples}};
-  const double at_s = 0.5 * 500.0;
-  const SearchResult found = with_step(at_s, 1.2);
-  for (const bool telegraph : {true, false}) {
-    EvenError error;
-    for (const double value : white(2)) error.before.own().push_back(value);
-    error.after = error.before;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      const double bias = telegraph ? (i % 2000 < 500 ? 0.0 : 1.2) : (i < 500 ? 0.0 : 1.2);
-      error.after.own()[i] += bias - (i < 500 ? 0.0 : 1.2);
-    }
-    EXPECT_EQ(steps_are_jumps({error}, grid, found), telegraph);
-  }
-  EvenError quiet;
-  for (const double value : white(3)) quiet.before.own().push_back(value);
-  quiet.after = quiet.before;
-  EXPECT_FALSE(steps_are_jumps({quiet}, grid, SearchResult{})) << "no step at all";
-}
-
 }  // namespace
 }  // namespace ifog

@@ -141,6 +141,11 @@ void add_diagnose(const Command& program) {
       .add_option("--latitude", arguments->latitude_deg,
                   "of the captures, degrees: bounds what can be the Earth's rate")
       .within(-90.0, 90.0);
+  command.add_flag("--allow-motion-channels", arguments->wanted.allow_motion_channels,
+                   "without a reference rate, too, trace error to channels that sense motion: what they "
+                   "explain may be rotation");
+  command.add_flag("--allow-proxies", arguments->wanted.allow_proxies,
+                   "correct by coefficients beyond what makers specify, too");
   command.add_flag("--quiet", arguments->quiet, "no report on the console");
   command.callback([arguments] { run(*arguments); });
 }

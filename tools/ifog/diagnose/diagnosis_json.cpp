@@ -109,7 +109,6 @@ Json delays_json(const std::vector<ReferenceDelay>& delays) {
     json.push_back({{"capture", each.record},
                     {"delay_s", number(each.delay_s)},
                     {"std_error_s", number(each.std_error_s)}});
-    if (each.drift != 0.0) json.back()["drift_ppm"] = number(1e6 * each.drift);
   }
   return json;
 }
@@ -162,6 +161,12 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
       if (!each.axis.empty()) json["effects"].back()["axis"] = each.axis;
     }
   }
+  put("bias", [](const Diagnosis& d) {
+    return d.bias ? Json{{"value", number(d.bias->value)},
+                         {"std_error", number(d.bias->std_error)},
+                         {"unit", "rad/s"}}
+                  : Json(nullptr);
+  });
   put("before", [](const Diagnosis& d) { return figures_json(d.before); });
   put("after", [](const Diagnosis& d) { return figures_json(d.after); });
   json["indistinguishable"] = Json::array();

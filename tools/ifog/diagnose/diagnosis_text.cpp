@@ -66,7 +66,8 @@ struct FigureName {
   double scale;
 };
 
-constexpr std::array<FigureName, 11> kFigures = {{
+constexpr std::array<FigureName, 12> kFigures = {{
+    {"bias_radps", "bias, mean", "°/h", 1.0 / kDegreePerHour},
     {"residual_rms_radps", "single samples, RMS", "°/h", 1.0 / kDegreePerHour},
     {"rms_0.1s_radps", "0.1 s means, RMS", "°/h", 1.0 / kDegreePerHour},
     {"rms_1s_radps", "1 s means, RMS", "°/h", 1.0 / kDegreePerHour},
@@ -129,6 +130,9 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
     for (std::size_t i = 0; i < diagnosis.effects.size(); ++i)
       report += effect_lines(diagnosis.effects[i], i + 1, report::parts_overlap(diagnosis));
   }
+  if (diagnosis.bias)
+    report += text("\nBias beside the reference: %.4g ± %.2g °/h, corrected by the model\n",
+                   diagnosis.bias->value / kDegreePerHour, diagnosis.bias->std_error / kDegreePerHour);
   report += "\nError, by the model as written and on data held out of the fit, whichever is larger:\n" +
             figure_lines(diagnosis);
   if (!diagnosis.indistinguishable.empty()) report += "\nCannot be told apart on this data:\n";

@@ -17,9 +17,9 @@
 
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
-#include "filters/diagnosis/record/derived_channels.h"
-#include "filters/diagnosis/record/other_axes.h"
-#include "filters/diagnosis/record/prepared_channels.h"
+#include "filters/diagnosis/channels/derived_channels.h"
+#include "filters/diagnosis/cleaning/other_axes.h"
+#include "filters/diagnosis/cleaning/prepared_channels.h"
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"
@@ -209,9 +209,10 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
   options.fit_to = wanted.fit_to;
   options.subtract_earth_rate = wanted.earth;
   options.latitude_rad = wanted.latitude_rad;
+  options.allow_motion_channels = wanted.allow_motion_channels;
+  options.allow_proxies = wanted.allow_proxies;
   const auto channels = naming_a_capture(names, [&] {
-    return std::make_unique<PreparedChannels>(records_of(captures, names, axes.front()),
-                                              TimeShare{options.fit_from, options.fit_to}, wanted.threads);
+    return std::make_unique<PreparedChannels>(records_of(captures, names, axes.front()), wanted.threads);
   });
   Together together("diagnose", axes.size(), options.most_effects + 1);
   std::vector<AxisDiagnosis> found(axes.size());

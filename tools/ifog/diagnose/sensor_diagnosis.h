@@ -20,6 +20,7 @@ struct AxesToDiagnose {
   double fit_from = 0.0, fit_to = 1.0;  // DiagnoseOptions, as the rest
   bool earth = false;
   std::optional<double> latitude_rad;
+  bool allow_motion_channels = false, allow_proxies = false;
   unsigned threads = 0;  // axes at once; 0: as many as there are processors. The result is the same
 };
 

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/channels/derived_channels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <iterator>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "filters/effects/meaning.h"
+#include "filters/series/samples_writer.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kMostDifferences = 6;
+constexpr double kWholeTurn = 0.9;  // of the period, that a wrap jumps and the values reach
+constexpr double kInside = 0.95;    // share of the values that lie within the turn
+constexpr double kRounding = 1e-3;  // of the period, beyond its ends
+constexpr double kUnsure = 0.01;    // share of steps too long to say which way the angle went
+// What the reference turned by and the table's angle have one slope within this; their correlation.
+constexpr double kSameSlope = 0.1;
+constexpr double kSameCourse = 0.95;
+constexpr double kStray = 1.0;  // of the reference's arc, that an angle may lie beyond it: others are faults
+
+double period_by_unit(const std::string& channel) {
+  const std::string unit = unit_of(channel);
+  if (unit == "rad") return 2.0 * std::numbers::pi;
+  if (unit == "deg") return 360.0;
+  return unit == "turns" ? 1.0 : 0.0;
+}
+
+struct Turn {
+  double low = 0.0, high = 0.0;
+  [[nodiscard]] bool has(double value) const { return value >= low && value <= high; }
+};
+
+// From zero, or from half a turn below it, whichever holds nearly all values: others are a logger's faults.
+std::optional<Turn> turn_of(std::span<const double> values, double period) {
+  for (const double start : {0.0, -0.5 * period}) {
+    const Turn turn{start - kRounding * period, start + (1.0 + kRounding) * period};
+    const auto finite =
+        std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
+    const auto inside = std::count_if(values.begin(), values.end(), [&](double v) { return turn.has(v); });
+    if (static_cast<double>(inside) >= kInside * static_cast<double>(finite)) return turn;
+  }
+  return std::nullopt;
+}
+
+template <class Name>
+bool all_have(const std::vector<Record>& records, const Name& name) {
+  return std::all_of(records.begin(), records.end(),
+                     [&](const Record& record) { return moves(values_of(record, name)); });
+}
+
+// One measures the same quantity at another place as the other does.
+bool alike(const std::string& one, const std::string& other) {
+  const ChannelKind kind = kind_of(one);
+  const bool has_gradients = kind == ChannelKind::kTemperature || kind == ChannelKind::kPressure;
+  return has_gradients && kind == kind_of(other) && unit_of(one) == unit_of(other);
+}
+
+void add_difference(const std::string& one, const std::string& other, DerivedRecords& derived) {
+  for (Record& record : derived.records) {
+    const std::span<const double> a = values_of(record, one);
+    const std::span<const double> b = values_of(record, other);
+    SamplesWriter difference(a.size());
+    double held_a = std::nan("");  // loggers poll their thermometers in turn
+    double held_b = std::nan("");
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      if (std::isfinite(a[i])) held_a = a[i];
+      if (std::isfinite(b[i])) held_b = b[i];
+      difference.add(held_a - held_b);
+    }
+    record.channels.push_back(
+        {difference_of(one, other), derived.values.emplace_back(std::move(difference).done())});
+  }
+}
+
+void add_differences(const std::vector<Record>& records, DerivedRecords& derived) {
+  std::vector<std::string> names;
+  for (const RecordChannel& channel : records.front().channels)
+    if (all_have(records, channel.name)) names.push_back(channel.name);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    for (std::size_t j = i + 1; j < names.size() && count < kMostDifferences; ++j) {
+      if (!alike(names[i], names[j])) continue;
+      add_difference(names[i], names[j], derived);
+      ++count;
+    }
+  }
+}
+
+}  // namespace
+
+double angle_period(const std::string& channel, std::span<const double> values) {
+  const double period = period_by_unit(channel);
+  if (!(period > 0.0)) return 0.0;
+  const std::optional<Turn> turn = turn_of(values, period);
+  if (!turn) return 0.0;
+  double low = turn->high;
+  double high = turn->low;
+  double before = std::nan("");
+  std::size_t wraps = 0;
+  std::size_t unsure = 0;
+  for (const double value : values) {
+    if (!turn->has(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+    const double jump = std::abs(value - before);
+    wraps += jump > kWholeTurn * period ? 1 : 0;
+    unsure += jump > 0.25 * period && jump < 0.75 * period ? 1 : 0;
+    before = value;
+  }
+  const bool all_round = high - low > kWholeTurn * period;
+  const bool clear = static_cast<double>(unsure) <= kUnsure * static_cast<double>(values.size());
+  return all_round && wraps > 0 && clear ? period : 0.0;
+}
+
+bool of_one_vector(const std::string& one, const std::string& other) {
+  if (one.size() != other.size()) return false;
+  const auto [a, b] = std::mismatch(one.begin(), one.end(), other.begin());
+  const auto axis = [](char c) { return c >= 'x' && c <= 'z'; };
+  return a != one.end() && axis(*a) && axis(*b) && (a == one.begin() || *(a - 1) == '_') &&
+         a + 1 != one.end() && *(a + 1) == '_' && std::equal(a + 1, one.end(), b + 1);
+}
+
+namespace {
+
+// The reference's integral at each sample, in radians; holes go on at the rates of their ends.
+Samples angle_turned(const Record& record) {
+  SamplesWriter turned(record.time_s.size());
+  double sum = 0.0;
+  double before = 0.0;
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const double rate = std::isfinite(record.reference_radps[i]) ? record.reference_radps[i] : before;
+    if (i > 0) sum += 0.5 * (before + rate) * (record.time_s[i] - record.time_s[i - 1]);
+    before = rate;
+    turned.add(sum);
+  }
+  return std::move(turned).done();
+}
+
+double median_of_finite(std::span<const double> values) {
+  std::vector<double> finite;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
+               [](double v) { return std::isfinite(v); });
+  if (finite.empty()) return std::nan("");
+  const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
+  std::nth_element(finite.begin(), middle, finite.end());
+  return *middle;
+}
+
+}  // namespace
+
+double angle_period_by_reference(const std::string& channel, const Record& record) {
+  const double period = period_by_unit(channel);
+  const std::span<const double> values = values_of(record, channel);
+  if (!(period > 0.0) || values.empty() || !moves(record.reference_radps)) return 0.0;
+  const Samples turned = angle_turned(record);
+  const auto [low, high] = std::minmax_element(turned.begin(), turned.end());
+  const double unit = period / (2.0 * std::numbers::pi);
+  const double middle = median_of_finite(values);
+  const double farthest = (1.0 + kStray) * (*high - *low) * unit;
+  double n = 0.0, finite = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!std::isfinite(values[i])) continue;
+    finite += 1.0;
+    if (!(std::abs(values[i] - middle) <= farthest)) continue;
+    n += 1.0;
+    const double dx = unit * turned[i] - x;
+    const double dy = values[i] - middle - y;
+    x += dx / n;
+    y += dy / n;
+    xx += dx * (unit * turned[i] - x);
+    xy += dx * (values[i] - middle - y);
+    yy += dy * (values[i] - middle - y);
+  }
+  if (!(n >= kInside * finite) || !(xx > 0.0) || !(yy > 0.0)) return 0.0;
+  const bool same_slope = std::abs(std::abs(xy) / xx - 1.0) < kSameSlope;
+  return same_slope && xy * xy > kSameCourse * kSameCourse * xx * yy ? period : 0.0;
+}
+
+namespace {
+
+std::string outside_in_words(const std::string& channel, std::size_t samples, double first) {
+  std::array<char, 96> line{};
+  std::snprintf(line.data(), line.size(),
+                " is outside the turn in %zu sample(s), first %.6g: no angle, left out", samples, first);
+  return channel + line.data();
+}
+
+}  // namespace
+
+DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
+  DerivedRecords derived{records, {}, {}};
+  if (records.empty()) return derived;
+  for (const RecordChannel& channel : records.front().channels) {
+    double period = 0.0;
+    for (const Record& record : records)
+      period = std::max({period, angle_period(channel.name, values_of(record, channel.name)),
+                         angle_period_by_reference(channel.name, record)});
+    if (!(period > 0.0)) continue;
+    for (Record& record : derived.records) {
+      for (RecordChannel& mine : record.channels) {
+        if (mine.name != channel.name) continue;
+        Samples& whole = derived.values.emplace_back(mine.values.begin(), mine.values.end());
+        const std::optional<Turn> turn = turn_of(mine.values, period);
+        double before = std::nan("");
+        double first = 0.0;
+        std::size_t outside = 0;
+        for (double& value : whole) {
+          if (turn && std::isfinite(value) && !turn->has(value)) {
+            if (outside++ == 0) first = value;
+            value = std::nan("");
+          }
+          if (!std::isfinite(value)) continue;
+          if (std::isfinite(before)) value -= period * std::round((value - before) / period);
+          before = value;
+        }
+        mine.values = whole;
+        mine.period = period;
+        if (outside > 0)
+          derived.remarks.push_back(outside_in_words(
+              records.size() > 1 ? mine.name + " (" + record.name + ")" : mine.name, outside, first));
+      }
+    }
+  }
+  return derived;
+}
+
+DerivedRecords with_differences(const std::vector<Record>& records) {
+  DerivedRecords derived{records, {}, {}};
+  if (!records.empty()) add_differences(records, derived);
+  return derived;
+}
+
+}  // namespace ifog

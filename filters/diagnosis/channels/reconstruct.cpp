@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/channels/reconstruct.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "filters/diagnosis/channels/polled_readings.h"
+
+namespace ifog {
+namespace {
+
+// Readings that repeat more often than this come in steps coarser than the channel's changes.
+constexpr double kRepeats = 0.6;
+// Readings, or means of some, that the smoothness is found from.
+constexpr std::size_t kMostReadings = 4096;
+// Log-likelihood by which a smooth motion must beat a random walk, whose jumps a spline would blur.
+constexpr double kSmoother = 5.0;
+constexpr double kScatter = 6.0;
+// The channel must vary by this many times its reading noise.
+constexpr double kAboveNoise = 3.0;
+
+double change_of(std::span<const Reading> readings) {
+  std::vector<double> changes;
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    const double change = std::abs(readings[i].value - readings[i - 1].value);
+    if (change != 0.0) changes.push_back(change);
+  }
+  if (changes.empty()) return 0.0;
+  const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
+  std::nth_element(changes.begin(), middle, changes.end());
+  return *middle;
+}
+
+bool is_coarse(std::span<const Reading> readings) {
+  std::size_t repeats = 0;
+  for (std::size_t i = 1; i < readings.size(); ++i)
+    repeats += readings[i].value == readings[i - 1].value ? 1 : 0;
+  return static_cast<double>(repeats) > kRepeats * static_cast<double>(readings.size());
+}
+
+// Where a coarse reading changes by one step the channel passes the middle; a jump over several steps is one.
+std::vector<Reading> crossings(std::span<const Reading> readings, double step) {
+  std::vector<Reading> found;
+  for (std::size_t i = 1; i < readings.size(); ++i) {
+    const Reading &before = readings[i - 1], &after = readings[i];
+    const double change = after.value - before.value;
+    if (change == 0.0) continue;
+    if (std::abs(change) < 1.5 * step) {
+      found.push_back({0.5 * (before.step + after.step), 0.5 * (after.value + before.value)});
+    } else {
+      if (found.empty() || found.back().step < before.step) found.push_back(before);
+      found.push_back(after);
+    }
+  }
+  return found;
+}
+
+// Level and slope of an integrated random walk; covariances relative to the variance of a reading.
+struct State {
+  double level = 0.0, slope = 0.0;
+  double pll = 0.0, pls = 0.0, pss = 0.0;
+};
+
+void predict(State& s, double d, double drive) {
+  s.level += d * s.slope;
+  const double pll = s.pll + d * (2.0 * s.pls + d * s.pss) + drive * d * d * d / 3.0;
+  const double pls = s.pls + d * s.pss + drive * d * d / 2.0;
+  s.pll = pll;
+  s.pls = pls;
+  s.pss += drive * d;
+}
+
+// Innovation and its variance; the state takes the reading in.
+std::pair<double, double> update(State& s, double value) {
+  const double variance = s.pll + 1.0;
+  const double innovation = value - s.level;
+  const double gain_level = s.pll / variance;
+  const double gain_slope = s.pls / variance;
+  s.level += gain_level * innovation;
+  s.slope += gain_slope * innovation;
+  s.pss -= gain_slope * s.pls;
+  s.pls -= gain_level * s.pls;
+  s.pll -= gain_level * s.pll;
+  return {innovation, variance};
+}
+
+// Through the first two readings: what is known after them whatever was before.
+State started(const Reading& a, const Reading& b, double drive) {
+  const double d = b.step - a.step;
+  State s;
+  s.level = b.value;
+  s.slope = (b.value - a.value) / d;
+  s.pll = 1.0;
+  s.pls = 1.0 / d;
+  s.pss = 2.0 / (d * d) + drive * d / 3.0;
+  return s;
+}
+
+struct Likelihood {
+  double square = 0.0, determinant = 0.0, count = 0.0;
+  [[nodiscard]] double value() const {
+    return -0.5 * (count * std::log(std::max(square, 1e-300) / count) + determinant);
+  }
+};
+
+// Both explain the readings after the second, so that their likelihoods compare.
+enum class Course { kSmooth, kWalk };
+
+double likelihood(std::span<const Reading> readings, Course course, double drive) {
+  Likelihood sum;
+  State s = started(readings[0], readings[1], drive);
+  if (course == Course::kWalk) s = {readings[1].value, 0.0, 1.0, 0.0, 0.0};
+  for (std::size_t i = 2; i < readings.size(); ++i) {
+    const double d = readings[i].step - readings[i - 1].step;
+    if (course == Course::kSmooth) {
+      predict(s, d, drive);
+    } else {
+      s.pll += drive * d;
+    }
+    const auto [innovation, variance] = update(s, readings[i].value);
+    sum.square += innovation * innovation / variance;
+    sum.determinant += std::log(variance);
+    sum.count += 1.0;
+  }
+  return sum.value();
+}
+
+// Means of so many readings that few enough are left. All of the record is used: the few kinks in it are what
+// the spline must be able to follow.
+std::vector<Reading> thinned(const std::vector<Reading>& readings) {
+  const std::size_t share = (readings.size() + kMostReadings - 1) / kMostReadings;
+  if (share < 2) return readings;
+  std::vector<Reading> means;
+  for (std::size_t i = 0; i + share <= readings.size(); i += share) {
+    Reading mean{0.0, 0.0};
+    for (std::size_t j = i; j < i + share; ++j) {
+      mean.step += readings[j].step / static_cast<double>(share);
+      mean.value += readings[j].value / static_cast<double>(share);
+    }
+    means.push_back(mean);
+  }
+  return means;
+}
+
+struct Drive {
+  double drive, likelihood;
+};
+
+// Of the slope's, or the level's, random walk over the variance of a reading, a step: over the decades, then
+// within one.
+Drive best_drive(std::span<const Reading> readings, Course course) {
+  double best = 0.0;
+  double most = -std::numeric_limits<double>::infinity();
+  for (int decade = -16; decade <= 4; ++decade) {
+    const double value = likelihood(readings, course, std::pow(10.0, decade));
+    if (value > most) {
+      most = value;
+      best = decade;
+    }
+  }
+  for (const double step : {0.5, 0.25, 0.125}) {
+    for (const double power : {best - step, best + step}) {
+      const double value = likelihood(readings, course, std::pow(10.0, power));
+      if (value > most) {
+        most = value;
+        best = power;
+      }
+    }
+  }
+  return {std::pow(10.0, best), most};
+}
+
+// Rauch-Tung-Striebel; levels and slopes at the readings.
+std::vector<State> smoothed(std::span<const Reading> readings, double drive) {
+  std::vector<State> states(readings.size());
+  states[1] = started(readings[0], readings[1], drive);
+  for (std::size_t i = 2; i < readings.size(); ++i) {
+    states[i] = states[i - 1];
+    predict(states[i], readings[i].step - readings[i - 1].step, drive);
+    update(states[i], readings[i].value);
+  }
+  for (std::size_t i = readings.size() - 1; i-- > 1;) {
+    State ahead = states[i];
+    const double d = readings[i + 1].step - readings[i].step;
+    predict(ahead, d, drive);
+    State& s = states[i];
+    const double a = s.pll + d * s.pls;
+    const double b = s.pls + d * s.pss;
+    const double determinant = ahead.pll * ahead.pss - ahead.pls * ahead.pls;
+    const double level = states[i + 1].level - ahead.level;
+    const double slope = states[i + 1].slope - ahead.slope;
+    const double u = (ahead.pss * level - ahead.pls * slope) / determinant;
+    const double v = (ahead.pll * slope - ahead.pls * level) / determinant;
+    s.level += a * u + s.pls * v;
+    s.slope += b * u + s.pss * v;
+  }
+  const double d = readings[1].step - readings[0].step;
+  states[0] = states[1];
+  states[0].level -= d * states[1].slope;
+  return states;
+}
+
+// Through levels and slopes at the readings, cubic between two of them; asked at steps in their order.
+class Spline {
+ public:
+  Spline(std::span<const Reading> readings, double drive)
+      : readings_(readings), states_(smoothed(readings, drive)) {}
+
+  double at(double step) {
+    const Reading &first = readings_.front(), &last = readings_.back();
+    while (i_ + 2 < readings_.size() && readings_[i_ + 1].step <= step) ++i_;
+    if (step < first.step) return states_.front().level - (first.step - step) * states_.front().slope;
+    if (step > last.step) return states_.back().level + (step - last.step) * states_.back().slope;
+    return between(readings_[i_], states_[i_], readings_[i_ + 1], states_[i_ + 1], step);
+  }
+  void rewind() { i_ = 0; }
+
+ private:
+  static double between(const Reading& from, const State& a, const Reading& to, const State& b, double step) {
+    const double d = to.step - from.step;
+    const double u = (step - from.step) / d;
+    const double rest = 1.0 - u;
+    return a.level * (1.0 + 2.0 * u) * rest * rest + b.level * u * u * (3.0 - 2.0 * u) +
+           d * u * rest * (a.slope * rest - b.slope * u);
+  }
+
+  std::span<const Reading> readings_;
+  std::vector<State> states_;
+  std::size_t i_ = 0;
+};
+
+// One a step, as they are not polled.
+std::vector<Reading> one_a_step(std::span<const double> values) {
+  std::vector<Reading> readings;
+  readings.reserve(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) readings.push_back({static_cast<double>(i), values[i]});
+  return readings;
+}
+
+Reconstruction as_read(std::span<const double> values, const std::optional<PolledReadings>& polled) {
+  Reconstruction result{{values.begin(), values.end()}, false};
+  if (polled)
+    for (std::size_t k = 0; k < values.size(); ++k)
+      result.values[k] = on_line(polled->readings, static_cast<double>(k));
+  return result;
+}
+
+double sum_of_squares(std::span<const double> values, double about) {
+  double sum = 0.0;
+  for (const double value : values) sum += (value - about) * (value - about);
+  return sum;
+}
+
+}  // namespace
+
+Reconstruction reconstruct(std::span<const double> values) {
+  const std::optional<PolledReadings> polled = polled_readings(values);
+  const std::vector<Reading> read = polled ? polled->readings : one_a_step(values);
+  const bool coarse = is_coarse(read);
+  const double step = coarse ? change_of(read) : 0.0;
+  const std::vector<Reading> used = coarse ? crossings(read, step) : read;
+  if (used.size() < 8) return as_read(values, polled);
+  const std::vector<Reading> few = thinned(used);
+  const Drive smooth = best_drive(few, Course::kSmooth);
+  if (smooth.likelihood < best_drive(few, Course::kWalk).likelihood + kSmoother)
+    return as_read(values, polled);
+  // The variance of a mean of readings is that share of a reading's.
+  const double share = static_cast<double>(few.size()) / static_cast<double>(used.size());
+  Spline spline(used, smooth.drive * share);
+  // Within half a step of the reading, or of those before and after.
+  const auto possible = [&](double value, double before, double after) {
+    if (!coarse) return value;
+    return std::clamp(value, std::min(before, after) - 0.5 * step, std::max(before, after) + 0.5 * step);
+  };
+  Reconstruction result{std::vector<double>(values.size()), true};
+  double mean = 0.0;
+  std::size_t at = 0;  // of the reading before
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    while (at + 1 < read.size() && read[at + 1].step <= static_cast<double>(k)) ++at;
+    const double after = polled && at + 1 < read.size() ? read[at + 1].value : read[at].value;
+    result.values[k] = possible(spline.at(static_cast<double>(k)), read[at].value, after);
+    mean += result.values[k] / static_cast<double>(values.size());
+  }
+  // What was taken away has to be reading noise and nothing else.
+  std::vector<double> taken;
+  taken.reserve(read.size());
+  spline.rewind();
+  for (const Reading& each : read)
+    taken.push_back(each.value - possible(spline.at(each.step), each.value, each.value));
+  if (!coarse && !stands_still(taken)) return as_read(values, polled);
+  const double signal = sum_of_squares(result.values, mean) * static_cast<double>(read.size()) /
+                        static_cast<double>(values.size());
+  return signal > kAboveNoise * kAboveNoise * sum_of_squares(taken, 0.0) ? result : as_read(values, polled);
+}
+
+bool stands_still(std::span<const double> readings) {
+  const auto variance = [](std::span<const double> values) {
+    double mean = 0.0;
+    for (const double v : values) mean += v / static_cast<double>(values.size());
+    double sum = 0.0;
+    for (const double v : values) sum += (v - mean) * (v - mean);
+    return sum / static_cast<double>(values.size());
+  };
+  std::vector<double> means(readings.begin(), readings.end());
+  const double white = variance(means);
+  for (double length = 4.0; means.size() >= 64; length *= 4.0) {
+    const std::size_t n = means.size() / 4;
+    for (std::size_t i = 0; i < n; ++i) {
+      means[i] = 0.25 * (means[4 * i] + means[4 * i + 1] + means[4 * i + 2] + means[4 * i + 3]);
+    }
+    means.resize(n);
+    const double excess = variance(means) * length / std::max(white, 1e-300) - 1.0;
+    if (excess > kScatter * std::sqrt(2.0 / static_cast<double>(n))) return false;
+  }
+  return true;
+}
+
+// Of what both channels were: readings in steps, one taken from the other, are steps of neither.
+void rebuild_differences(BlockData& data) {
+  const auto named = [&](const std::string& name) {
+    return std::find_if(data.channels.begin(), data.channels.end(),
+                        [&](const FineChannel& channel) { return channel.name == name; });
+  };
+  for (FineChannel& channel : data.channels) {
+    const ChannelNames names = names_in(channel.name);
+    if (names.less.empty()) continue;
+    const auto of = named(names.of);
+    const auto less = named(names.less);
+    if (of == data.channels.end() || less == data.channels.end()) continue;
+    channel.smooth = of->smooth && less->smooth;
+    for (std::size_t k = 0; k < channel.values.size(); ++k)
+      channel.values[k] = of->values[k] - less->values[k];
+  }
+}
+
+BlockData with_reconstructed_channels(const BlockData& data) {
+  BlockData reconstructed = data;
+  const BlockGrid& grid = data.grid;
+  for (std::size_t c = 0; c < reconstructed.channels.size(); ++c) {
+    FineChannel& channel = reconstructed.channels[c];
+    if (static_cast<std::ptrdiff_t>(c) == data.reference || !channel.varies || !channel.environment())
+      continue;
+    for (const BlockRange& record : grid.records) {
+      const bool first = record.first == 0;
+      const BlockRange steps = grid.fine_steps(record);
+      const std::span<const double> readings =
+          std::span<const double>(data.channels[c].values).subspan(steps.first, steps.size());
+      const Reconstruction found = reconstruct(readings);
+      std::copy(found.values.begin(), found.values.end(),
+                channel.values.begin() + static_cast<std::ptrdiff_t>(steps.first));
+      channel.smooth = found.smooth && (first || channel.smooth);
+      channel.still = stands_still(readings) && (first || channel.still);
+    }
+  }
+  rebuild_differences(reconstructed);
+  return reconstructed;
+}
+
+}  // namespace ifog

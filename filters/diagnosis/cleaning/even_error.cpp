@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/cleaning/even_error.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+namespace ifog {
+
+std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
+                                   double sample_s) {
+  std::vector<EvenError> errors;
+  errors.reserve(records.size());
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    EvenError error;
+    error.origin = records[r].origin;
+    error.start_s = records[r].time_s.front();
+    const bool plain = records[r].reference_radps.empty();
+    Samples held_out = plain && without.ramps.empty() ? Samples() : error_of(records[r]);
+    Samples room;
+    const std::span<const double> whole = even_samples(
+        records[r], sample_s, plain ? records[r].rate_radps : std::span<const double>(held_out), room);
+    if (!room.empty())
+      error.before = std::move(room);
+    else if (plain)
+      error.before = SharedSamples::of(whole);
+    else
+      error.before = copied(whole);
+    if (without.ramps.empty()) {
+      error.rest = error.rest_held_out = error.before;
+    } else {
+      error.rest = on_even_grid(records[r], sample_s, error_of(without.records[r]));
+      for (const RampFit& ramp : without.ramps)
+        for (std::size_t i = 0; i < held_out.size(); ++i) held_out[i] -= ramp.held_out[r][i];
+      error.rest_held_out = on_even_grid(records[r], sample_s, held_out);
+    }
+    errors.push_back(std::move(error));
+  }
+  return errors;
+}
+
+const EvenError& longest_of(const std::vector<EvenError>& errors) {
+  return *std::max_element(errors.begin(), errors.end(), [](const EvenError& a, const EvenError& b) {
+    return a.before.size() < b.before.size();
+  });
+}
+
+void refuse_constant(const std::vector<Record>& records) {
+  for (const Record& record : records) {
+    const auto error = [&](std::size_t i) {
+      return record.rate_radps[i] - (record.reference_radps.empty() ? 0.0 : record.reference_radps[i]);
+    };
+    for (std::size_t i = 0; i < record.rate_radps.size(); ++i)
+      if (!(error(i) == error(0))) return;
+  }
+  throw std::invalid_argument(
+      "the rate, less the reference if there is one, never changes; expected measurements");
+}
+
+}  // namespace ifog

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The error of every record on its nominal grid, and what of it is explained so far.
+#pragma once
+
+#include <vector>
+
+#include "filters/diagnosis/ramp/ramps_out.h"
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/series/shared_samples.h"
+
+namespace ifog {
+
+// Of one record; NaN where no sample is. What is the same is there once.
+struct EvenError {
+  RecordOrigin origin{};  // that start_s is counted from
+  double start_s = 0.0;
+  SharedSamples before;         // rate - reference
+  SharedSamples rest;           // less ramps, and later lines: what effects are sought in
+  SharedSamples rest_held_out;  // the same, less ramps as fitted without the sample's own part
+  SharedSamples after;          // less the effects, too
+  // Less what is corrected online, by coefficients that were fitted without the sample's own part.
+  SharedSamples held_out;
+  SharedSamples held_in;  // less the same by coefficients of all samples
+  SharedSamples written;  // what the daemon's own correction leaves of `before`, by the model as written
+  SharedSamples logged;   // the same with channels as they were logged, faults and all
+};
+
+// after, held_out and written: still empty. The records' rates outlive what is made of them. Throws as
+// on_even_grid() does.
+std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
+                                   double sample_s);
+
+// Of the record with the most steps; at least one.
+const EvenError& longest_of(const std::vector<EvenError>& errors);
+
+// A stuck device, or a placeholder: rounding would be all there is to explain. Throws std::invalid_argument
+// when the error is the same number all along every record.
+void refuse_constant(const std::vector<Record>& records);
+
+}  // namespace ifog

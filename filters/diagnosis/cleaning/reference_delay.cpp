@@ -1,0 +1,271 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/cleaning/reference_delay.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <cstdio>
+#include <limits>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+#include <unsupported/Eigen/FFT>
+
+#include "filters/allan/stretches.h"
+#include "filters/diagnosis/cleaning/abrupt_reference.h"
+#include "filters/diagnosis/cleaning/autoregression.h"
+#include "filters/diagnosis/cleaning/fractional_shift.h"
+#include "filters/diagnosis/cleaning/series_fit.h"
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/record_clock.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kLongest_s = 60.0;
+constexpr double kSlowest_s = 1.0;        // between samples; a table of dwells is slower
+constexpr std::size_t kMost = 1U << 17U;  // steps that the delay is sought on
+constexpr std::size_t kLeast = 200;       // and the fewest that tell
+constexpr int kRounds = 20;
+constexpr double kSettled = 1e-5;       // of a step
+constexpr double kCertainDelay = 25.0;  // twice the log-likelihood, beyond what the lags tried bring
+constexpr std::size_t kPowers = 4;      // of the reference: constant to cubic
+using Series = std::vector<double>;
+
+constexpr double kTold = 0.1;  // of a step: a delay that is known so well
+
+struct Pair {
+  Series rate, reference;
+  Series without_jumps;  // the reference; empty: it has none
+  double step_s = 0.0;
+};
+
+Series differences(const Series& series) {
+  Series out(series.size(), std::nan(""));
+  for (std::size_t i = 1; i < series.size(); ++i) out[i] = series[i] - series[i - 1];
+  return out;
+}
+
+Series means(std::span<const double> series, std::size_t count) {
+  if (count == 1) return {series.begin(), series.end()};
+  Series out(series.size() / count);
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    double sum = 0.0;  // NaN as soon as one is missing: a mean of some would come from another time
+    for (std::size_t k = i * count; k < (i + 1) * count; ++k) sum += series[k];
+    out[i] = sum / static_cast<double>(count);
+  }
+  return out;
+}
+
+std::optional<Pair> pair_of(const Record& record) {
+  if (record.reference_radps.empty() || record.time_s.size() < kLeast) return std::nullopt;
+  double period_s = 0.0;
+  Pair pair;
+  try {
+    period_s = clock_of(record).period_s;
+    if (period_s > kSlowest_s) return std::nullopt;
+    const Samples rate = on_even_grid(record, period_s, record.rate_radps);
+    const std::size_t count = (rate.size() + kMost - 1) / kMost;
+    pair.rate = means(rate, count);
+    Samples reference = on_even_grid(record, period_s, record.reference_radps);
+    pair.reference = means(reference, count);
+    if (leave_out_jumps(reference, rate) > 0) pair.without_jumps = means(reference, count);
+    pair.step_s = period_s * static_cast<double>(count);
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;  // no even clock, or hardly anything on it
+  }
+  return pair;
+}
+
+std::size_t longest_lag(const Pair& pair) {
+  return std::min(static_cast<std::size_t>(kLongest_s / pair.step_s), pair.rate.size() / 4);
+}
+
+std::vector<std::complex<double>> transform(const Series& series, std::size_t size) {
+  Series padded(size, 0.0);
+  for (std::size_t i = 0; i < series.size(); ++i)
+    if (std::isfinite(series[i])) padded[i] = series[i];
+  Eigen::FFT<double> fft;
+  std::vector<std::complex<double>> spectrum;
+  fft.fwd(spectrum, padded);
+  return spectrum;
+}
+
+// In whole steps, by where the whitened series are most alike.
+double coarse_delay(const Pair& pair) {
+  const Series rate = differences(pair.rate), reference = differences(pair.reference);
+  const Autoregression noise(rate);
+  const auto most = static_cast<std::ptrdiff_t>(longest_lag(pair));
+  const std::size_t size = std::bit_ceil(rate.size() + static_cast<std::size_t>(most) + 1);
+  std::vector<std::complex<double>> product = transform(noise.whitened(rate), size);
+  const std::vector<std::complex<double>> other = transform(noise.whitened(reference), size);
+  for (std::size_t i = 0; i < product.size(); ++i) product[i] = std::conj(product[i]) * other[i];
+  Series likeness;
+  Eigen::FFT<double> fft;
+  fft.inv(likeness, product);
+  std::ptrdiff_t best = 0;
+  const auto at = [&](std::ptrdiff_t lag) {
+    return likeness[static_cast<std::size_t>(lag < 0 ? lag + static_cast<std::ptrdiff_t>(size) : lag)];
+  };
+  for (std::ptrdiff_t lag = -most; lag <= most; ++lag)
+    if (at(lag) > at(best)) best = lag;
+  return static_cast<double>(best);
+}
+
+// Powers of the reference as it would be with a delay, and its slope over a step, by row.
+struct Regressors {
+  std::array<Series, kPowers> powers;
+  Series slope;
+};
+
+Regressors regressors_at(const Series& reference, double scale, double steps, bool with_slope) {
+  Regressors out;
+  const Samples moved = shifted(reference, steps);
+  for (std::size_t p = 0; p < kPowers; ++p) {
+    out.powers[p].resize(moved.size());
+    for (std::size_t i = 0; i < moved.size(); ++i)
+      out.powers[p][i] =
+          std::isfinite(moved[i]) ? std::pow(moved[i] / scale, static_cast<double>(p)) : std::nan("");
+  }
+  if (!with_slope) return out;
+  constexpr double kAside = 0.25;
+  const Samples behind = shifted(reference, steps + kAside);
+  out.slope.assign(behind.begin(), behind.end());
+  const Samples before = shifted(reference, steps - kAside);
+  for (std::size_t i = 0; i < before.size(); ++i) out.slope[i] = (out.slope[i] - before[i]) / (2.0 * kAside);
+  return out;
+}
+
+// Rate, powers of the reference, and last the slope.
+std::vector<Series> columns_of(const Pair& pair, const Regressors& regressors) {
+  std::vector<Series> columns{pair.rate};
+  columns.insert(columns.end(), regressors.powers.begin(), regressors.powers.end());
+  if (!regressors.slope.empty()) columns.push_back(regressors.slope);
+  return columns;
+}
+
+std::vector<Series> whitened(const std::vector<Series>& columns, const Autoregression& noise) {
+  std::vector<Series> white;
+  white.reserve(columns.size());
+  for (const Series& column : columns) white.push_back(noise.whitened(column));
+  return white;
+}
+
+// Of the noise that is left where the reference is moved so. columns: the last is its slope.
+Autoregression noise_beside(const std::vector<Series>& columns) {
+  const std::vector<Series> without(columns.begin(), columns.end() - 1);
+  const SeriesFit plain = least_squares(without, complete_rows(without));
+  Series left = columns.front();
+  for (std::size_t p = 1; p < without.size(); ++p)
+    for (std::size_t i = 0; i < left.size(); ++i)
+      left[i] -= plain.coefficients[static_cast<Eigen::Index>(p - 1)] * without[p][i];
+  return Autoregression(left);
+}
+
+struct Delay {
+  double steps = 0.0, error = 0.0;
+  double gain = 0.0;  // twice the log-likelihood, over none
+};
+
+std::optional<Delay> refined(const Pair& pair, double steps) {
+  const double scale = std::sqrt(variance_of(pair.reference));
+  if (!(scale > 0.0)) return std::nullopt;
+  Delay delay;
+  delay.steps = steps;
+  for (int round = 0; round < kRounds; ++round) {
+    const std::vector<Series> columns =
+        columns_of(pair, regressors_at(pair.reference, scale, delay.steps, true));
+    if (columns.front().size() < kLeast) return std::nullopt;
+    const Autoregression noise = noise_beside(columns);
+    const std::vector<Series> white = whitened(columns, noise);
+    std::vector<std::uint8_t> rows = complete_rows(white);
+    const SeriesFit fit = least_squares(white, rows);
+    const double of_reference = fit.coefficients[1] / scale;
+    const double step = fit.coefficients[fit.coefficients.size() - 1] / of_reference;
+    if (fit.rows < kLeast || !std::isfinite(step) || of_reference <= 0.0) return std::nullopt;
+    delay.error = std::sqrt(fit.last_variance) / of_reference;
+    if (std::abs(step) < std::max(kSettled, 0.01 * delay.error)) {
+      const std::vector<Series> as_logged =
+          whitened(columns_of(pair, regressors_at(pair.reference, scale, 0.0, false)), noise);
+      const std::vector<std::uint8_t> known = complete_rows(as_logged);
+      for (std::size_t i = 0; i < rows.size(); ++i)
+        if (!known[i]) rows[i] = 0;
+      const SeriesFit with = least_squares(white, rows);
+      const SeriesFit without = least_squares(as_logged, rows);
+      delay.gain = static_cast<double>(with.rows) * std::log(without.square / with.square);
+      delay.steps += step;  // what is settled to a part of a sample may be known to less
+      return delay;
+    }
+    delay.steps += std::clamp(step, -1.0, 1.0);
+    if (std::abs(delay.steps) > static_cast<double>(longest_lag(pair))) return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// Twice the log-likelihood that the lags tried bring by chance, and what is asked beyond it.
+double price_of(const Pair& pair) {
+  return kCertainDelay + 2.0 * std::log(2.0 * static_cast<double>(longest_lag(pair)) + 1.0);
+}
+
+// A jump tells a delay to whole samples only, and loudly: where what lies between the jumps tells it to a
+// part of one, that is it. Where all motion is jumps, they are all there is.
+void settle_without_jumps(Pair& pair, Delay& delay) {
+  if (pair.without_jumps.empty()) return;
+  Pair smooth = pair;
+  smooth.reference = pair.without_jumps;
+  const std::optional<Delay> between = refined(smooth, delay.steps);
+  if (!between || !(between->error < kTold) || std::abs(between->steps - delay.steps) > 2.0) return;
+  delay.steps = between->steps;
+  delay.error = between->error;
+  pair.reference = pair.without_jumps;
+}
+
+// By row of the record, the reference as it would have been without delay.
+Samples moved_reference(const Record& record, double delay_s) {
+  const double period_s = clock_of(record).period_s;
+  const Samples logged = on_even_grid(record, period_s, record.reference_radps);
+  const Samples even = shifted(logged, delay_s / period_s);
+  Samples out(record.time_s.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const auto k =
+        static_cast<std::size_t>(std::floor((record.time_s[i] - record.time_s.front()) / period_s + 0.5));
+    out[i] = even[std::min(k, even.size() - 1)];
+  }
+  return out;
+}
+
+std::string in_words(const ReferenceDelay& delay, const std::string& name, bool several) {
+  const double late = delay.delay_s;
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(), " logged %.4g s %s (+-%.2g): shifted", std::abs(late),
+                late > 0.0 ? "late" : "early, or the rate late", delay.std_error_s);
+  return name + (several ? " (" + delay.record + ")" : "") + text.data();
+}
+
+}  // namespace
+
+AlignedRecords align_references(const std::vector<Record>& records) {
+  AlignedRecords aligned;
+  aligned.records = records;
+  for (Record& record : aligned.records) {
+    std::optional<Pair> pair = pair_of(record);
+    if (!pair || pair->rate.size() < kLeast || !(variance_of(pair->reference) > 0.0)) continue;
+    std::optional<Delay> delay = refined(*pair, coarse_delay(*pair));
+    if (!delay || delay->gain < price_of(*pair)) continue;
+    settle_without_jumps(*pair, *delay);
+    ReferenceDelay found{record.name, delay->steps * pair->step_s, delay->error * pair->step_s};
+    Samples& moved = aligned.references.emplace_back(moved_reference(record, found.delay_s));
+    const std::size_t jumps = leave_out_jumps(moved, record.rate_radps);
+    record.reference_radps = moved;
+    aligned.remarks.push_back(in_words(found, record.reference_name, records.size() > 1));
+    if (jumps > 0)
+      aligned.remarks.back() += "; " + std::to_string(jumps) + " sample(s) where it jumps left out";
+    aligned.delays.push_back(std::move(found));
+  }
+  return aligned;
+}
+
+}  // namespace ifog

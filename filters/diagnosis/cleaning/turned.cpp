@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/cleaning/turned.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "filters/diagnosis/record/known_columns.h"
+#include "filters/diagnosis/record/record_clock.h"
+#include "filters/rest/rest.h"
+
+namespace ifog {
+namespace {
+
+// Of a record without an even clock, such as a list of dwells, nothing can be said.
+std::optional<double> period_of(const Record& record) {
+  try {
+    return clock_of(record).period_s;
+  } catch (const std::invalid_argument&) {
+    return {};
+  }
+}
+
+}  // namespace
+
+bool was_turned(const std::vector<Record>& records) {
+  constexpr double kTurned_radps = 1e-4;
+  return std::any_of(records.begin(), records.end(), [](const Record& record) {
+    double least = std::numeric_limits<double>::infinity(), most = -least;
+    for (const double rate : record.reference_radps) {
+      if (!std::isfinite(rate)) continue;
+      least = std::min(least, rate);
+      most = std::max(most, rate);
+    }
+    return most - least > kTurned_radps;
+  });
+}
+
+WithoutTurns without_turns(const std::vector<Record>& records) {
+  WithoutTurns out;
+  for (const Record& record : records) {
+    out.records.push_back(record);
+    const std::optional<double> period = period_of(record);
+    if (!record.reference_radps.empty() || !period) continue;
+    const double period_s = *period;
+    std::vector<std::span<const double>> axes{record.rate_radps};
+    for (const RecordChannel& other : record.other_axes) axes.push_back(other.values);
+    const std::vector<SeriesView> views(axes.begin(), axes.end());
+    if (record.known)
+      for (const std::span<const double> axis : axes)
+        record.known->prepare({"rest windows", axis, period_s}, [&] { return rest_windows(axis, period_s); });
+    const Rest rest = find_rest(views, {}, period_s, [&](std::size_t axis) {
+      return known_or(record.known.get(), {"rest windows", axes[axis], period_s},
+                      [&] { return rest_windows(axes[axis], period_s); });
+    });
+    if (rest.turned == 0) {
+      out.records.back().at_rest = rest.at_rest;
+      continue;
+    }
+    try {
+      require_rest(rest, period_s, record.origin.told(record.time_s.front()));
+    } catch (const std::invalid_argument& error) {
+      throw std::invalid_argument(std::string(error.what()) + ", or a reference rate beside it");
+    }
+    Samples& rate = out.rates.emplace_back(record.rate_radps.size(), std::nan(""));
+    for (const Stretch& part : rest.at_rest)
+      for (std::size_t i = part.begin; i < part.end; ++i) rate[i] = record.rate_radps[i];
+    out.records.back().rate_radps = rate;
+    out.records.back().at_rest = rest.at_rest;
+    out.remarks.push_back(record.name + ": " +
+                          in_words(rest, period_s, record.origin.told(record.time_s.front())) +
+                          "; only the rest is diagnosed");
+  }
+  return out;
+}
+
+}  // namespace ifog

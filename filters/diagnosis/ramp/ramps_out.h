@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// Records without what their closed loops' feedback ramps make of them, logged or rebuilt.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "filters/diagnosis/ramp/ramp.h"
+
+namespace ifog {
+
+struct WithoutRamps {
+  std::vector<RampFit> ramps;
+  std::vector<Record> records;  // without channels that wrap, and less what the ramps explain
+  std::vector<Samples> rates;   // what their rates point to, when a ramp was found
+  std::string remark;           // why one that was not logged is not rebuilt, where that is known
+};
+
+// A counter that wraps is no environment: as a function of its value or slope it would take rotation away. So
+// it may explain the rate as a ramp's angle or not at all, and goes from the channels either way. Where none
+// does explain it, a ramp that was not logged is looked for: its phase would follow the angle turned
+// (rebuilt_ramp.h).
+WithoutRamps take_out_ramps(const std::vector<Record>& records, double significance);
+
+}  // namespace ifog

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/search/plausible.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <optional>
+
+#include "filters/effects/meaning.h"
+#include "filters/units/field_units.h"
+
+namespace ifog {
+namespace {
+
+// By angle random walk, since a capture does not say what made it. Bounds are four times the largest typical
+// figure of the makers' data sheets, as single sensors are worse than typical ones:
+// - ring lasers and fibre-optic gyros (Northrop LN-200, KVH DSP-3000 and 1775, Fizoptika VG910, Optolink
+// SRS):
+//   1 °/h/g, 10 °/h/K, 60 °/h/V, 100 °/h/mT;
+// - MEMS (ADIS16405: 0.05 °/s/g, 0.01 °/s/K, 0.32 °/s/V; ADXRS, L3GD20, MPU-6050: 0.1 °/s/g, 0.3 °/s/K).
+struct Grade {
+  double noise;  // °/√h, up to which
+  const char* name;
+  double per_g, per_kelvin, per_volt, per_millitesla;  // °/h
+};
+constexpr double kMargin = 4.0;
+constexpr std::array<Grade, 2> kGrades = {
+    {{0.3, "an optical gyro", 1.0, 10.0, 60.0, 100.0}, {1e300, "a MEMS gyro", 360.0, 1080.0, 1152.0, 360.0}}};
+constexpr double kStandardGravity = 9.80665;
+
+const Grade& grade_of(const BlockGrid& grid, const NoiseFit& noise) {
+  const double density = std::sqrt(noise.white_variance * slow_white(noise.shape) * grid.block_s);
+  std::size_t i = 0;
+  while (density / kDegreePerRootHour > kGrades[i].noise) ++i;
+  return kGrades[i];
+}
+
+// rad/s per unit of the channel; none where nothing is specified.
+std::optional<double> most_of(const Grade& grade, const std::string& channel) {
+  const std::string unit = unit_of(channel);
+  const double scale = kMargin * kDegreePerHour;
+  switch (kind_of(channel)) {
+    case ChannelKind::kAcceleration:
+      if (unit == "g") return scale * grade.per_g;
+      return unit == "(m/s^2)" ? std::optional(scale * grade.per_g / kStandardGravity) : std::nullopt;
+    case ChannelKind::kTemperature:
+      return scale * grade.per_kelvin;
+    case ChannelKind::kSupply:
+      return unit == "V" ? std::optional(scale * grade.per_volt) : std::nullopt;
+    case ChannelKind::kMagneticField:
+      if (unit == "T") return scale * grade.per_millitesla * 1e3;
+      if (unit == "G") return scale * grade.per_millitesla * 0.1;
+      return unit == "uT" ? std::optional(scale * grade.per_millitesla * 1e-3) : std::nullopt;
+    default:
+      return std::nullopt;
+  }
+}
+
+double swing_of(const BlockGrid& grid, Eigen::VectorXd values) {
+  centre_records(grid, values);
+  return values.norm();
+}
+
+double size_of(const BlockData& data, const Candidate& effect, double coefficient) {
+  const double channel = swing_of(data.grid, column(data, ShapeSettings{}, effect.channel));
+  const double own = std::abs(coefficient) * swing_of(data.grid, regressors(data, effect).col(0));
+  return channel > 0.0 ? own / channel : 0.0;
+}
+
+bool may_be_proxy(const BlockData& data, const Candidate& effect) {
+  if (effect.channel == Candidate::kNone || effect.first_reading != FirstReading::kError) return false;
+  if (!names_in(data.channels[effect.channel].name).less.empty()) return false;
+  // What goes with the rate is a scale factor; a mean square and a change have units of their own.
+  return effect.form == Form::kLinear || effect.form == Form::kQuadratic || effect.form == Form::kCubic ||
+         effect.form == Form::kLagged || effect.form == Form::kTransition;
+}
+
+}  // namespace
+
+void doubt_proxies(const BlockData& data, SearchResult& found) {
+  const Grade& grade = grade_of(data.grid, found.noise);
+  Eigen::Index at = data.grid.constants();
+  for (std::size_t i = 0; i < found.fitted.size(); ++i) {
+    Candidate& mine = found.fitted[i];
+    const double coefficient = found.fitted_coefficients[at];
+    at += mine.width();
+    if (!may_be_proxy(data, mine)) continue;
+    const std::optional<double> most = most_of(grade, data.channels[mine.channel].name);
+    if (!most || size_of(data, mine, coefficient) <= *most) continue;
+    mine.first_reading = found.chosen[i].candidate.first_reading = FirstReading::kProxyShown;
+  }
+}
+
+std::string proxies_in_words(const BlockData& data, const SearchResult& found) {
+  const Grade& grade = grade_of(data.grid, found.noise);
+  std::string words;
+  Eigen::Index at = data.grid.constants();
+  for (const Candidate& each : found.fitted) {
+    const double coefficient = found.fitted_coefficients[at];
+    at += each.width();
+    if (each.first_reading != FirstReading::kProxyShown) continue;
+    const std::string& name = data.channels[each.channel].name;
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(), " explains the bias by %.3g °/h per %s, %s has at most %.3g",
+                  size_of(data, each, coefficient) / kDegreePerHour, unit_of(name).c_str(), grade.name,
+                  most_of(grade, name).value_or(0.0) / kDegreePerHour);
+    words += (words.empty() ? "" : "; ") + name + text.data();
+  }
+  if (words.empty()) return words;
+  return words +
+         ": it stands for something else that was not logged, as a sensor that drifts like a thermometer "
+         "does, "
+         "and nothing is corrected by it (--allow-proxies does). Log the temperature";
+}
+
+}  // namespace ifog

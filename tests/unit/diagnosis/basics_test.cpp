@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// What comes first: bias and scale factor beside a reference, noisy or of few points; rotation that stays in
+// the rate; coefficients that no gyro has. The truth is what the captures are made of.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "filters/diagnosis/diagnose.h"
+#include "filters/effects/form.h"
+#include "filters/effects/meaning.h"
+#include "filters/model_file/toml_text.h"
+
+namespace ifog {
+namespace {
+
+struct Rows {
+  std::vector<double> time, rate, reference, channel;
+  std::string name = "temperature_degC";
+
+  [[nodiscard]] Record record() const {
+    Record made;
+    made.name = "rows";
+    made.time_s = time;
+    made.rate_radps = rate;
+    if (!reference.empty()) made.reference_radps = reference;
+    if (!channel.empty()) made.channels = {{name, channel}};
+    return made;
+  }
+};
+
+const FoundEffect* effect_of(const Diagnosis& found, std::string_view form) {
+  const auto at = std::find_if(found.effects.begin(), found.effects.end(),
+                               [&](const FoundEffect& each) { return each.effect.form == form; });
+  return at == found.effects.end() ? nullptr : &*at;
+}
+
+// A rate that swings, read by a gyro with a bias and a scale factor of -14 %. The reference has white noise
+// of a third of the rate, as one has that is interpolated from angles.
+TEST(Basics, AScaleFactorIsFoundBesideANoisyReference) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Rows rows;
+    for (int i = 0; i < 4000; ++i) {
+      const double t = 0.1 * i, truth = 0.3 * std::sin(0.5 * t) + 0.2 * std::sin(0.13 * t + 1.0);
+      rows.time.push_back(t);
+      rows.rate.push_back(0.86 * truth + 0.02 + 0.002 * normal(random));
+      rows.reference.push_back(truth + 0.08 * normal(random));
+    }
+    const Diagnosis found = diagnose({rows.record()}, {});
+    const FoundEffect* scale = effect_of(found, "linear");
+    ASSERT_NE(scale, nullptr) << seed;
+    EXPECT_NEAR(parameter(scale->effect, "coefficient"), -0.14, 0.02) << seed;
+    ASSERT_TRUE(found.bias);
+    EXPECT_NEAR(found.bias->value, 0.02, 0.003) << seed;
+    EXPECT_NE(effect_of(found, "bias"), nullptr) << seed;
+  }
+}
+
+// Thirteen points of a calibration.
+TEST(Basics, ARateTableOfAFewPointsIsAccepted) {
+  std::mt19937_64 random(5);
+  std::normal_distribution<double> normal;
+  Rows rows;
+  for (int i = -6; i <= 6; ++i) {
+    rows.time.push_back(20.0 * (i + 6));
+    rows.reference.push_back(0.1 * i);
+    rows.rate.push_back(0.1 * i * 1.02 + 1e-4 * normal(random));
+  }
+  const Diagnosis found = diagnose({rows.record()}, {});
+  const FoundEffect* scale = effect_of(found, "linear");
+  ASSERT_NE(scale, nullptr);
+  EXPECT_NEAR(parameter(scale->effect, "coefficient"), 0.02, 0.001);
+  rows.time.resize(10), rows.rate.resize(10), rows.reference.resize(10);
+  EXPECT_THROW(diagnose({rows.record()}, {}), std::invalid_argument);
+}
+
+// A swing of the sensor itself, seen by what senses motion: nothing of it is an error.
+TEST(Motion, ExplainsNothingWithoutAReference) {
+  for (const char* name : {"ground_x_mps", "accel_x_mps2", "mount_rad", "deck_y_radps", "drive_wheel_rpm"}) {
+    std::mt19937_64 random(7);
+    std::normal_distribution<double> normal;
+    Rows rows;
+    rows.name = name;
+    double walk = 0.0;
+    for (int i = 0; i < 4000; ++i) {
+      const double swing = std::sin(0.9 * i + (walk += 0.1 * normal(random)));
+      rows.time.push_back(0.5 * i);
+      rows.rate.push_back(1e-6 * normal(random) + 5e-6 * swing);
+      rows.channel.push_back(swing + 0.02 * normal(random));
+    }
+    const Diagnosis found = diagnose({rows.record()}, {});
+    for (const FoundEffect& each : found.effects) EXPECT_EQ(each.effect.channel, "") << name;
+    EXPECT_TRUE(std::any_of(found.remarks.begin(), found.remarks.end(), [](const std::string& remark) {
+      return remark.find("that is rotation and stays in the rate") != std::string::npos;
+    })) << name;
+    DiagnoseOptions knows;
+    knows.allow_motion_channels = knows.allow_proxies = true;
+    if (motion_of(name) != Motion::kAngle && motion_of(name) != Motion::kRate) {
+      EXPECT_FALSE(diagnose({rows.record()}, knows).effects.empty()) << name;
+    }
+  }
+}
+
+TEST(Motion, IsToldByUnitAndName) {
+  EXPECT_EQ(motion_of("accel_z_mps2"), Motion::kAcceleration);
+  EXPECT_EQ(motion_of("seis_z_mps"), Motion::kVelocity);
+  EXPECT_EQ(motion_of("north_um"), Motion::kPosition);
+  EXPECT_EQ(motion_of("attitude_deg"), Motion::kAngle);
+  for (const char* name : {"temperature_degC", "supply_V", "wind_mps", "pump_rpm", "laser_wavelength_nm",
+                           "reference_rate_radps", "seis_temperature_degC", "pressure_hPa"})
+    EXPECT_EQ(motion_of(name), Motion::kNone) << name;
+}
+
+// An acceleration that drifts as the bias does, by 0.5 °/s for 1 m/s^2 where makers specify 0.005.
+TEST(Proxies, AreShownAndNotWritten) {
+  std::mt19937_64 random(9);
+  std::normal_distribution<double> normal;
+  Rows rows;
+  rows.name = "accel_x_mps2";
+  for (int i = 0; i < 5000; ++i) {
+    const double drift = 0.1 * std::sin(i / 400.0);
+    rows.time.push_back(i);
+    rows.channel.push_back(drift);
+    rows.rate.push_back(1e-3 * normal(random) + 8.7e-3 * drift);
+  }
+  const Diagnosis found = diagnose({rows.record()}, {});
+  const FoundEffect* proxy = effect_of(found, "linear");
+  ASSERT_NE(proxy, nullptr);
+  EXPECT_TRUE(proxy->effect.shown_only);
+  Model model;
+  add_to_model(found, "", model);
+  EXPECT_TRUE(model.effects.empty());
+  DiagnoseOptions asked;
+  asked.allow_proxies = true;
+  const Diagnosis written = diagnose({rows.record()}, asked);
+  ASSERT_NE(effect_of(written, "linear"), nullptr);
+  EXPECT_FALSE(effect_of(written, "linear")->effect.shown_only);
+}
+
+// TOML's integers have 64 bits: what is larger is a number with a point.
+TEST(ModelText, NumbersReadBackWhateverTheirSize) {
+  EXPECT_EQ(toml_number(78447441097457238016.0), "78447441097457238016.0");
+  EXPECT_EQ(toml_number(-3.0), "-3");
+  EXPECT_EQ(toml_number(1e300), "1e+300");
+}
+
+}  // namespace
+}  // namespace ifog
