@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include "filters/estimator/motion_smoother.h"
+#include "filters/smoother/motion_smoother.h"
 #include "filters/settings/axes.h"
 #include "filters/settings/filter_settings.h"
 
