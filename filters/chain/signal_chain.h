@@ -40,7 +40,7 @@ struct ChainSettings {
   std::vector<std::string> channels;      // by index in Reading::channel, capture column names
   std::vector<double> channel_max_age_s;  // older is stale; one a channel, 0: never
   FilterChoice filter;      // over the model's; process or measurement noise 0 or not said: from start-up
-  double start_up_s = 4.0;  // of data for that at least; 2048 samples at least
+  double start_up_s = 4.0;  // of data for that at least; 4096 samples at least
   // By an earlier run of the same sensor: in place of start-up data where neither settings nor model say.
   std::optional<LearnedNoise> learned;
   std::shared_ptr<const Model> model;      // null: nothing is compensated

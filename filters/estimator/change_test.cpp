@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filters/estimator/noise.h"
 #include "filters/random/log_exp.h"
 
 namespace ifog {
@@ -15,10 +16,8 @@ constexpr double kEvidence = 18.0;
 constexpr double kShakingVariance = 4.0, kHalfLog = 0.6931471805599453;
 // Evidence for rest that has to be outweighed at most, nats.
 constexpr double kLeastRatio = -5.0;
-// An innovation counts for five standard deviations at most where it is summed, a square for 20 of them.
-constexpr double kMostDeviations = 5.0, kMostSquare = 400.0;
-// Noise is coloured if it is so much above what its third differences say.
-constexpr double kColoured = 1.1;
+// A square counts for 20 standard deviations at most.
+constexpr double kMostSquare = 400.0;
 // Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
 // worth, in horizons.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
@@ -69,7 +68,6 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   const Lanes mine = error * error * now.inverse / g.factor;
   c.sum = keep * c.sum + common.clipped;
   c.weight = keep * keep * c.weight + now.mask;
-  c.angle = keep * c.angle + now.innovation * now.covered_s;
   const Lanes square = c.sum * c.sum;
   c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
   evidence_ = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
@@ -87,6 +85,8 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * c.weight)
                   .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
   }
+  // The change began where the sum was last in favour of rest.
+  c.angle = (c.ratio > 0.0).select(c.angle, Lanes::Zero()) + now.innovation * now.covered_s;
   c.ratio = (keep * c.ratio + evidence_).max(kLeastRatio);
   c.rest = keep * c.rest + common.squares;
   c.rest2 = keep * c.rest2 + common.squares2;

@@ -32,8 +32,8 @@ class ChangeTest {
   void begin() noexcept;
   // Rest was found after a manoeuvre: what is left of that is found by less evidence.
   void relax() noexcept { relaxed_ = kRelaxed; }
-  [[nodiscard]] bool suspected() const noexcept { return suspected_ || relaxed_ > 1.0; }
-  // Angle, rad, by which the filter at rest has fallen short within the tracker's horizon.
+  [[nodiscard]] bool suspected() const noexcept { return suspected_; }
+  // Angle, rad, by which the filter at rest has fallen short since the change began, as Page's test dates it.
   [[nodiscard]] double angle(std::size_t tracker, std::size_t axis) const noexcept {
     return contest_[tracker].angle[static_cast<Eigen::Index>(axis)];
   }

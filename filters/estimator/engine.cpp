@@ -16,9 +16,13 @@ constexpr double kRestMemory = 64.0, kReachAfter = 256.0;
 // Trackers as long as this take part whatever the lag: they follow motions that begin slowly.
 constexpr double kLeastReach = 48.0;
 // An innovation counts for five standard deviations at most.
-constexpr double kMostDeviations = 5.0;
+constexpr double kNeverNoise = 20.0;
+// Of the angle of an outlier at rest what is remembered of it a sample later.
+constexpr double kKeptOut = 0.94;
 // Of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 deg/s.
 constexpr double kMostRestRate = 0.02;
+// Lags after which the filter's memory of where it was moved to has faded to 5 %.
+constexpr double kYoungLags = 3.0;
 // Samples lost in a row after which a sensor at rest still is.
 constexpr double kShortGap = 16.0;
 // Known noise is replaced where a stretch differs by this factor.
@@ -39,12 +43,14 @@ Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest,
       rest_(std::move(rest)),
       follow_(axes_, period_s) {
   noise_.fill(Noise(settings.measurement_noise));
+  follow_.moving = settings.follow_manoeuvres && rest_->rate_alone();
 }
 
 void Engine::restart() noexcept {
   rest_->restart();
   const Lanes owed = follow_.ledger.owed();
   follow_ = Follower(axes_, period_s_);
+  follow_.moving = settings_.follow_manoeuvres && rest_->rate_alone();
   if (owed.abs().sum() > 0.0) follow_.ledger.owe(owed);
   walk_.break_off();
   started_ = 0;
@@ -133,9 +139,12 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
     publish_rest(s);
   }
   if (settings_.guard) guard(s);
+  if (follow_.moving && follow_.known && settings_.follow_manoeuvres && follow_.mix.rest_weight() < 0.5)
+    out.flags |= kManoeuvre;
   if (rests(s)) out.flags |= kAtRest;
   learn(s);
   know_unmeasured(s, grown);
+  follow_.published = s.rate;
   if (settings_.conserve_angle) pay(s);
   publish(s);
 }
@@ -206,8 +215,9 @@ void Engine::follow(Step& s) noexcept {
       break;
     case Outliers::Verdict::usual:
       // In a manoeuvre an outlier may be rotation, and is booked.
-      if (follow_.moving) follow_.ledger.add(follow_.kept_out_rad);
-      follow_.kept_out_rad.setZero();
+      if (follow_.moving) admit_outliers();
+      // At rest it is remembered for a while, should a manoeuvre be found that it was the beginning of.
+      follow_.kept_out_rad *= kKeptOut;
       break;
   }
   follow_.moving ? follow_manoeuvre(s) : follow_rest(s);
@@ -217,6 +227,9 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
   const Trackers& trackers = follow_.trackers;
   // Where nothing follows the motion nothing tells an outlier from it.
   if (follow_.moving && follow_.mix.raw()) return Outliers::Verdict::usual;
+  // Nor behind a gap.
+  for (std::size_t a = 0; a < axes_; ++a)
+    if ((s.sample.valid >> a & 1U) != 0 && trackers.since(a) > kShortGap) return Outliers::Verdict::usual;
   Lanes least = s.sample.surprise;
   // At rest the raw one, a parabola through three measurements, foresees nothing better than others and much worse.
   for (std::size_t j = follow_.moving ? 0 : 1; j < trackers.size(); ++j) {
@@ -241,21 +254,29 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
 void Engine::jump(Step& s) noexcept {
   Follower& f = follow_;
   f.trackers.begin();
+  for (std::size_t a = 0; a < axes_; ++a)
+    f.trackers.seed(a, f.published[static_cast<Eigen::Index>(a)]);
   for (std::size_t i = 0; i + 1 < f.outliers.kept(); ++i) {
     f.trackers.predict(1.0);
     f.trackers.correct(f.outliers.kept(i), s.sample.valid);
   }
   f.trackers.predict(1.0);
-  f.ledger.add(f.kept_out_rad);
-  f.kept_out_rad.setZero();
+  admit_outliers();
   f.outliers.end_run();
-  move_rest(s.sample.rate, s.sample.scale);
+  Lanes rate = f.published;
+  rate = (s.sample.mask > 0.0).select(s.sample.rate, rate);
+  move_rest(rate, s.sample.scale);
   weigh(s);
-  if (!f.moving) s.out.flags |= kManoeuvre;
   if (!f.moving) ++health_.manoeuvres;
-  f.moving = true;
+  f.moving = f.known = true;
+  s.out.flags |= kManoeuvre;
   f.mix.begin(0.0);
   f.change.begin();
+}
+
+void Engine::admit_outliers() noexcept {
+  follow_.ledger.add(follow_.kept_out_rad);
+  follow_.kept_out_rad.setZero();
 }
 
 void Engine::follow_rest(Step& s) noexcept {
@@ -278,6 +299,7 @@ void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   s.out.flags |= kManoeuvre;
   ++health_.manoeuvres;
   const double since = f.since_moved;
+  admit_outliers();
   if (tracker == ChangeTest::kShaking) {
     f.mix.begin(0.0);
   } else {
@@ -292,7 +314,7 @@ void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
     move_rest(f.trackers.rate(tracker), f.trackers.gains(tracker).output * s.sample.scale);
     f.ledger.pace(f.trackers.length(tracker));
   }
-  f.moving = true;
+  f.moving = f.known = true;
   f.change.begin();
 }
 
@@ -306,13 +328,14 @@ void Engine::follow_manoeuvre(Step& s) noexcept {
   if (f.mix.rest_failed()) {
     move_rest(s.rate, s.variance.min(s.sample.scale));
     f.mix.begin_rest();
+    f.known = true;
   }
   if (f.mix.rest_found()) {
     f.moving = false;
+    f.known = true;
     f.change.begin();
     f.change.relax();
   }
-  if (f.since_moved >= 1.0) s.out.flags |= f.moving && f.mix.rest_weight() < 0.5 ? kManoeuvre : 0U;
 }
 
 // The filter at rest takes the measurement in, clipped. learn: its rule learns of the innovation.
@@ -324,19 +347,18 @@ void Engine::take(Step& s, bool learn) noexcept {
   }
   RestFilter::Measured measured{s.in.rate_radps, m.valid, s.noise_scale, {1.0, 1.0, 1.0}};
   if (settings_.follow_manoeuvres) {
-    const Lanes most = kMostDeviations * (m.scale * m.rest_factor).sqrt();
+    // Where large innovations are frequent they are the noise's, and to clip them would shift its mean.
+    const double deviations = follow_.outliers.rare() ? kMostDeviations : kNeverNoise;
+    const Lanes most = deviations * (m.scale * m.rest_factor).sqrt();
     const Lanes clipped = m.innovation.max(-most).min(most);
-    double mean = 0.0, count = 0.0;
+    // The mean of all axes, whichever are measured: one gain is for all.
+    double mean = 0.0;
     for (std::size_t a = 0; a < axes_; ++a) {
-      if ((m.valid >> a & 1U) == 0) continue;
       const auto i = static_cast<Eigen::Index>(a);
-      measured.rate[a] = m.rate[i] - m.innovation[i] + clipped[i];
-      const double known = noise_[a].known() * (settings_.wideband == "noise" ? noise_[a].heard() : 1.0);
-      measured.share[a] = known;
-      mean += known;
-      count += 1.0;
+      if ((m.valid >> a & 1U) != 0) measured.rate[a] = m.rate[i] - m.innovation[i] + clipped[i];
+      measured.share[a] = noise_[a].known() * (settings_.wideband == "noise" ? noise_[a].heard() : 1.0);
+      mean += measured.share[a] / static_cast<double>(axes_);
     }
-    mean /= count;
     for (double& share : measured.share) share /= mean;
     measured.noise_scale *= mean / settings_.measurement_noise;
   }
@@ -356,7 +378,9 @@ void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
   double of_all = 0.0;
   for (std::size_t a = 0; a < axes_; ++a)
     of_all += variance[static_cast<Eigen::Index>(a)] / share[static_cast<Eigen::Index>(a)];
-  rest_->set_variance(of_all / static_cast<double>(axes_));
+  of_all /= static_cast<double>(axes_);
+  // Colour and lines that a larger model has found stay known.
+  if (rest_->rate_alone() || of_all > rest_->variance()) rest_->set_variance(of_all);
   follow_.since_moved = 0.0;
 }
 
@@ -392,13 +416,21 @@ void Engine::publish_mix(Step& s) noexcept {
 
 // Adds the payment of this sample, and books what the rate falls short of.
 void Engine::pay(Step& s) noexcept {
-  const bool books = follow_.moving || !settings_.follow_manoeuvres;
-  const Lanes paid = follow_.ledger.payment(books, s.variance);
+  // What the filter lags behind the tail of a manoeuvre by does not return by itself.
+  follow_.at_rest_for = follow_.moving ? 0.0 : follow_.at_rest_for + 1.0;
+  const bool young = follow_.at_rest_for < kYoungLags * settled_lag_;
+  const bool books = follow_.moving || young || !settings_.follow_manoeuvres;
+  follow_.ledger.slow_pace(lag());
   const Lanes covered = s.sample.mask * s.sample.covered_s;
-  const bool booked = books && !s.outlier;
-  follow_.ledger.book(booked ? ((s.sample.rate - s.rate) * covered).eval() : Lanes::Zero().eval(), paid, s.dt_s);
+  // What a gap hides is no angle.
+  const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
+  const Lanes paid =
+      follow_.ledger.payment(rest_->variance() * noise_share(), settings_.follow_manoeuvres, dt_s);
+  Lanes short_by = Lanes::Zero();
+  if (books && !s.outlier) short_by = (s.sample.rate - s.rate) * covered;
+  follow_.ledger.book(short_by, follow_.moving, paid, dt_s);
   s.rate += paid;
-  if (follow_.moving) s.variance = s.variance.max(paid * paid);
+  if (settings_.follow_manoeuvres) s.variance = s.variance.max(paid * paid);
 }
 
 // Divergence: a covariance that is none any more, a state that is no number, or a filter that for long has been
@@ -431,10 +463,11 @@ void Engine::learn(const Step& s) noexcept {
   const bool rest = (s.out.flags & kAtRest) != 0, gap = s.dt_s > kShortGap * period_s_;
   if (gap || (rest && !follow_.moving && s.noise_scale != 1.0)) walk_.break_off();
   if (s.outlier || (!rest && !follow_.moving)) return;
-  walk_.set_stretch(rest ? kStretch : std::max(kLouderSamples, kLouder_s / period_s_));
+  walk_.set_stretch(rest ? rest_stretch_ : std::max(kLouderSamples, kLouder_s / period_s_));
   walk_.take(s.in.rate_radps, s.sample.valid, rest);
   const std::optional<Walk::Found> found = walk_.take_news();
   if (!found) return;
+  if (rest) rest_stretch_ = std::min(2.0 * rest_stretch_, kStretch);
   bool other = false;
   for (std::size_t a = 0; a < axes_; ++a) {
     const double heard = found->noise[a], known = noise_[a].known();

@@ -33,7 +33,10 @@ class Follower {
   Mix mix;
   Ledger ledger;
   bool moving = true;         // nobody knows at the beginning: rest has to be found
+  bool known = false;         // that it moves, or has rested
   double since_moved = 0.0;   // samples that the filter at rest has had since it was moved
+  double at_rest_for = 0.0;   // samples since rest was found
+  Lanes published = Lanes::Zero();     // the last rate, without payments
   Lanes kept_out_rad = Lanes::Zero();  // angle of the outliers under way, that may turn out to be rotation
 };
 
@@ -70,6 +73,7 @@ class Engine {
   void follow(Step& s) noexcept;
   [[nodiscard]] Outliers::Verdict judge_outlier(const Step& s) noexcept;
   void jump(Step& s) noexcept;
+  void admit_outliers() noexcept;
   void follow_rest(Step& s) noexcept;
   void follow_manoeuvre(Step& s) noexcept;
   void begin_manoeuvre(Step& s, std::size_t tracker) noexcept;
@@ -106,6 +110,7 @@ class Engine {
   std::uint32_t started_ = 0;  // axes that have had a measurement
   bool learns_walk_ = false;
   double settled_lag_ = 0.0;
+  double rest_stretch_ = 1024.0;  // samples at rest that show the noise; the first are shorter
 };
 
 }  // namespace ifog

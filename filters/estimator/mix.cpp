@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filters/estimator/noise.h"
 #include "filters/random/log_exp.h"
 
 namespace ifog {
@@ -14,7 +15,6 @@ constexpr double kLongerPrior = 2.0;  // nats: motions are smooth more often tha
 constexpr double kRestPrior = 4.0;    // nats that the filter at rest has to be ahead
 constexpr double kMostAhead = 12.0;
 constexpr double kBreaks = 12.0;      // nats by which a longer tracker is surely wrong and begins again
-constexpr double kColoured = 1.1;     // as in change_test.cpp
 constexpr double kLeastRest = 64.0;   // samples, before rest is believed
 // Of two neighbours' difference white noise makes this part of the difference of their variances.
 constexpr double kCommon = 0.65;

@@ -15,6 +15,9 @@
 
 namespace ifog {
 
+// Noise is coloured if Noise::colour() is above this.
+inline constexpr double kColoured = 1.1;
+
 class Noise {
  public:
   // known: R, (rad/s)^2.

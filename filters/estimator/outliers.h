@@ -43,14 +43,17 @@ class Outliers {
     }
     kept_[run_ % kKept] = rate;
     ++run_;
-    const bool near = moving || nearness_ >= 0.5 * std::log(lag);
-    if (static_cast<double>(run_) * rarity() <= kEvidence || !near)
+    // Twice the evidence is no noise's, however far apart they are.
+    const double evidence = static_cast<double>(run_) * rarity();
+    const bool near = moving || nearness_ >= 0.5 * std::log(lag) || evidence > 2.0 * kEvidence;
+    if (evidence <= kEvidence || !near)
       return rare || least > kNeverNoise ? Verdict::waits : Verdict::usual;
     surprise_ = std::max(surprise_, std::min(least, kMostSurprise));
     return Verdict::jump;
   }
   // Nats by which an outlier at rest is rare.
   [[nodiscard]] double rarity() const noexcept { return std::min(kMostRarity, -std::log(std::max(share_, 1e-8))); }
+  [[nodiscard]] bool rare() const noexcept { return share_ <= kRare; }
   [[nodiscard]] std::size_t run() const noexcept { return run_; }
   // Of the run's measurements the i-th of the last ones, oldest first.
   [[nodiscard]] std::size_t kept() const noexcept { return std::min(run_, kKept); }

@@ -8,6 +8,9 @@
 
 namespace ifog {
 
+// An innovation counts for five standard deviations at most where it is taken in or summed.
+inline constexpr double kMostDeviations = 5.0;
+
 struct Sample {
   std::uint32_t valid = 0;
   Lanes mask = Lanes::Zero();        // 1 where valid
