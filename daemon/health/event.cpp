@@ -20,8 +20,8 @@ std::string describe(const Event& event) {
                          event.sequence);
     case EventKind::noise_learned:
       return fmt::format(
-          "noise learned at rest: process_noise = {:.4g} (rad/s)^2/s, measurement_noise = {:.4g} (rad/s)^2", event.a,
-          event.b);
+          "noise learned at rest: process_noise = {:.4g} (rad/s)^2/s, measurement_noise = {:.4g} (rad/s)^2",
+          event.a, event.b);
     case EventKind::model_in_use:
       return fmt::format("model in use from number {} on", event.sequence);
     case EventKind::divergence:

@@ -50,14 +50,15 @@ ChainParts::ChainParts(const ChainSettings& settings)
   use_noise(settings);
 }
 
-// Each figure is the settings', else the model's: its filter's, else by its noise terms; else what an earlier run has
-// learned. The walk of a random walk is learned if nobody knows it, and so is R.
+// Each figure is the settings', else the model's: its filter's, else by its noise terms; else what an earlier
+// run has learned. The walk of a random walk is learned if nobody knows it, and so is R.
 void ChainParts::use_noise(const ChainSettings& settings) {
   const double rate_hz = facts_.nominal_rate_hz;
   if (settings.model) {
     const AxisNoiseTerms terms = mean_noise_terms(*settings.model, settings.axes);
     if (filter_.measurement_noise <= 0.0 && terms.N) filter_.measurement_noise = *terms.N * rate_hz;
-    if (filter_.process_noise <= 0.0 && terms.K && filter_.state == "random-walk") filter_.process_noise = *terms.K;
+    if (filter_.process_noise <= 0.0 && terms.K && filter_.state == "random-walk")
+      filter_.process_noise = *terms.K;
   }
   learns_process_noise_ = filter_.process_noise <= 0.0;
   learns_measurement_noise_ = filter_.measurement_noise <= 0.0;
@@ -186,8 +187,8 @@ void ChainParts::refuse_impossible(const Increment& in, ChainOutput& out) noexce
   }
 }
 
-// Until a stretch of the rate is noise: white over every octave, with a walk. A sensor that moves is published as
-// measured for as long as it does.
+// Until a stretch of the rate is noise: white over every octave, with a walk. A sensor that moves is
+// published as measured for as long as it does.
 void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try {
   if ((in.flags & kGapBefore) != 0 && in.dt_s > kShortGap * period_s_) start_up_.break_off();
   // What repeats one value shows no noise.

@@ -18,8 +18,8 @@ constexpr double kShakingVariance = 4.0, kHalfLog = 0.6931471805599453;
 constexpr double kLeastRatio = -5.0;
 // A square counts for 20 standard deviations at most.
 constexpr double kMostSquare = 400.0;
-// Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
-// worth, in horizons.
+// Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the
+// prior is worth, in horizons.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
 // Above a learned width by chance; a single sum counts for four standard deviations.
 constexpr double kWider = 1.25, kMostSum = 16.0;
@@ -79,8 +79,9 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     widest_ = widest_.max(wide);
     evidence_ /= wide;
     if (j >= 1 && h <= 2.0 * lag)
-      unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * wide * c.weight)
-                    .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
+      unseen_ =
+          (square > std::max(0.0, kUnseenSquare - relaxed_) * wide * c.weight)
+              .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
   } else if (j >= 1 && h <= 2.0 * lag) {
     unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * c.weight)
                   .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
@@ -127,7 +128,8 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   const Lanes capped = now.surprise.min(common.cap);
   // Tails and colour make large innovations come together.
   const Lanes tails = (fourth_ / 3.0).max(1.0) * widest_;
-  shaking_ = (shaking_ + now.mask * (0.5 * (1.0 - 1.0 / kShakingVariance) * capped - kHalfLog) / tails).max(0.0);
+  shaking_ =
+      (shaking_ + now.mask * (0.5 * (1.0 - 1.0 / kShakingVariance) * capped - kHalfLog) / tails).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;
   return found;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Has the rate left rest? Each tracker against the filter at rest, and the raw measurement against both.
 //
-// Page's test (Biometrika 41, 1954): the log-likelihood ratio of a tracker's predictions to those of the filter at
-// rest, both with the known R, summed and forgotten over the tracker's horizon. exp of the sum is at most e^18 by
-// chance once in e^18 samples (Ville's inequality). What no tracker predicts is found by its size alone: innovations
-// of variance 4 R against R, which finds shaking.
+// Page's test (Biometrika 41, 1954): the log-likelihood ratio of a tracker's predictions to those of the
+// filter at rest, both with the known R, summed and forgotten over the tracker's horizon. exp of the sum is
+// at most e^18 by chance once in e^18 samples (Ville's inequality). What no tracker predicts is found by its
+// size alone: innovations of variance 4 R against R, which finds shaking.
 //
-// Of colour only this is known: by how much the sums of innovations over each horizon vary at rest. It is learned
-// there, and begins with the widest that the known noise allows with its third differences.
+// Of colour only this is known: by how much the sums of innovations over each horizon vary at rest. It is
+// learned there, and begins with the widest that the known noise allows with its third differences.
 #pragma once
 
 #include <array>
@@ -24,10 +24,10 @@ class ChangeTest {
   // Index of "no tracker: the measurements are larger than the known noise".
   static constexpr std::size_t kShaking = Trackers::kMost;
 
-  // colour: Noise::colour() of each axis; rarity: log of how rare an outlier is; lag: of the filter at rest, samples.
-  // The tracker that foresees the change, kShaking, or nothing. Before Trackers::correct().
-  std::optional<std::size_t> take(const Trackers& trackers, const Sample& now, const Lanes& colour, double rarity,
-                                  double lag) noexcept;
+  // colour: Noise::colour() of each axis; rarity: log of how rare an outlier is; lag: of the filter at rest,
+  // samples. The tracker that foresees the change, kShaking, or nothing. Before Trackers::correct().
+  std::optional<std::size_t> take(const Trackers& trackers, const Sample& now, const Lanes& colour,
+                                  double rarity, double lag) noexcept;
   // A manoeuvre was found, or begins with the filter: what is known of the noise stays.
   void begin() noexcept;
   // Rest was found after a manoeuvre: what is left of that is found by less evidence.
@@ -38,7 +38,9 @@ class ChangeTest {
     return contest_[tracker].angle[static_cast<Eigen::Index>(axis)];
   }
   // Variance of a change that may have begun, (rad/s)^2.
-  [[nodiscard]] double unseen(std::size_t axis) const noexcept { return unseen_[static_cast<Eigen::Index>(axis)]; }
+  [[nodiscard]] double unseen(std::size_t axis) const noexcept {
+    return unseen_[static_cast<Eigen::Index>(axis)];
+  }
   // Variance of the mean over the filter's memory, over that of white noise.
   [[nodiscard]] double wide(const Trackers& trackers, std::size_t axis, double lag) const noexcept;
 
@@ -54,13 +56,14 @@ class ChangeTest {
     double cap;
     bool coloured;
   };
-  void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common, const Lanes& colour,
-               double lag) noexcept;
+  void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
+               const Lanes& colour, double lag) noexcept;
   [[nodiscard]] static Lanes believed(const Contest& c, const Lanes& prior) noexcept;
   [[nodiscard]] double same_size(const Contest& c, Eigen::Index a) const noexcept;
 
   std::array<Contest, Trackers::kMost> contest_{};
-  Lanes shaking_ = Lanes::Zero(), fourth_ = Lanes::Constant(3.0), unseen_ = Lanes::Zero(), widest_ = Lanes::Ones();
+  Lanes shaking_ = Lanes::Zero(), fourth_ = Lanes::Constant(3.0), unseen_ = Lanes::Zero(),
+        widest_ = Lanes::Ones();
   double relaxed_ = 0.0, seen_ = 64.0;
   Lanes evidence_ = Lanes::Zero();
   bool suspected_ = false, coloured_ = false;

@@ -9,7 +9,8 @@
 namespace ifog {
 namespace {
 
-// Samples between refreshes of the settled filter's lag, by the sequence so that a replay has them where the run had.
+// Samples between refreshes of the settled filter's lag, by the sequence so that a replay has them where the
+// run had.
 constexpr std::uint64_t kLagEvery = 256;
 // Samples after which a filter that was moved is one at rest again.
 constexpr double kRestMemory = 64.0, kReachAfter = 256.0;
@@ -121,7 +122,11 @@ double Engine::lag() const noexcept {
 
 void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   out.flags = 0;
-  Step s{in, out, in.dt_s > 0.0 ? in.dt_s : period_s_, in.averaged_s > 0.0 ? period_s_ / in.averaged_s : 1.0, {}};
+  Step s{in,
+         out,
+         in.dt_s > 0.0 ? in.dt_s : period_s_,
+         in.averaged_s > 0.0 ? period_s_ / in.averaged_s : 1.0,
+         {}};
   screen(s);
   const double before = rest_->variance();
   rest_->predict(s.dt_s);
@@ -231,7 +236,8 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
   for (std::size_t a = 0; a < axes_; ++a)
     if ((s.sample.valid >> a & 1U) != 0 && trackers.since(a) > kShortGap) return Outliers::Verdict::usual;
   Lanes least = s.sample.surprise;
-  // At rest the raw one, a parabola through three measurements, foresees nothing better than others and much worse.
+  // At rest the raw one, a parabola through three measurements, foresees nothing better than others and much
+  // worse.
   for (std::size_t j = follow_.moving ? 0 : 1; j < trackers.size(); ++j) {
     if (!trackers.predicts(j)) {
       least.setZero();
@@ -254,8 +260,7 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
 void Engine::jump(Step& s) noexcept {
   Follower& f = follow_;
   f.trackers.begin();
-  for (std::size_t a = 0; a < axes_; ++a)
-    f.trackers.seed(a, f.published[static_cast<Eigen::Index>(a)]);
+  for (std::size_t a = 0; a < axes_; ++a) f.trackers.seed(a, f.published[static_cast<Eigen::Index>(a)]);
   for (std::size_t i = 0; i + 1 < f.outliers.kept(); ++i) {
     f.trackers.predict(1.0);
     f.trackers.correct(f.outliers.kept(i), s.sample.valid);
@@ -281,7 +286,8 @@ void Engine::admit_outliers() noexcept {
 
 void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
-  std::optional<std::size_t> found = f.change.take(f.trackers, s.sample, colour(), f.outliers.rarity(), lag());
+  std::optional<std::size_t> found =
+      f.change.take(f.trackers, s.sample, colour(), f.outliers.rarity(), lag());
   if (found == ChangeTest::kShaking && settings_.wideband == "noise") found.reset();
   f.trackers.correct(s.sample.rate, s.sample.valid);
   if (found) {
@@ -368,8 +374,9 @@ void Engine::take(Step& s, bool learn) noexcept {
   if (!learn || !(rest_->covariance() > 0.0)) return;
   for (std::size_t a = 0; a < axes_; ++a)
     if ((m.valid >> a & 1U) != 0)
-      grades_.take(a, m.innovation[static_cast<Eigen::Index>(a)] / std::sqrt(rest_->covariance() * measured.share[a]),
-                   health_);
+      grades_.take(
+          a, m.innovation[static_cast<Eigen::Index>(a)] / std::sqrt(rest_->covariance() * measured.share[a]),
+          health_);
 }
 
 void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
@@ -394,7 +401,8 @@ void Engine::publish_rest(Step& s) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     double wide = follow_.change.wide(follow_.trackers, a, lag());
-    // The width is that of the known noise, of which a filter that follows coloured noise leaves less to its rule.
+    // The width is that of the known noise, of which a filter that follows coloured noise leaves less to its
+    // rule.
     if (wide > 1.0) wide *= settings_.measurement_noise / rest_->rule().measurement_noise();
     s.variance[i] *= 0.5 * (walk[i] * (learns_walk_ ? wide : 1.0) + noise[i] * wide);
     s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding();
@@ -433,8 +441,8 @@ void Engine::pay(Step& s) noexcept {
   if (settings_.follow_manoeuvres) s.variance = s.variance.max(paid * paid);
 }
 
-// Divergence: a covariance that is none any more, a state that is no number, or a filter that for long has been
-// further from the measurements than it believes possible. It starts again from this measurement.
+// Divergence: a covariance that is none any more, a state that is no number, or a filter that for long has
+// been further from the measurements than it believes possible. It starts again from this measurement.
 void Engine::guard(Step& s) noexcept {
   const bool lost = grades_.newly_lost() && !settings_.follow_manoeuvres;
   if (rest_->sound() && s.rate.allFinite() && !lost) return;
@@ -456,8 +464,8 @@ bool Engine::rests(const Step& s) const noexcept {
   return true;
 }
 
-// The noise: at rest its walk, and R where that is less than is known; in a manoeuvre R, where what looks like one is
-// white over every octave for a minute.
+// The noise: at rest its walk, and R where that is less than is known; in a manoeuvre R, where what looks
+// like one is white over every octave for a minute.
 void Engine::learn(const Step& s) noexcept {
   if (!settings_.follow_manoeuvres) return;
   const bool rest = (s.out.flags & kAtRest) != 0, gap = s.dt_s > kShortGap * period_s_;
@@ -508,18 +516,21 @@ void Engine::publish(const Step& s) noexcept {
     const auto i = static_cast<Eigen::Index>(a);
     const double variance = unmeasured_.variance(a, s.variance[i]);
     s.out.denoised_radps[a] = s.rate[i];
-    // A rule without a floor may take the covariance below zero: it then says no more than one measurement does.
+    // A rule without a floor may take the covariance below zero: it then says no more than one measurement
+    // does.
     s.out.variance_rad2ps2[a] = variance >= 0.0 ? variance : settings_.measurement_noise;
     s.out.gain[a] = s.gain;
     s.out.innovation_variance[a] = rest_->covariance() * (settings_.follow_manoeuvres ? share[i] : 1.0);
-    health_.measurement_noise[a] = settings_.follow_manoeuvres
-                                       ? rest_->rule().measurement_noise() * noise_[a].known() / settings_.measurement_noise
-                                       : rest_->rule().measurement_noise();
+    health_.measurement_noise[a] =
+        settings_.follow_manoeuvres
+            ? rest_->rule().measurement_noise() * noise_[a].known() / settings_.measurement_noise
+            : rest_->rule().measurement_noise();
     health_.colour[a] = noise_[a].colour();
   }
   health_.floor_hits = rest_->rule().floor_hits();
   if (s.in.sequence % kLagEvery == 0 || settled_lag_ == 0.0) refresh_lag(s.in.sequence);
-  health_.group_delay_s = period_s_ * settled_lag_ * (follow_.moving && settings_.follow_manoeuvres ? follow_.mix.rest_weight() : 1.0);
+  health_.group_delay_s = period_s_ * settled_lag_ *
+                          (follow_.moving && settings_.follow_manoeuvres ? follow_.mix.rest_weight() : 1.0);
 }
 
 // The lag of the filter at rest once it has settled.
@@ -531,7 +542,8 @@ void Engine::refresh_lag(std::uint64_t) noexcept {
     return;
   settled_lag_ = now.lag;
   health_.correlation_time_s = now.correlation * period_s_;
-  if (follow_.since_moved > kReachAfter || !follow_.moving) follow_.trackers.reach(std::max(kLeastReach, lag()));
+  if (follow_.since_moved > kReachAfter || !follow_.moving)
+    follow_.trackers.reach(std::max(kLeastReach, lag()));
 }
 
 }  // namespace ifog

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the estimator does at each step: screen the measurement, filter it at rest or mix the followers of a manoeuvre,
-// keep the angle, learn the noise, publish. README.md derives it.
+// What the estimator does at each step: screen the measurement, filter it at rest or mix the followers of a
+// manoeuvre, keep the angle, learn the noise, publish. README.md derives it.
 #pragma once
 
 #include <memory>
@@ -32,10 +32,10 @@ class Follower {
   Outliers outliers;
   Mix mix;
   Ledger ledger;
-  bool moving = true;         // nobody knows at the beginning: rest has to be found
-  bool known = false;         // that it moves, or has rested
-  double since_moved = 0.0;   // samples that the filter at rest has had since it was moved
-  double at_rest_for = 0.0;   // samples since rest was found
+  bool moving = true;                  // nobody knows at the beginning: rest has to be found
+  bool known = false;                  // that it moves, or has rested
+  double since_moved = 0.0;            // samples that the filter at rest has had since it was moved
+  double at_rest_for = 0.0;            // samples since rest was found
   Lanes published = Lanes::Zero();     // the last rate, without payments
   Lanes kept_out_rad = Lanes::Zero();  // angle of the outliers under way, that may turn out to be rotation
 };

@@ -67,7 +67,9 @@ Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept { impl_->engine.step(in, out); }
 void Estimator::restart() noexcept { impl_->engine.restart(); }
-void Estimator::learn_walk(double ratio, double samples) noexcept { impl_->engine.learn_walk(ratio, samples); }
+void Estimator::learn_walk(double ratio, double samples) noexcept {
+  impl_->engine.learn_walk(ratio, samples);
+}
 void Estimator::expect_noise(const Axes& share) noexcept { impl_->engine.expect_noise(share); }
 void Estimator::expect_walk(const std::optional<Axes>& share) noexcept { impl_->engine.expect_walk(share); }
 Axes Estimator::owed() const noexcept { return impl_->engine.owed(); }

@@ -74,8 +74,9 @@ class Estimator {
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;  // forget the state, keep the counters
-  // Before the first step: nobody knows the walk, and settings.process_noise is a first guess; it is learned at rest.
-  // ratio, samples: q dt / R as an earlier run has found it in so many samples; 0 samples: not known.
+  // Before the first step: nobody knows the walk, and settings.process_noise is a first guess; it is learned
+  // at rest. ratio, samples: q dt / R as an earlier run has found it in so many samples; 0 samples: not
+  // known.
   void learn_walk(double ratio = 0.0, double samples = 0.0) noexcept;
   // Before the first step: each axis' own noise over FilterSettings::measurement_noise, by which it is judged
   // until it is heard. Not told, it is the same for all axes.

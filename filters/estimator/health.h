@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well the filter at rest does by its own innovations: normalised innovation squared, lag-1 autocorrelation, and
-// whether it is lost.
+// How well the filter at rest does by its own innovations: normalised innovation squared, lag-1
+// autocorrelation, and whether it is lost.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@ class Grades {
     health.nis_mean[axis] = grade.square;
     health.whiteness[axis] = grade.square > 0.0 ? grade.product / grade.square : 0.0;
   }
-  // More than half of the innovations lie beyond three standard deviations, which no rule that has adapted and no
-  // outlier brings about. Once: starting again does not mend a wrong noise.
+  // More than half of the innovations lie beyond three standard deviations, which no rule that has adapted
+  // and no outlier brings about. Once: starting again does not mend a wrong noise.
   [[nodiscard]] bool newly_lost() noexcept {
     double most = 0.0;
     for (const Grade& grade : grades_) most = std::max(most, grade.beyond);

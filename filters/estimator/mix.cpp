@@ -14,8 +14,8 @@ constexpr double kMostNats = 12.5;    // of one measurement: five standard devia
 constexpr double kLongerPrior = 2.0;  // nats: motions are smooth more often than not
 constexpr double kRestPrior = 4.0;    // nats that the filter at rest has to be ahead
 constexpr double kMostAhead = 12.0;
-constexpr double kBreaks = 12.0;      // nats by which a longer tracker is surely wrong and begins again
-constexpr double kLeastRest = 64.0;   // samples, before rest is believed
+constexpr double kBreaks = 12.0;     // nats by which a longer tracker is surely wrong and begins again
+constexpr double kLeastRest = 64.0;  // samples, before rest is believed
 // Of two neighbours' difference white noise makes this part of the difference of their variances.
 constexpr double kCommon = 0.65;
 // Twice the correlation of neighbours' errors, and what payments for the angle add.
@@ -85,8 +85,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   double remains = 1.0 - rest_weight_;
   gain_ = 0.0;
   for (std::size_t j = 0; j < size; ++j) {
-    const double longer =
-        j + 1 < size ? remains * certain(least(link_[j + 1]) + kLongerPrior) : 0.0;
+    const double longer = j + 1 < size ? remains * certain(least(link_[j + 1]) + kLongerPrior) : 0.0;
     weight_[j] = remains - longer;
     remains = longer;
     gain_ += weight_[j] * (trackers.predicts(j) ? trackers.gains(j).rate : 1.0);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// In a manoeuvre: which trackers, from the raw measurement to the longest, and how much of the filter at rest.
+// In a manoeuvre: which trackers, from the raw measurement to the longest, and how much of the filter at
+// rest.
 //
-// The measure is the unbiased estimate of a linear filter's risk (Mallows' Cp; Stein, Annals of Statistics 9, 1981):
-// the square of what it leaves of the measurement plus 2 R times its gain. It needs the known R and nothing of the
-// motion. Motion that a tracker does not follow, be it broadband, raises the first term; so no mix is worse than the
-// raw measurement by more than chance. Neighbours are compared along the chain over the shorter one's horizon, each
-// axis by itself; the axis that moves most decides for all, as they share one gain.
+// The measure is the unbiased estimate of a linear filter's risk (Mallows' Cp; Stein, Annals of Statistics 9,
+// 1981): the square of what it leaves of the measurement plus 2 R times its gain. It needs the known R and
+// nothing of the motion. Motion that a tracker does not follow, be it broadband, raises the first term; so no
+// mix is worse than the raw measurement by more than chance. Neighbours are compared along the chain over the
+// shorter one's horizon, each axis by itself; the axis that moves most decides for all, as they share one
+// gain.
 #pragma once
 
 #include <array>
@@ -49,7 +51,7 @@ class Mix {
   std::array<Lanes, Trackers::kMost> link_{}, bias_{};
   std::array<double, Trackers::kMost> weight_{}, compared_{};
   Lanes rest_ratio_ = Lanes::Zero(), seen_ = Lanes::Zero();  // 1: the axis was measured in this manoeuvre
-  double gain_ = 1.0;  // of the trackers' part
+  double gain_ = 1.0;                                        // of the trackers' part
   double rest_age_ = 0.0, rest_weight_ = 0.0, failed_after_ = 0.0;
 };
 

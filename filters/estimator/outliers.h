@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Outliers: a measurement that neither the filter at rest nor any tracker predicts waits for the next ones.
 //
-// So many in a row that chance does not explain them, outliers being as rare as they have been, are a jump. Where
-// outliers are frequent the measurements of a jump also have to be nearer to each other than those of noise.
+// So many in a row that chance does not explain them, outliers being as rare as they have been, are a jump.
+// Where outliers are frequent the measurements of a jump also have to be nearer to each other than those of
+// noise.
 #pragma once
 
 #include <algorithm>
@@ -19,8 +20,8 @@ class Outliers {
   enum class Verdict { usual, waits, jump };
   static constexpr std::size_t kKept = 8;
 
-  // least: the smallest square of an innovation over its variance that any filter has, the worst axis'; scale: R of
-  // that axis; distance: from the run's last measurement; lag: of the filter at rest, samples.
+  // least: the smallest square of an innovation over its variance that any filter has, the worst axis';
+  // scale: R of that axis; distance: from the run's last measurement; lag: of the filter at rest, samples.
   [[nodiscard]] Verdict take(double least, const Lanes& rate, double scale, std::size_t axis, bool moving,
                              double lag) noexcept {
     seen_ = std::min(seen_ + 1.0, kMemory);
@@ -39,20 +40,22 @@ class Outliers {
       squares_ += least;
       const auto a = static_cast<Eigen::Index>(axis);
       const double apart = rate[a] - kept_[(run_ - 1) % kKept][a];
-      nearness_ += 0.5 * std::log(squares_ / static_cast<double>(run_ + 1) / std::max(2.0, apart * apart / scale));
+      nearness_ +=
+          0.5 * std::log(squares_ / static_cast<double>(run_ + 1) / std::max(2.0, apart * apart / scale));
     }
     kept_[run_ % kKept] = rate;
     ++run_;
     // Twice the evidence is no noise's, however far apart they are.
     const double evidence = static_cast<double>(run_) * rarity();
     const bool near = moving || nearness_ >= 0.5 * std::log(lag) || evidence > 2.0 * kEvidence;
-    if (evidence <= kEvidence || !near)
-      return rare || least > kNeverNoise ? Verdict::waits : Verdict::usual;
+    if (evidence <= kEvidence || !near) return rare || least > kNeverNoise ? Verdict::waits : Verdict::usual;
     surprise_ = std::max(surprise_, std::min(least, kMostSurprise));
     return Verdict::jump;
   }
   // Nats by which an outlier at rest is rare.
-  [[nodiscard]] double rarity() const noexcept { return std::min(kMostRarity, -std::log(std::max(share_, 1e-8))); }
+  [[nodiscard]] double rarity() const noexcept {
+    return std::min(kMostRarity, -std::log(std::max(share_, 1e-8)));
+  }
   [[nodiscard]] bool rare() const noexcept { return share_ <= kRare; }
   [[nodiscard]] std::size_t run() const noexcept { return run_; }
   // Of the run's measurements the i-th of the last ones, oldest first.

@@ -23,16 +23,16 @@ class RestFilter {
   virtual void retune(double process_noise) noexcept = 0;
   // Eqs. (9), (10) of the paper over dt.
   virtual void predict(double dt_s) noexcept = 0;
-  // One sample. noise_scale: mean R of the valid axes over the R that the filter was made with; share: R of each axis
-  // over that mean, by which the rule's innovations are normalised.
+  // One sample. noise_scale: mean R of the valid axes over the R that the filter was made with; share: R of
+  // each axis over that mean, by which the rule's innovations are normalised.
   struct Measured {
     Axes rate{};
     std::uint32_t valid = 0;
     double noise_scale = 1.0;
     Axes share{1.0, 1.0, 1.0};
   };
-  // Takes it in. With learn off the rule keeps its opinion of R: the innovations of a filter that is catching up say
-  // nothing about it.
+  // Takes it in. With learn off the rule keeps its opinion of R: the innovations of a filter that is catching
+  // up say nothing about it.
   virtual void update(const Measured& m, std::uint64_t sequence, bool learn) noexcept = 0;
   // No measurement at this step.
   virtual void skip() noexcept = 0;

@@ -78,7 +78,8 @@ class SizedRestFilter final : public RestFilter {
         const auto a = static_cast<std::size_t>(axis);
         axes[count] = axis;
         innovations[count] = m.rate[a] - core.rate(axis);
-        normalised[count] = m.share[a] == 1.0 ? innovations[count] : innovations[count] / std::sqrt(m.share[a]);
+        normalised[count] =
+            m.share[a] == 1.0 ? innovations[count] : innovations[count] / std::sqrt(m.share[a]);
         ++count;
       }
       const double projected = core.variance();

@@ -11,9 +11,11 @@ namespace {
 
 // Half a decade between memories: the mix of two neighbours is within 5 % of the best memory between them.
 constexpr double kSpacing = 3.1622776601683795;
-// Memory, samples, of the second one: half of the raw measurement's weight. Shorter ones differ from that by nothing.
+// Memory, samples, of the second one: half of the raw measurement's weight. Shorter ones differ from that by
+// nothing.
 constexpr double kSecond = 4.5;
-// A parabola is prolonged over so many of its lengths at most: beyond, its variance exceeds a thousand times R.
+// A parabola is prolonged over so many of its lengths at most: beyond, its variance exceeds a thousand times
+// R.
 constexpr double kMostLengths = 4.0;
 // Samples over which the usual distance between measurements is averaged.
 constexpr double kUsualMemory = 32.0;
@@ -23,7 +25,7 @@ constexpr std::size_t kAlways = 4;
 Trackers::Gains fading_gains(double memory) {
   const double m = 1.0 / memory, th = 1.0 - m, p = 1.0 + th, g = 1.0 - th * th * th;
   const double ahead = m / (p * p * p * p * p) * (19.0 + th * (24.0 + th * (16.0 + th * (6.0 + th))));
-  return {g,           1.5 * m * m * p,           0.5 * m * m * m,
+  return {g,           1.5 * m * m * p,        0.5 * m * m * m,
           1.0 + ahead, logarithm(1.0 + ahead), (1.0 - g) * (1.0 - g) * ahead + g * g};
 }
 
@@ -133,8 +135,9 @@ void Trackers::prolong(State& state, double steps) const noexcept {
   }
 }
 
-// The gains are those of steps of one sample. In units of nominal samples those of slope and curvature fall with
-// the distance of the measurements; left as they are, longer steps would put the poles outside the unit circle.
+// The gains are those of steps of one sample. In units of nominal samples those of slope and curvature fall
+// with the distance of the measurements; left as they are, longer steps would put the poles outside the unit
+// circle.
 void Trackers::correct_some(State& state, const Lanes& rate, std::uint32_t valid_axes) noexcept {
   const Gains& g = state.gains;
   for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
@@ -148,7 +151,8 @@ void Trackers::correct_some(State& state, const Lanes& rate, std::uint32_t valid
   }
 }
 
-// That of a parabola grows with the fourth power of how far it is prolonged, in lengths of what it goes through.
+// That of a parabola grows with the fourth power of how far it is prolonged, in lengths of what it goes
+// through.
 double Trackers::factor(std::size_t j, std::size_t axis) const noexcept {
   const State& state = state_[j];
   const double one = state.gains.factor, far = since(axis);

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trackers of rate, slope and curvature that forget at different speeds: from one sample, which is the measured
-// rate itself, to as long as the filter at rest, half a power of ten apart.
+// Trackers of rate, slope and curvature that forget at different speeds: from one sample, which is the
+// measured rate itself, to as long as the filter at rest, half a power of ten apart.
 //
 // A tracker is the fading-memory polynomial filter of second degree (Morrison, "Introduction to Sequential
-// Smoothing and Prediction", 1969; Brookner, "Tracking and Kalman Filtering Made Easy", 1998, section 7): three
-// equal poles at theta, gains 1 - theta^3, 3/2 (1 - theta)^2 (1 + theta), (1 - theta)^3. Of rate to output 1 - H is
-// the cube of a first difference: no lag on a constant slope or curvature, and a gain that departs from one only
-// with the fourth power of frequency, which is what keeps coning out of the angle. A young tracker is the
-// least-squares parabola through all measurements since it began. All axes share the gains.
+// Smoothing and Prediction", 1969; Brookner, "Tracking and Kalman Filtering Made Easy", 1998, section 7):
+// three equal poles at theta, gains 1 - theta^3, 3/2 (1 - theta)^2 (1 + theta), (1 - theta)^3. Of rate to
+// output 1 - H is the cube of a first difference: no lag on a constant slope or curvature, and a gain that
+// departs from one only with the fourth power of frequency, which is what keeps coning out of the angle. A
+// young tracker is the least-squares parabola through all measurements since it began. All axes share the
+// gains.
 #pragma once
 
 #include <array>
@@ -64,11 +65,14 @@ class Trackers {
   // Samples over which it is compared with another filter: its impulse response has decayed.
   [[nodiscard]] double horizon(std::size_t j) const noexcept { return horizon_[j]; }
   // Nominal samples since the axis was corrected; 1 when none is missing.
-  [[nodiscard]] double since(std::size_t axis) const noexcept { return since_[static_cast<Eigen::Index>(axis)]; }
+  [[nodiscard]] double since(std::size_t axis) const noexcept {
+    return since_[static_cast<Eigen::Index>(axis)];
+  }
 
  private:
   struct State {
-    Lanes rate = Lanes::Zero(), slope = Lanes::Zero(), curvature = Lanes::Zero();  // per sample, half per sample^2
+    Lanes rate = Lanes::Zero(), slope = Lanes::Zero(),
+          curvature = Lanes::Zero();  // per sample, half per sample^2
     double age = 0.0, length = 1.0;
     bool settled = false;
     Gains gains{};

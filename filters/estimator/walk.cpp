@@ -17,9 +17,9 @@ constexpr double kIndependent = 0.5;
 constexpr double kFewest = 5.0;
 // Standard deviations: one octave in a thousand, of ten in a stretch, is further off by chance.
 constexpr double kChance = 3.3;
-// Octaves that colour may fill, and by how much the noise of long means may exceed that of differences of samples: a
-// correlation of one half, an output filter with its corner at a sixth of the sample rate. What is slower is not told
-// from the motion of a hand.
+// Octaves that colour may fill, and by how much the noise of long means may exceed that of differences of
+// samples: a correlation of one half, an output filter with its corner at a sixth of the sample rate. What is
+// slower is not told from the motion of a hand.
 constexpr std::size_t kMostColour = 3;
 constexpr double kMostExcess = 8.0;
 // Octaves from here on, 32 samples, are long: shaking has its angle's bound there.
@@ -108,7 +108,8 @@ void Walk::add_octaves(Axis& axis, double rate) noexcept {
   }
 }
 
-// A block is worked in while the next one is read, one ratio a sample, so that no step takes longer than another.
+// A block is worked in while the next one is read, one ratio a sample, so that no step takes longer than
+// another.
 void Walk::add_block(Axis& axis, double rate) noexcept {
   if (axis.next < kTrials) work_in(axis);
   axis.sum += rate;
@@ -154,7 +155,8 @@ std::size_t Walk::likeliest(Likelihood Axis::*of, double nearly) const noexcept 
   return best;
 }
 
-// R of an axis if it is white noise and this walk from that octave on; 0 if it is not, NaN if nothing was measured.
+// R of an axis if it is white noise and this walk from that octave on; 0 if it is not, NaN if nothing was
+// measured.
 double Walk::white_noise(const Axis& axis, double ratio, std::size_t first) const noexcept {
   double weighted = 0.0, total = 0.0;
   const auto shape = [ratio](std::size_t k) {
@@ -171,7 +173,8 @@ double Walk::white_noise(const Axis& axis, double ratio, std::size_t first) cons
   for (std::size_t k = first; k < kOctaves; ++k) {
     const Octave& octave = axis.octaves[k];
     if (octave.count < kFewest) break;
-    // The logarithm of a mean of n squares is near normal: mean -1 / n, variance 2 / n. That of heavy tails is wider.
+    // The logarithm of a mean of n squares is near normal: mean -1 / n, variance 2 / n. That of heavy tails
+    // is wider.
     const double off = logarithm(octave.squares / octave.count / (noise * shape(k))) + 1.0 / octave.count;
     const double square = off * off * octave.count / 2.0;
     if (std::abs(off) <= kTails) continue;
@@ -182,7 +185,8 @@ double Walk::white_noise(const Axis& axis, double ratio, std::size_t first) cons
     long_off += off * octave.count;
     long_count += 2.0 * octave.count;
   }
-  // What is bounded is below in all long octaves, what turns above in all: together that shows sooner than in one.
+  // What is bounded is below in all long octaves, what turns above in all: together that shows sooner than in
+  // one.
   if (long_off * long_off > kChance * kChance * long_count) return 0.0;
   return misfit <= tested + kChance * std::sqrt(2.0 * tested) ? noise : 0.0;
 }
@@ -243,7 +247,8 @@ void Walk::believe() noexcept {
   samples_ += in_stretch_;
   // What was recalled stands until this run has had as much.
   const bool more = samples_ >= 2.0 * recalled_samples_;
-  ratio_ = recalled_ > 0.0 && !more ? recalled_ : std::min(ratios_[likeliest(&Axis::all, kNearly)], kMostRatio);
+  ratio_ =
+      recalled_ > 0.0 && !more ? recalled_ : std::min(ratios_[likeliest(&Axis::all, kNearly)], kMostRatio);
 }
 
 std::optional<Walk::Found> Walk::take_news() noexcept { return std::exchange(news_, std::nullopt); }

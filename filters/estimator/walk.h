@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a stream says of a sensor's noise: how strong the white noise of each axis is, and how quickly the rate walks.
+// What a stream says of a sensor's noise: how strong the white noise of each axis is, and how quickly the
+// rate walks.
 //
-// One learner for the start, for rest, and for louder noise. A stretch of some thousand samples is judged as a whole.
-// It is noise if it is white over every octave: the second difference of block means over m samples has the variance
-// R (6 / m + ratio m), ratio = q dt / R <= 1e-3, within chance at each m from one sample to a sixteenth of the stretch.
-// Shaking whose angle is bounded falls faster with m, turns rise, and neither is taken for noise.
+// One learner for the start, for rest, and for louder noise. A stretch of some thousand samples is judged as
+// a whole. It is noise if it is white over every octave: the second difference of block means over m samples
+// has the variance R (6 / m + ratio m), ratio = q dt / R <= 1e-3, within chance at each m from one sample to
+// a sixteenth of the stretch. Shaking whose angle is bounded falls faster with m, turns rise, and neither is
+// taken for noise.
 //
-// The walk is found by its likelihood: for each ratio on a grid a Kalman filter runs over means of 64 samples, and R
-// is left open. Of ratios nearly as likely as the best the quickest is taken, as a filter that is a little too quick
-// is a little noisier and one that is too slow takes the walk for motion. A motion that passes for rest makes the walk
-// look quicker, never slower: so a stretch that is surely slower replaces what was known, one surely quicker is dropped.
+// The walk is found by its likelihood: for each ratio on a grid a Kalman filter runs over means of 64
+// samples, and R is left open. Of ratios nearly as likely as the best the quickest is taken, as a filter that
+// is a little too quick is a little noisier and one that is too slow takes the walk for motion. A motion that
+// passes for rest makes the walk look quicker, never slower: so a stretch that is surely slower replaces what
+// was known, one surely quicker is dropped.
 #pragma once
 
 #include <array>
@@ -35,7 +38,8 @@ class Walk {
 
   // A stretch has so many samples.
   explicit Walk(double stretch = kStretch) noexcept;
-  // The walk as an earlier run has found it, in so many samples. Doubted once stretch after stretch contradicts it.
+  // The walk as an earlier run has found it, in so many samples. Doubted once stretch after stretch
+  // contradicts it.
   void recall(double ratio, double samples) noexcept;
   // The next measurements, rad/s. What is learned of the walk is learned only with `learn`.
   void take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept;

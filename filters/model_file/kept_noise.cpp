@@ -73,7 +73,8 @@ std::string kept_noise_text(const KeptNoise& kept) {
   line("model", toml_quoted(noise.model.data()), "  # that corrected it, \"\": none");
   line("process_noise", toml_number(noise.process_noise), "  # of a random walk, (rad/s)^2/s");
   line("measurement_noise", toml_number(noise.measurement_noise), "  # per sample, (rad/s)^2");
-  line("noise", toml_list(std::span(noise.noise).first(static_cast<std::size_t>(kept.axes))), "  # the same by axis");
+  line("noise", toml_list(std::span(noise.noise).first(static_cast<std::size_t>(kept.axes))),
+       "  # the same by axis");
   line("samples", toml_number(noise.samples), "  # at rest");
   return text;
 }

@@ -23,8 +23,8 @@ std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std
 struct AxisShares {
   std::optional<Axes> noise, walk;
 };
-// Squares of N and K, mean over these axes: (rad/s)^2/Hz, (rad/s^2)^2/Hz. Nothing where the model does not say it of
-// every axis.
+// Squares of N and K, mean over these axes: (rad/s)^2/Hz, (rad/s^2)^2/Hz. Nothing where the model does not
+// say it of every axis.
 struct AxisNoiseTerms {
   std::optional<double> N, K;
 };

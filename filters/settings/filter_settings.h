@@ -22,7 +22,7 @@ struct FilterSettings {
   // Of the state model: AR/MA coefficients, correlation time, line frequency…
   std::vector<double> state_parameters;
 
-  int window = 50;                // N of IRWE, IAE, RAE
+  int window = 50;  // N of IRWE, IAE, RAE
   // What is louder than the known noise: "motion", which is followed, or "noise", which is smoothed.
   std::string wideband = "motion";
   std::string weights = "kept";   // "kept" | "fresh" | "uniform"

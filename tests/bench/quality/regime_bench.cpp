@@ -127,7 +127,7 @@ Json json(const Row& row) {
            {"limit", row.limit},
            {"over_conventional", json(row.over_conventional)},
            {"over_raw", json(row.over_raw)},
-          {"over_better", json(row.over_better)}};
+           {"over_better", json(row.over_better)}};
   out["over_informed"] = std::isnan(row.over_informed.median) ? Json(nullptr) : json(row.over_informed);
   out["nees"] = json(row.nees);
   out["nees_conventional"] = json(row.nees_conventional);

@@ -237,8 +237,8 @@ void add_motion(std::vector<Regime>& all) {
 
 using Shaken = std::function<std::vector<double>(Random&, std::size_t samples, double per_hz)>;
 
-// Moves from the first sample to the last. per_hz: by which a frequency is multiplied for a record of another sample
-// rate than the motions are made at.
+// Moves from the first sample to the last. per_hz: by which a frequency is multiplied for a record of another
+// sample rate than the motions are made at.
 void add_moving(std::vector<Regime>& all, const std::string& name, double sample_rate_hz, bool told,
                 const Shaken& motion) {
   constexpr std::size_t kBegins = 50, kSamples = 30'000;
@@ -265,7 +265,8 @@ void add_carried(std::vector<Regime>& all) {
   const std::vector<std::pair<std::string, Shaken>> kinds{
       {"vehicle",
        [sum](Random& random, std::size_t n, double per_hz) {
-         return sum(random_motion(random, n, 0, 60.0, 0.5 * per_hz), shaking(random, n, 8.0, 0.42 * kSampleRate_hz));
+         return sum(random_motion(random, n, 0, 60.0, 0.5 * per_hz),
+                    shaking(random, n, 8.0, 0.42 * kSampleRate_hz));
        }},
       {"rough-road",
        [](Random& random, std::size_t n, double) { return shaking(random, n, 40.0, 0.45 * kSampleRate_hz); }},
@@ -274,7 +275,8 @@ void add_carried(std::vector<Regime>& all) {
          return sum(sway(random, n, 0, 100.0, 0.1 * per_hz), shaking(random, n, 2.0, 0.42 * kSampleRate_hz));
        }},
       {"hand", [sum](Random& random, std::size_t n, double per_hz) {
-         return sum(random_motion(random, n, 0, 30.0, 2.0 * per_hz), random_motion(random, n, 0, 5.0, 4.0 * per_hz));
+         return sum(random_motion(random, n, 0, 30.0, 2.0 * per_hz),
+                    random_motion(random, n, 0, 5.0, 4.0 * per_hz));
        }}};
   for (const auto& [name, motion] : kinds)
     for (const double hz : {10.0, 100.0, 200.0})
@@ -283,7 +285,8 @@ void add_carried(std::vector<Regime>& all) {
   for (const double amplitude : {3.0, 5.0, 10.0, 30.0})
     for (const auto& [frequency, shown] : {std::pair{0.05, "0.05"}, {0.2, "0.2"}, {1.0, "1"}})
       for (const bool told : {true, false})
-        add_moving(all, "start-" + std::to_string(std::lround(amplitude)) + "-" + shown + "Hz", kSampleRate_hz, told,
+        add_moving(all, "start-" + std::to_string(std::lround(amplitude)) + "-" + shown + "Hz",
+                   kSampleRate_hz, told,
                    [a = amplitude, f = frequency](Random& random, std::size_t n, double) {
                      std::vector<double> rate = sway(random, n + n, 0, a, f);
                      rate.erase(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(n));  // in full

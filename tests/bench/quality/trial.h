@@ -28,7 +28,7 @@ const std::vector<std::string>& filter_names();
 
 // Over the samples judged. Of an estimate that is not finite, or has no positive variance, they are infinite.
 struct Figures {
-  double over_conventional = 0.0;      // RMSE over that of conventional()
+  double over_conventional = 0.0;  // RMSE over that of conventional()
   double over_raw = 0.0;
   double over_better = 0.0;            // over the better of conventional and raw
   double over_informed = 0.0;          // over that of the informed one; NaN: nothing to be told

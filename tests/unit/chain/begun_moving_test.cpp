@@ -90,7 +90,6 @@ class Simulated {
   }
   void reload(const ChainSettings& settings) { chain_.swap(std::make_unique<ChainParts>(settings)); }
 
-
   Errors errors;
 
  private:

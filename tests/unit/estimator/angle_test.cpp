@@ -28,7 +28,8 @@ TEST(Heading, IsKeptOverTurnsByHand) {
   const ifog::Capture capture = ifog::read_capture(path);
   const double period = 0.001;
   ifog::FilterSettings settings;
-  for (const auto& axis : capture.rate_radps) settings.measurement_noise += ifog::roughness(std::span(axis).first(1500)) / 3.0;
+  for (const auto& axis : capture.rate_radps)
+    settings.measurement_noise += ifog::roughness(std::span(axis).first(1500)) / 3.0;
   settings.process_noise = 1e-6 * settings.measurement_noise / period;
   ifog::Estimator estimator(settings, 3, period);
   ifog::EstimatorInput in;

@@ -11,7 +11,8 @@ namespace {
 
 using namespace ifog::test;
 
-double over_the_truth(const Record& r, double walk_over_noise, std::size_t from, const char* wideband = "motion") {
+double over_the_truth(const Record& r, double walk_over_noise, std::size_t from,
+                      const char* wideband = "motion") {
   ifog::FilterSettings settings = told(walk_over_noise);
   settings.wideband = wideband;
   const Filtered got = run(settings, r.measured);
@@ -31,7 +32,8 @@ TEST(LouderNoise, IsSmoothedOrPassedAsTheSettingsSay) {
         r.measured[i] = r.truth[i] + (i / kTurn % 2 == 0 ? 1.0 : louder) * normal(random);
       EXPECT_LT(over_the_truth(r, ratio, 20'000, "noise"), 1.2) << "Q/R " << ratio << ", noise x " << louder;
       const Filtered passed = run(told(ratio), r.measured);
-      EXPECT_LT(mean_square_error(passed.denoised, r.truth, 20'000), 1.05 * mean_square_error(r.measured, r.truth, 20'000));
+      EXPECT_LT(mean_square_error(passed.denoised, r.truth, 20'000),
+                1.05 * mean_square_error(r.measured, r.truth, 20'000));
     }
   }
 }

@@ -125,8 +125,8 @@ TEST(Motion, ThatIsUnderWayAtTheFirstSampleIsNoColour) {
     worst_angle = std::max(worst_angle, std::abs(angle));
   }
   EXPECT_LT(worst_off, 1.0);
-  // Of the lag of some 70 samples that the filter at rest has, noise alone turns by 70 / sqrt(70) sigma samples, and
-  // in the tail of the turn it is a mean over as many.
+  // Of the lag of some 70 samples that the filter at rest has, noise alone turns by 70 / sqrt(70) sigma
+  // samples, and in the tail of the turn it is a mean over as many.
   EXPECT_LT(worst_angle, 10.0 * std::sqrt(70.0));
 }
 

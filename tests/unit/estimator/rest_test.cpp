@@ -125,8 +125,8 @@ TEST(LearnedNoise, TakesThePlaceOfAStartUp) {
 
 TEST(LearnedNoise, StandsBehindWhatIsTold) {
   ChainSettings settings = untold();
-  settings.learned =
-      LearnedNoise{.process_noise = 1.0, .measurement_noise = 2.0, .noise = {2.0}, .samples = 1e6, .model = {}};
+  settings.learned = LearnedNoise{
+      .process_noise = 1.0, .measurement_noise = 2.0, .noise = {2.0}, .samples = 1e6, .model = {}};
   auto model = std::make_shared<Model>();
   model->filter = told(1e-6);
   settings.model = model;

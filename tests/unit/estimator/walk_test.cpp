@@ -36,7 +36,8 @@ Heard hear(int samples, unsigned seed, const std::function<double(int, double)>&
 
 TEST(Walk, FindsNoiseAndWalkOfARecord) {
   for (const double ratio : {1e-4, 1e-6}) {
-    const Heard heard = hear(400'000, 3, [](int, double noise) { return 2.0 * noise; }, 4.0 * ratio);
+    const Heard heard = hear(
+        400'000, 3, [](int, double noise) { return 2.0 * noise; }, 4.0 * ratio);
     ASSERT_TRUE(heard.last) << ratio;
     EXPECT_NEAR(heard.last->noise[0], 4.0, 0.3) << ratio;
     EXPECT_NEAR(std::log10(heard.last->ratio / ratio), 0.0, 0.35) << ratio;

@@ -17,11 +17,11 @@
 #include "drivers/capture/column_names.h"
 #include "filters/allan/stretches.h"
 #include "filters/estimator/walk.h"
-#include "filters/smoother/roughness.h"
 #include "filters/model_file/model.h"
 #include "filters/rest/rest.h"
 #include "filters/rules/rule.h"
 #include "filters/settings/filter_table.h"
+#include "filters/smoother/roughness.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/time_part.h"
@@ -82,7 +82,8 @@ void fill_noise(FilterSettings& settings, const CaptureView& capture, const std:
                 double period_s) {
   if (settings.process_noise > 0.0 && settings.measurement_noise > 0.0) return;
   constexpr std::size_t kMost = std::size_t{1} << 23U;  // rows
-  // The quietest stretch that is white noise and a walk; of a record that has none what third differences bound.
+  // The quietest stretch that is white noise and a walk; of a record that has none what third differences
+  // bound.
   Walk walk;
   double quietest = 0.0, ratio = kMostRatio;
   const auto take = [&](std::size_t begin, std::size_t end) {
@@ -108,7 +109,8 @@ void fill_noise(FilterSettings& settings, const CaptureView& capture, const std:
   for (const Stretch& part : at_rest) take(std::min(part.begin, rows), std::min(part.end, rows));
   if (quietest == 0.0)
     for (const auto& axis : capture.rate_radps)
-      quietest += roughness(axis.first(std::min(axis.size(), kMost))) / static_cast<double>(capture.axes.size());
+      quietest +=
+          roughness(axis.first(std::min(axis.size(), kMost))) / static_cast<double>(capture.axes.size());
   if (!(quietest > 0.0 && std::isfinite(quietest)))
     throw std::runtime_error("the record shows no noise; expected --process-noise and --measurement-noise");
   if (settings.measurement_noise <= 0.0) settings.measurement_noise = quietest;
