@@ -50,6 +50,7 @@ void ChangeTest::begin() noexcept {
     c.sum.setZero();
     c.weight.setZero();
     c.angle.setZero();
+    c.since.setZero();
     c.rest.setZero();
     c.rest2.setZero();
     c.tracker.setZero();
@@ -88,6 +89,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   }
   // The change began where the sum was last in favour of rest.
   c.angle = (c.ratio > 0.0).select(c.angle, Lanes::Zero()) + now.innovation * now.covered_s;
+  c.since = (c.ratio > 0.0).select(c.since, Lanes::Zero()) + 1.0;
   c.ratio = (keep * c.ratio + evidence_).max(kLeastRatio);
   c.rest = keep * c.rest + common.squares;
   c.rest2 = keep * c.rest2 + common.squares2;

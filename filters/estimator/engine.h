@@ -55,6 +55,8 @@ class Engine {
   [[nodiscard]] LearnedNoise learned() const noexcept;
 
  private:
+  // Samples after which a filter that was moved is one at rest again, and that may be lost in a row at rest.
+  static constexpr double kRestMemory = 64.0, kShortGap = 16.0;
   // What one step knows.
   struct Step {
     const EstimatorInput& in;
