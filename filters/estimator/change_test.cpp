@@ -50,7 +50,6 @@ void ChangeTest::begin() noexcept {
     c.sum.setZero();
     c.weight.setZero();
     c.angle.setZero();
-    c.since.setZero();
     c.rest.setZero();
     c.rest2.setZero();
     c.tracker.setZero();
@@ -87,9 +86,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * c.weight)
                   .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
   }
-  // The change began where the sum was last in favour of rest.
-  c.angle = (c.ratio > 0.0).select(c.angle, Lanes::Zero()) + now.innovation * now.covered_s;
-  c.since = (c.ratio > 0.0).select(c.since, Lanes::Zero()) + 1.0;
+  c.angle = keep * c.angle + now.innovation * now.covered_s;
   c.ratio = (keep * c.ratio + evidence_).max(kLeastRatio);
   c.rest = keep * c.rest + common.squares;
   c.rest2 = keep * c.rest2 + common.squares2;

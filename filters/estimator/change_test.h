@@ -33,13 +33,9 @@ class ChangeTest {
   // Rest was found after a manoeuvre: what is left of that is found by less evidence.
   void relax() noexcept { relaxed_ = kRelaxed; }
   [[nodiscard]] bool suspected() const noexcept { return suspected_; }
-  // Angle, rad, by which the filter at rest has fallen short since the change began, as Page's test dates it.
+  // Angle, rad, by which the filter at rest has fallen short within the tracker's horizon.
   [[nodiscard]] double angle(std::size_t tracker, std::size_t axis) const noexcept {
     return contest_[tracker].angle[static_cast<Eigen::Index>(axis)];
-  }
-  // Samples since then, the axis' that has taken longest.
-  [[nodiscard]] double since(std::size_t tracker) const noexcept {
-    return contest_[tracker].since.maxCoeff();
   }
   // Variance of a change that may have begun, (rad/s)^2.
   [[nodiscard]] double unseen(std::size_t axis) const noexcept {
@@ -51,8 +47,7 @@ class ChangeTest {
  private:
   static constexpr double kRelaxed = 10.0;
   struct Contest {
-    Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero(), angle = Lanes::Zero(),
-          since = Lanes::Zero();
+    Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero(), angle = Lanes::Zero();
     Lanes wide = Lanes::Ones(), horizons = Lanes::Zero();
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };

@@ -292,7 +292,7 @@ void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   } else {
     Lanes late = Lanes::Zero();
     for (std::size_t a = 0; a < axes_; ++a) late[static_cast<Eigen::Index>(a)] = f.change.angle(tracker, a);
-    f.ledger.owe_late(late, std::max(f.trackers.horizon(tracker), f.change.since(tracker)));
+    f.ledger.owe_late(late, f.trackers.horizon(tracker));
     for (std::size_t j = tracker + 1; j < f.trackers.size(); ++j) {
       f.trackers.begin_from(j, tracker);
       break;
