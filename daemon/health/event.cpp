@@ -22,11 +22,8 @@ std::string describe(const Event& event) {
                          event.sequence);
     case EventKind::noise_learned:
       return fmt::format(
-          "noise from start-up data: process_noise = {:.4g} (rad/s)^2/s, measurement_noise = {:.4g} "
-          "(rad/s)^2{}",
-          event.a, event.b,
-          event.count != 0 ? "; the sensor moved meanwhile: a model tuned at rest knows its noise better"
-                           : "");
+          "noise learned at rest: process_noise = {:.4g} (rad/s)^2/s, measurement_noise = {:.4g} (rad/s)^2",
+          event.a, event.b);
     case EventKind::model_in_use:
       return fmt::format("model in use from number {} on", event.sequence);
     case EventKind::divergence:

@@ -15,7 +15,7 @@ enum class EventKind : std::uint8_t {
   device_restart,    // the device's counter or clock jumped back
   reopened,          // the device was closed and is open again
   overflow,          // the ring was full
-  noise_learned,     // a: process noise, b: measurement noise, from start-up data; count: 1 when it moved
+  noise_learned,     // a: process noise, b: measurement noise, from the first rest
   model_in_use,      // sequence: the first sample with the new parts
   divergence,        // the estimator started again
   clock_step,        // the wall clock was set; a: how far it is now from where it was at start-up, s

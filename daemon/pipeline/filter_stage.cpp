@@ -115,7 +115,6 @@ void FilterStage::process(const Increment& in) noexcept {
     events_.report({.kind = EventKind::noise_learned,
                     .utime_ns = in.utime_ns,
                     .sequence = in.sequence,
-                    .count = parts.moved_in_start_up() ? 1U : 0U,
                     .a = parts.filter().process_noise,
                     .b = parts.filter().measurement_noise});
   }

@@ -22,7 +22,7 @@ std::string in_words(const KeptNoise& kept) {
   std::snprintf(text, sizeof text,
                 "process_noise = %.4g (rad/s)^2/s, measurement_noise = %.4g (rad/s)^2, from %.0f s at rest",
                 kept.noise.process_noise, kept.noise.measurement_noise,
-                kept.noise.octaves.samples / kept.sample_rate_hz);
+                kept.noise.samples / kept.sample_rate_hz);
   return "noise as learned until " + printable(kept.learned) + ": " + text;
 }
 
@@ -63,10 +63,10 @@ std::string NoiseMemory::text(const std::optional<LearnedNoise>& learned) const 
 }
 
 std::string NoiseMemory::keep(const LearnedNoise& learned, std::int64_t now_ns, bool at_once) {
-  if (path_.empty() || learned.octaves.samples == written_samples_) return "";
+  if (path_.empty() || learned.samples == written_samples_) return "";
   if (!at_once && tried_ns_ && now_ns - *tried_ns_ < kEvery_ns) return "";
   // What was recalled and nothing learned since: the date stays.
-  if (recalled_ && learned.octaves.samples == recalled_->octaves.samples) return "";
+  if (recalled_ && learned.samples == recalled_->samples) return "";
   tried_ns_ = now_ns;
   kept_.noise = learned;
   kept_.learned = utc_now();
@@ -77,7 +77,7 @@ std::string NoiseMemory::keep(const LearnedNoise& learned, std::int64_t now_ns, 
     failed_ = true;
     return told ? "" : std::string("learned noise is not kept: ") + error.what();
   }
-  written_samples_ = learned.octaves.samples;
+  written_samples_ = learned.samples;
   failed_ = false;
   return "";
 }

@@ -9,23 +9,16 @@
 
 #include "drivers/ifog/quoted.h"
 #include "filters/chain/plausibility.h"
-#include "filters/estimator/start_up.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/settings/filter_table.h"
 
 namespace ifog {
 namespace {
 
-constexpr std::size_t kLeastStartUp = 256;
-constexpr std::size_t kMostStartUp = 20000;
-// Of the driving noise of a sample over the measurement's, as learned, where changes of rate are followed.
-// Ten thousand times any gyro's: what looks quicker was a motion, and a filter that is quicker than the
-// trackers of motions would never be found at rest again, nor learn better.
-constexpr double kMostLearnedRatio = 1e-3;
-// Beyond that by so much, the noise having turned out quieter, it is brought back.
-constexpr double kOutOfReach = 2.0;
-// Samples lost in a row, at most, after which a sensor at rest still is.
+// Samples lost in a row after which a sensor at rest still is.
 constexpr double kShortGap = 16.0;
+// Samples that show the noise: octaves up to 256 samples at least.
+constexpr double kLeastStartUp = 4096.0, kMostStartUp = 20000.0;
 
 // Of the first effect on that channel.
 std::uint32_t line_of(const Model& model, const std::string& channel) {
@@ -34,11 +27,6 @@ std::uint32_t line_of(const Model& model, const std::string& channel) {
       if (const ChannelNames names = names_in(used); names.of == channel || names.less == channel)
         return effect.line;
   return 0;
-}
-
-// Axes that repeat one value while another does not.
-std::uint32_t stuck_beside_others(const Increment& in) noexcept {
-  return (in.valid_axes & ~in.stuck_axes) != 0 ? in.stuck_axes : 0;
 }
 
 }  // namespace
@@ -59,53 +47,63 @@ ChainParts::ChainParts(const ChainSettings& settings)
     use_effects(settings);
   }
   filter_ = settings_in_force(settings.filter, std::move(base));
-  learns_process_noise_ = filter_.process_noise <= 0.0 && filter_.state == "random-walk";
+  use_noise(settings);
+}
+
+// Each figure is the settings', else the model's: its filter's, else by its noise terms; else what an earlier
+// run has learned. The walk of a random walk is learned if nobody knows it, and so is R.
+void ChainParts::use_noise(const ChainSettings& settings) {
+  const double rate_hz = facts_.nominal_rate_hz;
+  if (settings.model) {
+    const AxisNoiseTerms terms = mean_noise_terms(*settings.model, settings.axes);
+    if (filter_.measurement_noise <= 0.0 && terms.N) filter_.measurement_noise = *terms.N * rate_hz;
+    if (filter_.process_noise <= 0.0 && terms.K && filter_.state == "random-walk")
+      filter_.process_noise = *terms.K;
+  }
+  learns_process_noise_ = filter_.process_noise <= 0.0;
   learns_measurement_noise_ = filter_.measurement_noise <= 0.0;
-  if (settings.learned) recall(*settings.learned);
-  if (filter_.process_noise > 0.0 && filter_.measurement_noise > 0.0) {
-    estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
-    if (shares_.noise) estimator_->expect_noise(*shares_.noise);
-    estimator_->expect_walk(shares_.walk);
-    if (settings.learned && learns_measurement_noise_) estimator_->recall_colour(settings.learned->colour);
+  double ratio = kMostRatio, samples = 0.0;
+  if (settings.learned && filter_.state == "random-walk") {
+    const LearnedNoise& learned = *settings.learned;
+    if (learns_measurement_noise_) {
+      filter_.measurement_noise = learned.measurement_noise;
+      if (!shares_.noise && learned.measurement_noise > 0.0) {
+        shares_.noise = learned.noise;
+        for (double& share : *shares_.noise) share /= learned.measurement_noise;
+      }
+    }
+    ratio = learned.process_noise / (learned.measurement_noise * rate_hz);
+    // With other corrections the walk may be another one: a first guess.
+    samples = learned.is_of(identity_) ? learned.samples : std::min(learned.samples, kLeastStartUp);
+  }
+  if (filter_.measurement_noise > 0.0) {
+    begin(ratio, samples);
     return;
   }
-  // Built once for its complaints: a wrong setting is told at start, not after the start-up seconds.
+  // Built once for its complaints: a wrong setting is reported at start, not after the start-up.
   FilterSettings trial = filter_;
   if (trial.process_noise <= 0.0) trial.process_noise = 1e-10;
-  if (trial.measurement_noise <= 0.0) trial.measurement_noise = 1e-10;
+  trial.measurement_noise = 1e-10;
   const Estimator check(trial, facts_.axes, period_s_);
-  // The nearest: a rate that was found from times is as often below what it is meant to be as above.
-  start_up_size_ = std::clamp(
-      static_cast<std::size_t>(std::round(std::max(0.0, settings.start_up_s * facts_.nominal_rate_hz))),
-      kLeastStartUp, kMostStartUp);
-  start_up_.resize(start_up_size_ * static_cast<std::size_t>(facts_.axes));
+  start_up_.set_stretch(std::clamp(std::round(settings.start_up_s * rate_hz), kLeastStartUp, kMostStartUp));
+}
+
+// With R known.
+void ChainParts::begin(double ratio, double samples) {
+  if (learns_process_noise_) filter_.process_noise = ratio * filter_.measurement_noise / period_s_;
+  estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
+  if (shares_.noise) estimator_->expect_noise(*shares_.noise);
+  estimator_->expect_walk(shares_.walk);
+  if (learns_process_noise_ && filter_.state == "random-walk") estimator_->learn_walk(ratio, samples);
+  estimator_->owe(owed_);
 }
 
 ChainParts::~ChainParts() = default;
 
-// A density learned of a random walk is none of another state model's.
-void ChainParts::recall(const LearnedNoise& learned) noexcept {
-  if (filter_.state != "random-walk") return;
-  if (learns_measurement_noise_) filter_.measurement_noise = learned.measurement_noise;
-  if (!learns_process_noise_) return;
-  filter_.process_noise = learned.process_noise;
-  rest_measurement_noise_ = learned.measurement_noise;
-  if (learned.is_of(identity_)) {
-    rest_noise_.recall(learned.octaves);
-  } else {
-    learned_otherwise_ = learned;
-    rest_noise_.recall_bound(learned.octaves);
-  }
-}
-
 std::optional<LearnedNoise> ChainParts::learned() const noexcept {
-  if (!learns_process_noise_ || !estimator_ || !(rest_measurement_noise_ > 0.0)) return std::nullopt;
-  if (learned_otherwise_ && !rest_noise_.knows_enough()) return learned_otherwise_;
-  LearnedNoise out{.process_noise = filter_.process_noise,
-                   .measurement_noise = rest_measurement_noise_,
-                   .colour = estimator_->health().colour,
-                   .octaves = rest_noise_.known(),
-                   .model = {}};
+  if (!learns_process_noise_ || !estimator_ || filter_.state != "random-walk") return std::nullopt;
+  LearnedNoise out = estimator_->learned();
+  if (!(out.samples > 0.0)) return std::nullopt;
   out.set_model(identity_);
   return out;
 }
@@ -189,78 +187,28 @@ void ChainParts::refuse_impossible(const Increment& in, ChainOutput& out) noexce
   }
 }
 
+// Until a stretch of the rate is noise: white over every octave, with a walk. A sensor that moves is
+// published as measured for as long as it does.
 void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try {
-  if (in.valid_axes == 0) return;  // so that at least one axis has enough for the estimate below
-  for (std::size_t axis = 0; axis < static_cast<std::size_t>(facts_.axes); ++axis)
-    start_up_[axis * start_up_size_ + collected_] = out.compensated_radps[axis];
-  if (++collected_ < start_up_size_) return;
-  // What repeats one value shows no noise, and would make that of the others look smaller.
-  if (const std::uint32_t stuck = stuck_beside_others(in); stuck != 0)
-    for (std::size_t axis = 0; axis < static_cast<std::size_t>(facts_.axes); ++axis)
-      if ((stuck >> axis & 1U) != 0)
-        std::fill_n(start_up_.begin() + static_cast<std::ptrdiff_t>(axis * start_up_size_), start_up_size_,
-                    std::numeric_limits<double>::quiet_NaN());
-  const NoiseEstimate noise = estimate_noise(start_up_, facts_.axes, period_s_);
-  if (learns_measurement_noise_) filter_.measurement_noise = noise.measurement_noise;
-  if (filter_.process_noise <= 0.0) {
-    filter_.process_noise = noise.process_noise;
-    if (learns_process_noise_ && filter_.follow_manoeuvres) {
-      colour_ = noise.measurement_noise / noise.slow_noise;
-      filter_.process_noise = within_reach(noise.process_noise, filter_.measurement_noise);
-    }
-  }
-  moved_ = noise.moved;
-  rest_noise_.begin_after(start_up_size_);
-  estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
-  retune();
-  shares_.walk = noise.walk_share;
-  estimator_->expect_walk(shares_.walk);
-  estimator_->owe(owed_);
-} catch (const std::exception&) {
-  // Data that no noise can be learned from: the next seconds may be better. Until then it is unknown, and
-  // said.
-  collected_ = 0;
-}
-
-double ChainParts::within_reach(double process_noise, double measurement_noise) const noexcept {
-  return std::min(process_noise, kMostLearnedRatio * measurement_noise / (colour_ * period_s_));
-}
-
-void ChainParts::retune() noexcept { estimator_->retune(filter_.process_noise * colour_, 1.0 / colour_); }
-
-// Noise that turns out quieter than the start-up data said makes a walk that was within reach one that is
-// not.
-void ChainParts::keep_within_reach() noexcept {
-  if (!filter_.follow_manoeuvres) return;
-  double noise = 0.0;
-  for (const double axis : estimator_->health().measurement_noise) noise = std::max(noise, axis);
-  if (!(noise > 0.0) || filter_.process_noise <= kOutOfReach * within_reach(1e300, noise)) return;
-  filter_.process_noise = within_reach(filter_.process_noise, noise);
-  retune();
-}
-
-// The random walk shows itself slowly: what start-up data said of it, perhaps under way, is corrected
-// whenever the sensor has rested long enough to say more.
-void ChainParts::learn_on(const Increment& in, const ChainOutput& out) noexcept {
-  RestSample is = (out.estimate.flags & kAtRest) != 0 ? RestSample::kRest : RestSample::kPassedOver;
-  // Few samples that are lost are as good as few that cannot be used. What the sensor does for longer nobody
-  // knows.
-  const bool hole = (in.flags & kGapBefore) != 0 && in.dt_s > kShortGap * period_s_;
-  if ((out.estimate.flags & kManoeuvre) != 0 || hole) is = RestSample::kMotion;
-  rest_noise_.take(out.compensated_radps, in.valid_axes & ~stuck_beside_others(in), is);
-  keep_within_reach();
-  const std::optional<NoiseEstimate> found = rest_noise_.take_news(period_s_);
+  if ((in.flags & kGapBefore) != 0 && in.dt_s > kShortGap * period_s_) start_up_.break_off();
+  // What repeats one value shows no noise.
+  start_up_.take(out.compensated_radps, in.valid_axes & ~in.stuck_axes, true);
+  const std::optional<Walk::Found> found = start_up_.take_news();
   if (!found) return;
-  filter_.process_noise = found->process_noise;
-  if (filter_.follow_manoeuvres) {
-    colour_ = found->measurement_noise / found->slow_noise;
-    filter_.process_noise = within_reach(found->process_noise, found->measurement_noise);
+  double sum = 0.0, axes = 0.0;
+  for (const double noise : found->noise) {
+    sum += noise;
+    axes += noise > 0.0 ? 1.0 : 0.0;
   }
-  rest_measurement_noise_ = found->measurement_noise;
-  retune();
-  // What the first seconds said of each axis' part of the walk was no better than what they said of the walk.
-  shares_.walk.reset();
-  estimator_->expect_walk(shares_.walk);
+  if (!(sum > 0.0)) return;
+  filter_.measurement_noise = sum / axes;
+  Axes share{1.0, 1.0, 1.0};
+  for (std::size_t a = 0; a < kMaxAxes; ++a)
+    if (found->noise[a] > 0.0) share[a] = found->noise[a] / filter_.measurement_noise;
+  shares_.noise = share;
+  begin(found->ratio, found->samples);
+} catch (const std::exception&) {
+  // No memory for a filter: the rate stays as measured, and says so.
 }
 
 void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {
@@ -321,7 +269,6 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   // A mean over so many whole samples, merged or summed: timing jitter makes no noise quieter.
   input.averaged_s = in.samples > 1 ? in.samples * parts.period_s_ : 0.0;
   parts.estimator_->step(input, out.estimate);
-  if (parts.learns_process_noise_) parts.learn_on(in, out);
   if (parts.compensator_)
     for (std::size_t i = 0; i < static_cast<std::size_t>(parts.facts_.axes); ++i)
       out.estimate.variance_rad2ps2[i] += parts.correction_.variance_rad2ps2[i];

@@ -21,7 +21,7 @@
 #include "filters/estimator/estimator.h"
 #include "filters/estimator/first_samples.h"
 #include "filters/estimator/learned_noise.h"
-#include "filters/estimator/rest_noise.h"
+#include "filters/estimator/walk.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/model_axes.h"
 #include "filters/settings/filter_settings.h"
@@ -40,7 +40,7 @@ struct ChainSettings {
   std::vector<std::string> channels;      // by index in Reading::channel, capture column names
   std::vector<double> channel_max_age_s;  // older is stale; one a channel, 0: never
   FilterChoice filter;      // over the model's; process or measurement noise 0 or not said: from start-up
-  double start_up_s = 4.0;  // of data for that
+  double start_up_s = 4.0;  // of data for that at least; 4096 samples at least
   // By an earlier run of the same sensor: in place of start-up data where neither settings nor model say.
   std::optional<LearnedNoise> learned;
   std::shared_ptr<const Model> model;      // null: nothing is compensated
@@ -94,8 +94,6 @@ class ChainParts {
   // Nobody told the driving noise: it is learned.
   [[nodiscard]] bool learns_walk() const { return learns_process_noise_; }
   [[nodiscard]] bool noise_known() const { return estimator_ != nullptr; }
-  // The start-up data were of a sensor that moved: what they say of its noise is too much.
-  [[nodiscard]] bool moved_in_start_up() const { return moved_; }
   // Effects of the model that cannot be corrected here, in words.
   [[nodiscard]] std::vector<std::string> left_out() const;
   // What is worth keeping for the next start; nothing where the noise is told, or not known yet.
@@ -105,15 +103,12 @@ class ChainParts {
 
  private:
   friend class SignalChain;
-  void recall(const LearnedNoise& learned) noexcept;
+  void use_noise(const ChainSettings& settings);
+  void begin(double ratio, double samples);
   void use_effects(const ChainSettings& settings);
   void compensate(const Increment& in, ChainOutput& out) noexcept;
   void refuse_impossible(const Increment& in, ChainOutput& out) noexcept;
   void learn(const Increment& in, const ChainOutput& out) noexcept;
-  [[nodiscard]] double within_reach(double process_noise, double measurement_noise) const noexcept;
-  void retune() noexcept;
-  void keep_within_reach() noexcept;
-  void learn_on(const Increment& in, const ChainOutput& out) noexcept;
   void publish_raw(const Increment& in, ChainOutput& out) noexcept;
 
   SensorFacts facts_;
@@ -127,21 +122,12 @@ class ChainParts {
   std::vector<double> relative_age_max_;    // 1 / the age allowed, of each
   std::vector<double> channel_, relative_age_;
   CompensatorOutput correction_;
-  std::vector<double> start_up_;   // compensated rates, axis after axis
-  std::size_t start_up_size_ = 0;  // samples of an axis wanted
-  std::size_t collected_ = 0;
+  Walk start_up_;  // until the noise is known
   std::unique_ptr<Estimator> estimator_;
   FirstSamples first_samples_;
   std::uint32_t measured_axes_ = 0;  // that the estimator has been given
   bool learns_process_noise_ = false, learns_measurement_noise_ = false;
-  RestNoise rest_noise_;
-  double rest_measurement_noise_ = 0.0;            // as that has found it
-  std::optional<LearnedNoise> learned_otherwise_;  // with another model: a bound
-  // Noise of a sample over that of long means: the filter's gain, which takes the one for white, is right for
-  // the other with a driving noise as much larger.
-  double colour_ = 1.0;
   Axes owed_{};  // by the estimator before, until this one is there
-  bool moved_ = false;
   bool first_ = true;
 };
 

@@ -3,363 +3,387 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+
+#include "filters/random/log_exp.h"
 
 namespace ifog {
 namespace {
 
-// Samples between refreshes of the settled filter's lag, a small linear solve; by the sequence, so that a
-// part of a recording has them where the whole has.
-constexpr std::uint64_t kLagEvery = 256;
-// Samples: what was not tested at the beginning belongs to no manoeuvre that begins later.
-constexpr double kUntestedKept = 256.0;
-// Where the noise looks coloured and how slow it is has yet to be found, a test of this many more is blunt.
-constexpr double kColouredUntested = 4096.0;
-// So many lags after it was moved the filter at rest has settled; until then it is a mean, with gain 1 / n.
-constexpr double kSettledLags = 2.0;
-// A motion that ends slowly is taken for over while it goes on below the noise: so many lags after that its
-// tail is over, too.
-constexpr double kTailLags = 8.0;
-// Of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 °/s.
-constexpr double kMostRestRate = 0.02;
+// Standard deviations that an innovation counts for at most where large ones are frequent at rest.
+constexpr double kNeverNoise = 20.0;
+// Of the angle of an outlier at rest what is remembered of it a sample later.
+constexpr double kKeptOut = 0.94;
+
+Lanes to_lanes(const Axes& axes) noexcept { return {axes[0], axes[1], axes[2], 0.0}; }
+
 }  // namespace
 
-Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, SteadyGain* steady, int axes,
-               double period_s)
-    : follow_manoeuvres_(settings.follow_manoeuvres),
-      conserve_angle_(settings.conserve_angle),
-      guard_(settings.guard),
+Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, int axes, double period_s)
+    : settings_(settings),
       axes_(static_cast<std::size_t>(axes)),
       period_s_(period_s),
       rest_(std::move(rest)),
-      steady_(steady),
-      trackers_(axes_),
-      change_(rest_->rate_alone(), axes_),
-      ledger_(period_s, settings.follow_manoeuvres),
-      noise_of_one_(settings.measurement_noise) {
-  noise_.fill(NoiseScale(settings.measurement_noise));
-  begin();
-}
-
-void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
-  out.flags = 0;
-  Measurement m{in, screen(in, out), in.dt_s > 0.0 ? in.dt_s : period_s_,
-                in.averaged_s > 0.0 ? period_s_ / in.averaged_s : 1.0};
-  if (m.noise_scale != 1.0) m.to_nominal = std::sqrt(1.0 / m.noise_scale);
-  const double before = rest_->variance();
-  rest_->predict(m.dt_s);
-  const double grown = std::max(0.0, rest_->variance() - before);
-  begin_axes(in.rate_radps, m.valid);
-  if (follow_manoeuvres_) begin_after_gap(m);
-  for (std::size_t a = 0; a < axes_; ++a) {
-    if (has(m.valid, a)) m.innovation[a] = in.rate_radps[a] - rest_->measurement(a);
-    if (noise_[a].known()) m.tested |= 1U << a;
-  }
-  out.innovation_radps = m.innovation;
-  since_blow_ = std::min(since_blow_ + 1.0, kBlow);
-  published_.passed_over = false;
-  published_.returned = published_.shared = {};
-
-  if (follow_manoeuvres_) {
-    follow(m, out);
-  } else {
-    update_rest(m, true);
-    publish_rest();
-  }
-  if (guard_) guard(m, out);
-  if (rests(m)) out.flags |= kAtRest;
-  know_unmeasured(m, grown);
-  publish(m, out);
-}
-
-// The filter's gain and variance are of the axes that are measured.
-void Engine::know_unmeasured(const Measurement& m, double grown) noexcept {
-  Axes variance = published_.variance;
-  for (std::size_t a = 0; motion_ == Motion::at_rest && a < axes_; ++a) variance[a] = rest_variance(a);
-  for (std::size_t a = 0; a < axes_; ++a) {
-    const double walked = grown * walk_share(a);
-    if (has(m.valid, a))
-      unmeasured_.measure(a, published_.gain, variance[a], m.in.rate_radps[a] - published_.rate[a],
-                          noise_[a].now() * m.noise_scale);
-    else if (m.valid == 0 && motion_ == Motion::at_rest)  // the filter is not measured either
-      unmeasured_.miss_with_all(a, walked);
-    else if (has(started_, a))
-      unmeasured_.miss(a, walked, published_.rate, variance);
-  }
+      follow_(axes_, period_s) {
+  noise_.fill(Noise(settings.measurement_noise));
+  follow_.moving = settings.follow_manoeuvres && rest_->rate_alone();
 }
 
 void Engine::restart() noexcept {
   rest_->restart();
-  trackers_.begin();
-  change_.restart();
-  outliers_.restart();
-  for (NoiseScale& noise : noise_) noise.break_off();
+  const Lanes owed = follow_.ledger.owed();
+  follow_ = Follower(axes_, period_s_);
+  follow_.moving = settings_.follow_manoeuvres && rest_->rate_alone();
+  if (owed.abs().sum() > 0.0) follow_.ledger.owe(owed);
+  walk_.break_off();
   started_ = 0;
-  knowledge_ = Knowledge::nothing;
-  doubted_motion_ = {};
-  begin();
-  untested_ = {};
+  settled_lag_ = 0.0;
   unmeasured_ = {};
-  in_tail_ = false;
-  since_blow_ = kBlow;
-  since_moved_ = at_rest_for_ = 0.0;
-  lag_turn_ = kNoTurn;
 }
 
-void Engine::recall_colour(const Axes& colour) noexcept {
-  for (std::size_t a = 0; a < axes_; ++a) noise_[a].recall(colour[a]);
+void Engine::expect_noise(const Axes& share) noexcept {
+  for (std::size_t a = 0; a < axes_; ++a) noise_[a] = Noise(share[a] * settings_.measurement_noise);
+}
+
+void Engine::learn_walk(double ratio, double samples) noexcept {
+  learns_walk_ = true;
+  if (samples > 0.0) walk_.recall(ratio, samples);
+}
+
+LearnedNoise Engine::learned() const noexcept {
+  LearnedNoise out;
+  out.process_noise = settings_.process_noise;
+  for (std::size_t a = 0; a < axes_; ++a) out.noise[a] = noise_[a].known();
+  out.measurement_noise = mean_noise();
+  out.samples = learns_walk_ ? walk_.samples() : 0.0;
+  return out;
 }
 
 Axes Engine::owed() const noexcept {
-  Axes angle{};
-  if (!conserve_angle_) return angle;
-  for (std::size_t a = 0; a < axes_; ++a) angle[a] = ledger_.owed(a) + kept_out(a);
-  return angle;
+  if (!settings_.conserve_angle) return {};
+  const Lanes owed = follow_.ledger.owed() + follow_.kept_out_rad;
+  return {owed[0], owed[1], owed[2]};
 }
 
 void Engine::owe(const Axes& angle_rad) noexcept {
-  for (std::size_t a = 0; a < axes_; ++a) {
-    if (std::isfinite(angle_rad[a]) && angle_rad[a] != 0.0) ledger_.owe(a, angle_rad[a]);
+  const Lanes angle = to_lanes(angle_rad);
+  if (angle.allFinite() && (angle != 0.0).any()) follow_.ledger.owe(angle);
+}
+
+double Engine::mean_noise() const noexcept {
+  double sum = 0.0;
+  for (std::size_t a = 0; a < axes_; ++a) sum += noise_[a].known();
+  return sum / static_cast<double>(axes_);
+}
+
+Lanes Engine::noise_share() const noexcept {
+  Lanes share = Lanes::Ones();
+  const double mean = mean_noise();
+  for (std::size_t a = 0; a < axes_; ++a) share[static_cast<Eigen::Index>(a)] = noise_[a].known() / mean;
+  return share;
+}
+
+Lanes Engine::walk_share() const noexcept { return walk_share_ ? to_lanes(*walk_share_) : noise_share(); }
+
+Lanes Engine::colour() const noexcept {
+  Lanes colour = Lanes::Ones();
+  for (std::size_t a = 0; a < axes_; ++a) colour[static_cast<Eigen::Index>(a)] = noise_[a].colour();
+  return colour;
+}
+
+Lanes Engine::rest_rate() const noexcept {
+  Lanes rate = Lanes::Zero();
+  for (std::size_t a = 0; a < axes_; ++a) rate[static_cast<Eigen::Index>(a)] = rest_->rate(a);
+  return rate;
+}
+
+// Of the filter at rest; one that has just been moved is as slow as what it has had is long.
+double Engine::lag() const noexcept {
+  return std::max(1.0, std::min(settled_lag_ > 0.0 ? settled_lag_ : 1e300, follow_.since_moved + 1.0));
+}
+
+void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
+  out.flags = 0;
+  Step s{in,
+         out,
+         in.dt_s > 0.0 ? in.dt_s : period_s_,
+         in.averaged_s > 0.0 ? period_s_ / in.averaged_s : 1.0,
+         {}};
+  screen(s);
+  const double before = rest_->variance();
+  rest_->predict(s.dt_s);
+  const double grown = std::max(0.0, rest_->variance() - before);
+  begin_axes(s);
+  if (settings_.follow_manoeuvres) {
+    follow_.trackers.predict(s.dt_s / period_s_);
+    for (std::size_t a = 0; a < axes_; ++a)
+      if ((s.sample.valid >> a & 1U) != 0) noise_[a].take(in.rate_radps[a], follow_.trackers.since(a));
+    weigh(s);
+    follow(s);
+  } else {
+    weigh(s);
+    take(s, true);
+    publish_rest(s);
   }
+  if (settings_.guard) guard(s);
+  if (follow_.moving && follow_.known && settings_.follow_manoeuvres && follow_.mix.rest_weight() < 0.5)
+    out.flags |= kManoeuvre;
+  if (rests(s)) out.flags |= kAtRest;
+  learn(s);
+  know_unmeasured(s, grown);
+  follow_.published = s.rate;
+  if (settings_.conserve_angle) pay(s);
+  publish(s);
 }
 
 // Which axes have a measurement that can be used.
-std::uint32_t Engine::screen(const EstimatorInput& in, EstimatorOutput& out) noexcept {
-  std::uint32_t valid = 0;
+void Engine::screen(Step& s) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
-    if (!has(in.valid_axes, a) || !std::isfinite(in.rate_radps[a])) continue;
-    if (in.stuck_axes ? has(*in.stuck_axes, a) : check_.stuck(a, in.rate_radps[a])) {
-      out.flags |= kStuck;
+    if ((s.in.valid_axes >> a & 1U) == 0 || !std::isfinite(s.in.rate_radps[a])) continue;
+    if (s.in.stuck_axes ? (*s.in.stuck_axes >> a & 1U) != 0 : check_.stuck(a, s.in.rate_radps[a])) {
+      s.out.flags |= kStuck;
       continue;
     }
-    valid |= 1U << a;
+    s.sample.valid |= 1U << a;
   }
-  return valid;
 }
 
-void Engine::update_rest(const Measurement& m, bool learn) noexcept {
+// The first measurement of an axis sets its state.
+void Engine::begin_axes(const Step& s) noexcept {
+  const std::uint32_t first = s.sample.valid & ~started_;
+  if (first == 0) return;
+  rest_->shift_to(s.in.rate_radps, first);
+  for (std::size_t a = 0; a < axes_; ++a)
+    if ((first >> a & 1U) != 0) follow_.trackers.seed(a, s.in.rate_radps[a]);
+  started_ |= first;
+}
+
+void Engine::weigh(Step& s) noexcept {
+  Sample& m = s.sample;
+  const bool smooths = settings_.wideband == "noise";
+  const double projected = rest_->measurement_variance() / mean_noise();
+  m.rest_factor = 1.0 + projected / s.noise_scale;
+  m.log_rest_factor = logarithm(m.rest_factor);
+  m.rest_gain = std::min(1.0, projected / (projected + s.noise_scale));
+  for (std::size_t a = 0; a < axes_; ++a) {
+    const auto i = static_cast<Eigen::Index>(a);
+    m.scale[i] = noise_[a].tested() * s.noise_scale * (smooths ? noise_[a].heard() : 1.0);
+    if ((m.valid >> a & 1U) == 0) continue;
+    m.mask[i] = 1.0;
+    m.rate[i] = s.in.rate_radps[a];
+    m.innovation[i] = s.in.rate_radps[a] - rest_->measurement(a);
+    m.inverse[i] = 1.0 / m.scale[i];
+    m.covered_s[i] = s.in.covered_s[a] > 0.0 ? s.in.covered_s[a] : s.dt_s;
+  }
+  m.surprise = m.innovation * m.innovation * m.inverse / m.rest_factor;
+  s.out.innovation_radps = {m.innovation[0], m.innovation[1], m.innovation[2]};
+}
+
+void Engine::follow(Step& s) noexcept {
+  if (s.sample.valid == 0) {
+    rest_->skip();
+    follow_.moving ? publish_mix(s) : publish_rest(s);
+    return;
+  }
+  switch (judge_outlier(s)) {
+    case Outliers::Verdict::waits:
+      s.out.flags |= kGated;
+      ++health_.gated;
+      s.outlier = true;
+      rest_->skip();
+      if (follow_.outliers.run() == 1) follow_.trackers.pass_over();
+      follow_.moving ? publish_mix(s) : publish_rest(s);
+      follow_.kept_out_rad += (s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s;
+      // Until the next measurement says which, it may be the first of a jump.
+      s.variance += s.sample.innovation * s.sample.innovation;
+      return;
+    case Outliers::Verdict::jump:
+      jump(s);
+      break;
+    case Outliers::Verdict::usual:
+      // In a manoeuvre an outlier may be rotation, and is booked.
+      if (follow_.moving) admit_outliers();
+      // At rest it is remembered for a while, should a manoeuvre be found that it was the beginning of.
+      follow_.kept_out_rad *= kKeptOut;
+      break;
+  }
+  follow_.moving ? follow_manoeuvre(s) : follow_rest(s);
+}
+
+Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
+  const Trackers& trackers = follow_.trackers;
+  // Where nothing follows the motion nothing tells an outlier from it.
+  if (follow_.moving && follow_.mix.raw()) return Outliers::Verdict::usual;
+  // Nor behind a gap.
+  for (std::size_t a = 0; a < axes_; ++a)
+    if ((s.sample.valid >> a & 1U) != 0 && trackers.since(a) > kShortGap) return Outliers::Verdict::usual;
+  Lanes least = s.sample.surprise;
+  // At rest the raw one, a parabola through three measurements, foresees nothing better than others and much
+  // worse.
+  for (std::size_t j = follow_.moving ? 0 : 1; j < trackers.size(); ++j) {
+    if (!trackers.predicts(j)) {
+      least.setZero();
+      break;
+    }
+    const Lanes error = s.sample.rate - trackers.rate(j);
+    Lanes square = error * error * s.sample.inverse / trackers.gains(j).factor;
+    for (std::size_t a = 0; a < axes_; ++a)  // what was missing is predicted worse
+      if (trackers.since(a) > 1.0)
+        square[static_cast<Eigen::Index>(a)] *= trackers.gains(j).factor / trackers.factor(j, a);
+    least = least.min(square);
+  }
+  Eigen::Index worst = 0;
+  const double most = least.maxCoeff(&worst);
+  return follow_.outliers.take(most, s.sample.rate, s.sample.scale[worst], static_cast<std::size_t>(worst),
+                               follow_.moving, lag());
+}
+
+// So many measurements that nothing predicts are a new rate: followers begin with the last of them.
+void Engine::jump(Step& s) noexcept {
+  Follower& f = follow_;
+  f.trackers.begin();
+  for (std::size_t a = 0; a < axes_; ++a) f.trackers.seed(a, f.published[static_cast<Eigen::Index>(a)]);
+  for (std::size_t i = 0; i + 1 < f.outliers.kept(); ++i) {
+    f.trackers.predict(1.0);
+    f.trackers.correct(f.outliers.kept(i), s.sample.valid);
+  }
+  f.trackers.predict(1.0);
+  admit_outliers();
+  f.outliers.end_run();
+  Lanes rate = f.published;
+  rate = (s.sample.mask > 0.0).select(s.sample.rate, rate);
+  move_rest(rate, s.sample.scale);
+  weigh(s);
+  if (!f.moving) ++health_.manoeuvres;
+  f.moving = f.known = true;
+  s.out.flags |= kManoeuvre;
+  f.mix.begin(0.0);
+  f.change.begin();
+}
+
+void Engine::admit_outliers() noexcept {
+  follow_.ledger.add(follow_.kept_out_rad);
+  follow_.kept_out_rad.setZero();
+}
+
+void Engine::follow_rest(Step& s) noexcept {
+  Follower& f = follow_;
+  std::optional<std::size_t> found =
+      f.change.take(f.trackers, s.sample, colour(), f.outliers.rarity(), lag());
+  if (found == ChangeTest::kShaking && settings_.wideband == "noise") found.reset();
+  f.trackers.correct(s.sample.rate, s.sample.valid);
+  if (found) {
+    begin_manoeuvre(s, *found);
+    take(s, false);
+    publish_mix(s);
+    return;
+  }
+  take(s, f.since_moved > kRestMemory);
+  publish_rest(s);
+}
+
+void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
+  Follower& f = follow_;
+  s.out.flags |= kManoeuvre;
+  ++health_.manoeuvres;
+  const double since = f.since_moved;
+  admit_outliers();
+  if (tracker == ChangeTest::kShaking) {
+    f.mix.begin(0.0);
+  } else {
+    Lanes late = Lanes::Zero();
+    for (std::size_t a = 0; a < axes_; ++a) late[static_cast<Eigen::Index>(a)] = f.change.angle(tracker, a);
+    f.ledger.owe_late(late, f.trackers.horizon(tracker));
+    for (std::size_t j = tracker + 1; j < f.trackers.size(); ++j) {
+      f.trackers.begin_from(j, tracker);
+      break;
+    }
+    f.mix.begin(std::min(since, f.trackers.horizon(tracker)));
+    move_rest(f.trackers.rate(tracker), f.trackers.gains(tracker).output * s.sample.scale);
+    f.ledger.pace(f.trackers.length(tracker));
+  }
+  f.moving = f.known = true;
+  f.change.begin();
+}
+
+void Engine::follow_manoeuvre(Step& s) noexcept {
+  Follower& f = follow_;
+  const Lanes colours = colour();
+  f.mix.take(f.trackers, s.sample, colours);
+  take(s, false);
+  publish_mix(s);
+  f.ledger.pace(f.mix.length(f.trackers, lag()));
+  if (f.mix.rest_failed()) {
+    move_rest(s.rate, s.variance.min(s.sample.scale));
+    f.mix.begin_rest();
+    f.known = true;
+  }
+  if (f.mix.rest_found()) {
+    f.moving = false;
+    f.known = true;
+    f.change.begin();
+    f.change.relax();
+  }
+}
+
+// The filter at rest takes the measurement in, clipped. learn: its rule learns of the innovation.
+void Engine::take(Step& s, bool learn) noexcept {
+  const Sample& m = s.sample;
   if (m.valid == 0) {
     rest_->skip();
     return;
   }
-  // The first measurement sets the state; its innovation is zero by construction and no evidence.
-  const bool learns = learn && knowledge_ != Knowledge::nothing;
-  double noise_scale = m.noise_scale;
-  if (follow_manoeuvres_ && steady_ != nullptr) {
-    const double louder = louder_by(m.valid);
-    steady_->hear_louder(louder);
-    louder_ = louder;
-    if (!learns) noise_scale *= louder;
-  }
-  rest_->update(m.in.rate_radps, m.valid, noise_scale, m.in.sequence, learns);
-  if (knowledge_ == Knowledge::nothing) knowledge_ = Knowledge::told;
-  since_moved_ += 1.0;
-  // Where it goes under way, in the tail of a motion, or while its gain is that of a filter that was moved,
-  // what it lags behind by will not be returned.
-  at_rest_for_ = in_manoeuvre() ? 0.0 : at_rest_for_ + 1.0;
-  const bool settled = at_rest_for_ * rest_->gain() > kTailLags;
-  for (std::size_t a = 0; !settled && a < axes_; ++a) ledger_.refer(a, rest_->rate(a));
-  // A filter that has just begun has no motion behind it, and owes but its noise.
-  in_tail_ = !settled && (in_tail_ || in_manoeuvre());
-  ledger_.follow_tail(in_tail_ && rest_->gain() > 0.0 ? period_s_ / rest_->gain() : 0.0);
-  // Under way, too, a filter that has had time to settle and was not found wrong is to be as far from the
-  // measurements as it believes; that of a larger model is only moved by its level, and may take longer.
-  const bool doubtful = learn || (rest_->rate_alone() && since_moved_ > kSettledLags * lag_samples());
-  for (std::size_t a = 0; a < axes_; ++a) {
-    if (!has(m.valid, a) || !(rest_->covariance() > 0.0)) continue;
-    const double normalised = m.innovation[a] / std::sqrt(innovation_variance(a));
-    if (doubtful) doubt(a, normalised);
-    if (learn) grade(a, normalised);
-  }
-}
-
-bool Engine::hardly_tested(std::size_t axis) const noexcept {
-  return !noise_[axis].white() && tested_for_[axis] < kColouredUntested;
-}
-
-// A filter that has just begun is as slow as what it has had is long.
-double Engine::lag_samples() const noexcept {
-  const bool young = rest_->rate_alone() && rest_->gain() > 0.0 && since_moved_ < kLagEvery;
-  return std::max({longest_lag_, 1.0, young ? std::min(since_moved_, 1.0 / rest_->gain()) : 0.0});
-}
-
-Surprise Engine::surprise(const Measurement& m) const noexcept {
-  Surprise now;
-  for (std::size_t a = 0; a < axes_; ++a)
-    now.rate[a] = has(m.valid, a) ? m.in.rate_radps[a] : published_.rate[a];
-  now.innovation = m.innovation;
-  // Of R nothing: it is in the scale, and what both say of it must not differ.
-  const double usual = rest_variance_ + rest_->rule().measurement_noise();
-  if (beginning() && knowledge_ != Knowledge::heard)
-    now.rest_factor = 1.0 + rest_->measurement_variance() / rest_->rule().measurement_noise();
-  else if (rest_variance_ > 0.0)
-    now.rest_factor = std::max(1.0, 1.0 + (rest_->measurement_variance() - rest_variance_) / usual);
-  for (std::size_t a = 0; a < axes_; ++a) {
-    now.covered_s[a] = m.covered_s(a);
-    now.scale[a] = noise_[a].now() * m.noise_scale;
-    now.degrees[a] = noise_[a].degrees();
-    if (has(m.valid, a) && (noise_[a].known() || beginning()) && now.scale[a] > 0.0) now.valid |= 1U << a;
-  }
-  return now;
-}
-
-void Engine::follow(const Measurement& m, EstimatorOutput& out) noexcept {
-  trackers_.predict(m.dt_s / period_s_);
-  const Surprise now = surprise(m);
-  if (in_manoeuvre()) {
-    follow_manoeuvre(m, now, out);
-  } else if (beginning()) {
-    follow_beginning(m, now, out);
-  } else {
-    follow_rest(m, now, out);
-  }
-}
-
-void Engine::follow_rest(const Measurement& m, const Surprise& now, EstimatorOutput& out) noexcept {
-  const double lag = lag_samples();
-  if (now.valid != 0) outliers_.take(now, lag);
-  const bool keep_out = now.valid != 0 && outliers_.keep_out();
-  if (now.valid != 0 && outliers_.jump()) {
-    hear(m);
-    jump(out);
-    forget_unmeasured(m.valid);
-    return;
-  }
-  hear(m);
-  if (now.valid != 0 && outliers_.run().empty()) book_kept_out(m);
-  if (now.valid != 0 && outliers_.began()) begin_kept_out();
-  if (keep_out) {
-    out.flags |= kGated;
-    ++health_.gated;
-    published_.passed_over = true;
-    for (std::size_t a = 0; a < axes_; ++a)
-      if (has(m.valid, a)) add_kept_out(m, a, m.in.rate_radps[a] - rest_->rate(a));
-  }
-  std::optional<std::size_t> changed;
-  if (keep_out && outliers_.run().size() == 1) {
-    trackers_.pass_over();
-  } else if (m.valid != 0) {
-    if (now.valid != 0) changed = change_.take(trackers_, now, noise_, outliers_.most(), lag);
-    for (std::size_t a = 0; a < axes_; ++a)
-      if (has(m.valid, a) && !noise_[a].known())
-        foresight_[a].take(trackers_, a, m.in.rate_radps[a], m.noise_scale);
-    trackers_.correct(m.in.rate_radps, m.valid);
-  }
-  if (changed) {
-    begin_manoeuvre(m, *changed, out);
-    return;
-  }
-  if (keep_out) {
-    rest_->skip();
-  } else {
-    const double predicted = rest_->measurement_variance();
-    const bool learns = since_moved_ > kRestMemory || knowledge_ != Knowledge::heard;
-    update_rest(m, learns);
-    if (m.valid != 0 && knowledge_ != Knowledge::nothing) learn_noise(m, learning(m.valid));
-    if (learns) average_rest(predicted);
-  }
-  publish_rest();
-  // Until the next measurement says which, it may be the first of a jump.
-  for (std::size_t a = 0; keep_out && a < axes_; ++a)
-    published_.variance[a] += m.innovation[a] * m.innovation[a];
-}
-
-bool Engine::rests(const Measurement& m) const noexcept {
-  if (!follow_manoeuvres_ || motion_ != Motion::at_rest || lost_ || published_.passed_over || m.valid == 0 ||
-      (m.valid & ~m.tested) != 0 || at_rest_for_ < kRestMemory || change_.suspected())
-    return false;
-  for (std::size_t a = 0; a < axes_; ++a)
-    if (has(started_, a) && !(std::abs(rest_->rate(a)) <= kMostRestRate)) return false;
-  return true;
-}
-
-// At rest the variance is the filter's own where the noise is white. Half of it is noise; where neighbours
-// have something in common that is more by as much as their mean over a long time varies more. Half is the
-// walk's, and an axis' own share of that. Where a change of rate may have begun, it is what the filter may be
-// off by.
-void Engine::publish_rest() noexcept {
-  published_.gain = rest_->gain();
-  // Of an innovation, as the filter believes it to be.
-  const double believed = rest_variance_ + louder_ * rest_->rule().measurement_noise();
-  const double lag = lag_samples();
-  for (std::size_t a = 0; a < axes_; ++a) {
-    published_.rate[a] = rest_->rate(a);
-    published_.variance[a] = rest_variance(a);
-    if (!follow_manoeuvres_ || !noise_[a].known() || !(believed > 0.0)) continue;
-    const double louder = std::max(1.0, noise_[a].with_tails() / (loudness_[a] * believed));
-    const Wider wider =
-        change_.wider(trackers_, a, lag, noise_[a], {1.0 / louder, walk_share(a) / loudness_[a]});
-    published_.variance[a] *= 0.5 * (wider.walk + wider.noise * louder);
-    published_.variance[a] += noise_[a].rounding(published_.rate[a], published_.variance[a]) +
-                              noise_[a].vibration() + change_.unseen(a);
-  }
-}
-
-void Engine::publish(const Measurement& m, EstimatorOutput& out) noexcept {
-  const double believed = rest_->rule().measurement_noise();
-  for (std::size_t a = 0; a < axes_; ++a) {
-    double rate = published_.rate[a];
-    double variance = unmeasured_.variance(a, published_.variance[a]);
-    if (conserve_angle_) {
-      const double dt_s = m.covered_s(a);
-      const auto paid = ledger_.payment(a, rest_->rate(a), rest_variance(a), dt_s);
-      rate += paid.rate();
-      // Of a lag that lasts the payments are the return: the rate is off by the greater of the two.
-      variance += std::max(0.0, paid.rate() * paid.rate() - published_.returned[a]) + published_.shared[a];
-      // An outlier at rest is no rotation; in a manoeuvre every sample may be, and is booked.
-      const double short_by =
-          has(m.valid, a) && !published_.passed_over ? m.in.rate_radps[a] - published_.rate[a] : 0.0;
-      // What a filter that is lost falls short of is no lag's, whatever it takes itself for.
-      const bool under_way = in_manoeuvre() || (follow_manoeuvres_ && lost_);
-      const double grown = ledger_.book(a, short_by * dt_s, paid, dt_s, rest_->rate(a), under_way);
-      // What was fallen short of before its noise was known no test has seen: a filter that begins under way
-      // finds that out late, and owes it to the manoeuvre.
-      if (!has(m.tested, a) || beginning()) {
-        untested_[a] += grown;
-        tested_for_[a] = 0.0;
-      } else {
-        tested_for_[a] += 1.0;
-        if (hardly_tested(a)) {
-          if (!under_way) untested_[a] += grown;
-        } else if (tested_for_[a] > kUntestedKept) {
-          untested_[a] = 0.0;
-        }
-      }
+  RestFilter::Measured measured{s.in.rate_radps, m.valid, s.noise_scale, {1.0, 1.0, 1.0}};
+  if (settings_.follow_manoeuvres) {
+    // Where large innovations are frequent they are the noise's, and to clip them would shift its mean.
+    const double deviations = follow_.outliers.rare() ? kMostDeviations : kNeverNoise;
+    const Lanes most = deviations * (m.scale * m.rest_factor).sqrt();
+    const Lanes clipped = m.innovation.max(-most).min(most);
+    // The mean of all axes, whichever are measured: one gain is for all.
+    double mean = 0.0;
+    for (std::size_t a = 0; a < axes_; ++a) {
+      const auto i = static_cast<Eigen::Index>(a);
+      if ((m.valid >> a & 1U) != 0) measured.rate[a] = m.rate[i] - m.innovation[i] + clipped[i];
+      measured.share[a] = noise_[a].known() * (settings_.wideband == "noise" ? noise_[a].heard() : 1.0);
+      mean += measured.share[a] / static_cast<double>(axes_);
     }
-    out.denoised_radps[a] = rate;
-    // A rule without a floor may take the covariance below zero: it then says nothing of the rate but what
-    // one measurement does.
-    out.variance_rad2ps2[a] = variance >= 0.0 ? variance : noise_of_one_;
-    out.gain[a] = published_.gain;
-    out.innovation_variance[a] = innovation_variance(a);
-    health_.measurement_noise[a] = loudness_[a] * believed;
-    health_.colour[a] = noise_[a].colour();
+    for (double& share : measured.share) share /= mean;
+    measured.noise_scale *= mean / settings_.measurement_noise;
   }
-  health_.floor_hits = rest_->rule().floor_hits();
-  if (const std::uint64_t turn = m.in.sequence / kLagEvery; turn != lag_turn_) {
-    lag_turn_ = turn;
-    refresh_lag();
-  }
-  // A tracker has no lag in a rate, slope or curvature that lasts.
-  health_.group_delay_s = motion_ != Motion::at_rest ? mix_.rest_weight() * lag_s_ : lag_s_;
+  // The first measurement sets the state: its innovation is zero and no evidence.
+  rest_->update(measured, s.in.sequence, learn && follow_.since_moved > 0.0);
+  follow_.since_moved += 1.0;
+  if (!learn || !(rest_->covariance() > 0.0)) return;
+  for (std::size_t a = 0; a < axes_; ++a)
+    if ((m.valid >> a & 1U) != 0)
+      grades_.take(
+          a, m.innovation[static_cast<Eigen::Index>(a)] / std::sqrt(rest_->covariance() * measured.share[a]),
+          health_);
 }
 
-// The lag of the filter at rest, not of one that has just been moved and still has to forget by how much.
-void Engine::refresh_lag() noexcept {
-  const Settled now = rest_->settled();
-  // A filter that has taken in nothing yet has neither.
-  if (!std::isfinite(now.lag) || !std::isfinite(now.correlation)) return;
-  const double lag = std::max(0.0, now.lag);
-  if (follow_manoeuvres_ && lag_s_ > 0.0 && (in_manoeuvre() || since_moved_ < longest_lag_) &&
-      lag < longest_lag_)
-    return;
-  lag_s_ = lag * period_s_;
-  Axes rest{};
-  for (std::size_t a = 0; a < axes_; ++a) rest[a] = rest_->rate(a);
-  ledger_.set_lag(lag_s_, rest);
-  longest_lag_ = lag;
-  trackers_.reach(lag);
-  health_.correlation_time_s = now.correlation * period_s_;
+void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
+  rest_->shift_rate_to({rate[0], rate[1], rate[2]}, started_);
+  const Lanes share = noise_share();
+  double of_all = 0.0;
+  for (std::size_t a = 0; a < axes_; ++a)
+    of_all += variance[static_cast<Eigen::Index>(a)] / share[static_cast<Eigen::Index>(a)];
+  of_all /= static_cast<double>(axes_);
+  // Colour and lines that a larger model has found stay known.
+  if (rest_->rate_alone() || of_all > rest_->variance()) rest_->set_variance(of_all);
+  follow_.since_moved = 0.0;
+}
+
+// Divergence: a covariance that is none any more, a state that is no number, or a filter that for long has
+// been further from the measurements than it believes possible. It starts again from this measurement.
+void Engine::guard(Step& s) noexcept {
+  const bool lost = grades_.newly_lost() && !settings_.follow_manoeuvres;
+  if (rest_->sound() && s.rate.allFinite() && !lost) return;
+  ++health_.divergences;
+  ++health_.restarts;
+  s.out.flags |= kRestarted;
+  restart();
+  begin_axes(s);
+  take(s, false);
+  publish_rest(s);
 }
 
 }  // namespace ifog

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/estimator/estimator.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <stdexcept>
@@ -31,8 +32,15 @@ void check(const FilterSettings& settings, int axes, double nominal_period_s) {
   require_in_range(settings);
 }
 
+// Innovations whose random weights make chance of the gain 3 % and of the error 0.1 %.
+constexpr int kSteadyWindow = 1000;
+
 FilterSettings in_force(FilterSettings settings) {
-  if (!settings.plain) return settings;
+  if (!settings.plain) {
+    if (settings.steady_gain && settings.follow_manoeuvres)
+      settings.window = std::max(settings.window, kSteadyWindow);
+    return settings;
+  }
   settings.follow_manoeuvres = settings.conserve_angle = settings.steady_gain = settings.guard = false;
   settings.floor = 0.0;
   return settings;
@@ -48,18 +56,9 @@ struct Estimator::Impl {
 Estimator::Estimator(const FilterSettings& told, int axes, double nominal_period_s) {
   check(told, axes, nominal_period_s);
   const FilterSettings settings = in_force(told);
-  std::unique_ptr<Rule> rule = make_rule(settings);
-  SteadyGain* steady = nullptr;
-  // What a rule without an opinion of its own is told stays; a bank's cores have one each.
-  if (settings.steady_gain && settings.follow_manoeuvres && settings.rule != "ckf" &&
-      rule->hypotheses().size() == 1) {
-    auto wrapped = std::make_unique<SteadyGain>(std::move(rule));
-    steady = wrapped.get();
-    rule = std::move(wrapped);
-  }
   auto rest = make_rest_filter(make_state_model(settings.state, settings.state_parameters, nominal_period_s),
-                               std::move(rule), settings.process_noise, settings.measurement_noise);
-  impl_ = std::make_unique<Impl>(Engine(settings, std::move(rest), steady, axes, nominal_period_s));
+                               make_rule(settings), settings.process_noise, settings.measurement_noise);
+  impl_ = std::make_unique<Impl>(Engine(settings, std::move(rest), axes, nominal_period_s));
 }
 
 Estimator::~Estimator() = default;
@@ -68,14 +67,14 @@ Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept { impl_->engine.step(in, out); }
 void Estimator::restart() noexcept { impl_->engine.restart(); }
-void Estimator::retune(double process_noise, double walk) noexcept {
-  impl_->engine.retune(process_noise, walk);
+void Estimator::learn_walk(double ratio, double samples) noexcept {
+  impl_->engine.learn_walk(ratio, samples);
 }
-void Estimator::recall_colour(const Axes& colour) noexcept { impl_->engine.recall_colour(colour); }
 void Estimator::expect_noise(const Axes& share) noexcept { impl_->engine.expect_noise(share); }
 void Estimator::expect_walk(const std::optional<Axes>& share) noexcept { impl_->engine.expect_walk(share); }
 Axes Estimator::owed() const noexcept { return impl_->engine.owed(); }
 void Estimator::owe(const Axes& angle_rad) noexcept { impl_->engine.owe(angle_rad); }
+LearnedNoise Estimator::learned() const noexcept { return impl_->engine.learned(); }
 const EstimatorHealth& Estimator::health() const noexcept { return impl_->engine.health(); }
 
 }  // namespace ifog

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "filters/estimator/learned_noise.h"
 #include "filters/settings/axes.h"
 #include "filters/settings/filter_settings.h"
 
@@ -73,12 +74,10 @@ class Estimator {
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;  // forget the state, keep the counters
-  // Another driving noise, FilterSettings::process_noise, from the next step on; the state stays. > 0.
-  // walk: that of the rate itself over it, where the gain is for noise that is not white.
-  void retune(double process_noise, double walk = 1.0) noexcept;
-  // Before the first step: the noise's colour as an earlier filter of the sensor has found it,
-  // EstimatorHealth::colour; not told, it is found anew.
-  void recall_colour(const Axes& colour) noexcept;
+  // Before the first step: nobody knows the walk, and settings.process_noise is a first guess; it is learned
+  // at rest. ratio, samples: q dt / R as an earlier run has found it in so many samples; 0 samples: not
+  // known.
+  void learn_walk(double ratio = 0.0, double samples = 0.0) noexcept;
   // Before the first step: each axis' own noise over FilterSettings::measurement_noise, by which it is judged
   // until it is heard. Not told, it is the same for all axes.
   void expect_noise(const Axes& share) noexcept;
@@ -91,6 +90,8 @@ class Estimator {
   // step, so that a reload in a turn loses none.
   [[nodiscard]] Axes owed() const noexcept;
   void owe(const Axes& angle_rad) noexcept;
+  // The noise as it is known now.
+  [[nodiscard]] LearnedNoise learned() const noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept;
 
  private:

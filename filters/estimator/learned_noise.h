@@ -11,19 +11,11 @@
 
 namespace ifog {
 
-// Sums of squares of second differences of means over 2^k samples, and how many independent ones: from them
-// the random walk is fitted, and to them later rest is added.
-struct OctaveSums {
-  static constexpr std::size_t kOctaves = 20;
-  std::array<double, kOctaves> squares{}, counts{};  // (rad/s)^2
-  double samples = 0.0;                              // at rest, of each axis
-};
-
 struct LearnedNoise {
   double process_noise = 0.0;      // of a random walk, (rad/s)^2/s
-  double measurement_noise = 0.0;  // per sample, (rad/s)^2: what a filter's gain is to stand on
-  Axes colour{1.0, 1.0, 1.0};      // variance of innovations over that of white noise as rough as they are
-  OctaveSums octaves;
+  double measurement_noise = 0.0;  // per sample, mean over the axes, (rad/s)^2
+  Axes noise{};                    // the same of each axis
+  double samples = 0.0;            // at rest, that the walk stands on
   // Identity of the model whose corrections were in; empty: none. What another one corrects
   // is no part of this noise.
   std::array<char, 16> model{};

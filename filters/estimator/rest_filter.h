@@ -23,11 +23,17 @@ class RestFilter {
   virtual void retune(double process_noise) noexcept = 0;
   // Eqs. (9), (10) of the paper over dt.
   virtual void predict(double dt_s) noexcept = 0;
-  // Takes in the measurements of the axes in `valid`. With learn off the rule keeps its opinion of R: the
-  // innovations of a filter that is catching up say nothing about it. noise_scale: R of this sample over R at
-  // the nominal period.
-  virtual void update(const Axes& rate, std::uint32_t valid, double noise_scale, std::uint64_t sequence,
-                      bool learn) noexcept = 0;
+  // One sample. noise_scale: mean R of the valid axes over the R that the filter was made with; share: R of
+  // each axis over that mean, by which the rule's innovations are normalised.
+  struct Measured {
+    Axes rate{};
+    std::uint32_t valid = 0;
+    double noise_scale = 1.0;
+    Axes share{1.0, 1.0, 1.0};
+  };
+  // Takes it in. With learn off the rule keeps its opinion of R: the innovations of a filter that is catching
+  // up say nothing about it.
+  virtual void update(const Measured& m, std::uint64_t sequence, bool learn) noexcept = 0;
   // No measurement at this step.
   virtual void skip() noexcept = 0;
   // Moves the level of the axes in `which` until the measurement would be this, leaving what the model holds
@@ -35,8 +41,8 @@ class RestFilter {
   virtual void shift_to(const Axes& rate, std::uint32_t which) noexcept = 0;
   // The same until the rate is this, whatever is measured beside it.
   virtual void shift_rate_to(const Axes& rate, std::uint32_t which) noexcept = 0;
-  // Raises P so that the variance of the rate is at least this.
-  virtual void raise_to(double variance) noexcept = 0;
+  // Makes this the variance of the rate.
+  virtual void set_variance(double variance) noexcept = 0;
   // Lag and correlation if the gain stayed as it is.
   [[nodiscard]] virtual Settled settled() const noexcept = 0;
   // False when the covariance is none any more or the state no number.

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include "filters/estimator/rest_filter.h"
@@ -59,29 +60,32 @@ class SizedRestFilter final : public RestFilter {
     refresh();
   }
 
-  void update(const Axes& rate, std::uint32_t valid, double noise_scale, std::uint64_t sequence,
-              bool learn) noexcept override {
+  void update(const Measured& m, std::uint64_t sequence, bool learn) noexcept override {
     // The innovation published is that of the weighted mean of predictions; each core's own covariance and
     // its distance from that mean make its variance, under the weights from before this measurement.
     const Axes predicted = measurement_;
     double mixture = 0.0;
-    valid_ = valid;
+    valid_ = m.valid;
     for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
       Core& core = cores_[j];
       const double weight = rule_->weight(j);
       mixture += weight * distance(core, core.h, predicted);
-      Axes innovations{};
+      Axes innovations{}, normalised{};
       std::array<int, kMaxAxes> axes{};
       std::size_t count = 0;
       for (int axis = 0; axis < Core::kAxes; ++axis) {
-        if ((valid >> static_cast<unsigned>(axis) & 1U) == 0) continue;
+        if ((m.valid >> static_cast<unsigned>(axis) & 1U) == 0) continue;
+        const auto a = static_cast<std::size_t>(axis);
         axes[count] = axis;
-        innovations[count++] = rate[static_cast<std::size_t>(axis)] - core.rate(axis);
+        innovations[count] = m.rate[a] - core.rate(axis);
+        normalised[count] =
+            m.share[a] == 1.0 ? innovations[count] : innovations[count] / std::sqrt(m.share[a]);
+        ++count;
       }
       const double projected = core.variance();
       const double c = learn ? rule_->innovation_covariance(
-                                   {projected, noise_scale, {innovations.data(), count}, sequence, j})
-                             : projected + rule_->measurement_noise_of(j) * noise_scale;
+                                   {projected, m.noise_scale, {normalised.data(), count}, sequence, j})
+                             : projected + rule_->measurement_noise_of(j) * m.noise_scale;
       core.correct(c);
       for (std::size_t i = 0; i < count; ++i) core.update(axes[i], innovations[i]);
       mixture += weight * c;
@@ -102,10 +106,13 @@ class SizedRestFilter final : public RestFilter {
     shift(readout_, rate, which);
   }
 
-  void raise_to(double variance) noexcept override {
+  void set_variance(double variance) noexcept override {
     for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      const double missing = variance - readout_.dot(cores_[j].p * readout_);
-      if (missing > 0.0) cores_[j].p += missing * level_ * level_.transpose();
+      const double now = spread(readout_, cores_[j]);
+      if (variance >= now)
+        cores_[j].p += (variance - now) * level_ * level_.transpose();
+      else
+        cores_[j].p *= variance / now;
     }
     refresh();
   }

@@ -12,7 +12,7 @@
 namespace ifog {
 namespace {
 
-constexpr const char* kSchema = "ifog.noise/1";
+constexpr const char* kSchema = "ifog.noise/2";
 // Of a variance in (rad/s)^2, of a square or a count: beyond it no figure of a sensor lies.
 constexpr double kMostKept = 1e18;
 
@@ -73,12 +73,9 @@ std::string kept_noise_text(const KeptNoise& kept) {
   line("model", toml_quoted(noise.model.data()), "  # that corrected it, \"\": none");
   line("process_noise", toml_number(noise.process_noise), "  # of a random walk, (rad/s)^2/s");
   line("measurement_noise", toml_number(noise.measurement_noise), "  # per sample, (rad/s)^2");
-  line("colour", toml_list(std::span(noise.colour).first(static_cast<std::size_t>(kept.axes))),
-       "  # by axis: variance of innovations over that of white noise as rough as they are");
-  line("samples", toml_number(noise.octaves.samples), "  # at rest");
-  text += "# Second differences of means over 2^k samples: sums of squares, (rad/s)^2, and how many.\n";
-  line("squares", toml_list(noise.octaves.squares));
-  line("counts", toml_list(noise.octaves.counts));
+  line("noise", toml_list(std::span(noise.noise).first(static_cast<std::size_t>(kept.axes))),
+       "  # the same by axis");
+  line("samples", toml_number(noise.samples), "  # at rest");
   return text;
 }
 
@@ -100,10 +97,8 @@ KeptNoise parse_kept_noise(std::string_view text, const std::string& name) {
   kept.learned = in.words("learned");
   kept.noise.process_noise = in.at_least("process_noise", kPositive);
   kept.noise.measurement_noise = in.at_least("measurement_noise", kPositive);
-  in.numbers("colour", kPositive, std::span(kept.noise.colour).first(static_cast<std::size_t>(kept.axes)));
-  kept.noise.octaves.samples = in.at_least("samples", 1.0);
-  in.numbers("squares", 0.0, kept.noise.octaves.squares);
-  in.numbers("counts", 0.0, kept.noise.octaves.counts);
+  in.numbers("noise", kPositive, std::span(kept.noise.noise).first(static_cast<std::size_t>(kept.axes)));
+  kept.noise.samples = in.at_least("samples", 1.0);
   return kept;
 }
 

@@ -2,7 +2,7 @@
 // The noise that the daemon has learned of a sensor, as a file that the next start begins with. Written by
 // the daemon alone; a model's figures stand over it.
 //
-//   schema = "ifog.noise/1"
+//   schema = "ifog.noise/2"
 //   sensor = "nose"
 //   driver = "kvh1750"
 //   axes = 3
@@ -11,10 +11,8 @@
 //   model = "3f9c21a0b7de"            # identity of the one that corrected it; "": none
 //   process_noise = 1.2e-15            # of a random walk, (rad/s)^2/s
 //   measurement_noise = 3.1e-10        # per sample, (rad/s)^2
-//   colour = [1.0, 1.02, 0.99]         # by axis
+//   noise = [3.0e-10, 3.1e-10, 3.2e-10]  # the same by axis
 //   samples = 8192000                  # at rest
-//   squares = [...]                    # OctaveSums, (rad/s)^2
-//   counts = [...]
 #pragma once
 
 #include <string>

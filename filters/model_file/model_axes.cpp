@@ -2,6 +2,7 @@
 #include "filters/model_file/model_axes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
@@ -37,6 +38,20 @@ std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std
       remarks.push_back("has the noise of an axis " + in_quotes(axis) + ", of which there is none here" +
                         (here.empty() ? "" : ", but " + here));
   return remarks;
+}
+
+AxisNoiseTerms mean_noise_terms(const Model& model, std::span<const std::string> axes) {
+  const auto mean = [&](std::optional<double> NoiseTerms::*term) -> std::optional<double> {
+    double sum = 0.0;
+    for (const std::string& axis : axes) {
+      const auto found = model.noise.find(axis);
+      if (found == model.noise.end() || !(found->second.*term)) return std::nullopt;
+      sum += std::pow(*(found->second.*term), 2);
+    }
+    if (!(sum > 0.0)) return std::nullopt;
+    return sum / static_cast<double>(axes.size());
+  };
+  return {mean(&NoiseTerms::N), mean(&NoiseTerms::K)};
 }
 
 AxisShares axis_shares(const Model& model, std::span<const std::string> axes) {

@@ -23,6 +23,12 @@ std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std
 struct AxisShares {
   std::optional<Axes> noise, walk;
 };
+// Squares of N and K, mean over these axes: (rad/s)^2/Hz, (rad/s^2)^2/Hz. Nothing where the model does not
+// say it of every axis.
+struct AxisNoiseTerms {
+  std::optional<double> N, K;
+};
+[[nodiscard]] AxisNoiseTerms mean_noise_terms(const Model& model, std::span<const std::string> axes);
 [[nodiscard]] AxisShares axis_shares(const Model& model, std::span<const std::string> axes);
 
 }  // namespace ifog

@@ -22,13 +22,15 @@ struct FilterSettings {
   // Of the state model: AR/MA coefficients, correlation time, line frequency…
   std::vector<double> state_parameters;
 
-  int window = 50;                // N of IRWE, IAE, RAE
+  int window = 50;  // N of IRWE, IAE, RAE
+  // What is louder than the known noise: "motion", which is followed, or "noise", which is smoothed.
+  std::string wideband = "motion";
   std::string weights = "kept";   // "kept" | "fresh" | "uniform"
   int draws = 1;                  // B: average of this many weight draws
   double floor = 0.01;            // epsilon of the floor on the innovation covariance; 0 switches it off
   bool follow_manoeuvres = true;  // the cure for inertia
   bool conserve_angle = true;     // integral of (denoised - compensated) returns to zero
-  bool steady_gain = true;        // the gain of the average of what the rule has believed of R
+  bool steady_gain = true;        // the rule's window is 1000 samples at least, so that the gain is steady
   bool guard = true;              // a filter that has diverged starts again
   bool plain = false;             // the rule's filter and nothing else: the four above off, no floor
   std::uint64_t seed = 1;         // of the weights
@@ -36,7 +38,7 @@ struct FilterSettings {
 
 // What one source says of it. Empty: not said. Meanings and units as in FilterSettings.
 struct FilterChoice {
-  std::optional<std::string> rule, state, weights;
+  std::optional<std::string> rule, state, weights, wideband;
   std::optional<double> process_noise, measurement_noise, floor;
   std::optional<std::vector<double>> state_parameters;
   std::optional<int> window, draws;

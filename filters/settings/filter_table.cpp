@@ -21,6 +21,7 @@ constexpr double kMostNoise = 1e12, kLeastMeasurementNoise = 1e-60;
 using S = FilterSettings;
 using C = FilterChoice;
 
+constexpr std::array kWideband{"motion", "noise"};
 constexpr std::array kWeights{"kept", "fresh", "uniform"};
 
 constexpr std::array kTable{
@@ -75,6 +76,13 @@ constexpr std::array kTable{
                   kWeights,
                   "",
                   "random weights of irwe-akfg"},
+    FilterSetting{"wideband",
+                  "--wideband",
+                  SettingMember<std::string>{&S::wideband, &C::wideband},
+                  {},
+                  kWideband,
+                  "",
+                  "what is louder than the known noise: motion (followed) or noise (smoothed)"},
     FilterSetting{"draws",
                   "--draws",
                   SettingMember<int>{&S::draws, &C::draws},
@@ -109,7 +117,7 @@ constexpr std::array kTable{
                   {},
                   {},
                   "",
-                  "the gain of what the rule believes of R at each sample, not of its average"},
+                  "the rule's window as it is set, not of 1000 samples at least"},
     FilterSetting{"guard",
                   "--no-guard",
                   SettingMember<bool>{&S::guard, &C::guard},

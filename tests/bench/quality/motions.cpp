@@ -57,6 +57,24 @@ double power_passed(double corner) {
   return sum / kPoints;
 }
 
+// Gaussian of that standard deviation, its spectrum flat up to `band_hz`.
+std::vector<double> unfaded(Random& random, std::size_t samples, double rms, double band_hz) {
+  constexpr double kRunInBands = 30.0;
+  const double corner = std::tan(kPi * band_hz / kSampleRate_hz);
+  const double scale = rms / std::sqrt(power_passed(corner));
+  auto sections = butterworth(corner);
+  std::normal_distribution<double> normal;
+  const auto next = [&] {
+    double x = normal(random);
+    for (Section& section : sections) x = section(x);
+    return x;
+  };
+  for (std::size_t i = in_samples(kRunInBands / band_hz); i > 0; --i) next();
+  std::vector<double> rate(samples, 0.0);
+  for (double& value : rate) value = scale * next();
+  return rate;
+}
+
 }  // namespace
 
 std::vector<double> ramp(std::size_t samples, std::size_t from, std::size_t until, double slope) {
@@ -114,20 +132,22 @@ std::vector<double> sway_that_ends(Random& random, std::size_t samples, std::siz
 
 std::vector<double> random_motion(Random& random, std::size_t samples, std::size_t from, double rms,
                                   double band_hz) {
-  constexpr double kFade_s = 10.0, kRunInBands = 30.0;
-  const double corner = std::tan(kPi * band_hz / kSampleRate_hz);
-  const double scale = rms / std::sqrt(power_passed(corner));
-  auto sections = butterworth(corner);
-  std::normal_distribution<double> normal;
-  const auto next = [&] {
-    double x = normal(random);
-    for (Section& section : sections) x = section(x);
-    return x;
-  };
-  for (std::size_t i = in_samples(kRunInBands / band_hz); i > 0; --i) next();
-  std::vector<double> rate(samples, 0.0);
+  constexpr double kFade_s = 10.0;
+  std::vector<double> rate = unfaded(random, samples - from, rms, band_hz);
+  rate.insert(rate.begin(), from, 0.0);
   for (std::size_t i = from; i < samples; ++i)
-    rate[i] = scale * raised_cosine(static_cast<double>(i - from) / (kFade_s * kSampleRate_hz)) * next();
+    rate[i] *= raised_cosine(static_cast<double>(i - from) / (kFade_s * kSampleRate_hz));
+  return rate;
+}
+
+std::vector<double> shaking(Random& random, std::size_t samples, double rms, double band_hz) {
+  constexpr double kCorner = 0.02;  // of the sample rate
+  std::vector<double> rate = unfaded(random, samples, rms, band_hz);
+  double slow = 0.0;
+  for (double& value : rate) {
+    slow += 2.0 * kPi * kCorner * (value - slow);
+    value -= slow;
+  }
   return rate;
 }
 

@@ -28,4 +28,8 @@ std::vector<double> sway_that_ends(Random& random, std::size_t samples, std::siz
 std::vector<double> random_motion(Random& random, std::size_t samples, std::size_t from, double rms,
                                   double band_hz);
 
+// The same without fading in, and of an angle that is bounded: less its low-pass of one pole at a fiftieth of
+// the sample rate, so that below that the rate's spectrum falls with the square of frequency.
+std::vector<double> shaking(Random& random, std::size_t samples, double rms, double band_hz);
+
 }  // namespace ifog::bench

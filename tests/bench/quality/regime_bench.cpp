@@ -63,7 +63,8 @@ struct Row {
   std::string regime;
   double ratio = 0.0, limit = 0.0;
   std::size_t settle = 0, judged = 0;
-  Spread over_conventional, over_better, over_informed, nees, nees_conventional;
+  bool raw_only = false;
+  Spread over_conventional, over_raw, over_better, over_informed, nees, nees_conventional;
   std::vector<std::string> missed;
 };
 
@@ -78,12 +79,18 @@ Row measure(const Regime& regime, double ratio, const Options& options) {
           .limit = regime.limit_at(ratio),
           .settle = trials[0].settle,
           .judged = trials[0].judged,
+          .raw_only = regime.judge_raw_only,
           .over_conventional = spread(trials, &Figures::over_conventional),
+          .over_raw = spread(trials, &Figures::over_raw),
           .over_better = spread(trials, &Figures::over_better),
           .over_informed = spread(trials, &Figures::over_informed),
           .nees = spread(trials, &Figures::nees),
           .nees_conventional = spread(trials, &Figures::nees_conventional),
           .missed = {}};
+  if (regime.judge_raw_only) {
+    if (!(row.over_raw.most <= row.limit)) row.missed.emplace_back("raw");
+    return row;
+  }
   if (!(row.over_conventional.median <= row.limit)) row.missed.emplace_back("limit");
   if (regime.judge_against_raw && !(row.over_better.most <= row.limit)) row.missed.emplace_back("better");
   if (regime.judge_variance && !(row.nees.mean >= kLeastNees && row.nees.mean <= kMostNees))
@@ -92,9 +99,10 @@ Row measure(const Regime& regime, double ratio, const Options& options) {
 }
 
 void print(const Row& row) {
+  const Spread& beside = row.raw_only ? row.over_raw : row.over_better;
   std::printf("| %s | %g | %zu + %zu | %.3f (%.3f–%.3f) | %g | %.3f (–%.3f) | ", row.regime.c_str(),
               row.ratio, row.settle, row.judged, row.over_conventional.median, row.over_conventional.least,
-              row.over_conventional.most, row.limit, row.over_better.median, row.over_better.most);
+              row.over_conventional.most, row.limit, beside.median, beside.most);
   if (std::isnan(row.over_informed.median)) {
     std::printf("– | ");
   } else {
@@ -118,6 +126,7 @@ Json json(const Row& row) {
            {"judged_samples", row.judged},
            {"limit", row.limit},
            {"over_conventional", json(row.over_conventional)},
+           {"over_raw", json(row.over_raw)},
            {"over_better", json(row.over_better)}};
   out["over_informed"] = std::isnan(row.over_informed.median) ? Json(nullptr) : json(row.over_informed);
   out["nees"] = json(row.nees);

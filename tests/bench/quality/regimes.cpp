@@ -189,11 +189,21 @@ void add_rest(std::vector<Regime>& all) {
   all.push_back(at_rest("outliers-1%-20", 1.05, [](Random& random, std::size_t samples, std::size_t) {
     return outlier_noise(random, samples, 0.01, 20.0);
   }));
-  for (const auto& [name, factor, limit] : {std::tuple{"noise-x5", 5.0, 1.5}, {"noise-x10", 10.0, 2.0}})
+  // Louder than is known: motion by default, so never worse than raw; smoothed where the settings say so.
+  for (const auto& [name, factor, limit] : {std::tuple{"noise-x5", 5.0, 1.5}, {"noise-x10", 10.0, 2.0}}) {
     all.push_back(at_rest(name, limit, [f = factor](Random& random, std::size_t samples, std::size_t from) {
       constexpr auto kTurn = static_cast<std::size_t>(40.0 * kSampleRate_hz);
       return changing_noise(random, samples, from, kTurn, f);
     }));
+    all.back().wideband = "noise";
+    Regime followed = all.back();
+    followed.name += "-followed";
+    followed.wideband = "motion";
+    followed.limit = 1.05;
+    followed.judge_raw_only = true;
+    followed.judge_variance = false;
+    all.push_back(std::move(followed));
+  }
   for (const auto& [name, correlation, limit] :
        {std::tuple{"colour-0.5", 0.5, 1.1}, {"colour-0.9", 0.9, 1.5}, {"colour-0.98", 0.98, 1.5}})
     all.push_back(at_rest(name, limit, [c = correlation](Random& random, std::size_t samples, std::size_t) {
@@ -225,6 +235,65 @@ void add_motion(std::vector<Regime>& all) {
                           }));
 }
 
+using Shaken = std::function<std::vector<double>(Random&, std::size_t samples, double per_hz)>;
+
+// Moves from the first sample to the last. per_hz: by which a frequency is multiplied for a record of another
+// sample rate than the motions are made at.
+void add_moving(std::vector<Regime>& all, const std::string& name, double sample_rate_hz, bool told,
+                const Shaken& motion) {
+  constexpr std::size_t kBegins = 50, kSamples = 30'000;
+  Regime regime{.name = name + (told ? "" : "-untold"),
+                .limit = 1.05,
+                .judge_raw_only = true,
+                .told = told,
+                .sample_rate_hz = sample_rate_hz,
+                .make = [name, sample_rate_hz, motion](double ratio, std::uint64_t seed) {
+                  const Streams streams(name, ratio, seed);
+                  Random of_noise = streams(kNoise), of_motion = streams(kMotion);
+                  return compose(streams, ratio, kBegins, gaussian_noise(of_noise, kSamples),
+                                 motion(of_motion, kSamples, kSampleRate_hz / sample_rate_hz));
+                }};
+  all.push_back(std::move(regime));
+}
+
+// Vehicles and people, at three sample rates, and swings that the record begins in.
+void add_carried(std::vector<Regime>& all) {
+  const auto sum = [](std::vector<double> a, const std::vector<double>& b) {
+    for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
+    return a;
+  };
+  const std::vector<std::pair<std::string, Shaken>> kinds{
+      {"vehicle",
+       [sum](Random& random, std::size_t n, double per_hz) {
+         return sum(random_motion(random, n, 0, 60.0, 0.5 * per_hz),
+                    shaking(random, n, 8.0, 0.42 * kSampleRate_hz));
+       }},
+      {"rough-road",
+       [](Random& random, std::size_t n, double) { return shaking(random, n, 40.0, 0.45 * kSampleRate_hz); }},
+      {"ship",
+       [sum](Random& random, std::size_t n, double per_hz) {
+         return sum(sway(random, n, 0, 100.0, 0.1 * per_hz), shaking(random, n, 2.0, 0.42 * kSampleRate_hz));
+       }},
+      {"hand", [sum](Random& random, std::size_t n, double per_hz) {
+         return sum(random_motion(random, n, 0, 30.0, 2.0 * per_hz),
+                    random_motion(random, n, 0, 5.0, 4.0 * per_hz));
+       }}};
+  for (const auto& [name, motion] : kinds)
+    for (const double hz : {10.0, 100.0, 200.0})
+      for (const bool told : {true, false})
+        add_moving(all, name + "-" + std::to_string(std::lround(hz)) + "Hz", hz, told, motion);
+  for (const double amplitude : {3.0, 5.0, 10.0, 30.0})
+    for (const auto& [frequency, shown] : {std::pair{0.05, "0.05"}, {0.2, "0.2"}, {1.0, "1"}})
+      for (const bool told : {true, false})
+        add_moving(all, "start-" + std::to_string(std::lround(amplitude)) + "-" + shown + "Hz",
+                   kSampleRate_hz, told,
+                   [a = amplitude, f = frequency](Random& random, std::size_t n, double) {
+                     std::vector<double> rate = sway(random, n + n, 0, a, f);
+                     rate.erase(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(n));  // in full
+                     return rate;
+                   });
+}
+
 std::vector<Regime> make_regimes() {
   std::vector<Regime> all;
   add_rest(all);
@@ -236,6 +305,7 @@ std::vector<Regime> make_regimes() {
     return steps(random, samples, from, 20.0);
   }));
   for (std::size_t i = all.size() - 2; i < all.size(); ++i) all[i].limit_at_laboratory = 0.3;
+  add_carried(all);
   all.push_back(started_moving("started-moving", true));
   all.push_back(started_moving("started-moving-untold", false));
   return all;

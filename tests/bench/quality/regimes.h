@@ -31,7 +31,10 @@ struct Regime {
   double limit_at_laboratory = 0;  // the same at Q/R ≥ 5e-4; 0: the same
   bool judge_variance = false;     // the normalised square of the error is to be 0.8 … 1.25
   bool judge_against_raw = false;  // the limit holds against the better of raw and conventional as well
-  bool told = true;                // Q and R are told; else they are learned from the record
+  bool judge_raw_only = false;     // the limit is on RMSE over the raw samples', of the worst seed
+  bool told = true;                // Q and R are given; else they are learned from the record
+  double sample_rate_hz = kSampleRate_hz;
+  std::string wideband = "motion";  // FilterSettings::wideband
   std::function<RegimeRecord(double ratio, std::uint64_t seed)> make;
 
   [[nodiscard]] double limit_at(double ratio) const {

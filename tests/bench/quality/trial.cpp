@@ -16,13 +16,14 @@ namespace {
 constexpr double kSigma_radps = 1e-5;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-ChainSettings chain_settings(const std::string& filter, double ratio, bool told) {
+ChainSettings chain_settings(const std::string& filter, double ratio, const Regime& regime) {
   ChainSettings settings;
-  settings.facts.nominal_rate_hz = kSampleRate_hz;
+  settings.facts.nominal_rate_hz = regime.sample_rate_hz;
   settings.axes = {""};
-  if (told) {
+  settings.filter.wideband = regime.wideband;
+  if (regime.told) {
     settings.filter.measurement_noise = kSigma_radps * kSigma_radps;
-    settings.filter.process_noise = ratio * kSigma_radps * kSigma_radps * kSampleRate_hz;
+    settings.filter.process_noise = ratio * kSigma_radps * kSigma_radps * regime.sample_rate_hz;
   }
   if (filter == "default") return settings;
   if (filter != "irwe-akfg-plain" && filter != "ckf")
@@ -86,20 +87,20 @@ Filtered conventional(const RegimeRecord& record, double ratio, bool informed) {
   return out;
 }
 
-Filtered denoised(const std::string& filter, const RegimeRecord& record, double ratio, bool told) {
-  constexpr double kPeriod_s = 1.0 / kSampleRate_hz;
-  SignalChain chain(std::make_unique<ChainParts>(chain_settings(filter, ratio, told)));
+Filtered denoised(const std::string& filter, const RegimeRecord& record, double ratio, const Regime& regime) {
+  const double period_s = 1.0 / regime.sample_rate_hz;
+  SignalChain chain(std::make_unique<ChainParts>(chain_settings(filter, ratio, regime)));
   Increment in;
   ChainOutput estimate;
   Filtered out;
-  in.dt_s = kPeriod_s;
+  in.dt_s = period_s;
   for (const double measured : record.measured) {
     const bool valid = std::isfinite(measured);
     in.valid_axes = valid ? 1 : 0;
     in.flags = valid ? 0U : static_cast<std::uint32_t>(kInvalid);
     in.rate_radps[0] = measured * kSigma_radps;
-    in.covered_s[0] = valid ? kPeriod_s : 0.0;
-    in.delta_theta_rad[0] = valid ? in.rate_radps[0] * kPeriod_s : 0.0;
+    in.covered_s[0] = valid ? period_s : 0.0;
+    in.delta_theta_rad[0] = valid ? in.rate_radps[0] * period_s : 0.0;
     chain.process(in, estimate);
     ++in.sequence;
     out.value.push_back(estimate.estimate.denoised_radps[0] / kSigma_radps);
@@ -116,11 +117,12 @@ const std::vector<std::string>& filter_names() {
 Figures judge(const Regime& regime, const std::string& filter, double ratio, std::uint64_t seed) {
   const RegimeRecord record = regime.make(ratio, seed);
   const Filtered reference = conventional(record, ratio, false);
-  const Filtered got = denoised(filter, record, ratio, regime.told);
+  const Filtered got = denoised(filter, record, ratio, regime);
   const double error = rmse(got.value, record), usual = rmse(reference.value, record);
   Figures figures;
   figures.over_conventional = error / usual;
   figures.over_better = error / std::min(usual, rmse_of_raw(record));
+  figures.over_raw = error / rmse_of_raw(record);
   figures.over_informed = record.noise_variance.empty() && !record.rest_from
                               ? std::nan("")
                               : error / rmse(conventional(record, ratio, true).value, record);

@@ -23,12 +23,13 @@ Filtered conventional(const RegimeRecord& record, double ratio, bool informed);
 // "default": the daemon's filter as it is without a model file. "irwe-akfg-plain": the paper's rule and
 // nothing else. "ckf": the project's conventional filter. told: of the true Q and R; else it learns them at
 // start-up. Throws std::invalid_argument naming the filter.
-Filtered denoised(const std::string& filter, const RegimeRecord& record, double ratio, bool told);
+Filtered denoised(const std::string& filter, const RegimeRecord& record, double ratio, const Regime& regime);
 const std::vector<std::string>& filter_names();
 
 // Over the samples judged. Of an estimate that is not finite, or has no positive variance, they are infinite.
 struct Figures {
-  double over_conventional = 0.0;      // RMSE over that of conventional()
+  double over_conventional = 0.0;  // RMSE over that of conventional()
+  double over_raw = 0.0;
   double over_better = 0.0;            // over the better of conventional and raw
   double over_informed = 0.0;          // over that of the informed one; NaN: nothing to be told
   double nees = 0.0;                   // mean of (estimate − truth)²/variance

@@ -9,8 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "filters/estimator/rest_noise.h"
-#include "filters/estimator/start_up.h"
+#include "filters/estimator/walk.h"
 
 namespace {
 
@@ -36,11 +35,11 @@ int main() {
   const std::vector<double> rate = white(400'000);
   std::vector<double> least(rate.size(), 1e18);
   for (int run = 0; run < kRuns; ++run) {
-    ifog::RestNoise learner;
+    ifog::Walk learner;
     for (std::size_t i = 0; i < rate.size(); ++i) {
       const double began = processor_ns();
-      learner.take({rate[i], rate[i], rate[i]}, 7, ifog::RestSample::kRest);
-      (void)learner.take_news(1e-3);
+      learner.take({rate[i], rate[i], rate[i]}, 7, true);
+      (void)learner.take_news();
       least[i] = std::min(least[i], processor_ns() - began);
     }
   }
@@ -48,14 +47,4 @@ int main() {
   std::printf(
       "noise at rest, 3 axes, a sample: median %.0f ns, 99.9 %% %.0f ns, longest %.0f ns (clock included)\n",
       least[least.size() / 2], least[least.size() * 999 / 1000], least.back());
-  for (const std::size_t samples : {4'000U, 20'000U}) {
-    const std::vector<double> start = white(3 * samples);
-    double best = 1e18;
-    for (int run = 0; run < kRuns; ++run) {
-      const double began = processor_ns();
-      (void)ifog::estimate_noise(start, 3, 1e-3);
-      best = std::min(best, processor_ns() - began);
-    }
-    std::printf("start-up estimate, 3 axes of %zu samples, once: %.2f ms\n", samples, best * 1e-6);
-  }
 }

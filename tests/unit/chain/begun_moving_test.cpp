@@ -90,8 +90,6 @@ class Simulated {
   }
   void reload(const ChainSettings& settings) { chain_.swap(std::make_unique<ChainParts>(settings)); }
 
-  [[nodiscard]] bool moved_in_start_up() const { return chain_.parts().moved_in_start_up(); }
-
   Errors errors;
 
  private:
@@ -164,26 +162,6 @@ TEST(BegunMoving, AtRestLittleIsLostByIt) {
     EXPECT_LT(square[static_cast<std::size_t>(n - 1)] * n, 2.0) << n;
     EXPECT_LT(normalised[static_cast<std::size_t>(n - 1)], 1.4) << n;
   }
-}
-
-// A start-up that was a motion makes the noise look louder and the walk quicker than any; once the sensor
-// rests both are put right, and the rate is as quiet as a filter's that was told.
-TEST(BegunMoving, WhatAMotionTaughtIsUnlearnedAtRest) {
-  for (const double rate_hz : {10.0, 50.0})
-    for (const double amplitude : {1.0, 10.0}) {
-      const auto rolls = rolling(amplitude * kDegree);
-      Simulated run(settings_of(rate_hz, false), 5);
-      run.go(60.0, [&](double t) { return t < 60.0 ? rolls(t) : 0.0; });
-      EXPECT_TRUE(run.moved_in_start_up());
-      run.go(8192.0 / rate_hz, [](double) { return 0.0; });
-      const std::size_t last = run.errors.raw.size() - 1024;
-      EXPECT_LT(rms(run.errors.published, last), 0.2 * rms(run.errors.raw, last))
-          << rate_hz << " " << amplitude;
-      EXPECT_LT(worst(run.errors.normalised), kMost) << rate_hz << " " << amplitude;
-    }
-  Simulated still(settings_of(10.0, false), 5);
-  still.go(60.0, [](double) { return 1e-3; });
-  EXPECT_FALSE(still.moved_in_start_up());
 }
 
 // Among the first samples, too.

@@ -11,7 +11,7 @@
 #include <numbers>
 
 #include "drivers/capture/capture.h"
-#include "filters/estimator/start_up.h"
+#include "filters/smoother/roughness.h"
 #include "filters/units/field_units.h"
 #include "tests/unit/estimator/drive.h"
 
@@ -28,11 +28,9 @@ TEST(Heading, IsKeptOverTurnsByHand) {
   const ifog::Capture capture = ifog::read_capture(path);
   const double period = 0.001;
   ifog::FilterSettings settings;
-  std::vector<double> start;
-  for (const auto& axis : capture.rate_radps) start.insert(start.end(), axis.begin(), axis.begin() + 1500);
-  const auto found = ifog::estimate_noise(start, 3, period);
-  settings.process_noise = found.process_noise;
-  settings.measurement_noise = found.measurement_noise;
+  for (const auto& axis : capture.rate_radps)
+    settings.measurement_noise += ifog::roughness(std::span(axis).first(1500)) / 3.0;
+  settings.process_noise = 1e-6 * settings.measurement_noise / period;
   ifog::Estimator estimator(settings, 3, period);
   ifog::EstimatorInput in;
   ifog::EstimatorOutput out;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "filters/estimator/noise_scale.h"
 #include "tests/unit/estimator/drive.h"
 
 namespace {
@@ -62,38 +61,6 @@ TEST(Blow, LeavesTheAngleWhereItWas) {
       EXPECT_LT(std::sqrt(published / measured), 2.0) << "Q/R " << ratio << ", seed " << seed;
     }
   }
-}
-
-// Of a blow only the edges are rough: a few hundred samples later it rings at forty times the noise, and the
-// noise is what it was. Of noise that looks coloured, too, which is believed to be louder than it is rough.
-TEST(NoiseScale, IsSoonWhatItWasAfterARoughEdge) {
-  constexpr int kAt = 12'000;
-  for (const double colour : {1.0, 8.0}) {
-    const Record r = record(4, kAt + 600, 0.0, [](int i) {
-      const int k = i - kAt;
-      return k < 0 ? 0.0 : 2000.0 * std::exp(-k / 40.0) * std::cos(2.0 * k) + 40.0 * std::sin(0.05 * k);
-    });
-    ifog::NoiseScale noise;
-    double before = 0.0;
-    for (std::size_t i = 0; i < r.measured.size(); ++i) {
-      noise.take(r.measured[i]);
-      if (i < kAt) noise.learn(std::sqrt(colour) * r.measured[i], 1000.0, 1.0);
-      if (i == kAt - 1) before = noise.now();
-    }
-    EXPECT_LT(noise.now(), 4.0 * before) << colour;
-  }
-}
-
-// Nor is a converter that shows one value for a while quieter than its digit.
-TEST(NoiseScale, OfAConverterDoesNotFallBelowItsDigit) {
-  ifog::NoiseScale noise;
-  const Record r = record(5, 4000, 0.0);
-  for (const double rate : r.measured) {
-    const double rounded = 5.0 * std::round(rate / 5.0);
-    noise.take(rounded);
-    noise.learn(rounded, 1000.0, 1.0);
-  }
-  EXPECT_GE(noise.now(), 25.0 / 12.0);
 }
 
 // A filter that was moved while its noise was loud knows its rate by that noise, and is not slow by the noise

@@ -133,6 +133,7 @@ TEST(Faults, AFilterThatNoLongerListensIsFoundAndStartsAgain) {
 TEST(Faults, WhatStartingAgainDoesNotMendIsCountedOnce) {
   ifog::FilterSettings settings = told(1e-3, 1.0 / 1600);
   settings.rule = "ckf";
+  settings.follow_manoeuvres = settings.conserve_angle = false;
   const Record r = record(13, 20'000, 1e-3);
   EXPECT_EQ(run(settings, r.measured).health.divergences, 1U);
   for (const char* adaptive : {"irwe-akfg", "iae", "rae", "sage-husa", "vb"}) {

@@ -8,7 +8,6 @@
 #include <numbers>
 #include <vector>
 
-#include "filters/estimator/vibration.h"
 #include "tests/unit/estimator/drive.h"
 
 namespace {
@@ -63,20 +62,6 @@ TEST(Honest, WithOutliers) {
   }
   EXPECT_GT(mean, 0.85);
   EXPECT_LT(mean, 1.1);
-}
-
-// A shake of a tenth of the sample rate, as loud as the noise: at rest it is filtered out, and the rate is
-// off by it.
-TEST(Honest, WithAVibrationThatIsTakenForNoise) {
-  for (const double walk : {1e-4, 1e-7}) {
-    const Record made = record(7, kLength, walk, [](int i) {
-      const double grown = std::clamp((i - 20'000) / 1000.0, 0.0, 1.0);
-      return grown * std::numbers::sqrt2 * std::sin(0.2 * std::numbers::pi * i + 0.01 * std::sin(0.001 * i));
-    });
-    const double found = squared_error_over_variance(told(walk), made, 24'000);
-    EXPECT_LT(found, 1.25) << walk;
-    EXPECT_GT(found, 0.8) << walk;
-  }
 }
 
 // At rest between two steps of a converter five times as coarse as the noise, told that noise. The mean is
@@ -212,60 +197,6 @@ TEST(Honest, InASwingOfHours) {
   const double found = squared_error_over_variance(told(1e-9), made, 400'000);
   EXPECT_GT(found, 0.8);
   EXPECT_LT(found, 1.25);
-}
-
-class Draws {
- public:
-  explicit Draws(unsigned seed) : random_(seed) {}
-  // Squares and roughnesses of noise of those variances.
-  void take(ifog::Vibration& by, int samples, double square, double rough) {
-    for (int i = 0; i < samples; ++i) {
-      const double a = normal_(random_), b = normal_(random_);
-      by.take(square * a * a, rough * b * b);
-    }
-  }
-
- private:
-  std::mt19937_64 random_;
-  std::normal_distribution<double> normal_;
-};
-
-TEST(Vibration, IsWhatHasComeBesideTheUsual) {
-  for (const double colour : {0.5, 1.0, 20.0}) {
-    ifog::Vibration vibration;
-    Draws draws(3);
-    draws.take(vibration, 20'000, colour, 1.0);
-    EXPECT_EQ(vibration.variance(), 0.0) << colour;
-    draws.take(vibration, 20'000, 2.0 * colour, 1.0);
-    EXPECT_NEAR(vibration.variance() / colour, 1.0, 0.25) << colour;
-    draws.take(vibration, 20'000, colour, 1.0);
-    EXPECT_EQ(vibration.variance(), 0.0) << colour;
-  }
-}
-
-TEST(Vibration, IsNoneOfNoiseThatIsLouder) {
-  ifog::Vibration vibration;
-  Draws draws(4);
-  for (int turn = 0; turn < 20; ++turn) {
-    const double loud = turn % 2 == 0 ? 1.0 : 25.0;
-    for (int i = 0; i < 40; ++i) {
-      draws.take(vibration, 200, loud, loud);
-      EXPECT_EQ(vibration.variance(), 0.0) << turn;
-    }
-  }
-}
-
-// What began in one is known as soon as it ends.
-TEST(Vibration, ThatEndsIsTheNewUsual) {
-  ifog::Vibration vibration;
-  Draws draws(5);
-  draws.take(vibration, 20'000, 3.0, 1.0);
-  draws.take(vibration, 20'000, 1.0, 1.0);
-  EXPECT_EQ(vibration.variance(), 0.0);
-  draws.take(vibration, 20'000, 2.0, 1.0);
-  EXPECT_NEAR(vibration.variance(), 1.0, 0.25);
-  vibration.forget();
-  EXPECT_EQ(vibration.variance(), 0.0);
 }
 
 }  // namespace

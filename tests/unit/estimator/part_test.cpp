@@ -59,12 +59,5 @@ TEST(Part, OfThePapersFilterHasTheBitsOfTheWholeAfterFortyTimeConstants) {
   EXPECT_EQ(apart(settings, 10'000, false), 10'000);
 }
 
-// The longest memory of the default filter is that of the noise's colour, 8192 samples.
-TEST(Part, OfTheDefaultFilterHasThemWhenTheColourIsForgotten) {
-  const int forgotten = static_cast<int>(kForgotten * 8192);
-  EXPECT_LT(apart(told(kRatio), 400'000, true), forgotten);
-  EXPECT_EQ(apart(told(kRatio), 400'000, false), 400'000);
-}
-
 }  // namespace
 }  // namespace ifog::test

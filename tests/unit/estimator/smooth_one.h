@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "filters/estimator/smoother.h"
+#include "filters/smoother/smoother.h"
 #include "tests/unit/estimator/drive.h"
 
 namespace ifog::test {

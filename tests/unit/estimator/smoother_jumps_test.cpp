@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "filters/estimator/motion_smoother.h"
+#include "filters/smoother/motion_smoother.h"
 #include "tests/unit/estimator/drive.h"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "filters/estimator/lone_outliers.h"
+#include "filters/smoother/lone_outliers.h"
 #include "tests/unit/estimator/drive.h"
 #include "tests/unit/estimator/smooth_one.h"
 

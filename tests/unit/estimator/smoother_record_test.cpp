@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "filters/estimator/rest_likelihood.h"
+#include "filters/smoother/rest_likelihood.h"
 #include "tests/unit/estimator/drive.h"
 #include "tests/unit/estimator/smooth_one.h"
 

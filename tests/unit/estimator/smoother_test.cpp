@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The smoother against the least squares it stands for, and against the measurements and the causal filter in
 // motions of many kinds.
-#include "filters/estimator/smoother.h"
+#include "filters/smoother/smoother.h"
 
 #include <gtest/gtest.h>
 

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <optional>
 #include <span>
 #include <stdexcept>
@@ -15,11 +16,12 @@
 
 #include "drivers/capture/column_names.h"
 #include "filters/allan/stretches.h"
-#include "filters/estimator/start_up.h"
+#include "filters/estimator/walk.h"
 #include "filters/model_file/model.h"
 #include "filters/rest/rest.h"
 #include "filters/rules/rule.h"
 #include "filters/settings/filter_table.h"
+#include "filters/smoother/roughness.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/time_part.h"
@@ -80,22 +82,39 @@ void fill_noise(FilterSettings& settings, const CaptureView& capture, const std:
                 double period_s) {
   if (settings.process_noise > 0.0 && settings.measurement_noise > 0.0) return;
   constexpr std::size_t kMost = std::size_t{1} << 23U;  // rows
-  std::vector<double> all;
-  for (const auto& axis : capture.rate_radps) {
-    const auto some = axis.first(std::min(axis.size(), kMost));
-    const auto begin = all.insert(all.end(), some.begin(), some.end());
-    std::size_t from = 0;
-    for (const Stretch& part : at_rest) {
-      std::fill(begin + static_cast<std::ptrdiff_t>(std::min(from, some.size())),
-                begin + static_cast<std::ptrdiff_t>(std::min(part.begin, some.size())), std::nan(""));
-      from = part.end;
+  // The quietest stretch that is white noise and a walk; of a record that has none what third differences
+  // bound.
+  Walk walk;
+  double quietest = 0.0, ratio = kMostRatio;
+  const auto take = [&](std::size_t begin, std::size_t end) {
+    walk.break_off();
+    for (std::size_t i = begin; i < end; ++i) {
+      Axes rate{};
+      std::uint32_t valid = 0;
+      for (std::size_t a = 0; a < capture.axes.size(); ++a) {
+        rate[a] = capture.rate_radps[a][i];
+        if (std::isfinite(rate[a])) valid |= 1U << a;
+      }
+      walk.take(rate, valid, true);
+      const std::optional<Walk::Found> found = walk.take_news();
+      if (!found) continue;
+      const double mean = std::accumulate(found->noise.begin(), found->noise.end(), 0.0) /
+                          static_cast<double>(capture.axes.size());
+      if (mean > 0.0 && (quietest == 0.0 || mean < quietest)) quietest = mean;
+      ratio = found->ratio;
     }
-    if (!at_rest.empty())
-      std::fill(begin + static_cast<std::ptrdiff_t>(std::min(from, some.size())), all.end(), std::nan(""));
-  }
-  const NoiseEstimate noise = estimate_noise(all, static_cast<int>(capture.axes.size()), period_s);
-  if (settings.process_noise <= 0.0) settings.process_noise = noise.process_noise;
-  if (settings.measurement_noise <= 0.0) settings.measurement_noise = noise.measurement_noise;
+  };
+  const std::size_t rows = std::min(capture.rate_radps.front().size(), kMost);
+  if (at_rest.empty()) take(0, rows);
+  for (const Stretch& part : at_rest) take(std::min(part.begin, rows), std::min(part.end, rows));
+  if (quietest == 0.0)
+    for (const auto& axis : capture.rate_radps)
+      quietest +=
+          roughness(axis.first(std::min(axis.size(), kMost))) / static_cast<double>(capture.axes.size());
+  if (!(quietest > 0.0 && std::isfinite(quietest)))
+    throw std::runtime_error("the record shows no noise; expected --process-noise and --measurement-noise");
+  if (settings.measurement_noise <= 0.0) settings.measurement_noise = quietest;
+  if (settings.process_noise <= 0.0) settings.process_noise = ratio * settings.measurement_noise / period_s;
 }
 
 json number(const std::optional<double>& value) {

@@ -91,7 +91,6 @@ OfflineResult ChainRun::finish() {
   result_.shares = chain_->parts().shares();
   result_.learns_walk = chain_->parts().learns_walk();
   result_.noise_known = chain_->parts().noise_known();
-  result_.moved_in_start_up = chain_->parts().moved_in_start_up();
   return std::move(result_);
 }
 

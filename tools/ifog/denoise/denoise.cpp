@@ -17,9 +17,9 @@
 #include "drivers/capture/capture_builder.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
-#include "filters/estimator/smoother.h"
 #include "filters/series/samples.h"
 #include "filters/series/series_view.h"
+#include "filters/smoother/smoother.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/capture_input.h"
@@ -198,10 +198,6 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
     say("filter %s, state %s, process noise %.4g (rad/s)^2/s, measurement noise %.4g (rad/s)^2%s\n",
         filter.rule.c_str(), filter.state.c_str(), filter.process_noise, filter.measurement_noise,
         result.noise_learned ? " (from the first seconds of the capture)" : "");
-  if (result.moved_in_start_up)
-    say("the sensor moved in the first seconds, which the noise was learned from: a model that `ifog tune` "
-        "made at "
-        "rest knows it better\n");
   for (std::size_t a = 0; a < result.axes.size(); ++a) tell_axis(result.axes[a], rows.moments(a));
 }
 

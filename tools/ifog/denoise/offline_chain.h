@@ -63,7 +63,6 @@ struct OfflineResult {
   AxisShares shares;                  // ChainParts::shares()
   bool learns_walk = false;           // ChainParts::learns_walk()
   bool noise_learned = false;         // from the first seconds
-  bool moved_in_start_up = false;     // the sensor did in these
   bool noise_known = true;            // false: the record is shorter than the start-up
   std::vector<std::string> left_out;  // effects of the model that are not corrected
   std::string model;                  // identity

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/estimator/motion_pace.h"
+#include "filters/smoother/motion_pace.h"
 
 #include <algorithm>
 #include <cmath>

@@ -23,7 +23,7 @@ namespace pace {
 inline constexpr float kRest = 0.0F;    // as the walk says
 inline constexpr float kBroken = 0.5F;  // anything may be between the sample and its neighbours; most of such
 // Driving noise of the curvature over R, by nominal sample: of the Kalman filter whose gain is that of the
-// fading parabola (tracker_bank.h) of that memory.
+// fading parabola (trackers.h) of that memory.
 [[nodiscard]] double jerk(double memory) noexcept;
 }  // namespace pace
 

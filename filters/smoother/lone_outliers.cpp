@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/estimator/lone_outliers.h"
+#include "filters/smoother/lone_outliers.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>

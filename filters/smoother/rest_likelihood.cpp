@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/estimator/rest_likelihood.h"
+#include "filters/smoother/rest_likelihood.h"
 
 #include <algorithm>
 #include <cmath>

@@ -13,7 +13,7 @@
 
 #include <span>
 
-#include "filters/estimator/motion_smoother.h"
+#include "filters/smoother/motion_smoother.h"
 
 namespace ifog {
 

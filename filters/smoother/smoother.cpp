@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/estimator/smoother.h"
+#include "filters/smoother/smoother.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
 
 #include "filters/estimator/estimator.h"
-#include "filters/estimator/lone_outliers.h"
-#include "filters/estimator/motion_pace.h"
-#include "filters/estimator/rest_likelihood.h"
-#include "filters/estimator/start_up.h"
+#include "filters/smoother/lone_outliers.h"
+#include "filters/smoother/motion_pace.h"
+#include "filters/smoother/rest_likelihood.h"
+#include "filters/smoother/roughness.h"
 
 namespace ifog {
 namespace {

@@ -12,9 +12,9 @@
 #include <span>
 #include <vector>
 
-#include "filters/estimator/motion_smoother.h"
 #include "filters/settings/axes.h"
 #include "filters/settings/filter_settings.h"
+#include "filters/smoother/motion_smoother.h"
 
 namespace ifog {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // How loud an axis is at rest and how quickly it walks there, by the likelihood of a whole recording.
 //
-// Online a walk is taken for the quickest that fits (rest_noise.h), as a filter must never be too slow. A
+// Online a walk is taken for the quickest that fits (walk.h), as a filter must never be too slow. A
 // smoother is to be as far off as it says: its walk is the mean of all, each weighted by its likelihood, and
 // where the recording is too short to show one that is one it would just hide. Means of blocks are judged, as
 // long as the walk allows, so that the colour of the noise is none; an innovation counts for three sigma at

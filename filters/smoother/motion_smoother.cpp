@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/estimator/motion_smoother.h"
+#include "filters/smoother/motion_smoother.h"
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>

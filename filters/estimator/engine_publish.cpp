@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the engine publishes of a step, and what it learns of the noise by it.
+#include <algorithm>
+#include <cmath>
+
+#include "filters/estimator/engine.h"
+
+namespace ifog {
+namespace {
+
+// Samples between refreshes of the settled filter's lag, by the sequence so that a replay has them where the
+// run had.
+constexpr std::uint64_t kLagEvery = 256;
+// Samples after which a filter that was moved shows how long the trackers have to be.
+constexpr double kReachAfter = 256.0;
+// Trackers as long as this take part whatever the lag: they follow motions that begin slowly.
+constexpr double kLeastReach = 48.0;
+// Of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 deg/s.
+constexpr double kMostRestRate = 0.02;
+// Lags after which the filter's memory of where it was moved to has faded to 5 %.
+constexpr double kYoungLags = 3.0;
+// Known noise is replaced where a stretch differs by this factor.
+constexpr double kOtherNoise = 2.0;
+// Louder noise than is known has to be white for so long, and for two stretches.
+constexpr double kLouder_s = 60.0, kLouderSamples = 8192.0, kStretch = 4096.0;
+
+}  // namespace
+
+// Half of the variance is the measurements' noise, more where it is coloured, and half the walk's.
+void Engine::publish_rest(Step& s) noexcept {
+  s.rate = rest_rate();
+  s.gain = rest_->gain();
+  s.variance.setConstant(rest_->variance());
+  if (!settings_.follow_manoeuvres) return;
+  const Lanes noise = noise_share(), walk = walk_share();
+  for (std::size_t a = 0; a < axes_; ++a) {
+    const auto i = static_cast<Eigen::Index>(a);
+    double wide = follow_.change.wide(follow_.trackers, a, lag());
+    // The width is that of the known noise, of which a filter that follows coloured noise leaves less to its
+    // rule.
+    if (wide > 1.0) wide *= settings_.measurement_noise / rest_->rule().measurement_noise();
+    s.variance[i] *= 0.5 * (walk[i] * (learns_walk_ ? wide : 1.0) + noise[i] * wide);
+    s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding();
+  }
+}
+
+void Engine::publish_mix(Step& s) noexcept {
+  Lanes scale = s.sample.scale;
+  // A measurement's variance as it is heard: what is louder may be noise.
+  for (std::size_t a = 0; a < axes_; ++a)
+    scale[static_cast<Eigen::Index>(a)] =
+        std::max(scale[static_cast<Eigen::Index>(a)], noise_[a].known() * noise_[a].louder() * s.noise_scale);
+  const Mix::Published mix =
+      follow_.mix.publish(follow_.trackers, rest_rate(), rest_->variance() * noise_share(), scale);
+  s.rate = mix.rate;
+  s.variance = mix.variance;
+  s.gain = mix.gain + follow_.mix.rest_weight() * rest_->gain();
+}
+
+// Adds the payment of this sample, and books what the rate falls short of.
+void Engine::pay(Step& s) noexcept {
+  // What the filter lags behind the tail of a manoeuvre by does not return by itself.
+  follow_.at_rest_for = follow_.moving ? 0.0 : follow_.at_rest_for + 1.0;
+  const bool young = follow_.at_rest_for < kYoungLags * settled_lag_;
+  const bool books = follow_.moving || young || !settings_.follow_manoeuvres;
+  follow_.ledger.slow_pace(lag());
+  const Lanes covered = s.sample.mask * s.sample.covered_s;
+  // What a gap hides is no angle.
+  const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
+  const Lanes paid =
+      follow_.ledger.payment(rest_->variance() * noise_share(), settings_.follow_manoeuvres, dt_s);
+  Lanes short_by = Lanes::Zero();
+  if (books && !s.outlier) short_by = (s.sample.rate - s.rate) * covered;
+  follow_.ledger.book(short_by, follow_.moving, paid, dt_s);
+  s.rate += paid;
+  if (settings_.follow_manoeuvres) s.variance = s.variance.max(paid * paid);
+}
+
+bool Engine::rests(const Step& s) const noexcept {
+  if (!settings_.follow_manoeuvres || follow_.moving || s.outlier || s.sample.valid == 0 ||
+      follow_.since_moved < kRestMemory || follow_.change.suspected())
+    return false;
+  for (std::size_t a = 0; a < axes_; ++a)
+    if ((started_ >> a & 1U) != 0 && !(std::abs(rest_->rate(a)) <= kMostRestRate)) return false;
+  return true;
+}
+
+// The noise: at rest its walk, and R where that is less than is known; in a manoeuvre R, where what looks
+// like one is white over every octave for a minute.
+void Engine::learn(const Step& s) noexcept {
+  if (!settings_.follow_manoeuvres) return;
+  const bool rest = (s.out.flags & kAtRest) != 0, gap = s.dt_s > kShortGap * period_s_;
+  if (gap || (rest && !follow_.moving && s.noise_scale != 1.0)) walk_.break_off();
+  if (s.outlier || (!rest && !follow_.moving)) return;
+  walk_.set_stretch(rest ? rest_stretch_ : std::max(kLouderSamples, kLouder_s / period_s_));
+  walk_.take(s.in.rate_radps, s.sample.valid, rest);
+  const std::optional<Walk::Found> found = walk_.take_news();
+  if (!found) return;
+  if (rest) rest_stretch_ = std::min(2.0 * rest_stretch_, kStretch);
+  bool other = false;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    const double heard = found->noise[a], known = noise_[a].known();
+    if (!(heard > 0.0) || !found->white) continue;
+    if (rest ? kOtherNoise * heard < known : heard > kOtherNoise * known) {
+      noise_[a].set_known(heard);
+      other = true;
+    }
+  }
+  if (other) rest_->rule().restart();
+  if (!learns_walk_) return;
+  settings_.process_noise = found->ratio * mean_noise() / period_s_;
+  rest_->retune(settings_.process_noise);
+}
+
+// The filter's variance is of the axes that are measured.
+void Engine::know_unmeasured(const Step& s, double grown) noexcept {
+  const Lanes walk = walk_share();
+  Axes rate{}, variance{};
+  for (std::size_t a = 0; a < axes_; ++a) {
+    rate[a] = s.rate[static_cast<Eigen::Index>(a)];
+    variance[a] = s.variance[static_cast<Eigen::Index>(a)];
+  }
+  for (std::size_t a = 0; a < axes_; ++a) {
+    const auto i = static_cast<Eigen::Index>(a);
+    if ((s.sample.valid >> a & 1U) != 0)
+      unmeasured_.measure(a, s.gain, variance[a], s.sample.rate[i] - s.rate[i], s.sample.scale[i]);
+    else if (s.sample.valid == 0 && !follow_.moving)
+      unmeasured_.miss_with_all(a, grown * walk[i]);
+    else if ((started_ >> a & 1U) != 0)
+      unmeasured_.miss(a, grown * walk[i], rate, variance);
+  }
+}
+
+void Engine::publish(const Step& s) noexcept {
+  const Lanes share = noise_share();
+  for (std::size_t a = 0; a < axes_; ++a) {
+    const auto i = static_cast<Eigen::Index>(a);
+    const double variance = unmeasured_.variance(a, s.variance[i]);
+    s.out.denoised_radps[a] = s.rate[i];
+    // A rule without a floor may take the covariance below zero: it then says no more than one measurement
+    // does.
+    s.out.variance_rad2ps2[a] = variance >= 0.0 ? variance : settings_.measurement_noise;
+    s.out.gain[a] = s.gain;
+    s.out.innovation_variance[a] = rest_->covariance() * (settings_.follow_manoeuvres ? share[i] : 1.0);
+    health_.measurement_noise[a] =
+        settings_.follow_manoeuvres
+            ? rest_->rule().measurement_noise() * noise_[a].known() / settings_.measurement_noise
+            : rest_->rule().measurement_noise();
+    health_.colour[a] = noise_[a].colour();
+  }
+  health_.floor_hits = rest_->rule().floor_hits();
+  if (s.in.sequence % kLagEvery == 0 || settled_lag_ == 0.0) refresh_lag(s.in.sequence);
+  health_.group_delay_s = period_s_ * settled_lag_ *
+                          (follow_.moving && settings_.follow_manoeuvres ? follow_.mix.rest_weight() : 1.0);
+}
+
+// The lag of the filter at rest once it has settled.
+void Engine::refresh_lag(std::uint64_t) noexcept {
+  const Settled now = rest_->settled();
+  if (!std::isfinite(now.lag) || !std::isfinite(now.correlation)) return;
+  if (settings_.follow_manoeuvres && settled_lag_ > 0.0 && now.lag < settled_lag_ &&
+      (follow_.moving || follow_.since_moved < settled_lag_))
+    return;
+  settled_lag_ = now.lag;
+  health_.correlation_time_s = now.correlation * period_s_;
+  if (follow_.since_moved > kReachAfter || !follow_.moving)
+    follow_.trackers.reach(std::max(kLeastReach, lag()));
+}
+
+}  // namespace ifog

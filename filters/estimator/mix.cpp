@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/estimator/mix.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "filters/estimator/noise.h"
+#include "filters/random/log_exp.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kMostNats = 12.5;    // of one measurement: five standard deviations
+constexpr double kLongerPrior = 2.0;  // nats: motions are smooth more often than not
+constexpr double kRestPrior = 4.0;    // nats that the filter at rest has to be ahead
+constexpr double kMostAhead = 12.0;
+constexpr double kBreaks = 12.0;     // nats by which a longer tracker is surely wrong and begins again
+constexpr double kLeastRest = 64.0;  // samples, before rest is believed
+// Of two neighbours' difference white noise makes this part of the difference of their variances.
+constexpr double kCommon = 0.65;
+// Twice the correlation of neighbours' errors, and what payments for the angle add.
+constexpr double kCorrelated = 2.8, kPaid = 1.27;
+
+double certain(double nats) { return 1.0 / (1.0 + exponential(-std::clamp(nats, -30.0, 30.0))); }
+
+}  // namespace
+
+double Mix::least(const Lanes& lanes) const noexcept {
+  if (!(seen_ > 0.0).any()) return 0.0;
+  return (seen_ > 0.0).select(lanes, Lanes::Constant(1e300)).minCoeff();
+}
+
+void Mix::begin(double failed) noexcept {
+  link_.fill(Lanes::Zero());
+  bias_.fill(Lanes::Zero());
+  weight_ = {};
+  compared_ = {};
+  weight_[0] = gain_ = 1.0;
+  rest_ratio_.setZero();
+  seen_.setZero();
+  rest_age_ = rest_weight_ = 0.0;
+  failed_after_ = failed;
+}
+
+void Mix::begin_rest() noexcept {
+  failed_after_ = std::max(0.9 * failed_after_, rest_age_);
+  rest_age_ = 0.0;
+  rest_ratio_.setZero();
+}
+
+bool Mix::rest_found() const noexcept {
+  return least(rest_ratio_) > kFound && rest_age_ >= std::max(kLeastRest, 3.0 * failed_after_);
+}
+
+void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexcept {
+  const std::size_t size = trackers.size();
+  seen_ = seen_.max(now.mask);
+  std::array<Lanes, Trackers::kMost> risk;
+  risk.fill(Lanes::Zero());
+  Lanes mean = Lanes::Zero();
+  double all = 0.0, output = 0.0;
+  for (std::size_t j = 0; j < size; ++j) {
+    const Trackers::Gains& g = trackers.gains(j);
+    const double gain = trackers.predicts(j) ? g.rate : 1.0;
+    const Lanes left = (1.0 - gain) * (now.rate - trackers.rate(j));
+    risk[j] = left * left * now.inverse + 2.0 * gain;
+    mean += weight_[j] * risk[j];
+    all += weight_[j];
+    output += weight_[j] * (trackers.predicts(j) ? g.output : 1.0);
+  }
+  mean = all > 1e-9 ? (mean / all).eval() : risk[0];
+  if (all > 1e-9) output /= all;
+  // No follower of a motion in white noise does better than this; in coloured noise it follows the noise.
+  mean = (colour > kColoured).select(mean.max(1.0 + output), mean);
+  const Lanes left = (1.0 - now.rest_gain) * now.innovation;
+  const Lanes rest = left * left * now.inverse + 2.0 * now.rest_gain;
+  const Lanes ahead = (0.5 * (mean - rest)).max(-kMostNats).min(kMostNats) / colour.sqrt();
+  rest_ratio_ = (now.mask > 0.0).select((rest_ratio_ + ahead).min(kMostAhead), rest_ratio_);
+  rest_age_ += 1.0;
+  for (std::size_t j = 1; j < size; ++j)
+    link_[j] += now.mask * (0.5 * (risk[j - 1] - risk[j])).max(-kMostNats).min(kMostNats) -
+                link_[j] / std::max(5.0, 3.0 * trackers.length(j - 1));
+  trackers.correct(now.rate, now.valid);
+  rest_weight_ = rest_age_ >= 3.0 * failed_after_ ? certain(least(rest_ratio_) - kRestPrior) : 0.0;
+  double remains = 1.0 - rest_weight_;
+  gain_ = 0.0;
+  for (std::size_t j = 0; j < size; ++j) {
+    const double longer = j + 1 < size ? remains * certain(least(link_[j + 1]) + kLongerPrior) : 0.0;
+    weight_[j] = remains - longer;
+    remains = longer;
+    gain_ += weight_[j] * (trackers.predicts(j) ? trackers.gains(j).rate : 1.0);
+  }
+  for (std::size_t j = 1; j < size; ++j) {
+    compared_[j] = std::min(compared_[j] + 1.0, 6.0 * trackers.length(j));
+    const Lanes apart = trackers.rate(j) - trackers.rate(j - 1);
+    const double common = kCommon * std::max(0.0, trackers.gains(j - 1).output - trackers.gains(j).output);
+    bias_[j] += now.mask * (apart * apart - common * now.scale - bias_[j]) / compared_[j];
+  }
+  for (std::size_t j = 1; j < size; ++j) {
+    if (!(least(link_[j]) < -kBreaks) || !(trackers.age(j) > trackers.age(j - 1))) continue;
+    for (std::size_t k = j; k < size; ++k) link_[k].setZero();
+    trackers.begin_from(j, j - 1);
+    break;
+  }
+}
+
+Mix::Published Mix::publish(const Trackers& trackers, const Lanes& rest, const Lanes& rest_variance,
+                            const Lanes& scale) const noexcept {
+  Lanes moving = Lanes::Zero(), bias = Lanes::Zero();
+  double noise = 0.0, shorter = 0.0, gain = 0.0;
+  for (std::size_t j = 0; j < trackers.size(); ++j) {
+    const double weight = weight_[j];
+    if (j > 0) bias += (1.0 - shorter) * (1.0 - shorter) * bias_[j];
+    noise += trackers.gains(j).output * weight * (weight + kCorrelated * shorter);
+    gain += weight * trackers.gains(j).rate;
+    shorter += weight;
+    moving += weight * trackers.rate(j);
+  }
+  Published out;
+  out.gain = gain;
+  out.rate = rest_weight_ * rest + moving;
+  const double share = 1.0 - rest_weight_;
+  out.variance = kPaid * noise * scale + bias.max(0.0);
+  if (share > 1e-9) {
+    const Lanes apart = rest - moving / share;
+    out.variance += rest_weight_ * (rest_variance + share * apart * apart);
+  } else {
+    out.variance += rest_variance;
+  }
+  return out;
+}
+
+double Mix::length(const Trackers& trackers, double lag) const noexcept {
+  double length = rest_weight_ * 0.25 * lag;
+  for (std::size_t j = 0; j < trackers.size(); ++j) length += weight_[j] * trackers.length(j);
+  return length;
+}
+
+}  // namespace ifog

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// The noise of one axis: R as it is known, and what third differences say beside it.
+//
+// R is what the filter was given or has learned at rest; only walk.h changes it, by stretches that are white
+// over every octave. Third differences do not see a parabola: for white noise they give R whatever moves
+// smoothly, for broadband motion an upper bound of R, for coloured noise less than R. So they say three
+// things and no more: how large a measurement's variance may be now, how coloured the known noise is, and how
+// coarse the converter is.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "filters/random/log_exp.h"
+
+namespace ifog {
+
+// Noise is coloured if Noise::colour() is above this.
+inline constexpr double kColoured = 1.1;
+
+class Noise {
+ public:
+  // known: R, (rad/s)^2.
+  explicit Noise(double known = 1.0) noexcept : known_(known), slow_(known), fast_(known) {}
+
+  // The next measurement, rad/s, that follows the last one after so many nominal samples.
+  void take(double rate, double steps) noexcept {
+    const double step = std::abs(rate - last_[2]);
+    if (in_row_ > 0 && step > 0.0) digit_ = std::min(digit_, step);
+    if (steps < 0.5 || steps > 1.5) in_row_ = 0;
+    if (in_row_ >= 3) {
+      const double third = rate - 3.0 * last_[2] + 3.0 * last_[1] - last_[0];
+      // Once a level is known an outlier counts for at most five standard deviations.
+      const double square = third * third / kThird;
+      fast_ +=
+          (std::min(square, taken_ < kFew ? square : kClip * fast_) - fast_) / std::min(kFast, taken_ + 4.0);
+      // The usual level is not learned while it is surely exceeded.
+      if (louder() == 1.0)
+        slow_ += (std::min(square, taken_ < kFew ? square : kClip * slow_) - slow_) /
+                 std::min(kSlow, taken_ + 1.0);
+      taken_ += 1.0;
+    }
+    in_row_ = std::min(in_row_ + 1, 3);
+    last_ = {last_[1], last_[2], rate};
+  }
+  void set_known(double noise) noexcept {
+    known_ = noise;
+    slow_ = fast_;
+  }
+  [[nodiscard]] double known() const noexcept { return known_; }
+  // R for tests of motion: a rate halfway between two steps of the converter has d^2 / 4 about its mean.
+  [[nodiscard]] double tested() const noexcept {
+    return digit_ < kNoDigit ? std::max(known_, 0.25 * digit_ * digit_) : known_;
+  }
+  // By which third differences are now above their usual level: 1 unless by more than chance.
+  [[nodiscard]] double louder() const noexcept {
+    return taken_ > kFast && fast_ > kSurelyLouder * slow_ ? fast_ / slow_ : 1.0;
+  }
+  // The same without that doubt, 1 at least: for who takes all that is louder for noise.
+  [[nodiscard]] double heard() const noexcept {
+    return std::max(1.0, fast_ / std::max(slow_, 1e-9 * known_));
+  }
+  // Variance of the known noise over that of white noise as rough as it is; 1 unless it is more by more than
+  // chance.
+  [[nodiscard]] double colour() const noexcept {
+    const double chance = std::sqrt(kThirdVariance / std::clamp(taken_, 1.0, kSlow));
+    const double ratio = known_ / std::max(slow_, 1e-9 * known_);
+    return taken_ >= kFew && ratio > 1.0 + kSurely * chance ? ratio : 1.0;
+  }
+  // The mean of a converter's steps is off by the first harmonic of its sawtooth, of variance d^2 / (2 pi^2)
+  // without noise (Widrow and Kollar, "Quantization Noise", 2008).
+  [[nodiscard]] double rounding() const noexcept {
+    if (digit_ >= kNoDigit) return 0.0;
+    // R that was learned includes the steps' own d^2 / 12; one that is less than that is of the sensor alone.
+    const double d2 = digit_ * digit_, own = d2 / 12.0, white = known_ > 1.2 * own ? known_ - own : known_;
+    return d2 / 19.739208802178716 * exponential(-std::min(39.47841760435743 * white / d2, 600.0));
+  }
+
+ private:
+  static constexpr double kThird = 20.0;                             // 1 + 9 + 9 + 1
+  static constexpr double kFew = 8.0, kFast = 32.0, kSlow = 1024.0;  // samples
+  static constexpr double kClip = 25.0;
+  // n overlapping third differences of white noise have a mean square of variance 2 (1 + 1.3) / n R^2.
+  static constexpr double kThirdVariance = 4.6, kSurely = 3.0;
+  // Of 32 overlapping third differences the mean square scatters by 0.4: four standard deviations.
+  static constexpr double kSurelyLouder = 2.6;
+  static constexpr double kNoDigit = 1e300;
+
+  double known_, slow_, fast_, taken_ = 0.0, digit_ = kNoDigit;
+  std::array<double, 3> last_{};
+  int in_row_ = 0;
+};
+
+}  // namespace ifog

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// Outliers: a measurement that neither the filter at rest nor any tracker predicts waits for the next ones.
+//
+// So many in a row that chance does not explain them, outliers being as rare as they have been, are a jump.
+// Where outliers are frequent the measurements of a jump also have to be nearer to each other than those of
+// noise.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "filters/estimator/lanes.h"
+
+namespace ifog {
+
+class Outliers {
+ public:
+  enum class Verdict { usual, waits, jump };
+  static constexpr std::size_t kKept = 8;
+
+  // least: the smallest square of an innovation over its variance that any filter has, the worst axis';
+  // scale: R of that axis; distance: from the run's last measurement; lag: of the filter at rest, samples.
+  [[nodiscard]] Verdict take(double least, const Lanes& rate, double scale, std::size_t axis, bool moving,
+                             double lag) noexcept {
+    seen_ = std::min(seen_ + 1.0, kMemory);
+    const bool rare = moving || share_ <= kRare;
+    const double most = !rare ? kNeverNoise : moving ? kFarMoving * std::max(1.0, surprise_) : kFar;
+    if (least <= most || seen_ < kYoung) {
+      if (!moving) share_ += ((least > kFar ? 1.0 : 0.0) + static_cast<double>(run_) - share_) / seen_;
+      run_ = 0;
+      if (moving) surprise_ += (std::min(least, kMostSurprise) - surprise_) / kSurpriseMemory;
+      return Verdict::usual;
+    }
+    if (run_ == 0) {
+      nearness_ = 0.0;
+      squares_ = least;
+    } else {
+      squares_ += least;
+      const auto a = static_cast<Eigen::Index>(axis);
+      const double apart = rate[a] - kept_[(run_ - 1) % kKept][a];
+      nearness_ +=
+          0.5 * std::log(squares_ / static_cast<double>(run_ + 1) / std::max(2.0, apart * apart / scale));
+    }
+    kept_[run_ % kKept] = rate;
+    ++run_;
+    // Twice the evidence is no noise's, however far apart they are.
+    const double evidence = static_cast<double>(run_) * rarity();
+    const bool near = moving || nearness_ >= 0.5 * std::log(lag) || evidence > 2.0 * kEvidence;
+    if (evidence <= kEvidence || !near) return rare || least > kNeverNoise ? Verdict::waits : Verdict::usual;
+    surprise_ = std::max(surprise_, std::min(least, kMostSurprise));
+    return Verdict::jump;
+  }
+  // Nats by which an outlier at rest is rare.
+  [[nodiscard]] double rarity() const noexcept {
+    return std::min(kMostRarity, -std::log(std::max(share_, 1e-8)));
+  }
+  [[nodiscard]] bool rare() const noexcept { return share_ <= kRare; }
+  [[nodiscard]] std::size_t run() const noexcept { return run_; }
+  // Of the run's measurements the i-th of the last ones, oldest first.
+  [[nodiscard]] std::size_t kept() const noexcept { return std::min(run_, kKept); }
+  [[nodiscard]] const Lanes& kept(std::size_t i) const noexcept { return kept_[(run_ - kept() + i) % kKept]; }
+  void end_run() noexcept { run_ = 0; }
+
+ private:
+  // Squares of standard deviations.
+  static constexpr double kFar = 25.0, kFarMoving = 30.0, kNeverNoise = 400.0;
+  static constexpr double kMostSurprise = 1e6, kSurpriseMemory = 20.0;
+  static constexpr double kRare = 1e-3, kMostRarity = 12.5, kEvidence = 18.0;
+  static constexpr double kMemory = 8192.0, kYoung = 64.0;  // samples
+
+  std::array<Lanes, kKept> kept_{};
+  double seen_ = 0.0, share_ = 1e-8, surprise_ = 1.0, nearness_ = 0.0, squares_ = 0.0;
+  std::size_t run_ = 0;
+};
+
+}  // namespace ifog

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// One measurement of all axes as the tests of motion see it, in the units of the known noise.
+#pragma once
+
+#include <cstdint>
+
+#include "filters/estimator/lanes.h"
+
+namespace ifog {
+
+// An innovation counts for five standard deviations at most where it is taken in or summed.
+inline constexpr double kMostDeviations = 5.0;
+
+struct Sample {
+  std::uint32_t valid = 0;
+  Lanes mask = Lanes::Zero();        // 1 where valid
+  Lanes rate = Lanes::Zero();        // rad/s; where not valid, any number
+  Lanes innovation = Lanes::Zero();  // of the filter at rest, rad/s; 0 where not valid
+  Lanes scale = Lanes::Ones();       // R of this measurement, (rad/s)^2
+  Lanes inverse = Lanes::Zero();     // 1 / scale; 0 where not valid
+  Lanes surprise =
+      Lanes::Zero();  // square of the innovation over the variance that the filter at rest predicts
+  Lanes covered_s = Lanes::Zero();
+  double rest_factor = 1.0, log_rest_factor = 0.0;  // variance of the filter's innovations over R
+  double rest_gain = 0.0;
+};
+
+[[nodiscard]] inline double greatest(const Lanes& lanes) noexcept { return lanes.maxCoeff(); }
+
+}  // namespace ifog
