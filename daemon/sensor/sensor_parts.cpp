@@ -25,10 +25,10 @@ constexpr double kFrameChannelMaxAge_s = 10.0;
 
 // All of it: a member more does not compile.
 auto tied(const FilterChoice& choice) {
-  const auto& [rule, state, weights, wideband, process_noise, measurement_noise, floor, state_parameters, window, draws,
-               follow_manoeuvres, conserve_angle, steady_gain, guard, plain, seed] = choice;
-  return std::tie(rule, state, weights, wideband, process_noise, measurement_noise, floor, state_parameters, window,
-                  draws, follow_manoeuvres, conserve_angle, steady_gain, guard, plain, seed);
+  const auto& [rule, state, weights, wideband, process_noise, measurement_noise, floor, state_parameters,
+               window, draws, follow_manoeuvres, conserve_angle, steady_gain, guard, plain, seed] = choice;
+  return std::tie(rule, state, weights, wideband, process_noise, measurement_noise, floor, state_parameters,
+                  window, draws, follow_manoeuvres, conserve_angle, steady_gain, guard, plain, seed);
 }
 
 std::vector<CanId> wanted_ids(const ifog_description& description) {

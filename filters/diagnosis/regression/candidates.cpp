@@ -14,21 +14,17 @@ namespace {
 
 constexpr double kHour = 3600.0;
 constexpr double kGridFactor = 2.5;  // between time constants: neighbours correlate above 0.95
-// A smooth channel's derivative needs smoothing over the quantisation of its thermometer, so it starts here.
-constexpr double kBlocksOfRate = 2.0;
-// What warms up has a mass. What settles faster is how the record began: a reference that came late, a hand
-// that let go.
+constexpr double kBlocksOfRate = 2.0;  // the shortest smoothing of a derivative: beyond a thermometer's steps
+// What warms up has a mass. What settles faster is how the record began.
 constexpr double kShortestWarmUp_s = 10.0;
-// Of a sample: a band power that weighs the frequencies near half the sample rate most.
-constexpr double kHighest = 0.5;
+constexpr double kHighest = 0.5;  // of a sample: a band power of the frequencies near half the sample rate
 constexpr double kInside = 0.1;  // of the range from its edge: of a transition both levels have to be seen
-constexpr double kOfDifference =
-    3.0;  // twice log-likelihood: a gradient is a bolder claim than a temperature
+// Twice log-likelihood: a gradient is a bolder claim than a temperature.
+constexpr double kOfDifference = 3.0;
 constexpr double kOfOtherAxis = 2.0;
 // What a field does has a direction: of its components the sum is a law, the product of two none.
 constexpr double kOfComponents = 4.0;
-// Another axis was turned when it moved as much as this share of the sensor's own; what runs with the own
-// rotation this closely is a picture of it.
+// Another axis was turned when it moved by this share of the own; what runs with it this closely is a picture of it.
 constexpr double kTurned = 0.05;
 constexpr double kPicture = 0.9;
 

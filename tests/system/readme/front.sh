@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # What the reader of the front page has: a gyro's recording, a service that runs, a service manager. See run.py.
-blocks=4
+blocks=3
 elsewhere_1="tools/demo in the stage bench; tools/test is what runs this"
 
 # The programs under the names of installed ones.
@@ -34,7 +34,7 @@ until_said() {  # WORDS
   return 1
 }
 
-before_3() {
+before_2() {
   on_the_path
   ifog simulate "$source/tools/simulate/scenarios/demo.toml" --output recording.kvh --driver kvh1750 --option format=b --option rate_hz=200
   echo 'version = 1' >model.toml
@@ -58,7 +58,7 @@ END
   daemon=$!
   until_said running
 }
-after_3() {
+after_2() {
   until_said "reloaded: model"
   kill "$daemon"
   wait "$daemon"
@@ -67,7 +67,7 @@ after_3() {
   rm -rf "$work"
 }
 
-before_4() {
+before_3() {
   on_the_path
   # A computer with this service, for this shell alone.
   cp -r /etc etc 2>/dev/null || true
@@ -99,6 +99,6 @@ folder = "$work/days"
 END
   ifogd --config /etc/ifogd/ifogd.toml 2>said
 }
-after_4() {
+after_3() {
   [ "$(ls state | grep -c 'nose.kept-.*toml')" = 1 ] && [ ! -e state/nose.model.toml ]
 }

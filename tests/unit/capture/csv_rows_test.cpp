@@ -155,8 +155,7 @@ TEST(CsvRows, SaysWhatIsWrongWithItsLineWhereverThePieceEnds) {
             "5,1,warm,3", "a.csv:4321: rate_y_radps is 'warm', expected a number, 'nan' or nothing"},
         {"5,1,2", "a.csv:4321: 3 cells, expected 4 (a truncated line?)"},
         {"5,1,2,3,4", "a.csv:4321: more cells than the 4 columns of the header"},
-        {"0.5,1,2,3",
-         "a.csv:4321: time_s is 0.5 s, expected more than in the row before"},
+        {"0.5,1,2,3", "a.csv:4321: time_s is 0.5 s, expected more than in the row before"},
         {",1,2,3", "a.csv:4321: time_s is missing, expected a time"}}) {
     const std::string wrong = with(4321, bad);
     for (const std::size_t piece : kPieces) EXPECT_EQ(in_pieces(wrong, piece).refused, said) << piece;

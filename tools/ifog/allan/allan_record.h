@@ -50,8 +50,8 @@ struct AllanRecord {
   std::optional<NoiseCoefficients> fit;
   std::vector<NoiseChange> noise_changes;
   std::vector<ValueFault> findings;  // what the values say of the logger
-  double trusted_tau_s = 0.0;      // up to here the deviation is known to a quarter
-  std::vector<std::string> notes;  // what the reader should know, one line each
+  double trusted_tau_s = 0.0;        // up to here the deviation is known to a quarter
+  std::vector<std::string> notes;    // what the reader should know, one line each
 
   [[nodiscard]] std::string label() const;  // short, tells the records of one run apart only with `capture`
 };

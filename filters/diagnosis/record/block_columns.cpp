@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/diagnosis/record/blocks.h"
+
+namespace ifog {
+namespace {
+
+template <class Step>
+Eigen::VectorXd block_means(const BlockGrid& grid, Step&& step) {
+  Eigen::VectorXd means(static_cast<Eigen::Index>(grid.size()));
+  const double share = 1.0 / static_cast<double>(grid.fine);
+  for (const BlockRange& record : grid.records) {
+    for (std::size_t b = record.first; b < record.end; ++b) {
+      double sum = 0.0;
+      for (std::size_t k = b * grid.fine; k < (b + 1) * grid.fine; ++k)
+        sum += step(k, k == record.first * grid.fine);
+      means[static_cast<Eigen::Index>(b)] = sum * share;
+    }
+  }
+  return means;
+}
+
+}  // namespace
+
+Eigen::VectorXd column(const BlockData& data, const ShapeSettings& settings, std::size_t channel) {
+  Shape shape(settings);
+  const FineChannel& source = data.channels[channel];
+  const bool add_power = !source.power.empty();
+  return block_means(data.grid, [&](std::size_t k, bool starts) {
+    if (starts) shape.restart();
+    if (settings.form == Form::kDeadZone && !source.power.empty())
+      return mean_in_dead_zone(source.values[k] - settings.reference, source.power[k], settings.half_width);
+    return shape.step_over(source.values[k], add_power ? source.power[k] : 0.0, data.grid.fine_s);
+  });
+}
+
+Eigen::VectorXd column(const BlockData& data, const ShapeSettings& settings, std::size_t channel,
+                       const ShapeSettings& with_settings, std::size_t with_channel) {
+  Shape shape(settings);
+  Shape with(with_settings);
+  const FineChannel& source = data.channels[channel];
+  const FineChannel& other = data.channels[with_channel];
+  return block_means(data.grid, [&](std::size_t k, bool starts) {
+    if (starts) {
+      shape.restart();
+      with.restart();
+    }
+    return shape.step(source.values[k], data.grid.fine_s) * with.step(other.values[k], data.grid.fine_s);
+  });
+}
+
+}  // namespace ifog
