@@ -55,7 +55,7 @@ struct UnitOfTime {
   std::string_view name;
   double s, since_1970;  // of the year 2000 in it
 };
-constexpr std::array<UnitOfTime, 4> kUnits{
+constexpr std::array<UnitOfTime, 4> kTimeUnits{
     {{"s", 1.0, 9.4e8}, {"ms", 1e-3, 9.4e11}, {"us", 1e-6, 9.4e14}, {"ns", 1e-9, 9.4e17}}};
 
 // The unit in which the values are times since 1970, or else that in which alone the rows come as fast as a
@@ -67,7 +67,7 @@ std::string unit_by_values(const std::vector<double>& values) {
   for (std::size_t i = 1; i < values.size(); ++i) forward += std::max(0.0, values[i] - values[i - 1]);
   const double step = forward / static_cast<double>(values.size() - 1);
   std::string found;
-  for (const UnitOfTime& unit : kUnits) {
+  for (const UnitOfTime& unit : kTimeUnits) {
     const double rate_hz = 1.0 / (step * unit.s);
     if (values.front() >= unit.since_1970 && values.front() < 5.0 * unit.since_1970 &&
         rate_hz > 1e-2 * kSlowest_hz && rate_hz < 10.0 * kFastest_hz)
@@ -97,7 +97,7 @@ int rank_of(const std::string& name, const Words& words) {
   return std::any_of(words.words.begin(), words.words.end(), is_time) ? 2 : 0;
 }
 
-std::string unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
+std::string time_unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
   if (place < table.units.size() && time_unit(table.units[place])) return table.units[place];
   const std::string named = unit_in_name(table.names[place]);
   if (time_unit(named)) return named;
@@ -117,7 +117,7 @@ std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t 
                                                    [](const std::string& cell) { return is_date(cell); });
   if (dated && cells.size() > 1 && cells.front() == cells.back()) return std::nullopt;  // the day of all rows
   const std::vector<double> values = numbers_in(cells);
-  out.unit = dated ? "s" : unit_by_name(table, place, words);
+  out.unit = dated ? "s" : time_unit_by_name(table, place, words);
   if (!dated && (values.size() != cells.size() || !goes_on(values) || (out.unit.empty() && counts(values))))
     return std::nullopt;
   if (out.unit.empty()) out.unit = unit_by_values(values);
@@ -218,7 +218,7 @@ bool varies(const std::vector<std::string>& cells) {
 }
 
 std::string name_of_seconds(double unit_s) {
-  for (const UnitOfTime& unit : kUnits)
+  for (const UnitOfTime& unit : kTimeUnits)
     if (std::abs(unit_s / unit.s - 1.0) < 1e-9) return std::string(unit.name);
   if (unit_s == 60.0) return "min";
   if (unit_s == 3600.0) return "h";

@@ -14,7 +14,7 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kFewBursts = 8;
-constexpr double kGap = 1.5;     // times the usual step: a hole, not a longer step
+constexpr double kHole = 1.5;    // times the usual step: a hole, not a longer step
 constexpr double kLate_s = 2.0;  // a rollover comes within it
 
 struct Rollover {
@@ -197,7 +197,7 @@ void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double
   const auto count = static_cast<double>(end - begin);
   const double first_s = rows.time_s[begin];
   double step_s = (next_s - first_s) / count;
-  if (period_s_ > 0.0 && step_s > kGap * period_s_)
+  if (period_s_ > 0.0 && step_s > kHole * period_s_)
     step_s = period_s_;
   else {
     period_s_ = step_s;
