@@ -180,11 +180,12 @@ class Checks:
         refused(1, "denoise", alone, "--model", model, "--output", self.folder / "never.csv", says=[str(model), "no axis 'y'"])
 
     def check_figures_are_of_the_part_that_is_wanted(self):
-        """Noise is known after four seconds; values are missing from 5 to 8 s."""
-        part = [math.nan if 500 <= i < 800 else v for i, v in enumerate(self.noise)]
+        """Noise is known after 4096 samples; values are missing from 50 to 53 s."""
+        rows = [self.random.gauss(0, SIGMA) for _ in range(10000)]
+        part = [math.nan if 5000 <= i < 5300 else v for i, v in enumerate(rows)]
         holed, out, to = self.write("parts.csv", {"rate_radps": part}), self.folder / "parts.out.csv", self.folder / "parts.json"
-        for bounds, samples, unknown, invalid in (([], ROWS, 400, 300), (["--to", 3], 300, 300, 0), (["--from", 6], ROWS - 600, 0, 200),
-                                                  (["--from", 10], ROWS - 1000, 0, 0), (["--from", 2, "--to", 6], 400, 200, 100)):
+        for bounds, samples, unknown, invalid in (([], 10000, 4096, 300), (["--to", 30], 3000, 3000, 0), (["--from", 51], 4900, 0, 200),
+                                                  (["--from", 60], 4000, 0, 0), (["--from", 20, "--to", 51], 3100, 2096, 100)):
             text = said("denoise", holed, *bounds, "--output", out, "--json", to)
             found = json.loads(to.read_text())
             figures = [found[key] for key in ("samples", "samples_before_noise_known", "invalid")]
@@ -290,7 +291,7 @@ class Checks:
 
     def check_what_was_not_filtered_is_not_said_to_be(self):
         """As many samples as the start-up takes: the noise is known only behind the last one."""
-        fast = self.write("second.csv", {"rate_radps": [self.random.gauss(0, SIGMA) for _ in range(20000)]}, [i / 20000 for i in range(20000)])
+        fast = self.write("second.csv", {"rate_radps": [self.random.gauss(0, SIGMA) for _ in range(4000)]}, [i / 20000 for i in range(4000)])
         short = self.write("short.csv", {"rate_radps": self.noise[:350]})
         for path in (fast, short):
             out = self.folder / "unfiltered.csv"
@@ -298,7 +299,8 @@ class Checks:
             found = columns(out)
             assert found["denoised_radps"] == found["raw_radps"], "filtered after all"
             assert "not run" in text and "--start-up" in text and "from the first seconds" not in text, text
-        assert "from the first seconds" in said("denoise", self.one, "--output", self.folder / "filtered.csv")
+        long = self.write("long.csv", {"rate_radps": [self.random.gauss(0, SIGMA) for _ in range(6000)]})
+        assert "from the first seconds" in said("denoise", long, "--output", self.folder / "filtered.csv")
 
     def check_a_correction_that_is_not_there_is_said(self):
         """At rest; of what the model corrects `share` is there. On a table that swings the rate is no error."""

@@ -18,7 +18,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr const char* kUrl = "udpm://239.255.76.67:7667?ttl=0";
+constexpr const char* kClockUrl = "udpm://239.255.76.67:7667?ttl=0";
 
 // Each value is new and all seem to be an hour old: that is the clock's, and they are fresh.
 TEST(ChannelSources, AValueFromAComputerWhoseClockIsBehindIsFresh) {
@@ -29,9 +29,9 @@ TEST(ChannelSources, AValueFromAComputerWhoseClockIsBehindIsFresh) {
   one.source = ChannelConfig::Source::lcm;
   one.lcm_channel = "HULL";
   const auto hull = std::make_shared<ChannelTable>(1);
-  ChannelSources sources({{one, hull, 0}}, kUrl);
+  ChannelSources sources({{one, hull, 0}}, kClockUrl);
   sources.start();
-  lcm_t* const lcm = lcm_create(kUrl);
+  lcm_t* const lcm = lcm_create(kClockUrl);
   ASSERT_NE(lcm, nullptr);
   for (int n = 0; n < 5; ++n) {
     channel_t message{};

@@ -61,8 +61,8 @@ TEST_F(RecordedFlight, DenoiseBeginsWithTheNoiseTheDaemonBeganWith) {
   kept.learned = "2026-01-31T13:05:09Z";
   kept.noise.process_noise = 3e-11;
   kept.noise.measurement_noise = 2e-8;
-  kept.noise.colour = {1.0, 1.1, 0.9};
-  kept.noise.octaves.samples = 1e6;
+  kept.noise.noise = {2e-8, 2.2e-8, 1.8e-8};
+  kept.noise.samples = 1e6;
   fs::create_directories(path("state"));
   write("state/nose.noise.toml", kept_noise_text(kept));
   filter_lines_ = "";

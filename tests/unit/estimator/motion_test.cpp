@@ -27,7 +27,9 @@ TEST(Rest, IsWithinFivePercentOfTheFilterToldTheTruth) {
         manoeuvres += got.health.manoeuvres;
       }
       EXPECT_LT(std::sqrt(ours / best), 1.05) << "Q/R " << ratio << ", told R times " << noise;
-      if (noise >= 1.0) EXPECT_EQ(manoeuvres, 0U);
+      if (noise >= 1.0) {
+        EXPECT_EQ(manoeuvres, 0U);
+      }
     }
   }
 }

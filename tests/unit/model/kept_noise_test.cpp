@@ -19,12 +19,8 @@ KeptNoise some() {
   kept.learned = "2026-01-31T13:05:09Z";
   kept.noise.process_noise = 1.2e-15 / 7.0;
   kept.noise.measurement_noise = 3e-10 / 7.0;
-  kept.noise.colour = {1.0 / 3.0, 2.0 / 3.0, 1.0};
-  for (std::size_t k = 0; k < OctaveSums::kOctaves; ++k) {
-    kept.noise.octaves.squares[k] = 1e-3 / static_cast<double>(k + 3);
-    kept.noise.octaves.counts[k] = static_cast<double>(k);
-  }
-  kept.noise.octaves.samples = 8192.0;
+  kept.noise.noise = {1e-10 / 3.0, 2e-10 / 3.0, 0.0};
+  kept.noise.samples = 8192.0;
   kept.noise.set_model("3f9c21a0b7de");
   return kept;
 }
@@ -55,10 +51,8 @@ TEST(KeptNoise, ReadsBackToTheBit) {
   EXPECT_EQ(read.learned, kept.learned);
   EXPECT_EQ(read.noise.process_noise, kept.noise.process_noise);
   EXPECT_EQ(read.noise.measurement_noise, kept.noise.measurement_noise);
-  EXPECT_EQ(read.noise.colour, kept.noise.colour);
-  EXPECT_EQ(read.noise.octaves.squares, kept.noise.octaves.squares);
-  EXPECT_EQ(read.noise.octaves.counts, kept.noise.octaves.counts);
-  EXPECT_EQ(read.noise.octaves.samples, kept.noise.octaves.samples);
+  EXPECT_EQ(read.noise.noise, kept.noise.noise);
+  EXPECT_EQ(read.noise.samples, kept.noise.samples);
   EXPECT_EQ(read.noise.model, kept.noise.model);
 }
 
@@ -70,8 +64,8 @@ TEST(KeptNoise, OfNoModelThatIsSaidItIsOfAnother) {
 }
 
 TEST(KeptNoise, RefusesByLineWhatIsNone) {
-  EXPECT_EQ(noise_complaint(noise_with("ifog.noise/1", "ifog.noise/2")),
-            "f.toml:2: schema: expected \"ifog.noise/1\"");
+  EXPECT_EQ(noise_complaint(noise_with("ifog.noise/2", "ifog.noise/3")),
+            "f.toml:2: schema: expected \"ifog.noise/2\"");
   EXPECT_EQ(noise_complaint(noise_with("axes = 2", "axes = 4")), "f.toml:5: axes: expected 1 to 3");
   EXPECT_EQ(
       noise_complaint(noise_with("axes = 2", "axes = 3")).rfind("f.toml:11: colour: expected a list of 3", 0),
