@@ -95,6 +95,8 @@ Diagnose project_diagnosis() {
     finding.contradictions = contradictions(diagnosis, captures);
     finding.heading = [diagnosis](const Capture& next) { return predicted(diagnosis, next); };
     for (const FoundEffect& found : diagnosis.effects) {
+      if (found.effect.form == "bias")
+        continue;  // the sensors have one, and what is scored is about the mean
       const std::optional<Form> form = form_named(found.effect.form);
       if (form && describes_noise(*form)) continue;  // a word about the noise, not an effect
       finding.effects.push_back(claim_of(found.effect, diagnosis.ranges, captures));

@@ -37,11 +37,11 @@ TEST(SignalChain, DuringStartUpTheCompensatedRateIsPublishedAndSaidSo) {
   unknown.start_up_s = 1.0;
   SignalChain chain(std::make_unique<ChainParts>(unknown));
   ChainOutput out;
-  const std::vector<Increment> all = increments(1500, 2);
+  const std::vector<Increment> all = increments(6000, 2);
   for (std::size_t i = 0; i < all.size(); ++i) {
     chain.process(all[i], out);
-    ASSERT_EQ((out.flags & kNoiseUnknown) != 0, i < 1000) << i;
-    if (i < 1000) {
+    ASSERT_EQ((out.flags & kNoiseUnknown) != 0, i < 4096) << i;
+    if (i < 4096) {
       ASSERT_EQ(out.estimate.denoised_radps[0], out.compensated_radps[0]);
       // Of the first sample all that it says, then what neighbours differ by: once there are some, the noise.
       ASSERT_GT(out.estimate.variance_rad2ps2[0], 0.0) << i;
@@ -55,7 +55,7 @@ TEST(SignalChain, DuringStartUpTheCompensatedRateIsPublishedAndSaidSo) {
 
 // A rate that was found from rounded times is as often a little below what it is meant to be as above.
 TEST(SignalChain, TheStartUpIsAsLongWhereTheRateIsOffByTheRoundingOfTimes) {
-  const std::vector<Increment> all = increments(1100, 2);
+  const std::vector<Increment> all = increments(4200, 2);
   for (const double off : {-1e-6, -1e-12, 0.0, 1e-12, 1e-6}) {
     ChainSettings unknown = settings(0.0, 0.0);
     unknown.start_up_s = 1.0;
@@ -67,7 +67,7 @@ TEST(SignalChain, TheStartUpIsAsLongWhereTheRateIsOffByTheRoundingOfTimes) {
       chain.process(increment, out);
       unfiltered += (out.flags & kNoiseUnknown) != 0 ? 1 : 0;
     }
-    EXPECT_EQ(unfiltered, 1000) << off;
+    EXPECT_EQ(unfiltered, 4096) << off;
   }
 }
 

@@ -175,7 +175,7 @@ TEST(SignalChain, AnAxisThatHasHadNoValueHasNoEstimate) {
 // The others' noise is what it is: an axis that repeats one value has none to share.
 TEST(SignalChain, AStuckAxisMakesTheOthersNoQuieter) {
   SignalChain chain = chain_of_three(0.0, 0.0);
-  of_three(1500, 0, true, chain);
+  of_three(6000, 0, true, chain);
   EXPECT_NEAR(chain.parts().filter().measurement_noise, 1e-8, 0.1e-8);
 }
 
