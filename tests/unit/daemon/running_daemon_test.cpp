@@ -191,7 +191,7 @@ TEST_F(RunningDaemon, NoiseIsKeptOverRestartsWithItsDate) {
     return std::strtod(text.c_str() + text.find("\nsamples = ") + 11, nullptr);
   };
   ASSERT_EQ(run_to_the_end(""), 0) << said();
-  EXPECT_EQ(times_said("noise from start-up data"), 1) << said();
+  EXPECT_EQ(times_said("noise learned at rest"), 1) << said();
   EXPECT_EQ(times_said("noise as learned until"), 0) << said();
   const double first = samples();
   EXPECT_GE(first, 4096.0) << kept();

@@ -101,6 +101,7 @@ TEST(FilterTable, AModelFileKeepsEverySetting) {
   model.filter->floor = 0.25;
   model.filter->follow_manoeuvres = false;
   model.filter->conserve_angle = false;
+  model.filter->wideband = "noise";
   model.filter->steady_gain = false;
   model.filter->guard = false;
   model.filter->plain = true;
