@@ -169,9 +169,9 @@ def self_test():
         "tests/unit/t.cpp": '#include "tools/ifog/main.cpp"\n',
     }
     bad = [
-        ("filters/rules/bad.h", '#include "drivers/ifog/driver.h"', "filters may use drivers/ifog/arrivals.h"),
-        ("filters/rules/bad.h", '#include "../../daemon/config/config.h"', "filters may use drivers/ifog/arrivals.h"),
-        ("filters/rules/bad.h", "#include <ifog/rate_t.hpp>", "filters may use drivers/ifog/arrivals.h"),
+        ("filters/rules/bad.h", '#include "drivers/ifog/driver.h"', "filters may use drivers/ifog/nearest.h"),
+        ("filters/rules/bad.h", '#include "../../daemon/config/config.h"', "filters may use drivers/ifog/nearest.h"),
+        ("filters/rules/bad.h", "#include <ifog/rate_t.hpp>", "filters may use drivers/ifog/nearest.h"),
         ("filters/rules/bad.h", "#  include <lcm/lcm.h>", "knows nothing of devices"),
         ("filters/settings/bad.h", '#include "filters/rules/rule.h"', "circle between filters/rules, filters/settings"),
         ("filters/diagnosis/record/bad.h", '#include "filters/diagnosis/search/scan.h"', "record stands before search"),

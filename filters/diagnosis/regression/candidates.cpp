@@ -13,12 +13,12 @@ namespace ifog {
 namespace {
 
 constexpr double kHour = 3600.0;
-constexpr double kGridFactor = 2.5;  // between time constants: neighbours correlate above 0.95
+constexpr double kGridFactor = 2.5;    // between time constants: neighbours correlate above 0.95
 constexpr double kBlocksOfRate = 2.0;  // the shortest smoothing of a derivative: beyond a thermometer's steps
 // What warms up has a mass. What settles faster is how the record began.
 constexpr double kShortestWarmUp_s = 10.0;
 constexpr double kHighest = 0.5;  // of a sample: a band power of the frequencies near half the sample rate
-constexpr double kInside = 0.1;  // of the range from its edge: of a transition both levels have to be seen
+constexpr double kInside = 0.1;   // of the range from its edge: of a transition both levels have to be seen
 // Twice log-likelihood: a gradient is a bolder claim than a temperature.
 constexpr double kOfDifference = 3.0;
 constexpr double kOfOtherAxis = 2.0;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Kinds of effects from the physics of the instrument, made here by their laws and found by the diagnosis:
-// other axes, differences, switches, turns, and the Earth's rate, which is none.
+// Kinds of effects from the physics of the instrument, made by their laws and found by the diagnosis.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,9 +21,7 @@ constexpr double kEarth = 7.292115e-5;
 constexpr double kGravity = 9.80665;
 constexpr double kWhite = 1e-6;
 
-double gaussian(std::uint32_t counter, std::uint32_t stream) {
-  return gaussian_deviate(counter, stream, 77, 6);
-}
+double gaussian(std::uint32_t at, std::uint32_t stream) { return gaussian_deviate(at, stream, 77, 6); }
 
 // Half an hour at 5 Hz of white noise and a walk; columns are added by name.
 struct Sensor {
@@ -162,7 +159,7 @@ TEST(Grammar, AKnownLatitudeBoundsTheEarthsRate) {
 // A sled: the specific force grows as it is driven, which tilt never makes it do.
 TEST(Grammar, AnAccelerationWithoutTiltIsGSensitivityHoweverSmall) {
   DiagnoseOptions known;
-  known.allow_motion_channels = true;  // the user says that the sensor did not turn
+  known.allow_motion_channels = true;
   Sensor s(4);
   std::vector<double> drive;
   for (const double t : s.time) drive.push_back(2.0 * std::sin(2.0 * M_PI * t / 40.0));
@@ -266,7 +263,6 @@ TEST(Grammar, OnceATurnIsSeenOverAnArc) {
   const Diagnosis found = diagnosed(s.record());
   EXPECT_EQ(found.effects.size(), 2U) << all_in_words(found);
   expect_coefficient(effect_of(found, "cosine", "table_rad"), 4e-6);
-  // Over this arc the sine shares most of its course with the bias: its coefficient is not what is promised.
   EXPECT_NE(effect_of(found, "sine", "table_rad"), nullptr);
   EXPECT_TRUE(found.ranges.empty()) << "known so well, it goes on round the circle";
 }
