@@ -27,8 +27,7 @@ struct ValueFault {
 //   the next one;
 //   - wrapped: one step in a hundred is most of the range of the values, whose middle is empty: signed counts
 //   read as unsigned;
-//   - interleaved: neighbours differ by twice what samples two, three or four apart do, in the standard
-//   deviation;
+//   - interleaved: around the means of every second, third or fourth sample values scatter by less than half of what all do;
 //   - unit: the mean at rest is beyond 5 °/s, the worst bias of a MEMS gyro;
 //   - moving: means of 1 s scatter by more than 0.2 °/s, beyond the noise of any gyro.
 [[nodiscard]] std::vector<ValueFault> value_faults(const SeriesView& rate, std::span<const Stretch> parts,

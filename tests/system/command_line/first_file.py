@@ -172,6 +172,17 @@ class Checks:
         densities, _ = typed(angle, *shlex.split(re.search(r"--column \S+/sample", said).group(0)))
         assert abs(densities["x"] / N - 1) < 0.05, densities
 
+    def check_real_sensors_at_rest_are_no_fault_of_a_logger(self):
+        """Dithered ring lasers among them, whose samples alternate."""
+        for name in ("ln100_x_up", "rlg_vehicle", "adis16405_imu3_1hz", "blueseis_bs1_ramp"):
+            capture, to = CASES.parent / f"data/{name}.csv.gz", self.folder / "real.json"
+            if not capture.exists():
+                print(f"skipped  {name}: {capture} is not there")
+                continue
+            assert ran("allan", capture, "--json", to).returncode == 0, name
+            found = [f["name"] for axis in json.loads(to.read_text())["axes"] for f in axis["findings"]]
+            assert found == [], f"{name}: {found}"
+
     def check_files_of_others(self):
         if not CASES.is_dir():
             return
