@@ -138,9 +138,9 @@ void find_interleaved(const std::vector<double>& values, std::vector<ValueFault>
     for (std::size_t first = 0; first < sensors; ++first)
       within += variance(first, sensors) / static_cast<double>(sensors);
     if (within > 0.25 * all) continue;
-    found.push_back(
-        {"interleaved", std::to_string(sensors) + " sensors seem to stand in turn, each with a bias of its "
-                                                  "own; --only COLUMN=VALUE reads one of them"});
+    found.push_back({"interleaved", std::to_string(sensors) +
+                                        " sensors seem to stand in turn, each with a bias of its "
+                                        "own; --only COLUMN=VALUE reads one of them"});
     return;
   }
 }
