@@ -50,30 +50,24 @@ class ShortTimes {
   std::size_t n_ = 0;
 };
 
-bool are_differences(std::string_view text) {
-  ShortTimes times;
+// next(line, ended): hands out one line at a time. Nothing: no line told.
+template <typename Next>
+std::optional<bool> told_by(Next next, ShortTimes& times) {
   std::string_view line;
-  for (bool ended = false; next_line(text, line, ended);)
-    if (const auto told = times.look(line)) return *told;
-  return times.at_end();
+  std::optional<bool> told;
+  for (bool ended = false; !told && next(line, ended);) told = times.look(line);
+  return told;
+}
+
+std::optional<bool> told_by(std::string_view text, ShortTimes& times) {
+  return told_by([&](std::string_view& line, bool& ended) { return next_line(text, line, ended); }, times);
 }
 
 bool are_differences(InputFile& file) {
   ShortTimes times;
   TextLines lines(file);
-  std::string_view line;
-  for (bool ended = false; lines.next(line, ended);)
-    if (const auto told = times.look(line)) return *told;
-  return times.at_end();
-}
-
-// What the first lines tell already.
-std::optional<bool> told_by(std::string_view head) {
-  ShortTimes times;
-  std::string_view line;
-  std::optional<bool> told;
-  for (bool ended = false; !told && next_line(head, line, ended);) told = times.look(line);
-  return told;
+  return told_by([&](std::string_view& line, bool& ended) { return lines.next(line, ended); }, times)
+      .value_or(times.at_end());
 }
 
 // A log's lines, one after the other.
@@ -192,7 +186,9 @@ Candump read_candump(const std::string& path, std::string_view interface) {
 
 Candump parse_candump(std::string_view text, const std::string& path, std::string_view interface) {
   Candump log;
-  Frames frames(path, interface, are_differences(text));
+  ShortTimes times;
+  const std::optional<bool> told = told_by(text, times);
+  Frames frames(path, interface, told.value_or(times.at_end()));
   std::string_view line;
   for (bool ended = false; next_line(text, line, ended);) {
     const Frames::Is is = frames.take(line, ended);
@@ -206,7 +202,8 @@ Candump parse_candump(std::string_view text, const std::string& path, std::strin
 }
 
 CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink) {
-  std::optional<bool> differences = told_by(file.head());
+  ShortTimes times;
+  std::optional<bool> differences = told_by(file.head(), times);
   if (!differences && !file.reopens()) {
     Candump log = parse_candump(file.text(), file.path(), interface);
     for (std::size_t i = 0; i < log.frames.size(); ++i) sink(log.frames[i], log.interfaces[log.on[i]]);

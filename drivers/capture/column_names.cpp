@@ -26,9 +26,20 @@ bool is_rate_column(const std::string& name) {
   return axis_of(name, "rate", axis) || axis_of(name, "reference_rate", axis);
 }
 
+bool is_other_rate(const std::string& name) {
+  std::string axis;
+  return axis_of(name, "other_rate", axis);
+}
+
 bool is_signal_column(const std::string& name) {
   std::string axis;
   return axis_of(name, "raw", axis) || axis_of(name, "compensated", axis) || axis_of(name, "denoised", axis);
+}
+
+std::string listed(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
+  return printable(list, kLongestMessage);
 }
 
 std::string shortest(double value) {

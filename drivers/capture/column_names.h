@@ -15,8 +15,14 @@ bool axis_of(const std::string& name, std::string_view prefix, std::string& axis
 // A rate or its reference, of any axis.
 bool is_rate_column(const std::string& name);
 
+// A rate of the sensor that the user did not choose: other_rate_y_radps. Rest is judged on it too.
+bool is_other_rate(const std::string& name);
+
 // What `ifog denoise` writes: raw_radps, compensated_x_radps, denoised_x_radps.
 bool is_signal_column(const std::string& name);
+
+// "'a', 'b'", for a message.
+std::string listed(const std::vector<std::string>& names);
 
 // Shortest text that reads back the same.
 std::string shortest(double value);

@@ -110,19 +110,24 @@ std::string unit_of(const TableSample& table, std::size_t place) {
   return angle_unit(last, false, false) ? last : "";
 }
 
-// p, q and r together are body rates.
-void add_body_rates(const TableSample& table, Sensors& sensors) {
+// p, q and r together are body rates; x, y and z without another word are the axes of a file that holds one
+// sensor only, as phones write it.
+void add_triple(const TableSample& table, Sensors& sensors) {
   if (!sensors.empty()) return;
-  std::vector<Candidate> found;
-  for (const std::string_view name : {"p", "q", "r"})
-    for (std::size_t i = 0; i < table.names.size(); ++i) {
-      const Words words(table.names[i]);
-      const std::string unit = unit_of(table, i);
-      if (words.stem == name && words.size() == 1 && (unit.empty() || angle_unit(unit, true, true)))
-        found.push_back({i, unit.empty() ? "" : rate_unit(words, unit),
-                         std::string(1, static_cast<char>('x' + (name[0] - 'p')))});
-    }
-  if (found.size() == 3) sensors["p q r"] = found;
+  std::vector<Candidate> body, bare;
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const Words words(table.names[i]);
+    const std::string unit = unit_of(table, i);
+    if (words.size() == 1 && words.stem.size() == 1 && words.stem >= "p" && words.stem <= "r" &&
+        (unit.empty() || angle_unit(unit, true, true)))
+      body.push_back({i, unit.empty() ? "" : rate_unit(words, unit),
+                      std::string(1, static_cast<char>('x' + (words.stem[0] - 'p')))});
+    if (words.size() == 0 && !words.axis.empty() && unit.empty()) bare.push_back({i, "", words.axis});
+  }
+  if (body.size() == 3)
+    sensors["p q r"] = body;
+  else if (bare.size() == 3)
+    sensors["x y z"] = bare;
 }
 
 Sensors sensors_of(const TableSample& table, bool references) {
@@ -134,7 +139,7 @@ Sensors sensors_of(const TableSample& table, bool references) {
     found->place = i;
     sensors[words.stem].push_back(*found);
   }
-  if (!references) add_body_rates(table, sensors);
+  if (!references) add_triple(table, sensors);
   return sensors;
 }
 
@@ -323,6 +328,29 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
     out.why = "the unit of the " + std::string(times.size() > 1 ? "time" : "rate") + " is not named";
   }
   return out;
+}
+
+std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayout& chosen) {
+  std::vector<CsvColumn> others;
+  if (!table.named) return others;
+  for (const Rates& sensor : choices_of(sensors_of(table, false))) {
+    const CsvColumn* sibling = nullptr;
+    others.clear();
+    for (const Candidate& rate : sensor) {
+      const std::string& header = table.names[rate.place];
+      const auto same = std::find_if(chosen.columns.begin(), chosen.columns.end(), [&](const CsvColumn& c) {
+        return c.is_rate() && (c.header == header || c.header == "#" + std::to_string(rate.place + 1));
+      });
+      if (same != chosen.columns.end())
+        sibling = &*same;
+      else
+        others.push_back({"other_" + capture_name(rate), header, ""});
+    }
+    if (sibling == nullptr) continue;
+    for (CsvColumn& other : others) other.unit = sibling->unit.empty() ? "rad/s" : sibling->unit;
+    return others;
+  }
+  return {};
 }
 
 std::string in_words(const CsvLayout& layout) {

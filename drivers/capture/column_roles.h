@@ -41,6 +41,10 @@ struct Readings {
 // asked: what the user chose already; only the rest is looked for.
 Readings readings_of(const TableSample& table, const CsvLayout& asked);
 
+// The sensor's rates that `chosen` leaves out, as other_rate_y_radps in the unit of the chosen ones: what
+// turns one axis moves the others. Empty where the names do not say which they are.
+std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayout& chosen);
+
 // "time 'Time (s)' in s, rate_x 'Gyroscope X (deg/s)' in deg/s", for the line that says how a file is read.
 std::string in_words(const CsvLayout& layout);
 

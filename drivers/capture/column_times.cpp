@@ -86,9 +86,10 @@ int rank_of(const std::string& name, const Words& words) {
        {"dt", "relative", "period", "delta", "integral", "id", "status", "valid", "offset", "zone", "delay",
         "age", "exposure", "week", "accuracy", "interval", "flags", "tflags"})
     if (words.has(not_time)) return 0;
-  constexpr std::array<std::string_view, 16> kTimes{
-      "time",    "timestamp", "stamp",          "t",        "utc",  "datetime", "date",  "zeit", "seconds",
-      "elapsed", "tow",       "sampletimefine", "timeusec", "secs", "millis",   "micros"};
+  constexpr std::array<std::string_view, 17> kTimes{
+      "time",           "timestamp", "stamp",   "t",       "utc",   "datetime",
+      "date",           "zeit",      "seconds", "elapsed", "tow",   "sow",
+      "sampletimefine", "timeusec",  "secs",    "millis",  "micros"};
   const auto is_time = [&](const std::string& word) {
     return std::find(kTimes.begin(), kTimes.end(), word) != kTimes.end();
   };

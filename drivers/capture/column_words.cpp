@@ -61,6 +61,12 @@ std::vector<std::string> split(const std::string& text) {
     word += c;
   }
   end_word();
+  // dTheta, dAngle: what turned is one word.
+  for (std::size_t i = 0; i + 1 < words.size(); ++i)
+    if (words[i] == "d" && (words[i + 1] == "theta" || words[i + 1] == "angle" || words[i + 1] == "ang")) {
+      words[i] += words[i + 1];
+      words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
   return words;
 }
 

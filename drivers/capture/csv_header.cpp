@@ -19,12 +19,6 @@
 namespace ifog {
 namespace {
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
-  return printable(list, kLongestMessage);
-}
-
 // The place of a column that was asked for by its header or, "#3", by its number.
 std::size_t place_of(const std::string& wanted, const std::vector<std::string>& names,
                      const std::string& path, std::size_t line) {
@@ -79,7 +73,7 @@ class Chooser {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const Words words(names_[i]);
       if (!words.has("id") && !words.has("sensor") && !words.has("device") && !words.has("instance") &&
-          !words.has("topic"))
+          !words.has("topic") && !words.has("i") && !words.has("imu"))
         continue;
       const std::vector<std::string>& cells = form_.sample.cells[i];
       const std::set<std::string> values(cells.begin(), cells.end());
@@ -132,6 +126,8 @@ class Chooser {
       layout.time.reset();
     else
       take_time(*layout.time);
+    if (layout.other_rates)
+      for (const CsvColumn& other : rates_not_chosen(form_.sample, layout)) layout.columns.push_back(other);
     for (const CsvColumn& column : layout.columns) {
       const std::size_t at = place(column.header);
       if (const std::string unit = other_unit(column); !unit.empty())
@@ -156,7 +152,10 @@ class Chooser {
            "these names");
     fail((form_.sample.named
               ? ""
-              : "no header line; its columns are #1 to #" + std::to_string(names_.size()) + "; ") +
+              : "no header line; " +
+                    (names_.size() == 1 ? std::string("its column is #1")
+                                        : "its columns are #1 to #" + std::to_string(names_.size())) +
+                    "; ") +
          found.why + options_in_words(found));
   }
 

@@ -75,7 +75,7 @@ CsvColumn CsvColumn::parse(const std::string& text) {
 
 bool CsvColumn::is_rate() const {
   return unit_of_name(name) == kRateUnit &&
-         (name.starts_with("rate_") || name.starts_with("reference_rate_"));
+         (name.starts_with("rate_") || name.starts_with("reference_rate_") || is_other_rate(name));
 }
 
 bool CsvColumn::is_angle() const {
@@ -104,6 +104,11 @@ std::string unit_in_name(const std::string& name) {
     return is_unit(inside) ? inside : "";
   }
   const std::string last = unit_of_name(header);
+  // omega_z_deg_h: a quotient whose stroke a name cannot hold.
+  if (const std::size_t line = header.rfind('_'); line != std::string::npos && line > 0 && !last.empty()) {
+    const std::string angle = unit_of_name(header.substr(0, line));
+    if (angle_unit(angle, false, false) && time_unit(last)) return angle + "/" + last;
+  }
   if (last == "s" || last == "S") return "s";
   const bool unit = angle_unit(last, true, false) || time_unit(last) || !units_beside(last).empty();
   // A lone letter is an axis rather than coulombs.

@@ -41,6 +41,7 @@ struct CsvLayout {
   char separator = '\0';  // '\0': as the file shows; numbers may have a decimal comma where it is no comma
   std::string only_header, only_value;  // rows whose cell of that column is this text; "": all rows
   bool keep_repeats = false;            // a row that repeats the one before is a sample
+  bool other_rates = false;  // the sensor's rates that were not chosen are read too, as other_rate_y_radps
 
   // ";", "tab", … : one character, or that word. Throws likewise.
   static char parse_separator(const std::string& text);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <stdexcept>
 #include <utility>
 
@@ -72,11 +71,10 @@ class JoinedTime {
 
 std::string_view cell_at(std::string_view line, std::size_t place, char separator) {
   for (; place > 0 && !line.empty(); --place) {
-    const std::size_t end = line.find(separator);
-    line.remove_prefix(end == std::string_view::npos ? line.size() : end + 1);
+    line.remove_prefix(std::min(cell_end(line, separator) + 1, line.size()));
     while (separator == ' ' && line.starts_with(' ')) line.remove_prefix(1);
   }
-  return unquoted(line.substr(0, line.find(separator)));
+  return unquoted(line.substr(0, cell_end(line, separator)));
 }
 
 // What a cell says, a decimal comma as a point.
@@ -114,7 +112,9 @@ class Rows {
     for (std::size_t i = 0; i < header.cells.size(); ++i) {
       const CsvCell& cell = header.cells[i];
       const bool time = cell.column == CsvCell::kTime, none = cell.column == CsvCell::kPassedOver;
+      const bool other = !time && !none && is_other_rate(header.names[cell.column]);
       to_.push_back({none                                   ? Meaning::kNothing
+                     : other                                ? Meaning::kOther
                      : !time                                ? Meaning::kNumber
                      : header.time_part == CsvHeader::kNone ? Meaning::kTime
                                                             : Meaning::kPartOfTime,
@@ -159,7 +159,8 @@ class Rows {
   }
 
  private:
-  enum class Meaning : unsigned char { kNothing, kNumber, kTime, kPartOfTime };
+  // kOther: nobody chose it, so that text in it is no fault of the file but a missing value.
+  enum class Meaning : unsigned char { kNothing, kOther, kNumber, kTime, kPartOfTime };
   struct Place {
     Meaning means;
     Measurable range;
@@ -182,15 +183,15 @@ class Rows {
         return behind;
       }
     }
-    const auto* const found =
-        static_cast<const char*>(std::memchr(at, separator_, static_cast<std::size_t>(end - at)));
-    const char* const behind = found == nullptr ? end : found;
+    const char* const behind = at + cell_end({at, end}, separator_);
     if (to.means == Meaning::kNothing) return behind;
     const std::string_view text = unquoted({at, behind});
     if (to.means == Meaning::kTime)
       take_time(place, text, line);
     else if (to.means == Meaning::kPartOfTime)
       joined_.put(place == header_.time_part, text);
+    else if (to.means == Meaning::kOther)
+      keep_other(to, CsvDigits(text, separator_ != ','));
     else
       keep(place, number(path_, line, header_.cells[place].name, text, CsvDigits(text, separator_ != ',')),
            0.0, text, line);
@@ -224,6 +225,13 @@ class Rows {
               what_no_sensor_measures(header_.cells[place].name, in_quotes(text), to_[place].range));
     if (rows_ == 0) piece_.decimals = text.find('.') != std::string_view::npos || digits.is_date();
     piece_.rows.time_s.push_back(since);
+  }
+
+  static void keep_other(const Place& to, std::string_view digits) {
+    double value = 0.0;
+    const auto [end, error] = read_decimal(digits.data(), digits.data() + digits.size(), value);
+    const bool known = error == std::errc() && end == digits.data() + digits.size() && to.range.holds(value);
+    if (to.values != nullptr) to.values->push_back(known ? value : kMissing);
   }
 
   void keep(std::size_t place, double value, double origin, std::string_view text, std::size_t line) {

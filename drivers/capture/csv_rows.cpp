@@ -16,6 +16,7 @@
 
 #include "drivers/capture/csv_header.h"
 #include "drivers/capture/csv_piece.h"
+#include "drivers/capture/name_ending.h"
 #include "drivers/capture/row_checks.h"
 
 namespace ifog {
@@ -110,7 +111,6 @@ class CsvRows {
   TextRoom begin(TextPieces& pieces);
   void in_order(TextPieces& pieces, TextRoom text);
   [[nodiscard]] std::future<std::optional<CsvPiece>> parse(Piece& piece);
-  void count_from_first(std::string_view text);
   void deliver(Piece& piece);
   void merge(const CsvPiece& piece);
   void finish();
@@ -143,8 +143,8 @@ TextRoom CsvRows::begin(TextPieces& pieces) {
   TextRoom piece;
   while (plain < kHead && pieces.next(piece)) {
     std::string_view text = piece.text();
-    if (head.empty() && (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF")))
-      throw std::runtime_error(path_ + ": begins as UTF-16 does, expected UTF-8 or ASCII");
+    if (head.empty() && begins_as_utf16(text))
+      throw std::runtime_error(path_ + ": is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
     if (head.empty() && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte-order mark
     head += text;
     if (!text.starts_with('#')) plain += text.size();
@@ -169,11 +169,6 @@ TextRoom CsvRows::begin(TextPieces& pieces) {
   return piece;
 }
 
-// Before the pieces are parsed, each by itself: all count from one origin.
-void CsvRows::count_from_first(std::string_view text) {
-  if (!stamps_) stamps_ = stamps_from(text, header_);
-}
-
 void CsvRows::in_order(TextPieces& pieces, TextRoom text) {
   // Each holds its text and its numbers. One more than there are processors, so that none waits while this
   // thread hands over.
@@ -191,7 +186,7 @@ void CsvRows::in_order(TextPieces& pieces, TextRoom text) {
   for (bool more = !text.text().empty() || next(); more; more = next()) {
     Piece& piece = under_way.emplace_back();
     std::swap(piece.text, text);
-    count_from_first(piece.text.text());
+    if (!stamps_) stamps_ = stamps_from(piece.text.text(), header_);  // all pieces count from one origin
     piece.parsed = parse(piece);
     if (under_way.size() < at_once) continue;
     deliver(under_way.front());

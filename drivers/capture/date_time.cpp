@@ -16,15 +16,14 @@ class Rest {
   explicit Rest(std::string_view text) : text_(text) {}
 
   // Exactly so many digits.
-  bool number(std::size_t digits, int& value) {
-    if (text_.size() < digits) return false;
+  bool number(std::size_t digits, int& value) { return number(digits, digits, value); }
+  bool number(std::size_t fewest, std::size_t most, int& value) {
     value = 0;
-    for (const char c : text_.substr(0, digits)) {
-      if (c < '0' || c > '9') return false;
-      value = 10 * value + (c - '0');
-    }
-    text_.remove_prefix(digits);
-    return true;
+    std::size_t count = 0;
+    for (; count < most && count < text_.size() && text_[count] >= '0' && text_[count] <= '9'; ++count)
+      value = 10 * value + (text_[count] - '0');
+    text_.remove_prefix(count);
+    return count >= fewest;
   }
   bool one_of(std::string_view wanted) {
     if (text_.empty() || wanted.find(text_.front()) == std::string_view::npos) return false;
@@ -34,6 +33,15 @@ class Rest {
   bool word(std::string_view wanted) {
     if (!text_.starts_with(wanted)) return false;
     text_.remove_prefix(wanted.size());
+    return true;
+  }
+  // An English month's first three letters.
+  bool month(int& value) {
+    constexpr std::string_view kMonths = "JanFebMarAprMayJunJulAugSepOctNovDec";
+    const std::size_t at = text_.size() < 3 ? std::string_view::npos : kMonths.find(text_.substr(0, 3));
+    if (at == std::string_view::npos || at % 3 != 0) return false;
+    value = static_cast<int>(at / 3) + 1;
+    text_.remove_prefix(3);
     return true;
   }
   std::string_view digits() {
@@ -53,19 +61,48 @@ struct Moment {
   std::string_view fraction;  // digits behind the point
 };
 
-// hh:mm, hh:mm:ss or hh:mm:ss.f…
+// hh:mm, hh:mm:ss or hh:mm:ss.f…, of twelve hours with AM or PM behind it
 bool time_of_day(Rest& rest, bool seconds_needed, Moment& moment) {
   int hours = 0, minutes = 0, seconds = 0;
-  if (!rest.number(2, hours) || !rest.one_of(":") || !rest.number(2, minutes)) return false;
+  if (!rest.number(1, 2, hours) || !rest.one_of(":") || !rest.number(2, minutes)) return false;
   const bool told = rest.one_of(":");
   if (told ? !rest.number(2, seconds) : seconds_needed) return false;
   if (hours > 23 || minutes > 59 || seconds > 60) return false;
-  moment.s += (hours * 60 + minutes) * 60 + seconds;
   if (told && rest.one_of(".,")) {
     moment.fraction = rest.digits();
     if (moment.fraction.empty()) return false;
   }
+  const bool after_noon = rest.word(" PM") || rest.word(" pm");
+  if (after_noon || rest.word(" AM") || rest.word(" am")) {
+    if (hours < 1 || hours > 12) return false;
+    hours = hours % 12 + (after_noon ? 12 : 0);
+  }
+  moment.s += (hours * 60 + minutes) * 60 + seconds;
   return true;
+}
+
+std::optional<std::chrono::sys_days> valid_day(int year, int month, int day) {
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  return date.ok() ? std::optional(std::chrono::sys_days(date)) : std::nullopt;
+}
+
+// "2026-05-01" or "2026/05/01"; as spreadsheets write it "1.5.2026", the day first, and "5/1/2026", the month
+// first unless only the other way is a date; as MATLAB does "01-May-2026".
+std::optional<std::chrono::sys_days> day_of(Rest& rest) {
+  int first = 0, second = 0, third = 0;
+  if (!rest.number(1, 4, first)) return std::nullopt;
+  const char* const between = rest.word("-") ? "-" : rest.word("/") ? "/" : rest.word(".") ? "." : nullptr;
+  if (between == nullptr) return std::nullopt;
+  const bool named = rest.month(second);
+  if ((!named && !rest.number(1, 2, second)) || !rest.one_of(between) || !rest.number(1, 4, third))
+    return std::nullopt;
+  if (first > 31) return *between == '.' ? std::nullopt : valid_day(first, second, third);
+  if (third < 1000 || (*between == '-' && !named)) return std::nullopt;
+  if (*between == '/')
+    if (const auto month_first = valid_day(third, first, second)) return month_first;
+  return valid_day(third, second, first);
 }
 
 // What local time is ahead of UTC by.
@@ -84,18 +121,11 @@ std::optional<std::int64_t> offset_s(Rest& rest) {
 std::optional<Moment> moment_of(std::string_view text) {
   Moment moment;
   Rest rest(text);
-  if (text.size() > 2 && text[2] == ':')
+  if (text.size() > 2 && (text[1] == ':' || text[2] == ':'))
     return time_of_day(rest, true, moment) && rest.ended() ? std::optional(moment) : std::nullopt;
-  int year = 0, month = 0, day = 0;
-  if (!rest.number(4, year)) return std::nullopt;
-  const char* const between = rest.word("-") ? "-" : rest.word("/") ? "/" : nullptr;
-  if (between == nullptr || !rest.number(2, month) || !rest.one_of(between) || !rest.number(2, day))
-    return std::nullopt;
-  const std::chrono::year_month_day date{std::chrono::year(year),
-                                         std::chrono::month(static_cast<unsigned>(month)),
-                                         std::chrono::day(static_cast<unsigned>(day))};
-  if (!date.ok()) return std::nullopt;
-  moment.s = std::chrono::sys_seconds(std::chrono::sys_days(date)).time_since_epoch().count();
+  const auto day = day_of(rest);
+  if (!day) return std::nullopt;
+  moment.s = std::chrono::sys_seconds(*day).time_since_epoch().count();
   if (rest.ended()) return moment;
   if (!rest.one_of("Tt ") || !time_of_day(rest, false, moment)) return std::nullopt;
   const auto ahead_s = offset_s(rest);
@@ -108,8 +138,12 @@ std::optional<Moment> moment_of(std::string_view text) {
 
 std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to) {
   constexpr std::size_t kWhole = 24;  // characters of any number of seconds
-  // No number has these there: of numbers, which most times are, nothing more is asked.
-  if (text.size() < 5 || (text[2] != ':' && text[4] != '-' && text[4] != '/')) return {};
+  // No number has one of these near its beginning, or two points: of numbers, which most times are, nothing
+  // more is asked.
+  const std::string_view begin = text.substr(0, 6);
+  if (text.size() < 5 ||
+      (begin.find_first_of(":/-", 1) == std::string_view::npos && begin.find('.') == begin.rfind('.')))
+    return {};
   auto moment = moment_of(text);
   if (!moment || moment->fraction.size() > to.size() - kWhole) return {};
   // Before 1970 the digits behind the point count on, and those of a negative number count back.

@@ -22,13 +22,6 @@ double median_step(const std::vector<double>& time_s) {
   return *middle;
 }
 
-void append(RowBlock& to, RowBlock& rows) {
-  if (to.size() == 0) return std::swap(to, rows);
-  to.time_s.insert(to.time_s.end(), rows.time_s.begin(), rows.time_s.end());
-  for (std::size_t c = 0; c < to.columns.size(); ++c)
-    to.columns[c].insert(to.columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
-}
-
 }  // namespace
 
 Leaps::Leaps(std::vector<std::size_t> rates, Next next)
@@ -39,7 +32,7 @@ Leaps::Leaps(std::vector<std::size_t> rates, Next next)
 
 void Leaps::take(RowBlock& rows) {
   // Few rows do not show the sample time.
-  if (!judged_ && held_.size() < kEnough) return append(held_, rows);
+  if (!judged_ && held_.size() < kEnough) return held_.append(rows);
   judge(&rows);
   hand_on();
   std::swap(held_, rows);

@@ -24,4 +24,9 @@ constexpr std::string_view unpacked_name(std::string_view name) {
   return name;
 }
 
+// What Excel calls "Unicode text".
+constexpr bool begins_as_utf16(std::string_view head) {
+  return head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
+}
+
 }  // namespace ifog

@@ -26,7 +26,7 @@ bool begins_as_hdf5(std::string_view head) {
 // What no other kind of recording begins with.
 FileKind begun_as(std::string_view head) {
   if (head.starts_with("\xF1IFR")) return FileKind::flight;
-  if (begins_as_hdf5(head)) return FileKind::capture;
+  if (begins_as_hdf5(head) || begins_as_utf16(head)) return FileKind::capture;
   // lcm-logger's own names end in a number. Each event begins with this word.
   if (head.starts_with("\xED\xA1\xDA\x01")) return FileKind::lcm_log;
   if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
@@ -37,6 +37,17 @@ FileKind begun_as(std::string_view head) {
   CandumpEntry entry;
   return parse_candump_line(head.substr(0, head.find('\n')), entry) == CandumpLine::frame ? FileKind::candump
                                                                                           : FileKind::unknown;
+}
+
+// Whether a line of the beginning is a frame: the first may be cut off, or of another program.
+bool has_candump_frame(std::string_view head) {
+  CandumpEntry entry;
+  while (!head.empty()) {
+    const std::size_t end = head.find('\n');
+    if (parse_candump_line(head.substr(0, end), entry) == CandumpLine::frame) return true;
+    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
+  }
+  return false;
 }
 
 // Text has no control characters but the ends of its lines and tabs.
@@ -79,7 +90,10 @@ FileKind file_kind(const std::string& path) {
 
 FileKind file_kind(const InputFile& file) {
   if (const FileKind begun = begun_as(file.head()); begun != FileKind::unknown) return begun;
-  const FileKind by_name = says_nothing(file.path()) ? FileKind::unknown : file_kind(file.path());
+  FileKind by_name = says_nothing(file.path()) ? FileKind::unknown : file_kind(file.path());
+  // Every program calls its log so.
+  if (by_name == FileKind::candump && !file.head().empty() && !has_candump_frame(file.head()))
+    by_name = FileKind::unknown;
   return by_name == FileKind::unknown && !is_text(file.head()) ? FileKind::bytes : by_name;
 }
 

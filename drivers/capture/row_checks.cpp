@@ -63,11 +63,7 @@ void RowChecks::behind_clock(RowBlock& rows) {
   times_.take(rows.time_s);
   given_ += rows.size();
   if (!all_) return leaps_.take(rows);
-  all_->origin = rows.origin;
-  all_->columns.resize(rows.columns.size());
-  all_->time_s.insert(all_->time_s.end(), rows.time_s.begin(), rows.time_s.end());
-  for (std::size_t c = 0; c < rows.columns.size(); ++c)
-    all_->columns[c].insert(all_->columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
+  all_->append(rows);
 }
 
 void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known, const ExactSteps& steps) {

@@ -24,6 +24,8 @@ struct RowBlock {
   TimeOrigin origin{};  // what time_s is counted from, the same in all blocks
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
+  // What follows; `rows` is spoilt.
+  void append(RowBlock& rows);
 };
 
 class RowSink {

@@ -15,14 +15,12 @@ namespace {
 // Blocks become whole columns.
 class TableSink final : public RowSink {
  public:
-  // bytes: of the text that is to come, 0 where that is not known.
-  TableSink(Table& table, std::size_t bytes) : table_(table), bytes_(bytes) {}
+  explicit TableSink(Table& table) : table_(table) {}
 
   void begin(const std::vector<std::string>& names) override {
     for (const std::string& name : names) table_.columns.push_back({name, {}});
   }
   void take(RowBlock& rows) override {
-    if (table_.time_s.empty() && bytes_ > kCsvPiece) reserve(rows.size());
     table_.origin = rows.origin;
     table_.time_s.insert(table_.time_s.end(), rows.time_s.begin(), rows.time_s.end());
     for (std::size_t c = 0; c < rows.columns.size(); ++c)
@@ -31,22 +29,14 @@ class TableSink final : public RowSink {
   }
 
  private:
-  // One allocation that is large enough beats doubling through a long record.
-  void reserve(std::size_t rows_a_piece) {
-    const std::size_t rows = rows_a_piece * (bytes_ / kCsvPiece + 1);
-    table_.time_s.reserve(rows + rows / 16);
-    for (CaptureColumn& column : table_.columns) column.values.reserve(rows + rows / 16);
-  }
-
   Table& table_;
-  std::size_t bytes_;
 };
 
 }  // namespace
 
 Table table_of(const std::function<RowNotes(RowSink&)>& read) {
   Table table;
-  TableSink sink(table, 0);
+  TableSink sink(table);
   static_cast<RowNotes&>(table) = read(sink);
   return table;
 }
@@ -59,14 +49,18 @@ Table parse_table(std::string_view text, const std::string& path, const CsvLayou
     rest.remove_prefix(n);
     return n;
   };
-  Table table;
-  TableSink sink(table, text.size());
-  static_cast<RowNotes&>(table) = read_csv_rows(read, path, layout, sink);
-  return table;
+  return table_of([&](RowSink& sink) { return read_csv_rows(read, path, layout, sink); });
 }
 
 Table read_table(InputFile& file, const CsvLayout& layout) {
   return table_of([&](RowSink& sink) { return read_csv_rows(file, layout, sink); });
+}
+
+void RowBlock::append(RowBlock& rows) {
+  if (size() == 0) return std::swap(*this, rows);
+  time_s.insert(time_s.end(), rows.time_s.begin(), rows.time_s.end());
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    columns[c].insert(columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
 }
 
 std::size_t RowNotes::line_of_row(std::size_t row) const {

@@ -43,11 +43,16 @@ bool is_comment(std::string_view line) { return trimmed(line).starts_with('#'); 
 // How many of a line's cells are values, and of how many.
 struct Row {
   std::size_t cells = 0, values = 0, empty = 0;
+  bool open = false;  // ends with a separator: of one cell more, which is empty, or as some writers end rows
+  [[nodiscard]] bool is_as_wide(std::size_t other) const {
+    return other == cells || (open && other == cells + 1);
+  }
   // Half of what is not empty at least: a name of a frame or a mode may stand among numbers.
   [[nodiscard]] bool is_row() const { return values > 0 && 2 * values >= cells - empty; }
 };
 Row row_of(std::string_view line, char separator) {
   Row row;
+  row.open = separator != ' ' && trimmed(line).ends_with(separator);
   for (const std::string& cell : cells_of(line, separator)) {
     ++row.cells;
     row.values += is_value(cell, separator != ',') ? 1 : 0;
@@ -59,7 +64,8 @@ Row row_of(std::string_view line, char separator) {
 // The first line from which on rows of as many cells follow; nothing where there are none.
 std::optional<std::size_t> first_row(const std::vector<Line>& lines, char separator) {
   std::optional<std::size_t> begin;
-  std::size_t run = 0, cells = 0;
+  std::size_t run = 0;
+  Row first;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (is_comment(lines[i].text)) continue;
     const Row row = row_of(lines[i].text, separator);
@@ -67,7 +73,8 @@ std::optional<std::size_t> first_row(const std::vector<Line>& lines, char separa
       begin.reset();
       continue;
     }
-    if (!begin || row.cells != cells) begin = i, run = 0, cells = row.cells;
+    if (!begin || !(first.is_as_wide(row.cells) || row.is_as_wide(first.cells)))
+      begin = i, run = 0, first = row;
     if (++run == kRunOfRows) return begin;
   }
   return begin;
@@ -148,13 +155,13 @@ Header header_of(const std::vector<Line>& lines, char separator, const CsvLayout
   }
   const auto row = first_row(lines, separator);
   if (!row) return {};
-  const std::size_t columns = row_of(lines[*row].text, separator).cells;
+  const Row first = row_of(lines[*row].text, separator);
   // A row of units may stand between.
   for (std::size_t back = 1; back <= 2 && back <= *row; ++back) {
     std::vector<std::string> cells = cells_of(without_mark(lines[*row - back].text), separator);
     const bool units = back == 1 && std::any_of(cells.begin(), cells.end(), is_unit) && *row >= 2 &&
-                       cells_of(without_mark(lines[*row - 2].text), separator).size() == columns;
-    if (cells.size() == columns && !units && !row_of(lines[*row - back].text, separator).is_row())
+                       first.is_as_wide(cells_of(without_mark(lines[*row - 2].text), separator).size());
+    if (first.is_as_wide(cells.size()) && !units && !row_of(lines[*row - back].text, separator).is_row())
       return {*row - back, std::move(cells)};
     if (!units) break;
   }
@@ -199,7 +206,9 @@ void sample_rows(const std::vector<Line>& lines, std::size_t from, TableForm& fo
   sample.cells.resize(sample.names.size());
   for (std::size_t i = from; i < lines.size() && sample.cells[0].size() < kSampleRows; ++i) {
     if (is_comment(lines[i].text)) continue;
-    const std::vector<std::string> cells = cells_of(lines[i].text, form.separator);
+    std::vector<std::string> cells = cells_of(lines[i].text, form.separator);
+    if (cells.size() + 1 == sample.names.size() && row_of(lines[i].text, form.separator).open)
+      cells.emplace_back();
     if (cells.size() != sample.names.size()) continue;
     for (std::size_t c = 0; c < cells.size(); ++c) {
       const TimeDigits digits(cells[c], form.separator != ',');
@@ -223,13 +232,24 @@ std::string_view unquoted(std::string_view cell) {
   return cell;
 }
 
+// "He said ""no"", and left": a quote inside is doubled.
+std::size_t cell_end(std::string_view row, char separator) {
+  std::size_t at = 0;
+  while (row.substr(at).starts_with('"')) {
+    const std::size_t closing = row.find('"', at + 1);
+    if (closing == std::string_view::npos) break;
+    at = closing + 1;
+  }
+  return std::min(row.find(separator, at), row.size());
+}
+
 std::vector<std::string> cells_of(std::string_view line, char separator) {
   std::vector<std::string> cells;
   if (separator == ' ') line = trimmed(line);
   for (;;) {
-    const std::size_t end = line.find(separator);
+    const std::size_t end = cell_end(line, separator);
     cells.emplace_back(unquoted(line.substr(0, end)));
-    if (end == std::string_view::npos) break;
+    if (end == line.size()) break;
     line.remove_prefix(end + 1);
     while (separator == ' ' && !line.empty() && line.front() == ' ') line.remove_prefix(1);
   }

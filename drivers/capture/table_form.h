@@ -30,7 +30,10 @@ class Lines {
 [[nodiscard]] std::string_view trimmed(std::string_view cell);
 [[nodiscard]] std::string_view unquoted(std::string_view cell);
 // The cells of a line, without blanks and quotes around. Between blanks, several are one separator.
-[[nodiscard]] std::vector<std::string> cells_of(std::string_view line, char separator);
+[[nodiscard]]  // Where the first cell of a row ends: at a separator outside of quotes, or with the row.
+[[nodiscard]] std::size_t
+cell_end(std::string_view row, char separator);
+std::vector<std::string> cells_of(std::string_view line, char separator);
 
 struct TableForm {
   char separator = ',';

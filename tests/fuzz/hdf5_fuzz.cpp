@@ -23,17 +23,6 @@ void one_line(const std::exception& error) {
   if (std::string_view(error.what()).find('\n') != std::string_view::npos) std::abort();
 }
 
-void one_by_one(ColumnStream& columns) {
-  std::vector<std::uint64_t> rows(columns.header().names.size());
-  std::vector<double> values;
-  for (std::size_t column = 0; columns.next(column, values);) {
-    if (values.empty() || column >= rows.size()) std::abort();
-    rows[column] += values.size();
-  }
-  for (const std::uint64_t each : rows)
-    if (each != columns.header().rows) std::abort();
-}
-
 void stream(std::span<const char> bytes) {
   const auto receive = [&](std::span<char> to) {
     if (bytes.size() < to.size()) return false;
@@ -43,7 +32,6 @@ void stream(std::span<const char> bytes) {
   };
   try {
     ColumnStream columns(receive);
-    if (columns.header().by_column) return one_by_one(columns);
     std::vector<std::vector<double>> block;
     std::uint64_t rows = 0;
     while (columns.next(block)) {

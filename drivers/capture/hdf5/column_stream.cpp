@@ -46,7 +46,6 @@ void send_header(const SendBytes& send, const Hdf5Header& header) {
   append(body, header.comments);
   append(body, header.notices);
   append(body, header.rows);
-  append(body, header.by_column ? 1 : 0);
   append(body, header.time_from ? 1 : 0);
   append(body, static_cast<std::uint64_t>(header.time_from.value_or(0)));
   append(body, header.exact_time ? 1 : 0);
@@ -74,13 +73,11 @@ ColumnStream::ColumnStream(ReceiveBytes receive) : receive_(std::move(receive)) 
   header_.comments = texts(kMostHdf5Comments, kLongestHdf5Text);
   header_.notices = texts(kMostNotices, kLongestNotice);
   header_.rows = number();
-  const std::uint64_t by_column = number();
-  header_.by_column = by_column == 1;
   const std::uint64_t whole_time = number(), time_from = number(), exact_time = number();
   header_.exact_time = exact_time == 1;
   if (whole_time == 1) header_.time_from = static_cast<std::int64_t>(time_from);
   if (header_.names.empty() || header_.units.size() != header_.names.size() || header_.rows == 0 ||
-      by_column > 1 || whole_time > 1 || exact_time > 1)
+      whole_time > 1 || exact_time > 1)
     no_stream();
   left_ = header_.rows;
 }
@@ -97,25 +94,12 @@ void ColumnStream::values(std::uint64_t most, std::vector<double>& to) {
 
 bool ColumnStream::next(std::vector<std::vector<double>>& block) {
   if (left_ == 0) return false;
-  if (header_.by_column) no_stream();
   block.resize(header_.names.size());
   for (std::vector<double>& column : block) {
     values(left_, column);
     if (column.size() != block.front().size()) no_stream();
   }
   left_ -= block.front().size();
-  return true;
-}
-
-bool ColumnStream::next(std::size_t& column, std::vector<double>& to) {
-  if (!header_.by_column) no_stream();
-  if (column_ == header_.names.size()) return false;
-  column = column_;
-  values(left_, to);
-  left_ -= to.size();
-  if (left_ > 0) return true;
-  ++column_;
-  left_ = header_.rows;
   return true;
 }
 

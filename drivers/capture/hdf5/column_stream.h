@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What stands behind the barrier says by a pipe what it has read: one header, then blocks of rows of every
-// column in turn, or one column after the other, or a refusal. Whoever writes it may have been taken over by
+// column in turn, or a refusal. Whoever writes it may have been taken over by
 // the file that it reads, so every length is held to a limit and every number to what was said before.
 #pragma once
 
@@ -34,9 +34,6 @@ class ColumnStream {
   [[nodiscard]] const Hdf5Header& header() const { return header_; }
   // The next rows of every column; false when all have come. Throws likewise.
   bool next(std::vector<std::vector<double>>& block);
-  // Where the header says that they come by column: the next values, and which column they are of; false when
-  // all have come. Throws likewise.
-  bool next(std::size_t& column, std::vector<double>& values);
 
  private:
   enum class Kind : unsigned char { header = 1, values = 2, refusal = 3 };
@@ -55,8 +52,7 @@ class ColumnStream {
 
   ReceiveBytes receive_;
   Hdf5Header header_;
-  std::uint64_t left_ = 0;      // rows that are to come; by column: of this one
-  std::size_t column_ = 0;      // by column: which is coming
+  std::uint64_t left_ = 0;      // rows that are to come
   std::size_t text_bytes_ = 0;  // taken so far
 
   friend void send_header(const SendBytes&, const Hdf5Header&);

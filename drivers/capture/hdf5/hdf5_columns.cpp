@@ -14,10 +14,9 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kLeastBlock = 65'536, kMostBlock = 1'048'576;  // rows
-// Bytes of unpacked chunks: of a dataset, of all together, and of a single one that is kept. The library
-// takes three times a chunk while it unpacks it, and all of it stands below what its process may have.
+// Bytes of unpacked chunks: of a dataset, and of all together. The library takes three times a chunk while it
+// unpacks it, and all of it stands below what its process may have.
 constexpr std::size_t kLeastKept = 512U << 10U, kMostKept = 8U << 20U, kKeptOfAll = 512U << 20U;
-constexpr std::size_t kMostChunk = 640U << 20U;
 constexpr hsize_t kMostOfMatrix = 64;  // columns
 // What a chunk of one value packs into, a thousandth, and more than deflate can: rows come block by block,
 // and what is kept of them is bounded elsewhere.
@@ -180,7 +179,6 @@ void Hdf5Columns::read_group(const Hdf5Wanted& wanted) {
     add_what_is_a_column(names);
   else
     for (const std::string& name : names) add_dataset(name, !wanted.names.empty());
-  header_.by_column = chunk_bytes_ > kept_;
   if (!groups_.empty() && !columns_.empty())
     header_.notices.push_back("passed over: the groups " + list_of(groups_) + "; --group reads one");
 }
@@ -207,19 +205,23 @@ void Hdf5Columns::add_dataset(const std::string& name, bool one) {
   if (one && !of_matrix && parts.size() > 1)
     refuse(in_quotes(name) + " is a matrix, expected one of its columns: " + name + "[0] to " + name + "[" +
            std::to_string(parts.size() - 1) + "]");
-  const std::size_t before = columns_.size();
+  const std::size_t before = columns_.size(), value_bytes = H5Tget_size(type);
+  const std::string unit = hdf5_unit(found);
+  found = {};  // how it is opened first says how much of it is kept
+  const std::size_t every = kept_;
+  keep_unpacked(std::max(every, chunk_of_last_));
   for (const Part& part : parts) {
     const std::string column = parts.size() == 1 ? dataset : dataset + "[" + std::to_string(part.index) + "]";
     if (dataset != name && column != name) continue;
     if (header_.names.size() == kMostHdf5Columns)
       refuse("more than " + std::to_string(kMostHdf5Columns) + " columns, expected at most that");
-    stored_ += header_.rows * H5Tget_size(type);
+    stored_ += header_.rows * value_bytes;
     header_.names.push_back(column);
-    header_.units.push_back(hdf5_unit(found));
-    datasets_.push_back(dataset);
+    header_.units.push_back(unit);
     columns_.push_back(
         {Hdf5Id(H5Dopen2(place_, dataset.c_str(), access_)), Hdf5Id(H5Tcopy(H5T_NATIVE_DOUBLE)), part});
   }
+  keep_unpacked(every);
   if (columns_.size() == before)
     refuse("no column " + in_quotes(name) + ", " + in_quotes(dataset) + " has " +
            std::to_string(parts.size()));
@@ -227,6 +229,7 @@ void Hdf5Columns::add_dataset(const std::string& name, bool one) {
 
 // As many rows as the columns before, and packed as can be read here.
 std::vector<Hdf5Columns::Part> Hdf5Columns::check(hid_t dataset, const std::string& name) {
+  chunk_of_last_ = 0;
   std::vector<Part> parts = take_rows(dataset, name);
   const Hdf5Id properties(H5Dget_create_plist(dataset));
   hdf5_demand(properties.good(), in_quotes(name) + " cannot be read");
@@ -248,11 +251,13 @@ void Hdf5Columns::take_chunk(hid_t dataset, hid_t properties, const Part& part, 
   const Hdf5Id type(H5Dget_type(dataset));
   std::uint64_t bytes = 0;
   if (__builtin_mul_overflow(chunk[0], chunk[1], &bytes) ||
-      __builtin_mul_overflow(bytes, H5Tget_size(type), &bytes) || bytes > kMostChunk)
+      __builtin_mul_overflow(bytes, H5Tget_size(type), &bytes) || bytes > kKeptOfAll - kept_of_all_)
     refuse(in_quotes(name) + " is packed in chunks of " + std::to_string(bytes >> 20U) +
-           " MiB, expected at most " + std::to_string(kMostChunk >> 20U) +
-           " MiB; 'h5repack -l CHUNK=65536' makes smaller ones");
-  chunk_bytes_ = std::max(chunk_bytes_, static_cast<std::size_t>(bytes));
+           " MiB, expected at most " + std::to_string(kKeptOfAll >> 20U) +
+           " MiB in all columns; 'h5repack -l CHUNK=65536' makes smaller ones");
+  chunk_of_last_ = static_cast<std::size_t>(bytes);
+  if (bytes > kept_) kept_of_all_ += chunk_of_last_;
+  chunk_bytes_ = std::max(chunk_bytes_, chunk_of_last_);
 }
 
 std::vector<Hdf5Columns::Part> Hdf5Columns::take_rows(hid_t dataset, const std::string& name) {
@@ -332,7 +337,6 @@ void Hdf5Columns::read_members(const Hdf5Wanted& wanted) {
     hdf5_demand(dataset.good(), in_quotes(wanted.group) + " cannot be read");
     header_.names.push_back(name);
     header_.units.emplace_back();
-    datasets_.emplace_back(".");
     columns_.push_back({std::move(dataset), one_member(name, H5T_NATIVE_DOUBLE)});
   }
 }
@@ -348,16 +352,6 @@ void Hdf5Columns::check_size(const Hdf5Wanted& wanted) const {
            " times its size, when unpacked, expected a recording");
 }
 
-// Only this one is open, and keeps the chunk that is being read.
-void Hdf5Columns::turn_to(std::size_t column) {
-  if (open_ == column) return;
-  for (Column& other : columns_) other.dataset = {};
-  keep_unpacked(chunk_bytes_);
-  columns_[column].dataset = Hdf5Id(H5Dopen2(place_, datasets_[column].c_str(), access_));
-  hdf5_demand(columns_[column].dataset.good(), in_quotes(header_.names[column]) + " cannot be read");
-  open_ = column;
-}
-
 void Hdf5Columns::read(std::size_t column, std::uint64_t first, std::span<double> to) {
   if (column != whole_time_) return read_as_they_are(column, first, to.size(), to.data());
   whole_.resize(to.size());
@@ -371,7 +365,6 @@ void Hdf5Columns::read(std::size_t column, std::uint64_t first, std::span<double
 }
 
 void Hdf5Columns::read_as_they_are(std::size_t column, std::uint64_t first, std::size_t many, void* to) {
-  if (header_.by_column) turn_to(column);
   const Column& from = columns_[column];
   const auto along = static_cast<std::size_t>(from.part.along);
   std::array<hsize_t, 2> start{from.part.index, from.part.index}, count{1, 1};

@@ -39,9 +39,6 @@ struct Hdf5Header {
   // from.
   std::optional<std::int64_t> time_from;
   bool exact_time = false;  // it is time_ns, which stood beside time_s and is in its place
-  // Each column comes whole before the next one: some are packed in chunks larger than may be kept of every
-  // column at once.
-  bool by_column = false;
 };
 
 inline constexpr std::size_t kMostHdf5Columns = 1000;
@@ -62,9 +59,7 @@ class Hdf5Columns {
   [[nodiscard]] std::size_t block_rows() const { return block_rows_; }
   // Bytes of the largest chunk, unpacked.
   [[nodiscard]] std::size_t chunk_bytes() const { return chunk_bytes_; }
-  // Rows from `first` on of a column, as double; a time in integers from its first on. By column, one is read
-  // after the other and each from its first row to its last, so that a chunk is unpacked once. Throws
-  // likewise.
+  // Rows from `first` on of a column, as double; a time in integers from its first on. Throws likewise.
   void read(std::size_t column, std::uint64_t first, std::span<double> to);
 
  private:
@@ -91,20 +86,18 @@ class Hdf5Columns {
   void take_chunk(hid_t dataset, hid_t properties, const Part& part, const std::string& name);
   void check_size(const Hdf5Wanted& wanted) const;
   void keep_unpacked(std::size_t bytes);
-  void turn_to(std::size_t column);
 
   Hdf5Id access_, file_, place_;
   Hdf5Header header_;
   std::vector<Column> columns_;
-  std::vector<std::string> datasets_;  // by column
-  std::vector<std::string> groups_;    // within the group
+  std::vector<std::string> groups_;  // within the group
   std::size_t block_rows_ = 0, chunk_bytes_ = 0;
-  std::size_t kept_ = 0;                   // bytes of unpacked chunks, a dataset
-  std::uint64_t stored_ = 0;               // bytes of all values as the file has them, unpacked
-  std::optional<std::size_t> open_;        // by column: which is
-  std::string time_;                       // the column's name
-  std::optional<std::size_t> whole_time_;  // which that is, where it holds integers
-  std::vector<std::int64_t> whole_;        // of it, on their way
+  std::size_t chunk_of_last_ = 0;           // bytes, unpacked, of the dataset checked last
+  std::size_t kept_ = 0, kept_of_all_ = 0;  // bytes of unpacked chunks, of a dataset at least and of all
+  std::uint64_t stored_ = 0;                // bytes of all values as the file has them, unpacked
+  std::string time_;                        // the column's name
+  std::optional<std::size_t> whole_time_;   // which that is, where it holds integers
+  std::vector<std::int64_t> whole_;         // of it, on their way
 };
 
 }  // namespace ifog

@@ -24,7 +24,6 @@ namespace {
 constexpr rlim_t kMostMemory = 2ULL << 30U;  // bytes, beside what the program had and a copy of the file
 // Of processor time, from one block to the next; beside it a chunk may be unpacked so slowly.
 constexpr std::size_t kMostSeconds = 5, kLeastUnpacked = 32U << 20U;  // s, bytes/s
-constexpr std::uint64_t kGivenRows = 65'536;                          // at once, of what was laid by
 
 std::string reason() { return std::generic_category().message(errno); }
 
@@ -93,20 +92,13 @@ void send_columns(const Hdf5Source& source, const Hdf5Wanted& wanted, const Send
   send_header(send, header);
   const std::uint64_t rows = std::min<std::uint64_t>(columns.block_rows(), header.rows);
   std::vector<double> values;
-  const auto pass_on = [&](std::size_t column, std::uint64_t first) {
-    values.resize(std::min(rows, header.rows - first));
-    allow_seconds(columns.chunk_bytes());
-    columns.read(column, first, values);
-    send_values(send, values);
-  };
-  const std::size_t count = header.names.size();
-  if (header.by_column) {
-    for (std::size_t i = 0; i < count; ++i)
-      for (std::uint64_t first = 0; first < header.rows; first += rows) pass_on(i, first);
-  } else {
-    for (std::uint64_t first = 0; first < header.rows; first += rows)
-      for (std::size_t i = 0; i < count; ++i) pass_on(i, first);
-  }
+  for (std::uint64_t first = 0; first < header.rows; first += rows)
+    for (std::size_t column = 0; column < header.names.size(); ++column) {
+      values.resize(std::min(rows, header.rows - first));
+      allow_seconds(columns.chunk_bytes());
+      columns.read(column, first, values);
+      send_values(send, values);
+    }
 }
 
 // Never returns: nothing of the parent is ended here, no buffer of it written a second time.
@@ -166,38 +158,7 @@ void Hdf5Input::start(const Hdf5Source& source, const Hdf5Wanted& wanted) {
   }
 }
 
-void Hdf5Input::lay_by(const Told& told) {
-  const std::uint64_t columns = header().names.size();
-  UnnamedFile file;
-  std::vector<double> values;
-  std::size_t column = 0;
-  const auto more = [&] {
-    try {
-      return stream_->next(column, values);
-    } catch (const std::exception& error) {
-      refuse(error);
-    }
-  };
-  for (std::uint64_t done = 0; more(); done += values.size()) {
-    file.write(done, values);
-    told((done + values.size()) / columns);
-  }
-  laid_by_ = std::move(file);
-}
-
 bool Hdf5Input::next(std::vector<std::vector<double>>& block) {
-  if (header().by_column) {
-    const std::uint64_t rows = header().rows, count = std::min(kGivenRows, rows - given_);
-    if (count == 0) return false;
-    if (!laid_by_) lay_by([](std::uint64_t) {});
-    block.resize(header().names.size());
-    for (std::size_t i = 0; i < block.size(); ++i) {
-      block[i].resize(count);
-      laid_by_->read(i * rows + given_, block[i]);
-    }
-    given_ += count;
-    return true;
-  }
   try {
     return stream_->next(block);
   } catch (const std::exception& error) {

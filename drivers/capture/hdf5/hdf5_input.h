@@ -8,15 +8,12 @@
 #include <sys/types.h>
 
 #include <exception>
-#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "drivers/capture/hdf5/column_stream.h"
 #include "drivers/capture/input_file.h"
-#include "drivers/ifog/unnamed_file.h"
 
 namespace ifog {
 
@@ -40,12 +37,8 @@ class Hdf5Input {
   Hdf5Input& operator=(const Hdf5Input&) = delete;
 
   [[nodiscard]] const Hdf5Header& header() const { return stream_->header(); }
-  // The next rows of every column, in the header's order; false when all have come. What comes by column is
-  // laid by first, 8 bytes a number, in a file without a name. Throws likewise.
+  // The next rows of every column, in the header's order; false when all have come. Throws likewise.
   bool next(std::vector<std::vector<double>>& block);
-  // Hears of the rows that were laid by, as so many of all that the header says.
-  using Told = std::function<void(std::uint64_t rows)>;
-  void lay_by(const Told& told);
 
  private:
   void start(const Hdf5Source& source, const Hdf5Wanted& wanted);
@@ -56,8 +49,6 @@ class Hdf5Input {
   int pipe_ = -1;
   pid_t reader_ = -1;
   std::unique_ptr<ColumnStream> stream_;
-  std::optional<UnnamedFile> laid_by_;  // one column behind the other
-  std::uint64_t given_ = 0;             // rows of it
 };
 
 }  // namespace ifog

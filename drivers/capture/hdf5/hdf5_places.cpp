@@ -3,6 +3,7 @@
 
 #include <stdexcept>
 
+#include "drivers/capture/column_names.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -36,27 +37,14 @@ struct Places {
 }  // namespace
 
 const char* kind_of(H5T_class_t kind) {
-  switch (kind) {
-    case H5T_STRING:
-      return "text";
-    case H5T_COMPOUND:
-      return "records of several members";
-    case H5T_ENUM:
-      return "an enumeration";
-    case H5T_ARRAY:
-    case H5T_VLEN:
-      return "arrays";
-    case H5T_TIME:
-      return "times of a form that is no number";
-    default:
-      return "no numbers";
-  }
+  return kind == H5T_STRING     ? "text"
+         : kind == H5T_COMPOUND ? "records of several members"
+         : kind == H5T_ENUM     ? "an enumeration"
+                                : "no numbers";
 }
 
 std::string list_of(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
-  return list.empty() ? "none" : printable(list, 300);
+  return names.empty() ? "none" : printable(listed(names), 300);
 }
 
 std::vector<std::string> places_of(hid_t file) {

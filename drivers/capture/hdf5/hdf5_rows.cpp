@@ -39,12 +39,6 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::string listed(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + in_quotes(name);
-  return list;
-}
-
 bool picks(const CsvLayout& layout) { return !layout.columns.empty(); }
 std::string time_of(const CsvLayout& layout) { return layout.time.value_or(CsvTime{}).header; }
 
@@ -106,7 +100,7 @@ std::size_t place_of_time(const Hdf5Header& header, const CsvLayout& layout, con
 CsvLayout layout_of(const Hdf5File& file, const std::string& group, CsvLayout asked, std::string& notice) {
   if (!asked.only_header.empty() || asked.sample_rate_hz)
     refuse(file.path, "is an HDF5 file, expected none of --only and --sample-rate with it");
-  if (asked.time && picks(asked)) return asked;
+  if (asked.time && picks(asked) && !asked.other_rates) return asked;
   Hdf5Input probe(file, group, {}, "");
   const Hdf5Header& header = probe.header();
   const auto has = [&](const std::string& name) {
@@ -115,8 +109,13 @@ CsvLayout layout_of(const Hdf5File& file, const std::string& group, CsvLayout as
   const bool rates = std::any_of(header.names.begin(), header.names.end(), [](const std::string& name) {
     return is_rate_column(name) || is_signal_column(name);
   });
-  if ((rates || picks(asked)) && has(time_of(asked))) return asked;
   TableSample sample{header.names, {}, header.units, header.comments, true};
+  const auto with_other_rates = [&](CsvLayout layout) {
+    if (layout.other_rates && picks(layout))
+      for (const CsvColumn& other : rates_not_chosen(sample, layout)) layout.columns.push_back(other);
+    return layout;
+  };
+  if ((rates || picks(asked)) && has(time_of(asked))) return with_other_rates(asked);
   std::vector<std::vector<double>> block;
   constexpr std::size_t kRows = 64;
   probe.next(block);
@@ -136,7 +135,7 @@ CsvLayout layout_of(const Hdf5File& file, const std::string& group, CsvLayout as
                (found.ways.empty() ? "; its columns are " + printable(listed(header.names), kLongestMessage)
                                    : ""));
   notice = file.path + ": read as: " + in_words(clear->layout);
-  return clear->layout;
+  return with_other_rates(clear->layout);
 }
 
 class Hdf5Rows {
@@ -200,11 +199,6 @@ Hdf5Rows::Hdf5Rows(InputFile& file, const std::string& group, const CsvLayout& a
 
 RowNotes Hdf5Rows::read() {
   const std::uint64_t rows_of_all = input_.header().rows;
-  std::uint64_t before = 0;  // rows that count as read beside those that are
-  if (input_.header().by_column) {
-    before = rows_of_all;
-    input_.lay_by([&](std::uint64_t rows) { file_.told(rows, 2 * rows_of_all); });
-  }
   const ExactSteps steps = time_from_ ? ExactSteps(0, unit_s()) : ExactSteps();
   std::vector<std::vector<double>> block;
   while (input_.next(block)) {
@@ -218,7 +212,7 @@ RowNotes Hdf5Rows::read() {
       rows.columns.push_back(std::move(block[i]));
     }
     checks_->take(rows, steps);
-    file_.told(before + checks_->rows(), before + rows_of_all);
+    file_.told(checks_->rows(), rows_of_all);
   }
   checks_->finish(impossible_, !input_.header().units[time_].empty(), steps);
   return std::move(notes_);

@@ -6,6 +6,7 @@ them gives the density. Oracle: the density that was put in; the header lines ar
 
 usage: first_file.py PATH_OF_IFOG SOURCE_DIR
 """
+import datetime
 import gzip
 import json
 import math
@@ -119,6 +120,37 @@ class Checks:
         self.reads("ardupilot.csv", ["timestamp,TimeUS,I,GyrX,GyrY,GyrZ,AccX,EG,T,GH",
                                      *self.rows(lambda i, x, y, z: (f"{1727992974 + i / RATE_HZ:.6f}", 5000 * i, 0, x * RAD, y * RAD, z * RAD, 9.8, 0, 40, 1))])
         self.reads("rates.csv", ["time_s,p,q,r", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, y, z))], unasked=False)
+
+    def check_dates_as_people_write_them(self):
+        """Spreadsheets in German and American, MATLAB, a maker's program; each begins just before noon."""
+        def rows(stamp):
+            at = lambda i: datetime.datetime(2026, 11, 27, 11, 59, 50) + datetime.timedelta(seconds=i / RATE_HZ)
+            return lambda i, x, y, z: (at(i).strftime(stamp).lstrip("0").replace(" 0", " "), z)
+
+        for name, header, stamp, separator in (("german.csv", "Zeit;Drehrate Z [°/s]", "%d.%m.%Y %H:%M:%S,%f", ";"), ("american.csv", "Date Time,Gyro Z (deg/s)", "%m/%d/%Y %I:%M:%S.%f %p", ","),
+                                               ("matlab.csv", "timestamp,Gyro Z (deg/s)", "%d-%b-%Y %H:%M:%S.%f", ","), ("maker.csv", "Time,scaledGyroZ (deg/s)", "%m/%d/%Y %H:%M:%S.%f", ",")):
+            lines = self.rows(rows(stamp), separator)
+            self.reads(name, [header, *([line.replace(".", ",").replace(",", ".", 2) for line in lines] if separator == ";" else lines)], axes="z", unasked=True)
+
+    def check_names_and_cells_of_others(self):
+        self.reads("increments.csv", ["GPS week,GPS sow (s),dTheta_x (arcsec),dTheta_y (arcsec),dTheta_z (arcsec)",
+                                      *self.rows(lambda i, x, y, z: (2394, 468000 + i / RATE_HZ, *(v * 3600 / RATE_HZ for v in (x, y, z))))], unasked=True)
+        self.reads("quotient.csv", ["datetime,omega_z_deg_h", *self.rows(lambda i, x, y, z: (f"2026-05-01T10:00:{i / RATE_HZ:09.6f}+01:00", 3600 * z))], axes="z", unasked=True)
+        self.reads("session.log", ["=~=~=~= PuTTY log 2026.11.27 10:00:00 =~=~=~=", "t_ms,gyro_x_dps", *self.rows(lambda i, x, y, z: (5 * i, x))], axes="x", unasked=True)
+        self.reads("Gyroscope.csv", ["time,z,y,x", *self.rows(lambda i, x, y, z: (1795741141800000000 + i * 5_000_000, z * RAD, y * RAD, x * RAD))], unasked=False)
+        self.reads("notes.csv", ["Timestamp,Gyro_X(deg/s),Note", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, '"start, cold ""A"""' if i == 0 else ""))], axes="x", unasked=True)
+        path = self.folder / "utf16.csv"
+        path.write_text("time_s,rate_x_dps\n0,1\n", encoding="utf-16")
+        assert "iconv -f UTF-16" in typed(path)[1], typed(path)[1]
+
+    def check_rest_is_judged_on_axes_nobody_named(self):
+        """An IMU that is turned about y for two seconds, of which x has a part."""
+        turned = [300 if 2000 <= i < 2400 else 0 for i in range(ROWS)]
+        lines = ["t_s,gyro_x_dps,gyro_y_dps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x + 1e-3 * turned[i], y + turned[i] if i % 997 else "n/a-text"))]
+        path = self.file("turned.csv", lines)
+        densities, said = typed(path, "--time", "t_s:s", "--column", "rate_x_radps=gyro_x_dps:deg/s")
+        assert densities and abs(densities["x"] / N - 1) < 0.06, (densities, said)
+        assert "only the rest is analysed" in said, said
 
     def check_two_candidates_are_both_shown(self):
         path = self.file("twice.csv", ["time_s,gyro1_x_dps,gyro2_x_dps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, 3 * y))])

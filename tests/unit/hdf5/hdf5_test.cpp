@@ -51,10 +51,10 @@ std::string packed_values(const std::vector<double>& values) {
 std::string message(char kind, const std::string& body) { return kind + packed(body.size()) + body; }
 
 std::string header(std::uint64_t rows, const std::vector<std::string>& units = {"s", ""},
-                   std::uint64_t by_column = 0, const std::vector<std::uint64_t>& time = {0, 0, 0}) {
+                   const std::vector<std::uint64_t>& time = {0, 0, 0}) {
   return message(1, packed_texts({"time_s", "rate_radps"}) + packed_texts(units) + packed_texts({"a gyro"}) +
-                        packed_texts({}) + packed(rows) + packed(by_column) + packed(time[0]) +
-                        packed(time[1]) + packed(time[2]));
+                        packed_texts({}) + packed(rows) + packed(time[0]) + packed(time[1]) +
+                        packed(time[2]));
 }
 
 std::string values(const std::vector<double>& of) { return message(2, packed_values(of)); }
@@ -78,11 +78,8 @@ Read read(std::string bytes) {
     });
     out.columns.resize(stream.header().names.size());
     out.time_from = stream.header().time_from;
-    std::vector<double> values;
-    for (std::size_t i = 0; stream.header().by_column && stream.next(i, values);)
-      out.columns[i].insert(out.columns[i].end(), values.begin(), values.end());
     std::vector<std::vector<double>> block;
-    while (!stream.header().by_column && stream.next(block))
+    while (stream.next(block))
       for (std::size_t i = 0; i < block.size(); ++i)
         out.columns[i].insert(out.columns[i].end(), block[i].begin(), block[i].end());
   } catch (const std::length_error& error) {
@@ -99,27 +96,14 @@ TEST(Hdf5Stream, TakesAHeaderAndRowsInBlocks) {
   EXPECT_EQ(got.columns, (std::vector<std::vector<double>>{{0, 1, 2}, {5, 6, 7}}));
 }
 
-TEST(Hdf5Stream, TakesColumnsOneAfterTheOther) {
-  const std::string by_column = header(3, {"s", ""}, 1);
-  const Read got = read(by_column + values({0, 1}) + values({2}) + values({5}) + values({6, 7}));
-  EXPECT_EQ(got.refusal + got.no_stream, "");
-  EXPECT_EQ(got.columns, (std::vector<std::vector<double>>{{0, 1, 2}, {5, 6, 7}}));
-  EXPECT_EQ(read(by_column + values({0, 1}) + message(3, "no more")).refusal, "no more");
-  for (const std::string& bytes :
-       {values({0, 1}), values({0, 1, 2, 3}), values({0, 1, 2}) + values({5, 6, 7, 8}),
-        values({0, 1, 2}) + values({}), std::string()})
-    EXPECT_NE(read(by_column + bytes).no_stream, "") << bytes.size();
-  EXPECT_NE(read(header(3, {"s", ""}, 2)).no_stream, "");
-}
-
 TEST(Hdf5Stream, SaysWhatWholeTimesAreCountedFrom) {
   EXPECT_EQ(read(header(2) + values({0, 1}) + values({5, 6})).time_from, std::nullopt);
   const auto first = static_cast<std::uint64_t>(-1'700'000'000'123'456'789);
-  const Read got = read(header(2, {"s", ""}, 0, {1, first, 0}) + values({0, 1}) + values({5, 6}));
+  const Read got = read(header(2, {"s", ""}, {1, first, 0}) + values({0, 1}) + values({5, 6}));
   EXPECT_EQ(got.refusal + got.no_stream, "");
   EXPECT_EQ(got.time_from, -1'700'000'000'123'456'789);
-  EXPECT_NE(read(header(2, {"s", ""}, 0, {2, 0, 0})).no_stream, "");
-  EXPECT_NE(read(header(2, {"s", ""}, 0, {0, 0, 2})).no_stream, "");
+  EXPECT_NE(read(header(2, {"s", ""}, {2, 0, 0})).no_stream, "");
+  EXPECT_NE(read(header(2, {"s", ""}, {0, 0, 2})).no_stream, "");
 }
 
 TEST(Hdf5Stream, ARefusalIsSaidWheneverItComesAndOnOneLine) {
@@ -215,15 +199,19 @@ TEST_F(Hdf5Folder, ALeftReaderIsGone) {
 }
 
 // As others write columns, in chunks of so many rows; the last one under two names.
-void write_chunks(const std::string& path, const std::vector<std::vector<double>>& columns, hsize_t chunk) {
+// Columns that are empty have `fill` rows of zeros, which the file does not hold.
+void write_chunks(const std::string& path, const std::vector<std::vector<double>>& columns, hsize_t chunk,
+                  hsize_t fill = 0) {
   const Hdf5Id file(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT));
   const Hdf5Id how(H5Pcreate(H5P_DATASET_CREATE));
   ASSERT_TRUE(H5Pset_chunk(how, 1, &chunk) >= 0 && H5Pset_shuffle(how) >= 0 && H5Pset_deflate(how, 1) >= 0);
   const std::vector<const char*> names = {"time_s", "rate_radps", "count_counts"};
   for (std::size_t i = 0; i < columns.size(); ++i) {
-    const hsize_t rows = columns[i].size();
+    const hsize_t rows = std::max<hsize_t>(columns[i].size(), fill);
     const Hdf5Id space(H5Screate_simple(1, &rows, nullptr));
     const Hdf5Id set(H5Dcreate2(file, names[i], H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, how, H5P_DEFAULT));
+    ASSERT_GE(set, 0);
+    if (columns[i].empty()) continue;
     ASSERT_GE(H5Dwrite(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, columns[i].data()), 0);
   }
   ASSERT_GE(H5Lcreate_hard(file, "count_counts", file, "again_counts", H5P_DEFAULT, H5P_DEFAULT), 0);
@@ -242,7 +230,6 @@ TEST_F(Hdf5Folder, ReadsChunksOfAnySizeToTheBit) {
     write_chunks(path("c.h5"), columns, chunk);
     InputFile input(path("c.h5"));
     Hdf5Input reader(ifog::Hdf5File(input), "", {}, "time_s");
-    EXPECT_TRUE(reader.header().by_column);
     const std::vector<std::size_t> of = {2, 2, 1, 0};  // again, count, rate, time, as they are sorted
     ASSERT_EQ(reader.header().names.size(), of.size());
     std::vector<std::vector<double>> got(of.size()), block;
@@ -250,6 +237,18 @@ TEST_F(Hdf5Folder, ReadsChunksOfAnySizeToTheBit) {
       for (std::size_t c = 0; c < block.size(); ++c)
         got[c].insert(got[c].end(), block[c].begin(), block[c].end());
     for (std::size_t c = 0; c < got.size(); ++c) EXPECT_TRUE(got[c] == columns[of[c]]) << chunk << " " << c;
+  }
+}
+
+// What all columns keep of unpacked chunks is bounded: beyond it the user is told how to pack the file anew.
+TEST_F(Hdf5Folder, SaysWhatMakesSmallerChunks) {
+  write_chunks(path("c.h5"), {{}, {}, {}}, 25U << 20U, 25U << 20U);  // 200 MiB a column
+  InputFile input(path("c.h5"));
+  try {
+    const Hdf5Input reader(ifog::Hdf5File(input), "", {}, "time_s");
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("h5repack -l CHUNK=65536"), std::string::npos) << error.what();
   }
 }
 

@@ -57,6 +57,7 @@ void run(Arguments& a) {
 
 void add_allan(const Command& program) {
   auto a = std::make_shared<Arguments>();
+  a->input.other_rates = a->input.outlined = true;
   const Command command = program.add_subcommand(
       "allan",
       "Overlapping Allan deviation with confidence intervals, and the noise coefficients Q, N, B, K, R");

@@ -52,7 +52,8 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
     const SeriesView values = SeriesView(column.values).part(rows.begin, rows.end);
     if (axis_of(column.name, "reference_rate", axis))
       references.push_back(values);
-    else if (signal_of(column.name, signal, axis) && (signal == "rate" || signal == "raw") &&
+    else if ((is_other_rate(column.name) ||
+              (signal_of(column.name, signal, axis) && (signal == "rate" || signal == "raw"))) &&
              !is_dead(values))
       axes.push_back(values);
   }
@@ -175,8 +176,15 @@ AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const 
   analysed.at_rest = common(of.rest.at_rest, running);
   const Gaps gaps(of.name, of.table, rows.begin);
   const SeriesView part = rate.part(rows.begin, rows.end);
-  const LoggedRate logged{
-      of.name, shown + (axis.empty() ? "" : "_" + axis), of.table.origin, of.time_s, part, of.clock, gaps};
+  const LoggedRate logged{of.name,
+                          shown + (axis.empty() ? "" : "_" + axis),
+                          of.table.origin,
+                          of.time_s,
+                          part,
+                          of.clock,
+                          gaps,
+                          of.table.outlines,
+                          rows.begin};
   AllanRecord record = analyse(logged, shown, axis, analysed, options);
   if (later)
     record.notes.push_back(of.name + ": " + column.name + ": until " +
@@ -197,7 +205,7 @@ std::string AllanRecord::label() const {
 
 bool allan_wants(const std::string& column) {
   std::string signal, axis;
-  return signal_of(column, signal, axis) || axis_of(column, "reference_rate", axis);
+  return signal_of(column, signal, axis) || axis_of(column, "reference_rate", axis) || is_other_rate(column);
 }
 
 std::vector<AllanRecord> allan_records(const std::string& name, const LongTable& table,

@@ -8,14 +8,16 @@
 #include <span>
 #include <stdexcept>
 
+#include "filters/allan/curve_miss.h"
 #include "filters/allan/row_times.h"
+#include "filters/rest/followed_channel.h"
 #include "filters/rest/glitches.h"
 #include "filters/rest/value_faults.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
 
-namespace ifog::tools {
+namespace ifog {
 namespace {
 
 constexpr double kTrustedDegrees = 8.0;  // relative error of the deviation 1/√(2·8), a quarter
@@ -75,6 +77,23 @@ void note_what_was_left_out(const std::string& column, AllanRecord& record) {
   if (record.fit->misfit > 0.0 && markov.empty())
     record.notes.push_back(start + "the terms miss the curve by " + six_digits(100.0 * record.fit->misfit) +
                            " % beyond chance; the error bars allow for it");
+}
+
+void note_what_fits_badly(const LoggedRate& logged, const SeriesView& rate, const std::vector<Stretch>& parts,
+                          const AngleSum& sum, double period, AllanRecord& record) {
+  const auto add = [&](const char* name, const std::string& text) {
+    record.findings.push_back({name, text});
+    record.notes.push_back(logged.capture + ": " + logged.column + ": " + text);
+  };
+  if (const CurveMiss miss = widen_to_curve(sum, period, *record.fit); miss.departure > 0.0)
+    add("curve", "the fit is " + six_digits(std::round(100.0 * miss.departure)) + " % off the curve at " +
+                     six_digits(miss.tau_s) + " s; error bars widened");
+  if (const auto followed =
+          followed_channel(rate, parts, logged.first_row, period, logged.channels, *record.fit))
+    add("curve", "slow means of the rate follow " + followed->name + " by " +
+                     six_digits(std::round(100.0 * followed->share)) +
+                     " % of their variance: an effect of it would pass for noise, and the error bars of B, K "
+                     "and R allow for that; run ifog diagnose");
 }
 
 // What is said of holes and of uneven stamps. Throws std::runtime_error where holes are to be refused.
@@ -187,6 +206,7 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   if (const std::string said = in_words(leaps, told_time_s); !said.empty())
     record.notes.push_back(name + ": " + column + ": " + said);
   measure(logged, sum, options, period, record);
+  if (record.fit && signal == "rate") note_what_fits_badly(logged, rate, parts, sum, period, record);
   record.noise_changes = noise_changes(rate, parts, period, told_time_s);
   if (const std::string change = in_words(record.noise_changes); !change.empty())
     record.notes.push_back(name + ": " + column + ": " + change);
@@ -194,4 +214,4 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   return record;
 }
 
-}  // namespace ifog::tools
+}  // namespace ifog

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -44,6 +45,8 @@ struct LoggedRate {
   const SeriesView& rate;
   const SampleClock& clock;
   const Gaps& gaps;
+  std::span<const ChannelOutline> channels;  // of the file, whose rows begin `first_row` before these
+  std::size_t first_row = 0;
 
   [[nodiscard]] double told_time_s(std::size_t row) const { return origin.told(time_s.at(row)); }
 };

@@ -83,6 +83,7 @@ CsvLayout CaptureInput::layout() const {
   if (!only.empty())
     parsed("--only", only, [&out](const std::string& text) { return out.parse_only(text), 0; });
   out.keep_repeats = repeats == "keep";
+  out.other_rates = other_rates;
   if (!separator.empty()) out.separator = parsed("--separator", separator, CsvLayout::parse_separator);
   return out;
 }
@@ -273,6 +274,7 @@ LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& 
   const bool whole = found == FileKind::capture || found == FileKind::lcm_log ||
                      (found == FileKind::flight && recorded_messages(file));
   LongTable table;
+  table.outlined = outlined;
   LongTableSink sink(table, wanted);
   static_cast<RowNotes&>(table) = read_rows(file, sink);
   // A driver says what its device may send, not what it sent.

@@ -36,6 +36,8 @@ struct CaptureInput {
   std::string repeats = "drop";      // --repeats keep|drop
   std::string separator;             // --separator C, of CSV
   std::string group;                 // --group PATH, of HDF5
+  bool other_rates = false;          // for a command that judges rest; see csv_layout.h
+  bool outlined = false;             // for one that looks at channels it does not want; see long_table.h
 
   // Adds the options to a command that reads.
   void add_to(const Command& command);

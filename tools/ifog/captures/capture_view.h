@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
+#include "filters/series/series_view.h"
 
 namespace ifog::tools {
 
@@ -35,6 +36,8 @@ struct CaptureView {
   // Of a row, for who is told of it.
   [[nodiscard]] double told_time_s(std::size_t row) const { return origin.told(time_s[row]); }
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
+  // What rest is judged on: the axes, and the sensor's rates that the user did not choose.
+  [[nodiscard]] std::vector<SeriesView> moving_rates() const;
 };
 
 }  // namespace ifog::tools

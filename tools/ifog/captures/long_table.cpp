@@ -49,20 +49,27 @@ std::vector<std::string> LongTable::leave_out_dead_axes() {
 void LongTableSink::begin(const std::vector<std::string>& names) {
   table_.header = names;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (wanted_ && !wanted_(names[i])) continue;
+    if (wanted_ && !wanted_(names[i])) {
+      if (table_.outlined) table_.outlines.emplace_back(names[i]), outlined_.push_back(i);
+      continue;
+    }
     table_.columns.push_back({names[i], LongSeries(), false});
     from_.push_back(i);
   }
 }
 
 bool LongTableSink::wants(std::size_t column) const {
-  return std::find(from_.begin(), from_.end(), column) != from_.end();
+  const auto has = [column](const std::vector<std::size_t>& columns) {
+    return std::find(columns.begin(), columns.end(), column) != columns.end();
+  };
+  return has(from_) || has(outlined_);
 }
 
 void LongTableSink::take(RowBlock& rows) {
   table_.origin = rows.origin;
   // To make the pages of a file takes longer than to read its rows: where all columns write, two share that.
   const unsigned threads = table_.time_s.will_write(rows.time_s.size()) ? 2 : 1;
+  for (std::size_t i = 0; i < outlined_.size(); ++i) table_.outlines[i].add(rows.columns[outlined_[i]]);
   share_out(from_.size() + 1, threads, [&](std::size_t i) {
     if (i == 0) {
       table_.time_s.add(rows.time_s);

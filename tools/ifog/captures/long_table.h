@@ -10,8 +10,9 @@
 #include "drivers/capture/row_sink.h"
 #include "filters/series/long_series.h"
 #include "filters/series/series_view.h"
+#include "filters/rest/channel_outline.h"
 
-namespace ifog::tools {
+namespace ifog {
 
 struct LongColumn {
   std::string name;
@@ -25,6 +26,8 @@ struct LongTable : RowNotes {
   std::vector<std::string> header;     // all that the file has but time_s, but for dead_axes
   std::vector<LongColumn> columns;     // of those that are wanted, in the same order
   std::vector<std::string> dead_axes;  // of the sensor, whose columns were left out: they never have a value
+  bool outlined = false;               // set before reading: columns nobody wants are kept as outlines
+  std::vector<ChannelOutline> outlines;
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
   [[nodiscard]] std::vector<std::string> names() const;
@@ -48,7 +51,7 @@ class LongTableSink final : public RowSink {
  private:
   LongTable& table_;
   Wanted wanted_;
-  std::vector<std::size_t> from_;  // by column of the table: that of the rows
+  std::vector<std::size_t> from_, outlined_;  // by column and by outline of the table: that of the rows
 };
 
 // Some rows of a table's columns at a time, in the order in which a capture is written: rates, references,
@@ -77,4 +80,4 @@ class LongRows {
   std::size_t at_ = 0;
 };
 
-}  // namespace ifog::tools
+}  // namespace ifog

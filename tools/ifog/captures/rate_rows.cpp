@@ -70,6 +70,7 @@ void keep_rate_rows(LongTable& table, const std::string& name) {
     column.values = kept_of(column.values, with, !is_rate(column.name));
   const std::size_t before = table.size();
   table.time_s = kept_of(table.time_s, with, false);
+  table.outlines.clear();  // of the rows as they came
   // Lines are known by the row as it came.
   table.header_line = 0;
   table.notices.push_back(name + ": " + std::to_string(table.size()) + " of " + std::to_string(before) +

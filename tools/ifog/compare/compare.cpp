@@ -57,7 +57,7 @@ struct Motion {
 };
 
 Motion motion_of(const CaptureView& capture, double period_s) {
-  const std::vector<SeriesView> axes(capture.rate_radps.begin(), capture.rate_radps.end());
+  const std::vector<SeriesView> axes = capture.moving_rates();
   std::vector<SeriesView> references;
   for (const std::span<const double> reference : capture.reference_rate_radps)
     if (!reference.empty()) references.emplace_back(reference);
@@ -224,7 +224,7 @@ void run(const Options& options) {
   will_write("--plot", options.plot_file);
   LongCapture read = options.input.read_long_capture(options.capture, nullptr, [](const std::string& column) {
     std::string axis;
-    return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis);
+    return axis_of(column, "rate", axis) || axis_of(column, "reference_rate", axis) || is_other_rate(column);
   });
   read.cut(options.part, options.capture);
   CaptureView capture = read.view();
@@ -284,6 +284,7 @@ void add_compare(const Command& program) {
   const Command command =
       program.add_subcommand("compare", "Every adaptation rule on one capture, with the same settings");
   auto options = std::make_shared<Options>();
+  options->input.other_rates = true;
   command.add_option("capture", options->capture, "a capture").required();
   command.add_option("--model", options->model, "model file whose [filter] gives the settings");
   command.add_option("--json", options->json_file, "write the figures as JSON");

@@ -12,7 +12,7 @@
 namespace ifog::tools {
 
 Rest mostly_at_rest(const CaptureView& capture, double period_s, const std::string& path) {
-  const std::vector<SeriesView> axes(capture.rate_radps.begin(), capture.rate_radps.end());
+  const std::vector<SeriesView> axes = capture.moving_rates();
   std::vector<SeriesView> references;
   for (const std::span<const double> reference : capture.reference_rate_radps)
     if (!reference.empty()) references.emplace_back(reference);

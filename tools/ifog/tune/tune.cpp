@@ -11,6 +11,7 @@
 #include <optional>
 #include <utility>
 
+#include "drivers/capture/column_names.h"
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
@@ -257,7 +258,8 @@ json tuning_json(const TuneArguments& options, const Tuning& tuning, std::size_t
 LongCapture read_rates(const TuneArguments& options, const Model& before) {
   LongCapture read =
       options.input.read_long_capture(options.capture, nullptr, [&](const std::string& column) {
-        return !before.effects.empty() || column.starts_with("rate") || column.starts_with("reference_rate");
+        return !before.effects.empty() || column.starts_with("rate") ||
+               column.starts_with("reference_rate") || is_other_rate(column);
       });
   if (before.effects.empty()) return read;
   if (options.since_power_up_s) read.set_since_power_up(*options.since_power_up_s);
@@ -333,6 +335,7 @@ void add_tune(const Command& program) {
   const Command command =
       program.add_subcommand("tune", "Noise and state model of a sensor at rest, by maximum likelihood");
   auto options = std::make_shared<TuneArguments>();
+  options->input.other_rates = true;
   command.add_option("capture", options->capture, "a capture at rest").required();
   command.add_option("--model", options->model,
                      "correct with this model first; its effects stay in what is written");

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/rest/followed_channel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+#include "filters/allan/angle_sum.h"
+#include "filters/series/long_series.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kSlowMeans = 32;  // of the record: a temperature is slower
+constexpr std::size_t kFewestMeans = 16;
+// Two random walks that know nothing of each other share this much of their variance once in ten records.
+constexpr double kLeastShare = 0.7;
+
+// Means of the rate at rest and of a channel over the same rows.
+struct Pairs {
+  std::vector<double> rate, channel;
+};
+
+Pairs pairs_of(const SeriesView& rate, std::span<const Stretch> parts, std::size_t first_row,
+               const ChannelOutline& channel) {
+  const std::size_t group = std::max<std::size_t>(1, channel.means().size() / kSlowMeans),
+                    rows = group * channel.rows();
+  const std::size_t begin = (first_row + rows - 1) / rows;  // first group that lies inside
+  Pairs pairs;
+  for (std::size_t g = begin; (g + 1) * group <= channel.means().size(); ++g) {
+    const std::size_t from = g * rows - first_row, to = from + rows;
+    if (to > rate.size()) break;
+    const bool rests = std::any_of(parts.begin(), parts.end(),
+                                   [&](const Stretch& part) { return part.begin <= from && to <= part.end; });
+    if (!rests) continue;
+    double values = 0.0, sum = 0.0;
+    for (std::size_t i = 0; i < group; ++i) values += channel.means()[g * group + i];
+    for_each_piece(rate, from, to, [&](std::span<const double> piece, std::size_t) {
+      for (const double value : piece) sum += value;
+    });
+    if (std::isnan(values)) continue;
+    pairs.rate.push_back(sum / static_cast<double>(rows));
+    pairs.channel.push_back(values / static_cast<double>(group));
+  }
+  return pairs;
+}
+
+double mean_of(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
+}
+
+// Straight line of the rate over the channel.
+struct Line {
+  double slope = 0.0, share = 0.0;
+};
+Line line_of(const Pairs& pairs) {
+  if (pairs.rate.size() < kFewestMeans) return {};
+  const double rate = mean_of(pairs.rate), channel = mean_of(pairs.channel);
+  double xx = 0.0, xy = 0.0, yy = 0.0;
+  for (std::size_t i = 0; i < pairs.rate.size(); ++i) {
+    const double x = pairs.channel[i] - channel, y = pairs.rate[i] - rate;
+    xx += x * x, xy += x * y, yy += y * y;
+  }
+  return xx > 0.0 && yy > 0.0 ? Line{xy / xx, xy * xy / (xx * yy)} : Line{};
+}
+
+// The rate less the line; between the middles of two means of the channel it goes straight.
+LongSeries less_line(const SeriesView& rate, std::size_t first_row, const ChannelOutline& channel,
+                     double slope) {
+  const std::vector<double>& means = channel.means();
+  const auto rows = static_cast<double>(channel.rows()), last = static_cast<double>(means.size() - 1);
+  LongSeries less;
+  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> piece, std::size_t first) {
+    for (std::size_t i = 0; i < piece.size(); ++i) {
+      const double at =
+          std::clamp((static_cast<double>(first_row + first + i) + 0.5) / rows - 0.5, 0.0, last);
+      const auto left = static_cast<std::size_t>(at), right = std::min(left + 1, means.size() - 1);
+      const double value = means[left] + (at - std::floor(at)) * (means[right] - means[left]);
+      less.add(piece[i] - (std::isnan(value) ? 0.0 : slope * value));
+    }
+  });
+  return less;
+}
+
+}  // namespace
+
+std::optional<FollowedChannel> followed_channel(const SeriesView& rate, std::span<const Stretch> parts,
+                                                std::size_t first_row, double period_s,
+                                                std::span<const ChannelOutline> channels,
+                                                NoiseCoefficients& found) {
+  if (!found.B.present && !found.K.present && !found.R.present) return std::nullopt;
+  const ChannelOutline* best = nullptr;
+  Line line;
+  for (const ChannelOutline& channel : channels)
+    if (const Line here = line_of(pairs_of(rate, parts, first_row, channel));
+        here.share > std::max(kLeastShare, line.share))
+      best = &channel, line = here;
+  if (best == nullptr) return std::nullopt;
+  const LongSeries less = less_line(rate, first_row, *best, line.slope);
+  NoiseCoefficients without;
+  try {
+    without = noise_coefficients(AngleSum(less, parts), period_s);
+  } catch (const std::invalid_argument&) {  // nothing is left but the channel
+  }
+  for (const auto term : {&NoiseCoefficients::B, &NoiseCoefficients::K, &NoiseCoefficients::R}) {
+    NoiseCoefficient& c = found.*term;
+    if (c.present) c.std_error = std::hypot(c.std_error, c.value - (without.*term).value);
+  }
+  return FollowedChannel{best->name(), line.share};
+}
+
+}  // namespace ifog
