@@ -15,6 +15,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "daemon/config/config.h"
 #include "daemon/config/version_text.h"
@@ -25,6 +26,7 @@
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/shell_word.h"
 
 namespace {
 
@@ -46,7 +48,7 @@ std::unique_ptr<ifog::Publisher> publish_nowhere(const std::string&) {
   return std::make_unique<NowherePublisher>();
 }
 
-// The parser tells of --config that is missing before an option that it does not know.
+// The parser tells of --config that is missing before an option that it does not know, or a file without it.
 std::string unknown_option(const CLI::App& app, int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
@@ -54,6 +56,8 @@ std::string unknown_option(const CLI::App& app, int argc, const char* const* arg
     if (name.starts_with("--") && app.get_option_no_throw(name) == nullptr)
       return "unknown option " + ifog::in_quotes(name) +
              ifog::meant_or_known(name, std::array{"--config", "--check", "--version", "--help"});
+    if (!name.starts_with('-') && (i == 1 || std::string_view(argv[i - 1]) != "--config"))
+      return "a configuration is given by --config " + ifog::shell_word(word);
   }
   return "";
 }

@@ -25,7 +25,7 @@ std::string describe(const Event& event) {
           "noise learned at rest: process_noise = {:.4g} (rad/s)^2/s, measurement_noise = {:.4g} (rad/s)^2",
           event.a, event.b);
     case EventKind::model_in_use:
-      return fmt::format("model in use from number {} on", event.sequence);
+      return fmt::format("new model active from sample {}", event.sequence);
     case EventKind::divergence:
       return fmt::format("estimator diverged and started again at number {}", event.sequence);
     case EventKind::clock_step:

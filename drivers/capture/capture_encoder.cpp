@@ -104,7 +104,9 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
   if (!without_place.empty())
     notices_.push_back("left out, the format as set up has no place for it: " + without_place);
   if (!without_column.empty())
-    notices_.push_back("not in the capture, sent as unknown or else as 0: " + without_column);
+    notices_.push_back(
+        "no data for these fields, sent as invalid, or as 0 where the format has no invalid: " +
+        without_column);
 
   std::fill(std::begin(sample_.environment), std::end(sample_.environment), kMissing);
 }

@@ -5,12 +5,14 @@
 
 namespace ifog {
 
-std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
+std::string utc_now() { return utc_text(std::time(nullptr)); }
+
+std::string utc_text(std::int64_t seconds, const char* form) {
+  const std::time_t time = seconds;
   std::tm utc{};
-  gmtime_r(&now, &utc);
+  gmtime_r(&time, &utc);
   std::string text(32, '\0');
-  text.resize(std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc));
+  text.resize(std::strftime(text.data(), text.size(), form, &utc));
   return text;
 }
 

@@ -74,6 +74,11 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
+    // A capture begins with names or numbers and commas; TOML with a key or a table.
+    const std::string_view line = text.substr(0, text.find('\n'));
+    if (!line.starts_with('#') && line.find(',') != std::string_view::npos &&
+        line.find('=') == std::string_view::npos && !line.starts_with('['))
+      throw std::runtime_error(name + ": begins as a table of columns does, as of a capture, expected TOML");
     throw std::runtime_error(name + ":" + std::to_string(error.source().begin.line) + ": " +
                              printable(error.description(), kLongestMessage));
   }

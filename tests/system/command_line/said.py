@@ -311,7 +311,7 @@ class Checks:
             rate = [1e-7 * self.random.gauss(0, 1) + share * 1e-6 * s + table * math.sin(t / 20) for s, t in zip(swing, times)]
             path = self.write("share.csv", {"rate_radps": rate, "temperature_degC": [20.25 + s for s in swing]}, times)
             text = said("denoise", path, "--model", model, "--output", self.folder / "out.csv", "--json", out)
-            assert ("of what the model corrects" in text) == denied, text
+            assert ("of what the model corrects is in this capture" in text) == denied, text
             axis = json.loads(out.read_text())["axes"][0]
             assert ("model_share" in axis) == (table == 0), axis
             assert table or abs(axis["model_share"] - share) < 4 * axis["model_share_error"] < 0.2, axis

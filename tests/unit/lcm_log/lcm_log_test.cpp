@@ -166,7 +166,7 @@ TEST_F(LcmLog, WhatCameTwiceIsLeftOutAndSaid) {
     testing::internal::CaptureStderr();
     const Capture capture = read("");
     EXPECT_EQ(testing::internal::GetCapturedStderr(),
-              path_ + ": times count from the first message, which is of 1700000000 s since 1970\n" + path_ +
+              path_ + ": t = 0 is 2023-11-14 22:13:20 UTC, the first message\n" + path_ +
                   ": 3 messages on IFOG_NOSE came twice or after one that follows, and are left out (two "
                   "recorders wrote at once, or a clock was set back)\n");
     ASSERT_EQ(capture.time_s.size(), 10U) << clock_ns;
@@ -319,7 +319,7 @@ TEST_F(LcmLog, ALogThatIsCutOffIsReadAndSaid) {
   EXPECT_EQ(read("").time_s.size(), 1U);
   // Its times count from 0: which moment that was is said.
   EXPECT_EQ(testing::internal::GetCapturedStderr(),
-            path_ + ": times count from the first message, which is of 1700000000 s since 1970\n");
+            path_ + ": t = 0 is 2023-11-14 22:13:20 UTC, the first message\n");
 }
 
 TEST_F(LcmLog, WhatIsDamagedIsLeftOutAndSaid) {

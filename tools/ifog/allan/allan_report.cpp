@@ -130,7 +130,7 @@ void print_allan(const AllanRecord& record, const AllanOptions& options) {
   for (const LongPoint& point : record.longer)
     print_point(point.tau, point.variance, point.interval, "  (Theo1, bias taken out)");
   if (record.trusted_tau_s > 0.0)
-    say("  To be trusted to a quarter up to %.4g s; a longer record shows more.\n", record.trusted_tau_s);
+    say("  Accurate to 25 %% for τ up to %.4g s; a longer record shows more.\n", record.trusted_tau_s);
   if (record.fit) say("%s", report::coefficient_lines(*record.fit).c_str());
 }
 

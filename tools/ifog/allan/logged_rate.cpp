@@ -17,7 +17,7 @@
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
 
-namespace ifog {
+namespace ifog::tools {
 namespace {
 
 constexpr double kTrustedDegrees = 8.0;  // relative error of the deviation 1/√(2·8), a quarter
@@ -54,6 +54,12 @@ double trusted_tau(const AngleSum& sum, const TermVariances& noise, Deviation ki
   return trusted;
 }
 
+std::string two_digits(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.2g", value);
+  return text.data();
+}
+
 std::string in_words(const std::vector<FrequencyRange>& ranges) {
   constexpr std::size_t kShown = 6;
   std::string words;
@@ -66,17 +72,17 @@ std::string in_words(const std::vector<FrequencyRange>& ranges) {
 void note_what_was_left_out(const std::string& column, AllanRecord& record) {
   const std::string start = record.capture + ": " + column + ": ";
   if (!record.fit->lines_hz.empty())
-    record.notes.push_back(start + "lines, left out of the noise terms: " + in_words(record.fit->lines_hz));
+    record.notes.push_back(start + "lines, not used in the noise fit: " + in_words(record.fit->lines_hz));
   if (!record.fit->left_out_hz.empty())
     record.notes.push_back(start +
-                           "left out of the noise terms, because no sum of them comes near (resonance, "
-                           "vibration, a filter): " +
+                           "not used in the fit: Q, N, B, K, R cannot explain these bands "
+                           "(resonance, vibration, a filter): " +
                            in_words(record.fit->left_out_hz));
   const std::string markov = markov_in_words(*record.fit);
   if (!markov.empty()) record.notes.push_back(start + markov);
   if (record.fit->misfit > 0.0 && markov.empty())
-    record.notes.push_back(start + "the terms miss the curve by " + six_digits(100.0 * record.fit->misfit) +
-                           " % beyond chance; the error bars allow for it");
+    record.notes.push_back(start + "fit is " + two_digits(100.0 * record.fit->misfit) +
+                           " % off; error bars widened");
 }
 
 void note_what_fits_badly(const LoggedRate& logged, const SeriesView& rate, const std::vector<Stretch>& parts,
@@ -86,12 +92,12 @@ void note_what_fits_badly(const LoggedRate& logged, const SeriesView& rate, cons
     record.notes.push_back(logged.capture + ": " + logged.column + ": " + text);
   };
   if (const CurveMiss miss = widen_to_curve(sum, period, *record.fit); miss.departure > 0.0)
-    add("curve", "the fit is " + six_digits(std::round(100.0 * miss.departure)) + " % off the curve at " +
-                     six_digits(miss.tau_s) + " s; error bars widened");
+    add("curve", "fit is " + two_digits(100.0 * miss.departure) + " % off at " + six_digits(miss.tau_s) +
+                     " s; error bars widened");
   if (const auto followed =
           followed_channel(rate, parts, logged.first_row, period, logged.channels, *record.fit))
     add("curve", "slow means of the rate follow " + followed->name + " by " +
-                     six_digits(std::round(100.0 * followed->share)) +
+                     two_digits(100.0 * followed->share) +
                      " % of their variance: an effect of it would pass for noise, and the error bars of B, K "
                      "and R allow for that; run ifog diagnose");
 }
@@ -214,4 +220,4 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   return record;
 }
 
-}  // namespace ifog
+}  // namespace ifog::tools

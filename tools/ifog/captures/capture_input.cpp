@@ -10,6 +10,7 @@
 #include "drivers/capture/column_names.h"
 #include "drivers/capture/csv_rows.h"
 #include "drivers/capture/hdf5/hdf5_rows.h"
+#include "drivers/capture/name_ending.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/sha256.h"
@@ -211,6 +212,9 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
 FileKind CaptureInput::readable(const InputFile& file) const {
   if (const std::string other = other_can_log(file.head()); !other.empty())
     throw std::runtime_error(file.path() + ": " + other);
+  if (has_ending(file.path(), ".toml"))
+    throw std::runtime_error(file.path() +
+                             ": is a TOML file, expected a capture; a model is given by --model FILE");
   const FileKind found = kind(file);
   if (found == FileKind::capture && has_driver())
     throw std::runtime_error(file.path() +

@@ -23,6 +23,7 @@
 #include "drivers/capture/time_stamps.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/ifog/unnamed_file.h"
+#include "drivers/transport/utc_now.h"
 #include "msgs/channel_name.h"
 #include "msgs/in_order.h"
 #include "tools/ifog/captures/flight_input.h"
@@ -298,9 +299,8 @@ class LcmRows {
 void tell_start(const std::string& path, const rate_t& first) {
   const TimeOrigin origin = TimeOrigin::of(first.utime * 1000);
   if (origin == TimeOrigin{}) return;
-  std::string at;
-  append_time(at, origin, 0.0);
-  warn("%s: times count from the first message, which is of %s s since 1970\n", path.c_str(), at.c_str());
+  warn("%s: t = 0 is %s, the first message\n", path.c_str(),
+       utc_text(origin.s, "%Y-%m-%d %H:%M:%S UTC").c_str());
 }
 
 }  // namespace

@@ -8,11 +8,11 @@
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/row_sink.h"
+#include "filters/rest/channel_outline.h"
 #include "filters/series/long_series.h"
 #include "filters/series/series_view.h"
-#include "filters/rest/channel_outline.h"
 
-namespace ifog {
+namespace ifog::tools {
 
 struct LongColumn {
   std::string name;
@@ -80,4 +80,4 @@ class LongRows {
   std::size_t at_ = 0;
 };
 
-}  // namespace ifog
+}  // namespace ifog::tools

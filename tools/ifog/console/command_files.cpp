@@ -22,6 +22,7 @@ struct CommandFile {
   std::string option;
   FileIdentity identity;
   bool written;
+  std::string path;
 };
 
 std::vector<CommandFile> files;
@@ -35,7 +36,7 @@ void add(const std::string& option, const std::string& path, bool written) {
   if (same != files.end())
     throw WrongUsage(option, "is " + in_quotes(path) + ", the file that " + same->option +
                                  (same->written ? " writes" : " reads") + "; expected another one");
-  files.push_back({option, *std::move(identity), written});
+  files.push_back({option, *std::move(identity), written, path});
 }
 
 }  // namespace
@@ -60,6 +61,15 @@ void will_write(const std::string& option, const std::string& path) {
   add(option, path, true);
   expect_writable(path);
 }
+
+std::string written_in_words() {
+  std::string words;
+  for (const CommandFile& file : files)
+    if (file.written) words += (words.empty() ? "wrote " : ", ") + printable(file.path);
+  return words;
+}
+
+void forget_what_is_written() { files.clear(); }
 
 void expect_no_other_kind(const std::string& option, const std::string& path,
                           std::span<const std::string_view> endings) {

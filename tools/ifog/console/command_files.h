@@ -24,6 +24,11 @@ void will_write(const std::string& option, const std::string& path);
 void will_write(const std::string& option, const std::string& path,
                 std::span<const std::string_view> endings);
 
+// "wrote a.json, b.svg" of the regular files above, for the end of a run; "": there are none.
+std::string written_in_words();
+// For a run that is to say nothing.
+void forget_what_is_written();
+
 inline constexpr auto kJsonEndings = std::to_array<std::string_view>({".json", ".jsonl", ".ndjson"});
 inline constexpr auto kModelEndings = std::to_array<std::string_view>({".toml"});
 inline constexpr auto kPageEndings = std::to_array<std::string_view>({".html", ".htm"});

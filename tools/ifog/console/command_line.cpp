@@ -16,6 +16,7 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "tools/ifog/commands.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/describe.h"
 #include "tools/ifog/console/help_text.h"
 #include "tools/ifog/console/plain_words.h"
@@ -88,6 +89,7 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   int status = 0;
   try {
     app.parse(count, arguments.data());
+    if (const std::string written = written_in_words(); !written.empty()) say("%s\n", written.c_str());
   } catch (const CLI::ParseError& error) {
     std::ostringstream out, complaint;  // --help and --version are errors to the parser, too
     status = app.exit(error, out, complaint) == 0 ? 0 : 2;

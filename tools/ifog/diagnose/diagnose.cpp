@@ -96,6 +96,7 @@ void run(const Arguments& arguments) {
     if (!arguments.quiet && !fitted.empty()) say("\n%s\n", fitted.c_str());
     write_file(arguments.write_model, model_text(model));
   }
+  if (arguments.quiet) forget_what_is_written();
   if (!arguments.report.empty())
     write_text_file(arguments.report, diagnosis_report(captures, found, arguments.captures, hashes,
                                                        arguments.write_model, arguments.input.as_typed()));

@@ -133,17 +133,19 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
   if (diagnosis.bias)
     report += text("\nBias beside the reference: %.4g ± %.2g °/h, corrected by the model\n",
                    diagnosis.bias->value / kDegreePerHour, diagnosis.bias->std_error / kDegreePerHour);
-  report += "\nError, by the model as written and on data held out of the fit, whichever is larger:\n" +
-            figure_lines(diagnosis);
+  report += "\nError, the worse of full-data and held-out error:\n" + figure_lines(diagnosis);
   if (!diagnosis.indistinguishable.empty()) report += "\nCannot be told apart on this data:\n";
   for (const Indistinguishable& pair : diagnosis.indistinguishable) {
     for (std::size_t i = 0; i < pair.effects.size(); ++i)
       report += (i ? "  or  " : "  ") + named(pair.effects[i]);
     report += text("\n     correlation %.3f; would tell: %s\n", pair.correlation, pair.separate_by.c_str());
   }
-  report += text("\nStays unexplained: %s of the variance of %.3g s means",
-                 percent(diagnosis.unexplained.fraction).c_str(), diagnosis.unexplained.means_s);
-  report += " (" + diagnosis.unexplained.kind + ")\n  " + diagnosis.unexplained.hint + "\n";
+  if (diagnosis.unexplained.kind == "nothing")
+    report += "\nRest is white noise.\n";
+  else
+    report += text("\nUnexplained: %s of the variance of %.3g s means",
+                   percent(diagnosis.unexplained.fraction).c_str(), diagnosis.unexplained.means_s) +
+              " (" + diagnosis.unexplained.kind + ")\n  " + diagnosis.unexplained.hint + "\n";
   if (!diagnosis.heading.after_s.empty()) {
     report += text("\nNext capture, bias taken over %.3g s at rest: heading error (1 sigma)",
                    diagnosis.heading.aligned_s);

@@ -101,9 +101,9 @@ std::string outcome(const Watched& watched) {
   for (const AxisGain& axis : watched.gain) {
     char text[160];
     if (std::isfinite(axis.kept.share_error))
-      std::snprintf(text, sizeof text, "%s%s%sof what the new model corrects %.2f ± %.2f is there",
+      std::snprintf(text, sizeof text, "%s%s%s%.0f ± %.0f %% of the predicted improvement was achieved",
                     figures.empty() ? "" : ", ", axis.axis.c_str(), axis.axis.empty() ? "" : ": ",
-                    axis.kept.share, axis.kept.share_error);
+                    100.0 * axis.kept.share, 100.0 * axis.kept.share_error);
     else
       std::snprintf(text, sizeof text, "%s%s%sthe new model's correction did not move",
                     figures.empty() ? "" : ", ", axis.axis.c_str(), axis.axis.empty() ? "" : ": ");

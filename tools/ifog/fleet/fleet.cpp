@@ -158,8 +158,8 @@ class FleetRun {
   // The type's effects, measured on every gyro until what the measurements say of the choice is the choice.
   void measure_type() {
     if (diagnosed_.gyros.size() < kFewestOfType) {
-      population_.remarks.push_back("of a type with fewer than " + std::to_string(kFewestOfType) +
-                                    " gyros diagnosed nothing is said");
+      population_.remarks.push_back("fleet statistics need " + std::to_string(kFewestOfType) +
+                                    " gyros; see each gyro's report");
       results_.forget_type();
       return;
     }

@@ -323,7 +323,7 @@ void run(const TuneArguments& options) {
     write_json(options.json_file, tuning_json(options, tuning, left, period, noise, capture.axes));
   if (!options.write_model.empty()) {
     write_file(options.write_model, model_text(model_of(before, tuning, noise, options.capture)));
-    say("\nwritten: %s\n  ifog denoise %s%s --model %s --output denoised.csv\n", options.write_model.c_str(),
+    say("\nto use it: ifog denoise %s%s --model %s --output denoised.csv\n",
         shell_file(options.capture).c_str(), options.input.as_typed().c_str(),
         shell_file(options.write_model).c_str());
   }
