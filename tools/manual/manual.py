@@ -194,7 +194,7 @@ class Manual:
             page.heading("Files")
             page.markdown(f"What `--json` writes is described by the JSON schemas in `/usr/share/ifogd/schemas`.")
         page.heading("See also")
-        page.markdown("**ifog**(1), **ifogd**(8), **ifog-capture**(5), **ifog-model**(5)")
+        page.markdown("**ifog**(1), **ifogd**(8), **ifog-capture**(5), **ifog-model**(5), **ifog-scenario**(5)")
         return page.text()
 
 

@@ -150,6 +150,15 @@ class Checks:
         assert len(read) > 25, read
         holds(model, read | {"second_rate", "band_power"}, "ifog-model(5)")
 
+    def check_scenarios(self):
+        """Every key that the reader knows and every kind, key and list of the parts."""
+        text = page("ifog-scenario.5")
+        parts = (SOURCE / "tools/simulate/recipe.cpp").read_text().split("complete_numbers")[0]
+        reader = (SOURCE / "tools/simulate/scenario.cpp").read_text()
+        words = set(re.findall(r'\{"(\w+)"', parts)) | set(re.findall(r'\bkey == "(\w+)"', reader)) | set(re.findall(r'local == "(\w+)"', reader))
+        assert len(words) > 80, words
+        holds(text, words, "ifog-scenario(5)")
+
     def typed(self, *words):
         """What is offered for the last of the words."""
         script = f"""source {COMPLETION}; source {MANUAL}/completion/ifog; source {MANUAL}/completion/ifogd
@@ -170,6 +179,8 @@ class Checks:
     def check_completion(self):
         for words, offered in (
                 (["ifog", "al"], {"allan"}), (["ifog", "allan", "--estimator", ""], {"overlapping", "modified", "hadamard"}),
+                (["ifog", "denoise", "--filter", "ir"], {"irwe-akfg"}), (["ifog", "compare", "--state", "gauss"], {"gauss-markov"}),
+                (["ifog", "allan", "--tau", ""], set()),
                 (["ifog", "allan", "--driver", "kv"], {"kvh1750"}), (["ifog", "drivers", "kv"], {"kvh1750"}),
                 (["ifog", "convert", "--driver", "kvh1750", "--option", "ra"], {"rate_hz="}),
                 (["ifog", "convert", "--dbc", "x.dbc", "--option", "si"], {"signal="}),
@@ -181,6 +192,25 @@ class Checks:
         assert self.typed("ifog", "") >= set(commands())
         for command in commands():
             assert self.typed("ifog", command, "-") == options_of_help(IFOG, command), command
+
+
+    def check_other_shells(self):
+        """fish completes a line by itself; of zsh the syntax, and that each command and option stands there."""
+        if not shutil.which("fish") or not shutil.which("zsh"):
+            print("skipped  other shells: no fish or zsh; tools/install-packages test installs them")
+            return
+        folder = MANUAL / "completion"
+        for line, offered in (("ifog al", {"allan"}), ("ifog denoise --filter ir", {"irwe-akfg"}), ("ifog allan --estimator ", {"overlapping", "modified", "hadamard"}),
+                              ("ifog allan --driver kv", {"kvh1750"})):
+            told = subprocess.run(["fish", "-c", f"source {folder}/ifog.fish; complete -C '{line}'"], capture_output=True, text=True, timeout=60, check=True,
+                                  env={**os.environ, "PATH": f"{folder}/path:{os.environ['PATH']}"}).stdout
+            found = {row.split("\t")[0] for row in told.splitlines()}
+            assert found == offered, f"{line}: {found}, expected {offered}"
+        said("zsh", "-n", str(folder / "_ifog"))
+        text = (folder / "_ifog").read_text()
+        for command in commands():
+            row = next(row for row in text.splitlines() if row.strip().startswith(command + ")"))
+            assert all(option in row for option in options_of_help(IFOG, command)), command
 
 
 def main():
