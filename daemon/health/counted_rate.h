@@ -18,7 +18,7 @@ class CountedRate {
     quiet_s_ += interval_s;
     counted_ += more;
     if (more > 0.0) {
-      // From one that came to one that came; of fewer than ten only while there is nothing better.
+      // Average between arrivals; needs 10 samples except before the first estimate.
       const bool many = counted_ >= kMany;
       if (!known_ || many) rate_hz_ = began_ ? counted_ / since_s_ : more / quiet_s_;
       if (!began_ || many) counted_ = since_s_ = 0.0;

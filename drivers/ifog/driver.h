@@ -10,8 +10,8 @@
  *   - One instance serves one sensor and is called by one thread at a time.
  *   - After `create` has returned, `decode` must not allocate, lock, log or throw: it runs in the hot path.
  *   - SI units: rad, rad/s, m/s², s. Environment channels are in the unit their name ends in.
- *   - Missing values are NaN. A value that is impossible need not be caught: the host takes what is not
- *     finite or reaches `full_scale` as invalid.
+ *   - Missing values are NaN. A plugin need not check values: the host marks as invalid what is not finite or
+ *     reaches `full_scale`.
  *
  * Version rule: IFOG_DRIVER_ABI grows whenever the meaning or layout of anything here changes. A host loads
  * exactly its own number, and says both numbers when it refuses.
@@ -32,8 +32,8 @@ extern "C" {
 #define IFOG_NAME_LENGTH 48
 #define IFOG_MAX_CAN_IDS 32
 
-/* What no measurement exceeds, whatever the device: the host takes a value beyond it as invalid. Rates in
- * rad/s (a spinning projectile turns at 2e3), environment values in their own units. */
+/* No device measures more: the host marks larger values as invalid. Rates in rad/s (a spinning projectile
+ * turns at 2e3), environment values in their own units. */
 #define IFOG_MAX_RATE 1e4
 #define IFOG_MAX_ENVIRONMENT_VALUE 1e20
 
@@ -44,7 +44,7 @@ enum ifog_kind {
   IFOG_ANGLE = 2        /* rad, turned since power-up; wraps at `angle_wrap_rad` where that is not 0 */
 };
 
-/* Bit set: what the plugin can be fed with. */
+/* Bits: what the plugin decodes. */
 enum ifog_transport { IFOG_TRANSPORT_BYTES = 1, IFOG_TRANSPORT_CAN = 2 };
 
 enum ifog_sample_flags {
@@ -55,17 +55,16 @@ enum ifog_sample_flags {
 
 /* One reading of the sensor. */
 typedef struct ifog_sample {
-  int64_t arrival_ns; /* copied from the chunk the last byte came in, ns; 0: not known */
-  int64_t
-      device_time_ns; /* the device's own clock as sent, any origin; the host carries it on over its wraps */
-  int64_t device_wrap_ns; /* it begins again after this; 0: never */
+  int64_t arrival_ns;     /* of the read that delivered its last byte, ns; 0: unknown */
+  int64_t device_time_ns; /* the device's own clock as sent, any origin; the host unwraps rollovers */
+  int64_t device_wrap_ns; /* the device's clock rolls over after this, ns; 0: never */
   uint32_t sequence;      /* the device's counter as sent, 0 … sequence_modulus − 1 */
   uint32_t status;        /* the device's status word as sent */
   uint32_t flags;         /* ifog_sample_flags */
   uint32_t valid_axes;    /* bit i: value[i] may be used (the device says so and it is finite) */
   double value[IFOG_MAX_AXES];
-  uint32_t environment_fresh; /* bit i: environment[i] came with this sample */
-  uint32_t at_once; /* the host's: about how many samples came in one portion with it; 0: not known */
+  uint32_t environment_fresh; /* bit i: environment[i] was received with this sample */
+  uint32_t at_once;           /* Set by the host: samples in the same read; 0: unknown. Plugins leave it 0. */
   double environment[IFOG_MAX_ENVIRONMENT]; /* last known values, NaN until the first */
 } ifog_sample;
 
@@ -73,7 +72,7 @@ enum ifog_can_flags { IFOG_CAN_EXTENDED = 1, IFOG_CAN_FD = 2, IFOG_CAN_BRS = 4 }
 
 /* A data frame; error and remote frames never reach a plugin. */
 typedef struct ifog_can_frame {
-  int64_t arrival_ns; /* time of reception, ns since the epoch on a clock that nobody sets; 0: not known */
+  int64_t arrival_ns; /* time of reception, ns on an unslewed monotonic clock; 0: unknown */
   uint32_t id;        /* 11 or 29 bits, without flag bits */
   uint8_t flags;      /* ifog_can_flags */
   uint8_t length;     /* bytes, 0 … 64 */
@@ -85,14 +84,14 @@ typedef struct ifog_driver_counters {
   uint64_t frames_good;     /* complete frames that passed every check */
   uint64_t frames_crc;      /* frame header found, checksum wrong */
   uint64_t frames_format;   /* frame understood but a field impossible (bad number, short CAN frame, …) */
-  uint64_t bytes_skipped;   /* bytes passed over to find the next frame */
-  uint64_t frames_repeated; /* good frames that came a second time and were left out */
-  uint64_t samples_incomplete; /* begun but never whole: some of their frames are missing */
-  uint64_t bytes_framed; /* bytes of complete frames, whatever became of these; with a text, of its lines */
-  uint64_t
-      bytes_pending; /* the one that falls, too: bytes that may yet begin a frame. Every byte that was fed is
-                        in bytes_framed, bytes_skipped or bytes_pending; the host checks it. 0 for CAN */
-  uint64_t values_refused; /* environment values beyond what the format states; the last good one stays */
+  uint64_t bytes_skipped;   /* bytes dropped while searching for the next frame */
+  uint64_t frames_repeated; /* good frames received a second time and dropped */
+  uint64_t samples_incomplete; /* samples dropped because some of their frames are missing */
+  uint64_t bytes_framed;       /* bytes of complete frames, good or bad; of a text protocol, of its lines */
+  /* Not monotonic: bytes buffered as a possible frame start; 0 for CAN. Every byte that was fed is in
+   * bytes_framed, bytes_skipped or bytes_pending; the host checks this identity. */
+  uint64_t bytes_pending;
+  uint64_t values_refused; /* environment values dropped as impossible; the last good one is held */
   uint64_t frames_other;   /* CAN frames that are none of the sensor's. Every CAN frame that was fed is in
                               frames_good, frames_format or frames_other; the host checks it */
   /* Values beyond the range that a description of the format states: such ranges are information, often
@@ -107,13 +106,12 @@ typedef struct ifog_description {
   uint32_t kind;                              /* ifog_kind */
   uint32_t axes;                              /* 1 … IFOG_MAX_AXES */
   char axis[IFOG_MAX_AXES][IFOG_NAME_LENGTH]; /* "x", "y", "z"; "" for a single-axis sensor */
-  uint32_t sequence_modulus; /* the counter counts modulo this; 0: the device sends no counter */
-  uint32_t has_device_time;  /* 1: samples carry device_time_ns */
-  double nominal_rate_hz;    /* samples a second; 0: unknown, the configuration must say */
-  double angle_wrap_rad;     /* IFOG_ANGLE: the value wraps modulo this; 0: it does not */
-  double
-      full_scale[IFOG_MAX_AXES]; /* rad/s whatever the kind: the sensor measures rates below it; 0: unknown */
-  uint32_t environments;         /* 0 … IFOG_MAX_ENVIRONMENT */
+  uint32_t sequence_modulus;        /* the counter counts modulo this; 0: the device sends no counter */
+  uint32_t has_device_time;         /* 1: samples carry device_time_ns */
+  double nominal_rate_hz;           /* samples a second; 0: unknown, the configuration must say */
+  double angle_wrap_rad;            /* IFOG_ANGLE: the value wraps modulo this; 0: it does not */
+  double full_scale[IFOG_MAX_AXES]; /* largest measurable rate of each axis, rad/s; 0: unknown */
+  uint32_t environments;            /* 0 … IFOG_MAX_ENVIRONMENT */
   char environment[IFOG_MAX_ENVIRONMENT][IFOG_NAME_LENGTH]; /* capture column names: "temperature_degC" */
   uint32_t can_ids; /* wanted CAN ids, for the kernel's filter; 0: all */
   struct {
@@ -125,8 +123,8 @@ typedef struct ifog_description {
   uint32_t opening_length;
 } ifog_description;
 
-/* One `key = value` of the sensor's [sensor.options] table, value as text. Owned by the host, gone after
- * `create`. The host has refused unknown keys and passes every option of the list, the default where the user
+/* One `key = value` of the sensor's [sensor.options] table, value as text. Owned by the host, invalid after
+ * `create` returns. The host has refused unknown keys and passes every option of the list, the default where the user
  * gave none. */
 typedef struct ifog_setting {
   const char* key;
@@ -135,8 +133,7 @@ typedef struct ifog_setting {
 
 /* An option the plugin knows; the list is what `ifog drivers` prints and what unknown keys are checked
  * against. */
-#define IFOG_OPTION_FILE \
-  "a file" /* `values` of an option that is a path: relative to the configuration file */
+#define IFOG_OPTION_FILE "a file" /* `values` of a path, relative to the configuration file */
 typedef struct ifog_option {
   const char* key;
   const char* values;        /* what is allowed, for people: "rate | delta" or "a number > 0" */
@@ -157,18 +154,18 @@ typedef struct ifog_driver {
   const ifog_option* options; /* ended by an entry whose key is NULL */
 
   /* Makes an instance, or returns NULL with one line in error: the key, its value and what was expected. With
-   * an instance, `error` may hold warnings, one a line: the host shows them, and "" is what it finds else. */
+   * an instance, `error` may hold warnings, one a line, which the host logs; else it is "". */
   void* (*create)(const ifog_setting* settings, size_t count, char* error, size_t error_size);
   void (*destroy)(void* instance);
   void (*describe)(const void* instance, ifog_description* out);
 
-  /* Bytes in any portions, in order. arrival_ns is that of the portion's last byte. NULL if CAN only. */
+  /* Bytes in order, split anywhere. arrival_ns: of the last byte of this read. NULL if CAN only. */
   void (*decode_bytes)(void* instance, const uint8_t* bytes, size_t length, int64_t arrival_ns,
                        ifog_emit_sample emit, void* sink);
   /* One CAN frame. NULL if bytes only. */
   void (*decode_can)(void* instance, const ifog_can_frame* frame, ifog_emit_sample emit, void* sink);
-  /* Forget half-read frames: the device was closed and opened, or its recording has ended. Counters stay, and
-   * count what is given up: bytes as skipped, a sample begun as incomplete. */
+  /* Drops partial frames: the device was reopened, or its recording has ended. Counters are kept and count
+   * what is dropped: bytes as skipped, a partial sample as incomplete. */
   void (*reset)(void* instance);
   void (*counters)(const void* instance, ifog_driver_counters* out);
 

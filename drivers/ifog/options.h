@@ -87,7 +87,8 @@ void* create_or_explain(const ifog_setting* settings, std::size_t count, char* e
   return nullptr;
 }
 
-// Beside a new instance: warnings for the host to show, one a line. What does not fit is counted in the last.
+// Warnings that come with a new instance, one a line, for the host to log. The last line counts those that do
+// not fit.
 inline void explain_warnings(std::span<const std::string> warnings, char* error, std::size_t error_size) {
   constexpr std::size_t kForCount = 64;
   std::string all;

@@ -56,9 +56,9 @@ class Incrementer {
   [[nodiscard]] bool mixed() const noexcept { return timeline_.two_devices(); }
   // Fitted against nominal period, 1e-6; 0 until the line has settled.
   [[nodiscard]] double clock_offset_ppm() const noexcept;
-  // By which part of it the true interval is longer than the nominal one, where that is used: of a device
-  // that counts and has no clock for each, whatever it really sends at; of one with a clock alone to tell how
-  // many are missing, so that every one of them comes behind a gap. 0 for all others, and until it is known.
+  // Relative error of the nominal period, (true − nominal) / nominal, where that period is used: for each
+  // interval of a device with a counter and no clock; for counting the missing samples of one with a clock
+  // and no counter. 0 for all others, and until it is known.
   [[nodiscard]] double interval_error() const noexcept;
 
  private:

@@ -48,15 +48,15 @@ struct SensorFacts {
 
 // One sample as decoded.
 struct Reading {
-  // On a clock that nobody sets, ns; 0 where nobody knows (a raw byte file, a backlog).
+  // On an unslewed monotonic clock, ns; 0: unknown (a raw byte file, a backlog).
   std::int64_t arrival_ns = 0;
-  std::int64_t came_ns = 0;        // the same, or where that is 0 when it was read; 0: offline, nobody knows
+  std::int64_t came_ns = 0;        // arrival_ns, or the time of the read where that is 0; 0: offline, unknown
   std::int64_t wall_shift_ns = 0;  // time of day less that clock
-  bool arrival_recorded = false;   // arrival_ns is of another day, by a clock that may have been set
-  std::optional<std::int64_t> device_time_ns;  // the device's clock, as sent, any origin; none: it has none
-  std::int64_t device_wrap_ns = 0;             // that begins again after this; 0: never
-  std::uint32_t at_once = 0;   // about how many samples came in one portion with it; 0: not known
-  std::uint32_t sequence = 0;  // as sent
+  bool arrival_recorded = false;   // arrival_ns is from a recording, by a clock that may have been set
+  std::optional<std::int64_t> device_time_ns;  // the device's clock as sent, any origin; none: it has none
+  std::int64_t device_wrap_ns = 0;             // that clock rolls over after this; 0: never
+  std::uint32_t at_once = 0;                   // samples in the same read; 0: unknown
+  std::uint32_t sequence = 0;                  // as sent
   bool has_sequence = false;
   bool beyond_stated = false;  // a value is beyond the range that the format's description states
   std::uint32_t status = 0;
