@@ -339,10 +339,10 @@ class Checks:
         with h5py.File(out) as back:
             for name, values in expected.items():
                 assert back[name][:].tobytes() == values.tobytes(), name
-        with h5py.File(file, "w") as inside:  # and more than can be: 640 MiB
+        with h5py.File(file, "w") as inside:  # and more than is kept of all columns: 512 MiB
             for name in ("time_s", "rate_radps"):
                 inside.create_dataset(name, data=numpy.arange(4.0), maxshape=(None,), chunks=(2**27,), compression="gzip")
-        self.refused(file, "is packed in chunks of 1024 MiB, expected at most 640 MiB; 'h5repack -l CHUNK=65536'")
+        self.refused(file, "is packed in chunks of 1024 MiB, expected at most 512 MiB in all columns; 'h5repack -l CHUNK=65536'")
 
     def check_more_than_there_is_is_not_believed(self):
         """A file of a few kilobytes that says it holds a thousand million rows."""
