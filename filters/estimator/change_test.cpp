@@ -50,6 +50,7 @@ void ChangeTest::begin() noexcept {
     c.sum.setZero();
     c.weight.setZero();
     c.angle.setZero();
+    c.span.setZero();
     c.rest.setZero();
     c.rest2.setZero();
     c.tracker.setZero();
@@ -86,7 +87,10 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * c.weight)
                   .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
   }
-  c.angle = keep * c.angle + now.innovation * now.covered_s;
+  // From where the evidence begins, and fading before it.
+  const Lanes kept = (c.ratio > 0.0).select(Lanes::Ones(), Lanes::Constant(keep));
+  c.angle = kept * c.angle + now.carried_rad;
+  c.span = kept * c.span + 1.0;
   c.ratio = (keep * c.ratio + evidence_).max(kLeastRatio);
   c.rest = keep * c.rest + common.squares;
   c.rest2 = keep * c.rest2 + common.squares2;

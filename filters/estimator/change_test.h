@@ -33,10 +33,10 @@ class ChangeTest {
   // Rest was found after a manoeuvre: what is left of that is found by less evidence.
   void relax() noexcept { relaxed_ = kRelaxed; }
   [[nodiscard]] bool suspected() const noexcept { return suspected_; }
-  // Angle, rad, by which the filter at rest has fallen short within the tracker's horizon.
-  [[nodiscard]] double angle(std::size_t tracker, std::size_t axis) const noexcept {
-    return contest_[tracker].angle[static_cast<Eigen::Index>(axis)];
-  }
+  // Angle, rad, that the filter at rest has come to carry since the change began.
+  [[nodiscard]] const Lanes& angle(std::size_t tracker) const noexcept { return contest_[tracker].angle; }
+  // Samples that it came together in.
+  [[nodiscard]] double span(std::size_t tracker) const noexcept { return contest_[tracker].span.maxCoeff(); }
   // Variance of a change that may have begun, (rad/s)^2.
   [[nodiscard]] double unseen(std::size_t axis) const noexcept {
     return unseen_[static_cast<Eigen::Index>(axis)];
@@ -47,7 +47,8 @@ class ChangeTest {
  private:
   static constexpr double kRelaxed = 10.0;
   struct Contest {
-    Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero(), angle = Lanes::Zero();
+    Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero();
+    Lanes angle = Lanes::Zero(), span = Lanes::Zero();
     Lanes wide = Lanes::Ones(), horizons = Lanes::Zero();
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };

@@ -37,7 +37,6 @@ class Follower {
   double since_moved = 0.0;            // samples that the filter at rest has had since it was moved
   double at_rest_for = 0.0;            // samples since rest was found
   Lanes published = Lanes::Zero();     // the last rate, without payments
-  Lanes kept_out_rad = Lanes::Zero();  // angle of the outliers under way, that may turn out to be rotation
 };
 
 class Engine {
@@ -75,7 +74,6 @@ class Engine {
   void follow(Step& s) noexcept;
   [[nodiscard]] Outliers::Verdict judge_outlier(const Step& s) noexcept;
   void jump(Step& s) noexcept;
-  void admit_outliers() noexcept;
   void follow_rest(Step& s) noexcept;
   void follow_manoeuvre(Step& s) noexcept;
   void begin_manoeuvre(Step& s, std::size_t tracker) noexcept;

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kMostNats = 12.5;    // of one measurement: five standard deviations
 constexpr double kLongerPrior = 2.0;  // nats: motions are smooth more often than not
+constexpr double kFoundPrior = 3.0;   // nats for trackers up to one that has found the motion
 constexpr double kRestPrior = 4.0;    // nats that the filter at rest has to be ahead
 constexpr double kMostAhead = 12.0;
 constexpr double kBreaks = 12.0;     // nats by which a longer tracker is surely wrong and begins again
@@ -30,12 +31,13 @@ double Mix::least(const Lanes& lanes) const noexcept {
   return (seen_ > 0.0).select(lanes, Lanes::Constant(1e300)).minCoeff();
 }
 
-void Mix::begin(double failed) noexcept {
+void Mix::begin(double failed, std::size_t found) noexcept {
   link_.fill(Lanes::Zero());
+  for (std::size_t j = 1; j <= found; ++j) link_[j].setConstant(kFoundPrior);
   bias_.fill(Lanes::Zero());
   weight_ = {};
   compared_ = {};
-  weight_[0] = gain_ = 1.0;
+  weight_[found] = gain_ = 1.0;
   rest_ratio_.setZero();
   seen_.setZero();
   rest_age_ = rest_weight_ = 0.0;
