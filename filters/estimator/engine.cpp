@@ -197,6 +197,7 @@ void Engine::follow(Step& s) noexcept {
       jump(s);
       break;
     case Outliers::Verdict::usual:
+      if (follow_.outliers.run() > 0) break;
       // In a manoeuvre an outlier may be rotation.
       follow_.moving ? follow_.ledger.admit() : follow_.ledger.dismiss();
       break;
@@ -228,8 +229,7 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
   }
   Eigen::Index worst = 0;
   const double most = least.maxCoeff(&worst);
-  return follow_.outliers.take(most, s.sample.rate, s.sample.scale[worst], static_cast<std::size_t>(worst),
-                               follow_.moving, lag());
+  return follow_.outliers.take(most, s.sample, worst, follow_.moving, lag());
 }
 
 // So many measurements that nothing predicts are a new rate: followers begin with the last of them.
