@@ -49,12 +49,11 @@ void ChangeTest::begin() noexcept {
     c.ratio.setZero();
     c.sum.setZero();
     c.weight.setZero();
-    c.angle.setZero();
-    c.span.setZero();
     c.rest.setZero();
     c.rest2.setZero();
     c.tracker.setZero();
   }
+  forget_angle();
   shaking_.setZero();
   unseen_.setZero();
   suspected_ = false;
@@ -87,10 +86,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * c.weight)
                   .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
   }
-  // From where the evidence begins, and fading before it.
-  const Lanes kept = (c.ratio > 0.0).select(Lanes::Ones(), Lanes::Constant(keep));
-  c.angle = kept * c.angle + now.carried_rad;
-  c.span = kept * c.span + 1.0;
+  short_[j].add(now.short_rad, c.ratio, keep);
   c.ratio = (keep * c.ratio + evidence_).max(kLeastRatio);
   c.rest = keep * c.rest + common.squares;
   c.rest2 = keep * c.rest2 + common.squares2;
@@ -133,6 +129,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   const Lanes tails = (fourth_ / 3.0).max(1.0) * widest_;
   shaking_ =
       (shaking_ + now.mask * (0.5 * (1.0 - 1.0 / kShakingVariance) * capped - kHalfLog) / tails).max(0.0);
+  short_[kShaking].add(now.short_rad, shaking_, 0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;
   return found;

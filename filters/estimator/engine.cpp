@@ -211,7 +211,10 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
   if (follow_.moving && follow_.mix.raw()) return Outliers::Verdict::usual;
   // Nor behind a gap.
   for (std::size_t a = 0; a < axes_; ++a)
-    if ((s.sample.valid >> a & 1U) != 0 && trackers.since(a) > kShortGap) return Outliers::Verdict::usual;
+    if ((s.sample.valid >> a & 1U) != 0 && trackers.since(a) > kShortGap) {
+      follow_.outliers.end_run();
+      return Outliers::Verdict::usual;
+    }
   Lanes least = s.sample.surprise;
   // At rest the raw one, a parabola through three measurements, foresees nothing better than others and much
   // worse.
@@ -257,7 +260,7 @@ void Engine::jump(Step& s) noexcept {
 
 void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
-  s.sample.carried_rad = f.ledger.take_carried();
+  s.sample.short_rad = f.ledger.take_short_at_rest();
   std::optional<std::size_t> found =
       f.change.take(f.trackers, s.sample, colour(), f.outliers.rarity(), lag());
   if (found == ChangeTest::kShaking && settings_.wideband == "noise") found.reset();
@@ -278,10 +281,11 @@ void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   ++health_.manoeuvres;
   const double since = f.since_moved;
   f.ledger.admit();
+  const double horizon = f.trackers.horizon(std::min(tracker, f.trackers.size() - 1));
+  f.ledger.owe_late(f.change.angle(tracker), std::max(horizon, f.change.span(tracker)), f.settled);
   if (tracker == ChangeTest::kShaking) {
     f.mix.begin(0.0);
   } else {
-    f.ledger.owe_late(f.change.angle(tracker), std::max(f.trackers.horizon(tracker), f.change.span(tracker)));
     for (std::size_t j = tracker + 1; j < f.trackers.size(); ++j) {
       f.trackers.begin_from(j, tracker);
       break;

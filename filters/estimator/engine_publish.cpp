@@ -66,6 +66,8 @@ void Engine::pay(Step& s) noexcept {
   follow_.at_rest_for = follow_.moving ? 0.0 : follow_.at_rest_for + 1.0;
   const bool settled =
       follows && follow_.at_rest_for >= kYoungLags * std::max(settled_lag_, 1.0 / rest_->gain());
+  if (settled && !follow_.settled) follow_.change.forget_angle();
+  follow_.settled = settled;
   ledger.book((s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s,
               s.outlier        ? kDoubt
               : follow_.moving ? kDebt

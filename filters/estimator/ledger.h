@@ -43,9 +43,9 @@ class Ledger {
   void book(const Lanes& short_by_rad, Account account) noexcept {
     switch (account) {
       case Account::kDebt: debt_ += short_by_rad; break;
-      case Account::kTail: tail_ += short_by_rad; break;
+      case Account::kTail: tail_ += short_by_rad; [[fallthrough]];
+      case Account::kCarried: at_rest_ += short_by_rad; break;
       case Account::kDoubt: doubt_ += short_by_rad; break;
-      case Account::kCarried: carried_ += short_by_rad; break;
     }
   }
   // The outliers were rotation.
@@ -54,19 +54,20 @@ class Ledger {
   void dismiss() noexcept {
     const Lanes dismissed = doubt_ / kDoubtful;
     doubt_ -= dismissed;
-    carried_ += dismissed;
+    at_rest_ += dismissed;
   }
-  // What the filter has come to carry since this was asked last.
-  [[nodiscard]] Lanes take_carried() noexcept { return std::exchange(carried_, Lanes::Zero()); }
+  // What the filter at rest has fallen short of since this was asked last.
+  [[nodiscard]] Lanes take_short_at_rest() noexcept { return std::exchange(at_rest_, Lanes::Zero()); }
   // Another filter's debt.
   void owe(const Lanes& angle_rad) noexcept {
     debt_ += angle_rad;
     pace_ = std::max(pace_, kOwedSamples);
   }
-  // A manoeuvre was found that has gone on for so many samples.
-  void owe_late(const Lanes& angle_rad, double samples) noexcept {
+  // A manoeuvre was found that has gone on for so many samples. settled: the filter at rest carried the angle.
+  void owe_late(const Lanes& angle_rad, double samples, bool settled) noexcept {
     late_ += angle_rad;
-    late_pace_ = samples;
+    if (!settled) tail_ -= angle_rad;
+    late_pace_ = std::max(kQuickest, samples);
   }
   // Samples that the followers of a manoeuvre look back on.
   void pace(double samples) noexcept { pace_ = std::max(kQuickest, kShare * samples); }
@@ -87,7 +88,7 @@ class Ledger {
 
   double period_s_, pace_ = kQuickest, late_pace_ = kQuickest, tail_pace_ = kQuickestTail;
   Lanes debt_ = Lanes::Zero(), late_ = Lanes::Zero(), tail_ = Lanes::Zero(), doubt_ = Lanes::Zero(),
-        carried_ = Lanes::Zero();
+        at_rest_ = Lanes::Zero();
 };
 
 }  // namespace ifog

@@ -29,8 +29,8 @@ class Outliers {
     const bool rare = moving || share_ <= kRare;
     const double most = !rare ? kNeverNoise : moving ? kFarMoving * std::max(1.0, surprise_) : kFar;
     if (least <= most || seen_ < kYoung) {
-      // A run goes on until its own axis is measured again.
-      if (run_ > 0 && (now.valid >> axis_ & 1U) == 0) return Verdict::usual;
+      // A run goes on until its own axis is measured again, if that is soon.
+      if (run_ > 0 && (now.valid >> axis_ & 1U) == 0 && ++waited_ < kLongestWait) return Verdict::usual;
       if (!moving) share_ += ((least > kFar ? 1.0 : 0.0) + static_cast<double>(run_) - share_) / seen_;
       run_ = 0;
       if (moving) surprise_ += (std::min(least, kMostSurprise) - surprise_) / kSurpriseMemory;
@@ -47,6 +47,7 @@ class Outliers {
     }
     kept_[run_ % kKept] = rate;
     axis_ = axis;
+    waited_ = 0;
     ++run_;
     // Twice the evidence is no noise's, however far apart they are.
     const double evidence = static_cast<double>(run_) * rarity();
@@ -71,11 +72,13 @@ class Outliers {
   static constexpr double kFar = 25.0, kFarMoving = 30.0, kNeverNoise = 400.0;
   static constexpr double kMostSurprise = 1e6, kSurpriseMemory = 20.0;
   static constexpr double kRare = 1e-3, kMostRarity = 12.5, kEvidence = 18.0;
+  static constexpr int kLongestWait = 16;  // samples
   static constexpr double kMemory = 8192.0, kYoung = 64.0;  // samples
 
   std::array<Lanes, kKept> kept_{};
   double seen_ = 0.0, share_ = 1e-8, surprise_ = 1.0, nearness_ = 0.0, squares_ = 0.0;
   std::size_t run_ = 0;
+  int waited_ = 0;         // samples of other axes since
   Eigen::Index axis_ = 0;  // of the run's last measurement
 };
 
