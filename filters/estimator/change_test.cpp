@@ -26,7 +26,7 @@ constexpr double kWider = 1.25, kMostSum = 16.0;
 // Nats that an earlier manoeuvre still counts for fade over so many samples.
 constexpr double kRelaxedKept = 0.999;
 // Square of two standard deviations: of a sum in which a change may have begun.
-constexpr double kUnseenSquare = 4.0;
+constexpr double kUnseenSquare = 6.25;
 // Mean of a change that grows as a parabola over a horizon to its end: (0.8)^-2.
 constexpr double kAtEnd = 1.55;
 // Samples over which the fourth moment of the noise is averaged.
@@ -68,7 +68,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   const Lanes mine = error * error * now.inverse / g.factor;
   c.sum = keep * c.sum + common.clipped;
   c.weight = keep * keep * c.weight + now.mask;
-  const Lanes square = c.sum * c.sum;
+  const Lanes square = c.sum * c.sum, likely = std::max(0.0, kUnseenSquare - relaxed_) * clipped_;
   c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
   evidence_ = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
   if (common.coloured) {
@@ -80,10 +80,10 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     evidence_ /= wide;
     if (j >= 1 && h <= 2.0 * lag)
       unseen_ =
-          (square > std::max(0.0, kUnseenSquare - relaxed_) * wide * c.weight)
+          (square > likely * wide * c.weight)
               .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
   } else if (j >= 1 && h <= 2.0 * lag) {
-    unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * c.weight)
+    unseen_ = (square > likely * c.weight)
                   .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
   }
   short_[j].add(now.short_rad, c.ratio, keep);
@@ -130,6 +130,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   shaking_ =
       (shaking_ + now.mask * (0.5 * (1.0 - 1.0 / kShakingVariance) * capped - kHalfLog) / tails).max(0.0);
   short_[kShaking].add(now.short_rad, shaking_, 0.0);
+  clipped_ += now.mask * (common.clipped * common.clipped - clipped_) / seen_;
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;
   return found;

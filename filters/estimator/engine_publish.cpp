@@ -40,7 +40,7 @@ void Engine::publish_rest(Step& s) noexcept {
     // rule.
     if (wide > 1.0) wide *= settings_.measurement_noise / rest_->rule().measurement_noise();
     s.variance[i] *= 0.5 * (walk[i] * (learns_walk_ ? wide : 1.0) + noise[i] * wide);
-    s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding();
+    s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding(s.rate[i], rest_->variance() * noise[i]);
   }
 }
 
@@ -105,8 +105,9 @@ void Engine::learn(const Step& s) noexcept {
   if (rest) rest_stretch_ = std::min(2.0 * rest_stretch_, kStretch);
   bool other = false;
   for (std::size_t a = 0; a < axes_; ++a) {
-    const double heard = found->noise[a], known = noise_[a].known();
-    if (!(heard > 0.0) || !found->white) continue;
+    if (!(found->noise[a] > 0.0) || !found->white) continue;
+    // Below its own steps a converter shows nothing of the noise.
+    const double heard = std::max(found->noise[a], noise_[a].of_steps()), known = noise_[a].known();
     if (rest ? kOtherNoise * heard < known : heard > kOtherNoise * known) {
       noise_[a].set_known(heard);
       other = true;
