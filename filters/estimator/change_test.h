@@ -73,7 +73,7 @@ class ChangeTest {
 
   std::array<Contest, Trackers::kMost> contest_{};
   std::array<Shortfall, kShaking + 1> short_{};
-  Lanes shaking_ = Lanes::Zero(), fourth_ = Lanes::Constant(3.0), clipped_ = Lanes::Ones(), unseen_ = Lanes::Zero(),
+  Lanes shaking_ = Lanes::Zero(), fourth_ = Lanes::Constant(3.0), unseen_ = Lanes::Zero(),
         widest_ = Lanes::Ones();
   double relaxed_ = 0.0, seen_ = 64.0;
   Lanes evidence_ = Lanes::Zero();

@@ -162,6 +162,7 @@ void Engine::weigh(Step& s) noexcept {
   m.rest_factor = 1.0 + projected / s.noise_scale;
   m.log_rest_factor = logarithm(m.rest_factor);
   m.rest_gain = std::min(1.0, projected / (projected + s.noise_scale));
+  m.slow = std::max(1.0, rest_->rule().measurement_noise() / settings_.measurement_noise);
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     m.scale[i] = noise_[a].tested() * s.noise_scale * (smooths ? noise_[a].heard() : 1.0);
