@@ -32,12 +32,12 @@ class Follower {
   Outliers outliers;
   Mix mix;
   Ledger ledger;
-  bool moving = true;                  // nobody knows at the beginning: rest has to be found
-  bool known = false;                  // that it moves, or has rested
-  double since_moved = 0.0;            // samples that the filter at rest has had since it was moved
-  double at_rest_for = 0.0;            // samples since rest was found
-  bool settled = false;                // the filter at rest gets back by itself what it lags behind by
-  Lanes published = Lanes::Zero();     // the last rate, without payments
+  bool moving = true;               // nobody knows at the beginning: rest has to be found
+  bool known = false;               // that it moves, or has rested
+  double since_moved = 0.0;         // samples that the filter at rest has had since it was moved
+  double at_rest_for = 0.0;         // samples since rest was found
+  bool settled = false;             // the filter at rest gets back by itself what it lags behind by
+  Lanes published = Lanes::Zero();  // the last rate, without payments
 };
 
 class Engine {

@@ -68,11 +68,10 @@ void Engine::pay(Step& s) noexcept {
       follows && follow_.at_rest_for >= kYoungLags * std::max(settled_lag_, 1.0 / rest_->gain());
   if (settled && !follow_.settled) follow_.change.forget_angle();
   follow_.settled = settled;
-  ledger.book((s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s,
-              s.outlier        ? kDoubt
-              : follow_.moving ? kDebt
-              : settled        ? kCarried
-                               : kTail);
+  ledger.book((s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s, s.outlier        ? kDoubt
+                                                                             : follow_.moving ? kDebt
+                                                                             : settled        ? kCarried
+                                                                                              : kTail);
   ledger.pace_tail(lag());
   // What a gap hides is no angle.
   const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));

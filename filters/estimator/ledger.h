@@ -42,10 +42,18 @@ class Ledger {
   // One sample's angle by which the rate without payments fell short of the measured one.
   void book(const Lanes& short_by_rad, Account account) noexcept {
     switch (account) {
-      case Account::kDebt: debt_ += short_by_rad; break;
-      case Account::kTail: tail_ += short_by_rad; [[fallthrough]];
-      case Account::kCarried: at_rest_ += short_by_rad; break;
-      case Account::kDoubt: doubt_ += short_by_rad; break;
+      case Account::kDebt:
+        debt_ += short_by_rad;
+        break;
+      case Account::kTail:
+        tail_ += short_by_rad;
+        [[fallthrough]];
+      case Account::kCarried:
+        at_rest_ += short_by_rad;
+        break;
+      case Account::kDoubt:
+        doubt_ += short_by_rad;
+        break;
     }
   }
   // The outliers were rotation.
@@ -81,7 +89,7 @@ class Ledger {
 
  private:
   static constexpr double kTailShare = 0.5;
-  static constexpr double kQuickest = 16.0, kShare = 0.5;  // samples; of the followers' length
+  static constexpr double kQuickest = 16.0, kShare = 0.5;                // samples; of the followers' length
   static constexpr double kOwedSamples = 1024.0, kQuickestTail = 100.0;  // samples
   // Samples for which an outlier may turn out to have been the edge of a motion.
   static constexpr double kDoubtful = 16.0;

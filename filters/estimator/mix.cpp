@@ -79,9 +79,13 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   const Lanes ahead = (0.5 * (mean - rest)).max(-kMostNats).min(kMostNats) / colour.sqrt();
   rest_ratio_ = (now.mask > 0.0).select((rest_ratio_ + ahead).min(kMostAhead), rest_ratio_);
   rest_age_ += 1.0;
-  for (std::size_t j = 1; j < size; ++j)
+  // Whether the raw measurement is better is asked at once, as broadband motion stays no longer; among trackers
+  // the choice does not depend on the noise of what it is made for.
+  const auto compare = [&](std::size_t j) {
     link_[j] += now.mask * (0.5 * (risk[j - 1] - risk[j])).max(-kMostNats).min(kMostNats) -
                 link_[j] / std::max(5.0, 3.0 * trackers.length(j - 1));
+  };
+  compare(1);
   trackers.correct(now.rate, now.valid);
   rest_weight_ = rest_age_ >= 3.0 * failed_after_ ? certain(least(rest_ratio_) - kRestPrior) : 0.0;
   double remains = 1.0 - rest_weight_;
@@ -92,6 +96,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
     remains = longer;
     gain_ += weight_[j] * (trackers.predicts(j) ? trackers.gains(j).rate : 1.0);
   }
+  for (std::size_t j = 2; j < size; ++j) compare(j);
   for (std::size_t j = 1; j < size; ++j) {
     compared_[j] = std::min(compared_[j] + 1.0, 6.0 * trackers.length(j));
     const Lanes apart = trackers.rate(j) - trackers.rate(j - 1);

@@ -96,9 +96,7 @@ class Noise {
     return bow * (0.775 + 0.225 * std::abs(bow));
   }
   // Of third differences. A converter at rest between two changes of its last digit shows none.
-  [[nodiscard]] double usual() const noexcept {
-    return std::max({slow_, 1e-9 * known_, of_steps()});
-  }
+  [[nodiscard]] double usual() const noexcept { return std::max({slow_, 1e-9 * known_, of_steps()}); }
 
   static constexpr double kThird = 20.0;                             // 1 + 9 + 9 + 1
   static constexpr double kFew = 8.0, kFast = 32.0, kSlow = 1024.0;  // samples

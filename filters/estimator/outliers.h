@@ -42,8 +42,8 @@ class Outliers {
     } else {
       squares_ += least;
       const double apart = rate[axis] - kept_[(run_ - 1) % kKept][axis];
-      nearness_ +=
-          0.5 * std::log(squares_ / static_cast<double>(run_ + 1) / std::max(2.0, apart * apart / now.scale[axis]));
+      nearness_ += 0.5 * std::log(squares_ / static_cast<double>(run_ + 1) /
+                                  std::max(2.0, apart * apart / now.scale[axis]));
     }
     kept_[run_ % kKept] = rate;
     axis_ = axis;
@@ -72,7 +72,7 @@ class Outliers {
   static constexpr double kFar = 25.0, kFarMoving = 30.0, kNeverNoise = 400.0;
   static constexpr double kMostSurprise = 1e6, kSurpriseMemory = 20.0;
   static constexpr double kRare = 1e-3, kMostRarity = 12.5, kEvidence = 18.0;
-  static constexpr int kLongestWait = 16;  // samples
+  static constexpr int kLongestWait = 16;                   // samples
   static constexpr double kMemory = 8192.0, kYoung = 64.0;  // samples
 
   std::array<Lanes, kKept> kept_{};

@@ -105,7 +105,7 @@ TEST(StartInMotion, DoesNotTakeTheMotionForNoise) {
   };
   const Record r = record(2, 4000, 1e-3, ramps);
   const Filtered got = run(told(1e-3), r.measured);
-  EXPECT_LT(std::sqrt(mean_square_error(got.denoised, r.truth, 2900)), 1.1);
+  EXPECT_LT(std::sqrt(mean_square_error(got.denoised, r.truth, 2900)), 1.0);
 }
 
 // A filter that begins in the middle of a turn, told a noise half as loud again as it is. What it lags behind
