@@ -355,7 +355,7 @@ void Engine::take(Step& s, bool learn) noexcept {
 }
 
 void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
-  rest_->shift_rate_to({rate[0], rate[1], rate[2]}, started_);
+  rest_->shift_to({rate[0], rate[1], rate[2]}, started_);
   const Lanes share = noise_share();
   double of_all = 0.0;
   for (std::size_t a = 0; a < axes_; ++a)
