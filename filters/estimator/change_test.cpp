@@ -26,7 +26,7 @@ constexpr double kWider = 1.25, kMostSum = 16.0;
 // Nats that an earlier manoeuvre still counts for fade over so many samples.
 constexpr double kRelaxedKept = 0.999;
 // Square of two standard deviations: of a sum in which a change may have begun.
-constexpr double kUnseenSquare = 4.0;
+constexpr double kUnseenSquare = 6.25;
 // Mean of a change that grows as a parabola over a horizon to its end: (0.8)^-2.
 constexpr double kAtEnd = 1.55;
 // Samples over which the fourth moment of the noise is averaged.
@@ -49,11 +49,11 @@ void ChangeTest::begin() noexcept {
     c.ratio.setZero();
     c.sum.setZero();
     c.weight.setZero();
-    c.angle.setZero();
     c.rest.setZero();
     c.rest2.setZero();
     c.tracker.setZero();
   }
+  forget_angle();
   shaking_.setZero();
   unseen_.setZero();
   suspected_ = false;
@@ -71,22 +71,21 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   const Lanes square = c.sum * c.sum;
   c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
   evidence_ = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
+  c.wide += now.mask * ((square / c.weight.max(1.0)).min(kMostSum * c.wide.max(1.0)) - c.wide) /
+            (h * (c.horizons + 1.0));
+  const Lanes prior = (colour > kColoured).select((h * (1.0 - 1.0 / colour)).max(1.0), Lanes::Ones());
+  const Lanes wider = believed(c, prior).max(1.0);
+  // Without colour only as far as the filter takes the noise for louder than is known, and is slow by that.
+  const Lanes likely = (colour > kColoured).select(wider, wider.min(now.slow));
   if (common.coloured) {
-    c.wide += now.mask * ((square / c.weight.max(1.0)).min(kMostSum * c.wide.max(1.0)) - c.wide) /
-              (h * (c.horizons + 1.0));
-    const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
-    const Lanes wide = (colour > kColoured).select(kWider * believed(c, prior).max(1.0), Lanes::Ones());
+    const Lanes wide = (colour > kColoured).select(kWider * wider, Lanes::Ones());
     widest_ = widest_.max(wide);
     evidence_ /= wide;
-    if (j >= 1 && h <= 2.0 * lag)
-      unseen_ =
-          (square > std::max(0.0, kUnseenSquare - relaxed_) * wide * c.weight)
-              .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
-  } else if (j >= 1 && h <= 2.0 * lag) {
-    unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * c.weight)
-                  .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
   }
-  c.angle = keep * c.angle + now.innovation * now.covered_s;
+  if (j >= 1 && h <= 2.0 * lag)
+    unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * likely * c.weight)
+                  .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
+  short_[j].add(now.short_rad, c.ratio, keep);
   c.ratio = (keep * c.ratio + evidence_).max(kLeastRatio);
   c.rest = keep * c.rest + common.squares;
   c.rest2 = keep * c.rest2 + common.squares2;
@@ -97,7 +96,8 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
                                             double rarity, double lag) noexcept {
   Common common;
   common.cap = 2.0 * rarity;
-  common.clipped = (now.innovation * now.inverse.sqrt()).max(-kMostDeviations).min(kMostDeviations);
+  const double most_deviations = std::min(kMostDeviations, std::sqrt(common.cap));
+  common.clipped = (now.innovation * now.inverse.sqrt()).max(-most_deviations).min(most_deviations);
   common.squares = now.surprise.min(kMostSquare);
   common.squares2 = common.squares * common.squares;
   common.rest_evidence = 0.5 * (now.surprise.min(common.cap) + now.log_rest_factor) * now.mask;
@@ -129,6 +129,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   const Lanes tails = (fourth_ / 3.0).max(1.0) * widest_;
   shaking_ =
       (shaking_ + now.mask * (0.5 * (1.0 - 1.0 / kShakingVariance) * capped - kHalfLog) / tails).max(0.0);
+  short_[kShaking].add(now.short_rad, shaking_, 0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;
   return found;

@@ -33,10 +33,11 @@ class ChangeTest {
   // Rest was found after a manoeuvre: what is left of that is found by less evidence.
   void relax() noexcept { relaxed_ = kRelaxed; }
   [[nodiscard]] bool suspected() const noexcept { return suspected_; }
-  // Angle, rad, by which the filter at rest has fallen short within the tracker's horizon.
-  [[nodiscard]] double angle(std::size_t tracker, std::size_t axis) const noexcept {
-    return contest_[tracker].angle[static_cast<Eigen::Index>(axis)];
-  }
+  // Angle, rad, that the filter at rest has fallen short of since the change began, and the samples that it
+  // came together in.
+  [[nodiscard]] const Lanes& angle(std::size_t tracker) const noexcept { return short_[tracker].angle; }
+  [[nodiscard]] double span(std::size_t tracker) const noexcept { return short_[tracker].span.maxCoeff(); }
+  void forget_angle() noexcept { short_.fill({}); }
   // Variance of a change that may have begun, (rad/s)^2.
   [[nodiscard]] double unseen(std::size_t axis) const noexcept {
     return unseen_[static_cast<Eigen::Index>(axis)];
@@ -47,9 +48,18 @@ class ChangeTest {
  private:
   static constexpr double kRelaxed = 10.0;
   struct Contest {
-    Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero(), angle = Lanes::Zero();
+    Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero();
     Lanes wide = Lanes::Ones(), horizons = Lanes::Zero();
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
+  };
+  // Summed from where the evidence begins, and fading before it.
+  struct Shortfall {
+    Lanes angle = Lanes::Zero(), span = Lanes::Zero();
+    void add(const Lanes& short_rad, const Lanes& evidence, double keep) noexcept {
+      const Lanes kept = (evidence > 0.0).select(Lanes::Ones(), Lanes::Constant(keep));
+      angle = kept * angle + short_rad;
+      span = kept * span + 1.0;
+    }
   };
   struct Common {
     Lanes clipped, capped, rest_evidence, squares, squares2;
@@ -62,6 +72,7 @@ class ChangeTest {
   [[nodiscard]] double same_size(const Contest& c, Eigen::Index a) const noexcept;
 
   std::array<Contest, Trackers::kMost> contest_{};
+  std::array<Shortfall, kShaking + 1> short_{};
   Lanes shaking_ = Lanes::Zero(), fourth_ = Lanes::Constant(3.0), unseen_ = Lanes::Zero(),
         widest_ = Lanes::Ones();
   double relaxed_ = 0.0, seen_ = 64.0;

@@ -11,8 +11,6 @@ namespace {
 
 // Standard deviations that an innovation counts for at most where large ones are frequent at rest.
 constexpr double kNeverNoise = 20.0;
-// Of the angle of an outlier at rest what is remembered of it a sample later.
-constexpr double kKeptOut = 0.94;
 
 Lanes to_lanes(const Axes& axes) noexcept { return {axes[0], axes[1], axes[2], 0.0}; }
 
@@ -60,7 +58,7 @@ LearnedNoise Engine::learned() const noexcept {
 
 Axes Engine::owed() const noexcept {
   if (!settings_.conserve_angle) return {};
-  const Lanes owed = follow_.ledger.owed() + follow_.kept_out_rad;
+  const Lanes owed = follow_.ledger.owed();
   return {owed[0], owed[1], owed[2]};
 }
 
@@ -164,6 +162,7 @@ void Engine::weigh(Step& s) noexcept {
   m.rest_factor = 1.0 + projected / s.noise_scale;
   m.log_rest_factor = logarithm(m.rest_factor);
   m.rest_gain = std::min(1.0, projected / (projected + s.noise_scale));
+  m.slow = std::max(1.0, rest_->rule().measurement_noise() / settings_.measurement_noise);
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     m.scale[i] = noise_[a].tested() * s.noise_scale * (smooths ? noise_[a].heard() : 1.0);
@@ -192,7 +191,6 @@ void Engine::follow(Step& s) noexcept {
       rest_->skip();
       if (follow_.outliers.run() == 1) follow_.trackers.pass_over();
       follow_.moving ? publish_mix(s) : publish_rest(s);
-      follow_.kept_out_rad += (s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s;
       // Until the next measurement says which, it may be the first of a jump.
       s.variance += s.sample.innovation * s.sample.innovation;
       return;
@@ -200,10 +198,9 @@ void Engine::follow(Step& s) noexcept {
       jump(s);
       break;
     case Outliers::Verdict::usual:
-      // In a manoeuvre an outlier may be rotation, and is booked.
-      if (follow_.moving) admit_outliers();
-      // At rest it is remembered for a while, should a manoeuvre be found that it was the beginning of.
-      follow_.kept_out_rad *= kKeptOut;
+      if (follow_.outliers.run() > 0) break;
+      // In a manoeuvre an outlier may be rotation.
+      follow_.moving ? follow_.ledger.admit() : follow_.ledger.dismiss();
       break;
   }
   follow_.moving ? follow_manoeuvre(s) : follow_rest(s);
@@ -215,7 +212,10 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
   if (follow_.moving && follow_.mix.raw()) return Outliers::Verdict::usual;
   // Nor behind a gap.
   for (std::size_t a = 0; a < axes_; ++a)
-    if ((s.sample.valid >> a & 1U) != 0 && trackers.since(a) > kShortGap) return Outliers::Verdict::usual;
+    if ((s.sample.valid >> a & 1U) != 0 && trackers.since(a) > kShortGap) {
+      follow_.outliers.end_run();
+      return Outliers::Verdict::usual;
+    }
   Lanes least = s.sample.surprise;
   // At rest the raw one, a parabola through three measurements, foresees nothing better than others and much
   // worse.
@@ -233,8 +233,7 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
   }
   Eigen::Index worst = 0;
   const double most = least.maxCoeff(&worst);
-  return follow_.outliers.take(most, s.sample.rate, s.sample.scale[worst], static_cast<std::size_t>(worst),
-                               follow_.moving, lag());
+  return follow_.outliers.take(most, s.sample, worst, follow_.moving, lag());
 }
 
 // So many measurements that nothing predicts are a new rate: followers begin with the last of them.
@@ -247,7 +246,7 @@ void Engine::jump(Step& s) noexcept {
     f.trackers.correct(f.outliers.kept(i), s.sample.valid);
   }
   f.trackers.predict(1.0);
-  admit_outliers();
+  f.ledger.admit();
   f.outliers.end_run();
   Lanes rate = f.published;
   rate = (s.sample.mask > 0.0).select(s.sample.rate, rate);
@@ -260,13 +259,9 @@ void Engine::jump(Step& s) noexcept {
   f.change.begin();
 }
 
-void Engine::admit_outliers() noexcept {
-  follow_.ledger.add(follow_.kept_out_rad);
-  follow_.kept_out_rad.setZero();
-}
-
 void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
+  s.sample.short_rad = f.ledger.take_short_at_rest();
   std::optional<std::size_t> found =
       f.change.take(f.trackers, s.sample, colour(), f.outliers.rarity(), lag());
   if (found == ChangeTest::kShaking && settings_.wideband == "noise") found.reset();
@@ -286,18 +281,17 @@ void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   s.out.flags |= kManoeuvre;
   ++health_.manoeuvres;
   const double since = f.since_moved;
-  admit_outliers();
+  f.ledger.admit();
+  const double horizon = f.trackers.horizon(std::min(tracker, f.trackers.size() - 1));
+  f.ledger.owe_late(f.change.angle(tracker), std::max(horizon, f.change.span(tracker)), f.settled);
   if (tracker == ChangeTest::kShaking) {
     f.mix.begin(0.0);
   } else {
-    Lanes late = Lanes::Zero();
-    for (std::size_t a = 0; a < axes_; ++a) late[static_cast<Eigen::Index>(a)] = f.change.angle(tracker, a);
-    f.ledger.owe_late(late, f.trackers.horizon(tracker));
     for (std::size_t j = tracker + 1; j < f.trackers.size(); ++j) {
       f.trackers.begin_from(j, tracker);
       break;
     }
-    f.mix.begin(std::min(since, f.trackers.horizon(tracker)));
+    f.mix.begin(std::min(since, f.trackers.horizon(tracker)), tracker);
     move_rest(f.trackers.rate(tracker), f.trackers.gains(tracker).output * s.sample.scale);
     f.ledger.pace(f.trackers.length(tracker));
   }
@@ -361,7 +355,7 @@ void Engine::take(Step& s, bool learn) noexcept {
 }
 
 void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
-  rest_->shift_rate_to({rate[0], rate[1], rate[2]}, started_);
+  rest_->shift_to({rate[0], rate[1], rate[2]}, started_);
   const Lanes share = noise_share();
   double of_all = 0.0;
   for (std::size_t a = 0; a < axes_; ++a)

@@ -32,12 +32,12 @@ class Follower {
   Outliers outliers;
   Mix mix;
   Ledger ledger;
-  bool moving = true;                  // nobody knows at the beginning: rest has to be found
-  bool known = false;                  // that it moves, or has rested
-  double since_moved = 0.0;            // samples that the filter at rest has had since it was moved
-  double at_rest_for = 0.0;            // samples since rest was found
-  Lanes published = Lanes::Zero();     // the last rate, without payments
-  Lanes kept_out_rad = Lanes::Zero();  // angle of the outliers under way, that may turn out to be rotation
+  bool moving = true;               // nobody knows at the beginning: rest has to be found
+  bool known = false;               // that it moves, or has rested
+  double since_moved = 0.0;         // samples that the filter at rest has had since it was moved
+  double at_rest_for = 0.0;         // samples since rest was found
+  bool settled = false;             // the filter at rest gets back by itself what it lags behind by
+  Lanes published = Lanes::Zero();  // the last rate, without payments
 };
 
 class Engine {
@@ -75,7 +75,6 @@ class Engine {
   void follow(Step& s) noexcept;
   [[nodiscard]] Outliers::Verdict judge_outlier(const Step& s) noexcept;
   void jump(Step& s) noexcept;
-  void admit_outliers() noexcept;
   void follow_rest(Step& s) noexcept;
   void follow_manoeuvre(Step& s) noexcept;
   void begin_manoeuvre(Step& s, std::size_t tracker) noexcept;

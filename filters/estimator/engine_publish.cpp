@@ -17,8 +17,8 @@ constexpr double kReachAfter = 256.0;
 constexpr double kLeastReach = 48.0;
 // Of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 deg/s.
 constexpr double kMostRestRate = 0.02;
-// Lags after which the filter's memory of where it was moved to has faded to 5 %.
-constexpr double kYoungLags = 3.0;
+// Lags of rest after which the end of a manoeuvre, and where it moved the filter to, have faded.
+constexpr double kYoungLags = 7.0;
 // Known noise is replaced where a stretch differs by this factor.
 constexpr double kOtherNoise = 2.0;
 // Louder noise than is known has to be white for so long, and for two stretches.
@@ -40,7 +40,7 @@ void Engine::publish_rest(Step& s) noexcept {
     // rule.
     if (wide > 1.0) wide *= settings_.measurement_noise / rest_->rule().measurement_noise();
     s.variance[i] *= 0.5 * (walk[i] * (learns_walk_ ? wide : 1.0) + noise[i] * wide);
-    s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding();
+    s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding(s.rate[i], rest_->variance() * noise[i]);
   }
 }
 
@@ -57,23 +57,28 @@ void Engine::publish_mix(Step& s) noexcept {
   s.gain = mix.gain + follow_.mix.rest_weight() * rest_->gain();
 }
 
-// Adds the payment of this sample, and books what the rate falls short of.
+// Books what the rate falls short of, and adds the payment of this sample.
 void Engine::pay(Step& s) noexcept {
-  // What the filter lags behind the tail of a manoeuvre by does not return by itself.
+  using enum Ledger::Account;
+  Ledger& ledger = follow_.ledger;
+  const bool follows = settings_.follow_manoeuvres;
+  // Until it has settled nothing that the filter lags behind by returns by itself.
   follow_.at_rest_for = follow_.moving ? 0.0 : follow_.at_rest_for + 1.0;
-  const bool young = follow_.at_rest_for < kYoungLags * settled_lag_;
-  const bool books = follow_.moving || young || !settings_.follow_manoeuvres;
-  follow_.ledger.slow_pace(lag());
-  const Lanes covered = s.sample.mask * s.sample.covered_s;
+  const bool settled =
+      follows && follow_.at_rest_for >= kYoungLags * std::max(settled_lag_, 1.0 / rest_->gain());
+  if (settled && !follow_.settled) follow_.change.forget_angle();
+  follow_.settled = settled;
+  ledger.book((s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s, s.outlier        ? kDoubt
+                                                                             : follow_.moving ? kDebt
+                                                                             : settled        ? kCarried
+                                                                                              : kTail);
+  ledger.pace_tail(lag());
   // What a gap hides is no angle.
   const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
-  const Lanes paid =
-      follow_.ledger.payment(rest_->variance() * noise_share(), settings_.follow_manoeuvres, dt_s);
-  Lanes short_by = Lanes::Zero();
-  if (books && !s.outlier) short_by = (s.sample.rate - s.rate) * covered;
-  follow_.ledger.book(short_by, follow_.moving, paid, dt_s);
+  const Lanes paid = ledger.pay(
+      follows ? Ledger::most_of_tail(rest_->variance() * noise_share()) : Lanes::Constant(1e300), dt_s);
   s.rate += paid;
-  if (settings_.follow_manoeuvres) s.variance = s.variance.max(paid * paid);
+  if (follows) s.variance = s.variance.max(paid * paid);
 }
 
 bool Engine::rests(const Step& s) const noexcept {
@@ -99,8 +104,9 @@ void Engine::learn(const Step& s) noexcept {
   if (rest) rest_stretch_ = std::min(2.0 * rest_stretch_, kStretch);
   bool other = false;
   for (std::size_t a = 0; a < axes_; ++a) {
-    const double heard = found->noise[a], known = noise_[a].known();
-    if (!(heard > 0.0) || !found->white) continue;
+    if (!(found->noise[a] > 0.0) || !found->white) continue;
+    // Below its own steps a converter shows nothing of the noise.
+    const double heard = std::max(found->noise[a], noise_[a].of_steps()), known = noise_[a].known();
     if (rest ? kOtherNoise * heard < known : heard > kOtherNoise * known) {
       noise_[a].set_known(heard);
       other = true;

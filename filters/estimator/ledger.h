@@ -1,18 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 // Keeps the angle: what the published rate has fallen short of the measured one, integrated, is paid back.
 //
-// At rest nothing is booked: a settled filter of gain K owes T (1 - K) / K times the change of rate, and gets
-// it back by itself when the rate returns. What a manoeuvre owes is paid within half the samples that its
-// followers look back on: paid over n samples, shortfalls of a tracker of memory M at the frequency w turn 2
-// (w M)^3 w n of a cone into drift. What came together before the manoeuvre was found is paid over as many
-// samples as it came together in, as paid at once it would put the rate off by more than the motion did. A
-// filter at rest that was moved is a mean of what came since, and nothing that it lags behind by returns by
-// itself: until it has settled that is booked, too, and paid at no more than a part of its own standard
-// deviation.
+// Every sample's shortfall goes to exactly one account, and leaves it by payment only:
+//   debt    of a manoeuvre
+//   late    what came together before the manoeuvre was found
+//   tail    of a filter at rest that has not settled since it was moved
+//   doubt   of outliers, until the next measurements show whether they were rotation
+// A settled filter of gain K owes T (1 - K) / K times the change of rate and gets it back by itself when the
+// rate returns. That is carried by the filter, and so is the angle of an outlier at rest. Once a manoeuvre is
+// found what of it was carried since that began is late.
+//
+// Paid over n samples, shortfalls of a tracker of memory M at the frequency w turn 2 (w M)^3 w n of a cone
+// into drift. So a manoeuvre's debt is paid within half of what its followers look back on. What is late is
+// paid over as many samples as it came together in: at once it would put the rate off by more than the motion
+// did. Of the tail no more is paid than a part of the filter's own standard deviation.
 #pragma once
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "filters/estimator/lanes.h"
 
@@ -20,55 +26,77 @@ namespace ifog {
 
 class Ledger {
  public:
+  enum class Account { kDebt, kTail, kDoubt, kCarried };
   explicit Ledger(double period_s) noexcept : period_s_(period_s) {}
 
-  // Rate to be added to this sample's. Of what is owed at rest no more than that part of sqrt(variance) a
-  // sample. dt_s: of the angle that is integrated with it, by axis.
-  [[nodiscard]] Lanes payment(const Lanes& rest_variance, bool limited, const Lanes& dt_s) noexcept {
-    paid_late_ = late_ / dt_s.max(late_pace_ * period_s_);
-    paid_slow_ = slow_ / dt_s.max(slow_pace_ * period_s_);
-    if (limited) {
-      const Lanes most = kRestShare * rest_variance.sqrt();
-      paid_slow_ = paid_slow_.max(-most).min(most);
+  // Rate to be added to this sample's. most: of what is paid of the tail. dt_s: of the angle that is
+  // integrated with it, by axis.
+  [[nodiscard]] Lanes pay(const Lanes& most, const Lanes& dt_s) noexcept {
+    const Lanes debt = debt_ / dt_s.max(pace_ * period_s_), late = late_ / dt_s.max(late_pace_ * period_s_);
+    const Lanes tail = (tail_ / dt_s.max(tail_pace_ * period_s_)).max(-most).min(most);
+    debt_ -= debt * dt_s;
+    late_ -= late * dt_s;
+    tail_ -= tail * dt_s;
+    return debt + late + tail;
+  }
+  // One sample's angle by which the rate without payments fell short of the measured one.
+  void book(const Lanes& short_by_rad, Account account) noexcept {
+    switch (account) {
+      case Account::kDebt:
+        debt_ += short_by_rad;
+        break;
+      case Account::kTail:
+        tail_ += short_by_rad;
+        [[fallthrough]];
+      case Account::kCarried:
+        at_rest_ += short_by_rad;
+        break;
+      case Account::kDoubt:
+        doubt_ += short_by_rad;
+        break;
     }
-    return debt_ / dt_s.max(pace_ * period_s_) + paid_late_ + paid_slow_;
   }
-  // One sample of dt: angle by which the output without payment fell short of the measured rate, in a
-  // manoeuvre or in a filter at rest of which nothing returns by itself, and the payment.
-  void book(const Lanes& short_by_rad, bool manoeuvre, const Lanes& paid, const Lanes& dt_s) noexcept {
-    debt_ -= (paid - paid_late_ - paid_slow_) * dt_s;
-    late_ -= paid_late_ * dt_s;
-    slow_ -= paid_slow_ * dt_s;
-    (manoeuvre ? debt_ : slow_) += short_by_rad;
+  // The outliers were rotation.
+  void admit() noexcept { debt_ += std::exchange(doubt_, Lanes::Zero()); }
+  // A usual measurement at rest: the outliers before it were none, the less in doubt the longer ago.
+  void dismiss() noexcept {
+    const Lanes dismissed = doubt_ / kDoubtful;
+    doubt_ -= dismissed;
+    at_rest_ += dismissed;
   }
-  // Samples over which what is owed at rest is paid.
-  void slow_pace(double samples) noexcept { slow_pace_ = std::max(kSlowest, samples); }
+  // What the filter at rest has fallen short of since this was asked last.
+  [[nodiscard]] Lanes take_short_at_rest() noexcept { return std::exchange(at_rest_, Lanes::Zero()); }
+  // Another filter's debt.
   void owe(const Lanes& angle_rad) noexcept {
     debt_ += angle_rad;
     pace_ = std::max(pace_, kOwedSamples);
   }
-  // A manoeuvre was found that has gone on for so many samples.
-  void owe_late(const Lanes& angle_rad, double samples) noexcept {
+  // A manoeuvre was found that has gone on for so many samples. settled: the filter at rest carried the angle.
+  void owe_late(const Lanes& angle_rad, double samples, bool settled) noexcept {
     late_ += angle_rad;
-    late_pace_ = samples;
+    if (!settled) tail_ -= angle_rad;
+    late_pace_ = std::max(kQuickest, samples);
   }
-  void add(const Lanes& angle_rad) noexcept { debt_ += angle_rad; }
+  // Samples that the followers of a manoeuvre look back on.
   void pace(double samples) noexcept { pace_ = std::max(kQuickest, kShare * samples); }
-  [[nodiscard]] Lanes owed() const noexcept { return debt_ + late_ + slow_; }
-  void forget() noexcept { debt_ = late_ = slow_ = Lanes::Zero(); }
+  // Lag of the filter at rest.
+  void pace_tail(double lag) noexcept { tail_pace_ = std::max(kQuickestTail, lag); }
+  // Half of its standard deviation: a quarter of its variance, for as long as it takes.
+  [[nodiscard]] static Lanes most_of_tail(const Lanes& variance) noexcept {
+    return kTailShare * variance.sqrt();
+  }
+  [[nodiscard]] Lanes owed() const noexcept { return debt_ + late_ + tail_ + doubt_; }
 
  private:
-  // Of the filter's standard deviation: a tenth of its variance, and the tail of a manoeuvre is paid within
-  // ten lags.
-  static constexpr double kRestShare = 0.3;
-  static constexpr double kQuickest = 16.0, kShare = 0.5;  // samples; of the followers' length
-  static constexpr double kOwedSamples = 1024.0;           // another filter's debt
+  static constexpr double kTailShare = 0.5;
+  static constexpr double kQuickest = 16.0, kShare = 0.5;                // samples; of the followers' length
+  static constexpr double kOwedSamples = 1024.0, kQuickestTail = 100.0;  // samples
+  // Samples for which an outlier may turn out to have been the edge of a motion.
+  static constexpr double kDoubtful = 16.0;
 
-  static constexpr double kSlowest = 100.0;
-
-  double period_s_, pace_ = kQuickest, late_pace_ = kQuickest, slow_pace_ = kSlowest;
-  Lanes debt_ = Lanes::Zero(), late_ = Lanes::Zero(), slow_ = Lanes::Zero();
-  Lanes paid_late_ = Lanes::Zero(), paid_slow_ = Lanes::Zero();
+  double period_s_, pace_ = kQuickest, late_pace_ = kQuickest, tail_pace_ = kQuickestTail;
+  Lanes debt_ = Lanes::Zero(), late_ = Lanes::Zero(), tail_ = Lanes::Zero(), doubt_ = Lanes::Zero(),
+        at_rest_ = Lanes::Zero();
 };
 
 }  // namespace ifog

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kMostNats = 12.5;    // of one measurement: five standard deviations
 constexpr double kLongerPrior = 2.0;  // nats: motions are smooth more often than not
+constexpr double kFoundPrior = 3.0;   // nats for trackers up to one that has found the motion
 constexpr double kRestPrior = 4.0;    // nats that the filter at rest has to be ahead
 constexpr double kMostAhead = 12.0;
 constexpr double kBreaks = 12.0;     // nats by which a longer tracker is surely wrong and begins again
@@ -30,12 +31,13 @@ double Mix::least(const Lanes& lanes) const noexcept {
   return (seen_ > 0.0).select(lanes, Lanes::Constant(1e300)).minCoeff();
 }
 
-void Mix::begin(double failed) noexcept {
+void Mix::begin(double failed, std::size_t found) noexcept {
   link_.fill(Lanes::Zero());
+  for (std::size_t j = 1; j <= found; ++j) link_[j].setConstant(kFoundPrior);
   bias_.fill(Lanes::Zero());
   weight_ = {};
   compared_ = {};
-  weight_[0] = gain_ = 1.0;
+  weight_[found] = gain_ = 1.0;
   rest_ratio_.setZero();
   seen_.setZero();
   rest_age_ = rest_weight_ = 0.0;
@@ -77,9 +79,13 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   const Lanes ahead = (0.5 * (mean - rest)).max(-kMostNats).min(kMostNats) / colour.sqrt();
   rest_ratio_ = (now.mask > 0.0).select((rest_ratio_ + ahead).min(kMostAhead), rest_ratio_);
   rest_age_ += 1.0;
-  for (std::size_t j = 1; j < size; ++j)
+  // Whether the raw measurement is better is asked at once, as broadband motion stays no longer; among trackers
+  // the choice does not depend on the noise of what it is made for.
+  const auto compare = [&](std::size_t j) {
     link_[j] += now.mask * (0.5 * (risk[j - 1] - risk[j])).max(-kMostNats).min(kMostNats) -
                 link_[j] / std::max(5.0, 3.0 * trackers.length(j - 1));
+  };
+  compare(1);
   trackers.correct(now.rate, now.valid);
   rest_weight_ = rest_age_ >= 3.0 * failed_after_ ? certain(least(rest_ratio_) - kRestPrior) : 0.0;
   double remains = 1.0 - rest_weight_;
@@ -90,6 +96,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
     remains = longer;
     gain_ += weight_[j] * (trackers.predicts(j) ? trackers.gains(j).rate : 1.0);
   }
+  for (std::size_t j = 2; j < size; ++j) compare(j);
   for (std::size_t j = 1; j < size; ++j) {
     compared_[j] = std::min(compared_[j] + 1.0, 6.0 * trackers.length(j));
     const Lanes apart = trackers.rate(j) - trackers.rate(j - 1);

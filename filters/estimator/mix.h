@@ -25,8 +25,8 @@ class Mix {
     double gain = 0.0;
   };
 
-  // failed: samples after which an earlier rest was left again.
-  void begin(double failed) noexcept;
+  // failed: samples after which an earlier rest was left again; found: the tracker that predicts the motion.
+  void begin(double failed, std::size_t found = 0) noexcept;
   // Corrects the trackers. coloured: 1 where R is above what third differences say.
   void take(Trackers& trackers, const Sample& now, const Lanes& colour) noexcept;
   // rest, rest_variance: of the filter at rest; scale: R.

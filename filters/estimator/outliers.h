@@ -11,7 +11,7 @@
 #include <cmath>
 #include <span>
 
-#include "filters/estimator/lanes.h"
+#include "filters/estimator/sample.h"
 
 namespace ifog {
 
@@ -21,13 +21,16 @@ class Outliers {
   static constexpr std::size_t kKept = 8;
 
   // least: the smallest square of an innovation over its variance that any filter has, the worst axis';
-  // scale: R of that axis; distance: from the run's last measurement; lag: of the filter at rest, samples.
-  [[nodiscard]] Verdict take(double least, const Lanes& rate, double scale, std::size_t axis, bool moving,
+  // now: the measurement; lag: of the filter at rest, samples.
+  [[nodiscard]] Verdict take(double least, const Sample& now, Eigen::Index axis, bool moving,
                              double lag) noexcept {
+    const Lanes& rate = now.rate;
     seen_ = std::min(seen_ + 1.0, kMemory);
     const bool rare = moving || share_ <= kRare;
     const double most = !rare ? kNeverNoise : moving ? kFarMoving * std::max(1.0, surprise_) : kFar;
     if (least <= most || seen_ < kYoung) {
+      // A run goes on until its own axis is measured again, if that is soon.
+      if (run_ > 0 && (now.valid >> axis_ & 1U) == 0 && ++waited_ < kLongestWait) return Verdict::usual;
       if (!moving) share_ += ((least > kFar ? 1.0 : 0.0) + static_cast<double>(run_) - share_) / seen_;
       run_ = 0;
       if (moving) surprise_ += (std::min(least, kMostSurprise) - surprise_) / kSurpriseMemory;
@@ -38,12 +41,13 @@ class Outliers {
       squares_ = least;
     } else {
       squares_ += least;
-      const auto a = static_cast<Eigen::Index>(axis);
-      const double apart = rate[a] - kept_[(run_ - 1) % kKept][a];
-      nearness_ +=
-          0.5 * std::log(squares_ / static_cast<double>(run_ + 1) / std::max(2.0, apart * apart / scale));
+      const double apart = rate[axis] - kept_[(run_ - 1) % kKept][axis];
+      nearness_ += 0.5 * std::log(squares_ / static_cast<double>(run_ + 1) /
+                                  std::max(2.0, apart * apart / now.scale[axis]));
     }
     kept_[run_ % kKept] = rate;
+    axis_ = axis;
+    waited_ = 0;
     ++run_;
     // Twice the evidence is no noise's, however far apart they are.
     const double evidence = static_cast<double>(run_) * rarity();
@@ -68,11 +72,14 @@ class Outliers {
   static constexpr double kFar = 25.0, kFarMoving = 30.0, kNeverNoise = 400.0;
   static constexpr double kMostSurprise = 1e6, kSurpriseMemory = 20.0;
   static constexpr double kRare = 1e-3, kMostRarity = 12.5, kEvidence = 18.0;
+  static constexpr int kLongestWait = 16;                   // samples
   static constexpr double kMemory = 8192.0, kYoung = 64.0;  // samples
 
   std::array<Lanes, kKept> kept_{};
   double seen_ = 0.0, share_ = 1e-8, surprise_ = 1.0, nearness_ = 0.0, squares_ = 0.0;
   std::size_t run_ = 0;
+  int waited_ = 0;         // samples of other axes since
+  Eigen::Index axis_ = 0;  // of the run's last measurement
 };
 
 }  // namespace ifog

@@ -39,8 +39,6 @@ class RestFilter {
   // Moves the level of the axes in `which` until the measurement would be this, leaving what the model holds
   // beside it (a line, a slope) alone.
   virtual void shift_to(const Axes& rate, std::uint32_t which) noexcept = 0;
-  // The same until the rate is this, whatever is measured beside it.
-  virtual void shift_rate_to(const Axes& rate, std::uint32_t which) noexcept = 0;
   // Makes this the variance of the rate.
   virtual void set_variance(double variance) noexcept = 0;
   // Lag and correlation if the gain stayed as it is.

@@ -101,9 +101,14 @@ class SizedRestFilter final : public RestFilter {
     covariance_ = measurement_variance_ + rule_->measurement_noise();
   }
 
-  void shift_to(const Axes& rate, std::uint32_t which) noexcept override { shift(cores_[0].h, rate, which); }
-  void shift_rate_to(const Axes& rate, std::uint32_t which) noexcept override {
-    shift(readout_, rate, which);
+  void shift_to(const Axes& rate, std::uint32_t which) noexcept override {
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+      Core& core = cores_[j];
+      for (int axis = 0; axis < Core::kAxes; ++axis)
+        if ((which >> static_cast<unsigned>(axis) & 1U) != 0)
+          core.x.col(axis) += level_ * (rate[static_cast<std::size_t>(axis)] - along(core.h, core, axis));
+    }
+    refresh();
   }
 
   void set_variance(double variance) noexcept override {
@@ -147,16 +152,6 @@ class SizedRestFilter final : public RestFilter {
 
   Settled settled(const Core& core) const noexcept {
     return ifog::settled(transition_, core.h, readout_, core.gain, core.p);
-  }
-
-  void shift(const typename Core::Vector& of, const Axes& to, std::uint32_t which) noexcept {
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      for (int axis = 0; axis < Core::kAxes; ++axis) {
-        if ((which >> static_cast<unsigned>(axis) & 1U) == 0) continue;
-        cores_[j].x.col(axis) += level_ * (to[static_cast<std::size_t>(axis)] - along(of, cores_[j], axis));
-      }
-    }
-    refresh();
   }
 
   void average_weights() noexcept {

@@ -65,7 +65,7 @@ TEST(SlowDrift, ThatIsFoundPaysAsSlowlyAsItOwed) {
       worst = std::max(worst, std::abs(got.denoised[i] - r.truth[i]));
   }
   EXPECT_GT(found, 0U);
-  EXPECT_LT(worst, 1.5);
+  EXPECT_LT(worst, 1.3);
 }
 
 TEST(SlowMotion, IsFollowedBesideALongLag) {

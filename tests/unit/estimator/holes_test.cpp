@@ -181,9 +181,7 @@ TEST(Holes, NoAngleOfAJumpIsLostInThem) {
       const auto fate = [=](int i) {
         return i >= 3000 + before && i < 3000 + before + missing ? Sample::missing : Sample::good;
       };
-      // A single measurement before a gap is taken for an outlier, and its angle is forgotten in part.
-      const double most = before == 1 && missing > 16 ? 5e-3 : 1e-4;
-      EXPECT_LT(std::abs(Turning(1, motion, fate).go(0, 1, 60'000).angle), most) << before << ", " << missing;
+      EXPECT_LT(std::abs(Turning(1, motion, fate).go(0, 1, 60'000).angle), 1e-4) << before << ", " << missing;
     }
   }
   // One measurement of it, then none for a while.
