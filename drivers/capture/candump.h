@@ -41,7 +41,7 @@ struct CandumpEntry {
   ifog_can_frame frame{};  // arrival_ns is the line's time, 0 without one
   CandumpStamp stamp = CandumpStamp::none;
   std::string_view interface;  // into the line
-  std::uint64_t dropped = 0;   // of a line that tells drops
+  std::uint64_t dropped = 0;   // frames, on a line that reports drops
 };
 
 // One line without its end; blank and '#' lines are `blank`. Does not allocate. `entry` is set unless blank
@@ -55,7 +55,7 @@ inline constexpr std::size_t kCandumpLineMax = 224;
 // holds kCandumpLineMax bytes. Does not allocate.
 std::size_t format_candump_line(const ifog_can_frame& frame, std::string_view interface, char* out) noexcept;
 
-// From the times on the lines to times that go on. Lines without one get 0. Short ones are taken for times
+// Turns the times on the lines into increasing times. Lines without one get 0. Short ones are read as times
 // since the first frame until one is smaller than that before, which such times never are: from there on they
 // add up.
 class CandumpClock {
@@ -75,7 +75,7 @@ class CandumpClock {
 // names as far as an interface's goes.
 class CandumpBuses {
  public:
-  // "" or the interface that frames of this one's id came on before.
+  // The interface on which frames of this id were received before, or "".
   std::string_view other(const ifog_can_frame& frame, std::string_view interface) noexcept;
 
  private:
@@ -92,7 +92,7 @@ class CandumpBuses {
 
 // What of a log was no frame of data.
 struct CandumpLosses {
-  std::size_t remote = 0, error = 0, xl = 0;  // frames passed over
+  std::size_t remote = 0, error = 0, xl = 0;  // frames not decoded
   std::uint64_t dropped = 0;                  // that the kernel lost before candump
   bool cut_off = false;  // the last line has no end and is no whole frame: it was left out
 };
@@ -110,7 +110,7 @@ Candump read_candump(const std::string& path, std::string_view interface = {});
 // The same of a text already at hand; `path` stands for the file in messages.
 Candump parse_candump(std::string_view text, const std::string& path, std::string_view interface = {});
 
-// A frame, and the interface that it came on.
+// A frame, and the interface on which it was received.
 using CandumpSink = std::function<void(const ifog_can_frame&, std::string_view)>;
 
 // The same of a log of any length, frame by frame, none of it kept; a log with short times is read twice, or

@@ -32,7 +32,7 @@ struct Capture {
   std::vector<CaptureColumn> channels;                    // every other column
   std::vector<std::string> dead_axes;                     // of the sensor, left out: they never have a value
   std::vector<std::string> notices;                       // of the reading: what may be meant otherwise
-  std::vector<std::string> faults;                        // cells taken for missing, one line a column
+  std::vector<std::string> faults;                        // cells read as missing, one line a column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
   TimeOrigin origin;                       // that time_s is counted from
 
@@ -50,7 +50,7 @@ struct Table : RowNotes {
 // Throws std::runtime_error with one line: file, line, column, value, what was expected.
 // Refused: no time_s first, no rate column, time that does not increase, a cell that is no number, a line
 // with another number of cells, a .gz that ends early, a column of which more than one cell in a hundred says
-// what no sensor measures. Fewer such cells are missing, see measurable.h, and told in `faults`.
+// what no sensor measures. Fewer such cells are missing, see measurable.h, and listed in `faults`.
 // `layout` says what a file means that is no capture by its header; where a header is nearly one, the message
 // has the options to type.
 Capture read_capture(const std::string& path);

@@ -26,7 +26,7 @@ void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps);
 void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, RowNotes& notes,
               const std::string& path);
 
-// Times that are whole numbers one apart are a count of rows, unless somebody said their unit; further apart
+// Times that are whole numbers one apart are a count of rows, unless their unit is given; further apart
 // and written without decimals they are more often milliseconds than samples of a second each. It is said,
 // not changed.
 struct WholeTimes {

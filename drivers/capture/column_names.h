@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The names of a capture's columns, and how their faults are told.
+// The names of a capture's columns, and the form of messages about them.
 #pragma once
 
 #include <cstddef>

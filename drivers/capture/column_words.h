@@ -13,7 +13,7 @@ struct Words {
   explicit Words(const std::string& header);
 
   std::vector<std::string> words;  // in small letters, without the axis, the unit and an index
-  std::string axis;                // "x", "y", "z"; "" where the name tells none
+  std::string axis;                // "x", "y", "z"; "" where the name has none
   std::string stem;                // the words, a blank between them: the same for all axes of a sensor
   std::string text;  // the name without its unit, as a column's name may be: letters, digits, "_"
 

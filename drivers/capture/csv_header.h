@@ -22,7 +22,7 @@ struct CsvCell {
   std::string name;                  // in the file
   Measurable range;                  // in the file's unit
   bool rate = false;                 // of the capture: a rate or its reference
-  std::size_t column = kPassedOver;  // of the capture, beside the time
+  std::size_t column = kPassedOver;  // of the capture, not counting the time
   bool kept = true;                  // else it is checked only
 };
 
@@ -30,7 +30,7 @@ struct CsvHeader {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
   std::vector<CsvCell> cells;      // in the file's order
-  std::vector<std::string> names;  // of the capture's columns beside the time
+  std::vector<std::string> names;  // of the capture's columns without the time
   CsvLayout layout;                // that reads it
   char separator = ',';
   std::string comments;              // that stood before it, as in RowNotes

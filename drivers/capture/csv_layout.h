@@ -47,7 +47,7 @@ struct CsvLayout {
   static char parse_separator(const std::string& text);
   // "sensor_id=0". Throws likewise.
   void parse_only(const std::string& text);
-  // Columns or the time were chosen: what nobody chose is passed over, whatever is in it.
+  // Columns or the time were chosen: the others are ignored, whatever they hold.
   [[nodiscard]] bool chooses() const {
     return !columns.empty() || time.has_value() || sample_rate_hz.has_value();
   }

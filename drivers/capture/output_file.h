@@ -18,7 +18,7 @@ class OutputFile {
   explicit OutputFile(std::string path);
   // One that is open already, and from here on this object's to close; `path` stands for it in messages.
   OutputFile(std::string path, int descriptor);
-  // Without finish() a regular file stays as it was, and nothing stays beside it.
+  // Without finish() a regular file is unchanged and no temporary file remains.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;

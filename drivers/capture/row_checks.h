@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the rows of every format go through on their way to whom they are for: chosen columns are converted,
-// angles become rates, and what no sensor measures is missing from here on and told, or refused.
+// angles become rates, and what no sensor measures becomes missing and is reported, or is refused.
 #pragma once
 
 #include <cstddef>
@@ -18,14 +18,14 @@
 
 namespace ifog {
 
-// A column of the file beside the time.
+// A column of the file, not the time.
 struct FileColumn {
   std::string name;   // in the file
   Measurable range;   // in the file's unit
   bool rate = false;  // of the capture: a rate or its reference
 };
 
-// Values of a column that said what no sensor measures, and are taken for missing.
+// Values of a column that no sensor measures, read as missing.
 struct ImpossibleValues {
   std::size_t count = 0;
   std::size_t first_row = 0;  // counted from 0, of what has no lines
@@ -40,7 +40,7 @@ std::string what_no_sensor_measures(const std::string& name, const std::string& 
 std::string in_row(std::size_t row);
 class RowChecks {
  public:
-  // columns: in the order of the names that the sink was told. The path, the layout, the sink and the notes
+  // columns: in the order of the names that the sink was given. The path, the layout, the sink and the notes
   // stay where they are while this is used.
   RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns, RowSink& sink,
             RowNotes& notes);
@@ -54,7 +54,7 @@ class RowChecks {
   // steps: between all times.
   void finish(std::span<const ImpossibleValues> found, bool unit_known, const ExactSteps& steps = {});
 
-  // That came, repeated ones counted.
+  // Rows received, repeated ones included.
   [[nodiscard]] std::size_t rows() const { return rows_; }
 
  private:

@@ -23,7 +23,7 @@ class RowClock {
   // they are while this is used.
   RowClock(const std::string& path, std::string time, bool keep_repeats, RowNotes& notes, Next next);
 
-  // Times in s. What may yet change is held back until more comes. Throws std::runtime_error with one line.
+  // Times in s. Rows whose time may still change are buffered until more follow. Throws std::runtime_error with one line.
   void take(RowBlock& rows);
   void finish();
 
@@ -39,7 +39,7 @@ class RowClock {
   RowNotes& notes_;
   Next next_;
   RowBlock held_;             // the rows of the last stamp or burst
-  std::size_t raw_rows_ = 0;  // that came
+  std::size_t raw_rows_ = 0;  // received
   double offset_s_ = 0.0;     // of rollovers
   double within_s_ = 0.0;     // longest step within a burst; 0: only rows of one stamp are spread
   double period_s_ = 0.0;     // between samples, of the last spread or single row

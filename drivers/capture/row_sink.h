@@ -31,7 +31,7 @@ struct RowBlock {
 class RowSink {
  public:
   virtual ~RowSink() = default;
-  // Once, before the first rows: the columns beside the time, as in a capture's header (rate_x_radps, …).
+  // Once, before the first rows: the columns without the time, as in a capture's header (rate_x_radps, …).
   virtual void begin(const std::vector<std::string>& names) = 0;
   // After that: whether it looks at the column. What it does not is checked all the same, and may come or
   // not.
@@ -46,12 +46,12 @@ class RowSink {
 // What the reading says besides the rows; whole once the last of them was taken.
 struct RowNotes {
   // Comment and blank lines behind the header: so many all together before this row and those that follow.
-  // Rows as they came, from `row` on, that repeat the one before and are left out.
+  // Rows in the file, from `row` on, that repeat the one before and are dropped.
   struct Repeated {
     std::size_t row, rows;
   };
   struct Skipped {
-    std::size_t row, lines;  // row: as it came
+    std::size_t row, lines;  // row: in the file
   };
 
   std::string comments;         // without the '#', each with a line's end behind it
@@ -59,12 +59,12 @@ struct RowNotes {
   std::vector<Skipped> skipped;
   std::vector<Repeated> repeated;
   std::vector<std::string> notices;        // of the reading: what may be meant otherwise
-  std::vector<std::string> faults;         // cells taken for missing, one line a column
+  std::vector<std::string> faults;         // cells read as missing, one line a column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
 
   // The line of a data row (counted from 0), for messages about its values; 0 when there was no text.
   [[nodiscard]] std::size_t line_of_row(std::size_t row) const;
-  // The same of a row as it came, repeated ones counted.
+  // The same for a row in the file, repeated ones counted.
   [[nodiscard]] std::size_t line_of_raw_row(std::size_t row) const;
 };
 

@@ -5,8 +5,8 @@
 // The first of these that the samples have:
 //   - the device's clock, over its wraps, and over where it was set while the device counted on;
 //   - the sequence counter, unwrapped, over the nominal rate, from 0;
-//   - the arrival times, from 0; of samples that come several at once, or at times that scatter, evenly by
-//     the nominal rate, with the arrivals followed slowly; what was held up on its way goes on evenly, too;
+//   - the arrival times, from 0. Where several samples arrive at once or arrivals scatter, samples are spaced
+//     evenly at the nominal rate, which slowly follows the arrivals; delayed samples are spaced evenly, too;
 //   - the number of the sample over the nominal rate, from 0.
 // Where a log's own times are kept, they are what the samples are known by: arrival times stand as they are,
 // and a counter counts on from the first of them.
@@ -30,20 +30,20 @@ class SampleTimes {
     double since_s = 0.0;    // since origin()
     double elapsed_s = 0.0;  // since the sample before; NaN of the first
     double period_s = 0.0;   // of the sample itself, also behind a gap
-    bool anew = false;       // it does not join what came before
+    bool anew = false;       // it does not continue the samples before
   };
-  // Nothing: it came twice, or after one that follows it. Throws std::runtime_error with one line when time
+  // nullopt: a duplicate, or overtaken by a later one. Throws std::runtime_error with one line when time
   // does not go on (the sample's number, both times, the cause), or where there is none.
   std::optional<Taken> next(const ifog_sample& sample);
 
-  // What comes next does not join what came: its clock and counter may have begun anew. The arrival times,
-  // which must be known, say how much later it is.
+  // The next sample does not continue those before: its clock and counter may have restarted. The arrival
+  // times, which must be known, say how much later it is.
   void discontinuity() { broken_ = true; }
-  // The driver's options are others from the next sample on; where they make other clocks it does not join
-  // what came.
+  // The driver's options change with the next sample. If they change its clocks, it does not continue the
+  // samples before.
   void go_on_as(const ifog_description& description);
-  // From here on a device whose clock jumps back has begun anew, also where that clock does not go round:
-  // else that cannot be told from a wrong driver, and is refused.
+  // From here on a clock that jumps back means that the device restarted, even if that clock has no rollover.
+  // Without this call it is refused, because a wrong driver looks alike.
   void allow_restarts() { restarts_ = true; }
   // The arrival times are the stamps of a log whose lines all have one, that of a stamp of zero being
   // zero_ns. Nothing: they have none. Before the first sample.
@@ -53,15 +53,15 @@ class SampleTimes {
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
   // Samples that were not there by the device's counter, or by its clock where it has none.
   [[nodiscard]] std::size_t missing() const { return missing_; }
-  // Of those: or the device's clock was set, and neither a counter nor times of arrival tell which.
+  // Of those, the ones that may also be a clock that was set: neither counter nor arrival times decide.
   [[nodiscard]] std::size_t untold() const { return untold_; }
-  // Times the counter or the clock jumped back, without a discontinuity: the device was switched off and on.
+  // Number of restarts: the counter or the clock jumped back without a discontinuity.
   [[nodiscard]] std::size_t restarts() const { return restarted_; }
-  // Times the device's clock was set while its counter went on: time goes on by that.
+  // Number of times the device's clock was set while its counter continued; the counter then gives the time.
   [[nodiscard]] std::size_t clock_sets() const { return clock_sets_; }
-  // Samples left out because they came twice, or after one that follows.
+  // Samples dropped as duplicates or because a later one had arrived.
   [[nodiscard]] std::size_t repeated() const { return repeated_; }
-  // Likewise because they are of two devices, and nobody knows which of them is wanted.
+  // Samples dropped because two devices send on one line.
   [[nodiscard]] std::size_t mixed() const { return mixed_; }
 
  private:

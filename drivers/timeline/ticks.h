@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A device's clock whose tick is not much shorter than a sample: its steps are none, one or two ticks though
-// nothing is lost, and only their sum tells time. Samples are told at the nominal period, and the sum of what
-// is told stays within two ticks of the clock's own.
+// nothing is lost, and only their sum tells time. Samples are spaced at the nominal period, and their sum stays
+// within two ticks of the clock's own.
 #pragma once
 
 #include <algorithm>
@@ -24,7 +24,7 @@ class Ticks {
   // It has stood still between two samples.
   [[nodiscard]] bool stood() const noexcept { return stood_; }
   [[nodiscard]] bool known() const noexcept { return stood_ || tick_ns_ > 0; }
-  // To what one step tells how much time has passed; at most a second while no tick has been seen.
+  // Resolution of one step; at most a second while no tick has been seen.
   [[nodiscard]] double grain_s() const noexcept { return !stood_ ? 0.0 : tick_ns_ == 0 ? 1.0 : tick_s(); }
   // For another sample with the stamp and the values of the one before.
   [[nodiscard]] bool has_room() const noexcept { return stood_ && owed_s_ > -2.0 * tick_s(); }
@@ -70,7 +70,7 @@ class Ticks {
   std::int64_t tick_ns_ = 0;
   int steps_ = 0;
   bool stood_ = false;
-  double owed_s_ = 0.0;  // the clock's sum less what was told
+  double owed_s_ = 0.0;  // the clock's sum less the published intervals
 };
 
 }  // namespace ifog

@@ -27,8 +27,8 @@ class ColumnStream {
  public:
   // Fills the span, or returns false where the bytes end before.
   using ReceiveBytes = std::function<bool(std::span<char>)>;
-  // Takes the header. Throws std::runtime_error with the refusal that came, or std::length_error when what
-  // comes is no such stream.
+  // Reads the header. Throws std::runtime_error with the refusal received, or std::length_error if the bytes
+  // are no such stream.
   explicit ColumnStream(ReceiveBytes receive);
 
   [[nodiscard]] const Hdf5Header& header() const { return header_; }

@@ -38,7 +38,7 @@ struct Hdf5Header {
   // Of a time in integers, which a double may not hold: the first of them, that all of its values are counted
   // from.
   std::optional<std::int64_t> time_from;
-  bool exact_time = false;  // it is time_ns, which stood beside time_s and is in its place
+  bool exact_time = false;  // the time is time_ns, which replaces time_s
 };
 
 inline constexpr std::size_t kMostHdf5Columns = 1000;

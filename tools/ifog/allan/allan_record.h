@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `ifog allan` knows of one rate: where it came from, its points, its noise terms. Made from a column of
-// a capture, then told in three ways: table, JSON, picture.
+// What `ifog allan` knows of one rate: its source, its points, its noise terms. Made from a column of a
+// capture, then written as table, JSON and picture.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -33,7 +33,7 @@ struct CaptureView {
   CaptureView() = default;
   CaptureView(const Capture& capture);  // which has to outlive this
 
-  // Of a row, for who is told of it.
+  // Time of a row as shown to the user.
   [[nodiscard]] double told_time_s(std::size_t row) const { return origin.told(time_s[row]); }
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
   // What rest is judged on: the axes, and the sensor's rates that the user did not choose.

@@ -26,7 +26,7 @@ struct LongTable : RowNotes {
   std::vector<std::string> header;     // all that the file has but time_s, but for dead_axes
   std::vector<LongColumn> columns;     // of those that are wanted, in the same order
   std::vector<std::string> dead_axes;  // of the sensor, whose columns were left out: they never have a value
-  bool outlined = false;               // set before reading: columns nobody wants are kept as outlines
+  bool outlined = false;               // set before reading: unwanted columns are kept as outlines
   std::vector<ChannelOutline> outlines;
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
