@@ -69,8 +69,8 @@ int said(int code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // First of all: a reload or an end that is asked for while the configuration is read takes place after it.
-  ifog::block_signals();
+  // First of all: a reload that is asked for while the configuration is read takes place after it, and an end at once.
+  ifog::block_reload();
   keep_standard_streams();
   CLI::App app{"ifogd: real-time daemon for fibre-optic gyros", "ifogd"};
   app.set_version_flag("--version", ifog::version_text("ifogd"));
@@ -100,6 +100,7 @@ int main(int argc, char** argv) {
       std::printf("%s: good, %zu sensor(s)\n", file.c_str(), sensors);
       return said(0);
     }
+    ifog::block_signals();
     return housekeeping.run();
   } catch (const ifog::ConfigError& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -36,6 +36,7 @@ UdpSettings read_udp(TableReader& in, const ReadingContext& context) {
   take(in.text("group"), out.group);
   take(in.text("interface"), out.interface);
   take(in.text("host"), out.host);
+  take(in.integer("host_port", 1, 65535), out.host_port);
   check_network(in, udp_complaint(out), told, context);
   return out;
 }

@@ -265,13 +265,16 @@ void Housekeeping::stop_all() {
 
 void Housekeeping::each_second(double interval_s) {
   // Whoever had it may be gone by now.
-  if (!mark_.is_set() && mark_.set(state_folder(config_.state_folder)).empty() && mark_.is_set())
+  if (!mark_.is_set() && mark().empty() && mark_.is_set())
     log_->info("{}: marked as this daemon's", state_folder(config_.state_folder));
   double rate = 0.0;
+  std::vector<std::string> statuses;
   for (const auto& sensor : sensors_) {
     report_second(*sensor, interval_s);
+    statuses.emplace_back(buffer_.begin(), buffer_.end());
     rate += sensor->report.message().output_rate_hz;
   }
+  socket_.tell(std::move(statuses));
   bool stuck = false;
   for (const auto& sensor : sensors_)
     if (const char* const thread = stuck_thread(*sensor); watchdog_ && thread != nullptr) {
@@ -285,12 +288,17 @@ void Housekeeping::each_second(double interval_s) {
            std::to_string(std::lround(rate)) + " samples/s published");
 }
 
-// Before anything is opened: of two daemons with one state folder, the second has touched nothing. Who finds
-// the mark may ask for a reload, which waits as a blocked signal.
-void Housekeeping::mark_as_running() {
+// Of the state folder: who finds the mark may ask this daemon by its socket.
+std::string Housekeeping::mark() {
   const std::string folder = state_folder(config_.state_folder);
-  std::string missed = make_state_folder(folder);
-  if (missed.empty()) missed = mark_.set(folder);
+  const std::string missed = mark_.set(folder);
+  return mark_.is_set() ? socket_.open(folder) : missed;
+}
+
+// Before anything is opened: of two daemons with one state folder, the second has touched nothing.
+void Housekeeping::mark_as_running() {
+  std::string missed = make_state_folder(state_folder(config_.state_folder));
+  if (missed.empty()) missed = mark();
   if (mark_.is_taken()) throw std::runtime_error(missed);
   if (!missed.empty()) log_->warn("{}", missed);
 }
@@ -323,9 +331,10 @@ int Housekeeping::run() {
     }
     // Within the tick, which goes on to its status and its sign of life; the first at once, a flood of them
     // as one a second.
+    reload_asked = socket_.serve() || reload_asked;
     if (reload_asked && monotonic_ns() - reloaded_ns >= kReloadEvery_ns) {
       reload_asked = false;
-      reload();
+      socket_.answer(reload());
       reloaded_ns = monotonic_ns();
     }
     ended = true;

@@ -24,6 +24,13 @@ sigset_t ours() {
 
 }  // namespace
 
+void block_reload() {
+  sigset_t set;
+  sigemptyset(&set);
+  sigaddset(&set, SIGHUP);
+  pthread_sigmask(SIG_BLOCK, &set, nullptr);
+}
+
 void block_signals() {
   const sigset_t set = ours();
   pthread_sigmask(SIG_BLOCK, &set, nullptr);

@@ -6,6 +6,8 @@
 
 namespace ifog {
 
+// SIGHUP alone, which would end a process that is still reading its configuration: it waits for housekeeping.
+void block_reload();
 // For the calling thread and all that it makes: they come to housekeeping alone, as bytes of a file
 // descriptor, and what comes before housekeeping is there waits for it.
 void block_signals();

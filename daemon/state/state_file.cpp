@@ -6,6 +6,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -15,27 +16,17 @@
 #include <system_error>
 
 namespace ifog {
+
+Fd::~Fd() {
+  if (fd_ >= 0) ::close(fd_);
+}
+
 namespace {
 
 [[noreturn]] void fail(const std::string& path, const std::string& what) {
   throw std::runtime_error(path + ": " + what);
 }
 std::string reason() { return std::generic_category().message(errno); }
-
-// A descriptor that is closed.
-class Fd {
- public:
-  explicit Fd(int fd) : fd_(fd) {}
-  ~Fd() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  Fd(const Fd&) = delete;
-  Fd& operator=(const Fd&) = delete;
-  operator int() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 struct Place {
   std::string folder, name;
@@ -89,16 +80,23 @@ void write_state_file(const std::string& path, std::string_view bytes) {
   (void)::fsync(folder);
 }
 
-std::string read_state_file(const std::string& path, std::size_t most) {
-  const Fd file(::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+std::optional<std::string> state_file(const std::string& path, std::size_t most) {
+  const Place place = place_of(path);
+  const Fd folder(::open(place.folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  const Fd file(folder < 0 ? -1
+                           : ::openat(folder, place.name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC));
+  if (file < 0 && (errno == ENOENT || errno == ENOTDIR)) return std::nullopt;
   if (file < 0)
     fail(path,
          errno == ELOOP ? "is a link, expected a file of the state folder" : "cannot be read: " + reason());
-  struct stat there {};
-  if (::fstat(file, &there) != 0 || !S_ISREG(there.st_mode))
+  struct stat there {
+  }, holder{};
+  if (::fstat(file, &there) != 0 || ::fstat(folder, &holder) != 0 || !S_ISREG(there.st_mode))
     fail(path, "is no regular file, expected one of the state folder");
-  if (there.st_nlink != 1)
-    fail(path, "has other names beside this one, expected a file of the state folder alone");
+  if (there.st_nlink != 1) fail(path, "has other names, expected a file of the state folder alone");
+  if (there.st_uid != 0 && there.st_uid != ::geteuid() && there.st_uid != holder.st_uid &&
+      there.st_gid != holder.st_gid)
+    fail(path, "belongs to a user who has no part in its folder");
   std::string text;
   std::array<char, 65536> piece;
   for (;;) {
@@ -110,6 +108,46 @@ std::string read_state_file(const std::string& path, std::size_t most) {
     if (text.size() > most)
       fail(path, "is longer than " + std::to_string(most) + " bytes, which no file of the state folder is");
   }
+}
+
+std::string read_state_file(const std::string& path, std::size_t most) {
+  std::optional<std::string> text = state_file(path, most);
+  if (!text) fail(path, "is not there, expected a file of the state folder");
+  return *std::move(text);
+}
+
+bool is_in_state_folder(const std::string& path) {
+  struct stat there {};
+  return ::lstat(path.c_str(), &there) == 0;
+}
+
+void remove_state_file(const std::string& path) {
+  const Place place = place_of(path);
+  const Fd folder(::open(place.folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (folder < 0 || (::unlinkat(folder, place.name.c_str(), 0) != 0 && errno != ENOENT))
+    fail(path, "cannot remove: " + reason());
+}
+
+std::vector<std::string> names_in_state_folder(const std::string& folder) {
+  std::vector<std::string> out;
+  std::error_code error;
+  for (const auto& entry : std::filesystem::directory_iterator(folder, error))
+    out.push_back(entry.path().filename().string());
+  if (error && error != std::errc::no_such_file_or_directory)
+    throw std::runtime_error(folder + ": cannot read: " + error.message());
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+std::string without_content(const std::string& path, const std::exception& error) {
+  std::string_view said = error.what();
+  std::string line;
+  if (said.starts_with(path + ":")) {
+    said.remove_prefix(path.size());
+    line = said.substr(0, std::min(said.find_first_not_of("0123456789", 1), said.size()));
+  }
+  return path + (line.size() > 1 ? line : "") +
+         ": is damaged or of another version (its content is not shown, as others may write this file)";
 }
 
 }  // namespace ifog

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 
 namespace ifog::dbc {
 
@@ -45,13 +46,16 @@ void check_fits(const Database& database, const Message& message, const Signal& 
   if (first + signal.length > message.length * 8)
     refuse("reaches beyond the " + std::to_string(message.length) + " bytes of its message");
   if (signal.scale == 0.0) refuse("has factor 0, expected any other number");
-  // A multiplexor that depends on itself would be asked for ever.
+  // Each is asked of every frame; one that depends on itself would be asked for ever.
   std::size_t depth = 0;
   for (std::size_t k = signal.selector; k != kNone; k = message.signals[k].selector) {
     const Signal& selector = message.signals[k];
     if (!selector.refused.empty())
       refuse("depends on multiplexor " + printable(selector.name) + ", and " + selector.refused);
     if (++depth > message.signals.size()) refuse("depends on multiplexors in a circle");
+    if (depth > kInputLimits.multiplexors)
+      refuse("depends on more than " + std::to_string(kInputLimits.multiplexors) +
+             " multiplexors one behind the other");
   }
 }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "drivers/capture/hdf5/hdf5_id.h"
+#include "drivers/system/input_limits.h"
 
 namespace ifog {
 
@@ -44,7 +45,6 @@ struct Hdf5Header {
   bool by_column = false;
 };
 
-inline constexpr std::size_t kMostHdf5Columns = 1000;
 inline constexpr std::size_t kLongestHdf5Name = 1000;      // bytes
 inline constexpr std::size_t kMostHdf5Comments = 100'000;  // lines
 inline constexpr std::size_t kLongestHdf5Text = 4096;      // bytes of a comment

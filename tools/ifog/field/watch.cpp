@@ -10,6 +10,7 @@
 
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
@@ -47,14 +48,19 @@ void weigh(Watched& out, const Field& field, const SensorConfig& sensor, const M
       bytes -= settling.front().bytes;
       settling.erase(settling.begin());
     }
-    if (all.empty()) throw std::runtime_error("nothing was recorded meanwhile");
+    if (all.empty()) {
+      out.not_weighed = "nothing was recorded meanwhile";
+      return;
+    }
     const std::size_t begin = rows_to_settle(sensor, settling, field);
     all.insert(all.begin(), settling.begin(), settling.end());
     const Recorded recorded = read_recorded(sensor, all, field.required_config().plugin_folders);
     out.gain = weigh_models(recorded, before, after, begin);
     if (out.gain.empty()) out.not_weighed = "the two models corrected alike meanwhile";
   } catch (const std::exception& error) {
-    out.not_weighed = error.what();
+    // Into the history goes nothing of what a recording holds.
+    warn("%s\n", error.what());
+    out.not_weighed = "the recordings could not be used";
   }
 }
 
