@@ -9,13 +9,9 @@
 #include <sstream>
 #include <utility>
 
-#include "daemon/config/channel_reader.h"
 #include "daemon/config/lcm_url.h"
 #include "daemon/config/reading_context.h"
-#include "daemon/config/sensor_pairs.h"
 #include "daemon/config/table_reader.h"
-#include "daemon/config/transport_reader.h"
-#include "daemon/state/state_file.h"
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"

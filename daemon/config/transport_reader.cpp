@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/config/transport_reader.h"
+#include "daemon/config/reading_context.h"
 
 #include "daemon/config/table_reader.h"
 

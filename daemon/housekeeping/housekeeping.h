@@ -15,9 +15,7 @@
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/status_report.h"
 #include "daemon/pipeline/assemble.h"
-#include "daemon/publish/channel_claim.h"
 #include "daemon/state/running_mark.h"
-#include "daemon/state/status_socket.h"
 
 namespace ifog {
 
@@ -66,7 +64,6 @@ class Housekeeping {
   };
 
   void mark_as_running();
-  std::string mark();
   bool open_all();
   void start_all();
   void drain_events(Sensor& sensor);
@@ -93,11 +90,9 @@ class Housekeeping {
   Config config_;
   std::shared_ptr<spdlog::logger> log_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
-  std::vector<ChannelClaim> claims_;  // of the sensors' LCM channels
   std::unique_ptr<ChannelSources> sources_;
   std::unique_ptr<Publisher> status_publisher_;
   RunningMark mark_;
-  StatusSocket socket_;
   std::vector<std::uint8_t> buffer_;
   bool watchdog_ = true;  // signs of life are given: none after a pipeline was once stuck
 };

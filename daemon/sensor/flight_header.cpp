@@ -9,7 +9,7 @@
 
 #include "daemon/sensor/noise_memory.h"
 #include "daemon/sensor/sensor_parts.h"
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/capture/candump.h"
 #include "drivers/capture/recording.h"
 #include "drivers/system/input_limits.h"

@@ -6,7 +6,7 @@
 #include <exception>
 #include <filesystem>
 
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <utility>
 
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can.h"
 #include "drivers/transport/clock.h"

@@ -8,6 +8,7 @@
 #include "drivers/dbc/keywords.h"
 #include "drivers/dbc/scanner.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 
 namespace ifog::dbc {
 namespace {
@@ -374,7 +375,7 @@ class Parser {
 
   Scanner in_;
   Database out_;
-  std::map<std::uint32_t, std::size_t> by_id_;                    // with the flag bit, as in the file
+  std::map<std::uint32_t, std::size_t> by_id_;                          // with the flag bit, as in the file
   std::vector<std::map<std::string, std::size_t, std::less<>>> names_;  // signals of each message
   Message* named_message_ = nullptr;
   Signal* building_ = nullptr;  // which signal an error makes doubtful: the one being read,
@@ -385,6 +386,9 @@ class Parser {
 
 }  // namespace
 
-Database parse_database(std::string_view text, const std::string& file) { return Parser(text, file).parse(); }
+Database parse_database(std::string_view text, const std::string& file) {
+  if (text.size() > kInputLimits.dbc_bytes) throw std::runtime_error(file + ": is larger than any DBC file");
+  return Parser(text, file).parse();
+}
 
 }  // namespace ifog::dbc

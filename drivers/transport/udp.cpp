@@ -174,10 +174,10 @@ void UdpTransport::join(const IpSocket& socket) const {
 void UdpTransport::send_opening(const IpSocket& socket) const {
   if (opening().empty()) return;
   socklen_t size = 0;
-  const auto to =
-      addresses_.host ? addresses_.host->at_port(settings_.host_port != 0 ? settings_.host_port : settings_.port,
-                                                 settings_.interface, size)
-                      : std::nullopt;
+  const auto to = addresses_.host ? addresses_.host->at_port(
+                                        settings_.host_port != 0 ? settings_.host_port : settings_.port,
+                                        settings_.interface, size)
+                                  : std::nullopt;
   if (!to)
     throw OpenError(name(), "cannot send the driver's opening bytes", EDESTADDRREQ,
                     "host, the sensor's address");
@@ -247,10 +247,8 @@ void UdpTransport::take(std::size_t received) noexcept {
   }
 }
 
-// Another program of the host, or one that forges its address, must not mix in.
 bool UdpTransport::is_of_port(std::size_t i) noexcept {
-  // At one place in both kinds of addresses.
-  const std::uint16_t port = ntohs(reinterpret_cast<const sockaddr_in&>(senders_[i]).sin_port);
+  const std::uint16_t port = ntohs(reinterpret_cast<const sockaddr_in&>(senders_[i]).sin_port);  // v6 too
   if (settings_.host_port != 0) return port == settings_.host_port;
   const bool another = sends_from_ != 0 && port != sends_from_;
   if (another && arrivals_[i].ns < sent_ns_ + 2'000'000'000 /* no sensor restarts in less */) return false;
@@ -267,7 +265,8 @@ Delivery UdpTransport::next() noexcept {
       continue;
     }
     if (addresses_.host && !is_of_port(i)) {
-      report("datagrams from another port of host, which are left out; host_port says which is the sensor's", 0);
+      report("datagrams from another port of host, which are left out; host_port says which is the sensor's",
+             0);
       continue;
     }
     if (length == 0) continue;

@@ -13,7 +13,7 @@ import subprocess
 import sys
 import tempfile
 
-from place import NOBODY, SECRET, Place, as_nobody
+from place import NOBODY, PYTHON, SECRET, Place, as_nobody
 
 
 def content(path):
@@ -141,7 +141,7 @@ def races(place):
     with open("mine", "w") as file:
         file.write("mine")
     # Who loses a race with root goes on.
-    swapper = subprocess.Popen([sys.executable, "-c", SWAPS.replace("    os.", "    with __import__('contextlib').suppress(OSError): os.")],
+    swapper = subprocess.Popen([PYTHON, "-c", SWAPS.replace("    os.", "    with __import__('contextlib').suppress(OSError): os.")],
                                user=NOBODY, group=NOBODY, extra_groups=[], stdout=subprocess.PIPE)
     swapped = swapper.stdout.readline()
     for _ in range(20):

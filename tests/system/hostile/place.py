@@ -3,12 +3,14 @@
 import hashlib
 import json
 import os
+import shutil
 import signal
 import subprocess
 import threading
 import time
 
 NOBODY = 65534
+PYTHON = shutil.which("python3", path="/usr/bin:/bin") or "python3"  # one that anybody may run
 URL = "udpm://239.255.76.67:7667?ttl=0"
 SECRET = "swordfish-4711"
 # As the programs write one: its hash is its name.
@@ -128,10 +130,14 @@ class Place:
             number = 0
             while self.feeding:
                 number += 1
-                os.write(fifo, b"%9.5f 1\r\n" % (0.001 * (number % 7)))
+                os.write(fifo, b"%11.6f 1\r\n" % (0.001 * (number % 7)))
                 time.sleep(0.01)
         self.feeder = threading.Thread(target=send, daemon=True)
         self.feeder.start()
+
+    def stop_feeding(self):
+        self.feeding = False
+        self.feeder.join()
 
     def await_(self, condition, what, seconds=30):
         end = time.monotonic() + seconds
@@ -145,8 +151,8 @@ class Place:
         return bool(sensors) and sensors[0].get("state") == "running"
 
     def stop(self):
-        self.feeding = False
         if self.daemon is not None:
+            self.stop_feeding()
             self.daemon.send_signal(signal.SIGCONT)
             self.daemon.send_signal(signal.SIGTERM)
             self.daemon.wait(30)

@@ -16,6 +16,7 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture_builder.h"
 #include "filters/model_file/kept_noise.h"
+#include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/driver_of_run.h"
 #include "tools/ifog/console/say.h"
 
@@ -196,29 +197,7 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
                                {},
                                [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
-  if (builder.missing() != 0)
-    warn("%s: %zu samples are missing by the device's counter or clock\n", file_.path().c_str(),
-         builder.missing());
-  if (builder.restarts() != 0)
-    warn("%s: the device's counter or clock jumped back %zu times: was it switched off and on?\n",
-         file_.path().c_str(), builder.restarts());
-  if (builder.clock_sets() != 0)
-    warn(
-        "%s: the device's clock was set %zu times while it measured on; there its times are by its counter "
-        "or its rate\n",
-        file_.path().c_str(), builder.clock_sets());
-  if (builder.repeated() != 0)
-    warn("%s: %zu samples came twice or after one that follows, and are left out\n", file_.path().c_str(),
-         builder.repeated());
-  if (builder.mixed() != 0)
-    warn("%s: %zu samples are of two devices that come mixed, and left out: which of them is wanted?\n",
-         file_.path().c_str(), builder.mixed());
-  if (builder.impossible() != 0)
-    warn("%s: %zu values of channels cannot be, in the unit of their name: left out\n", file_.path().c_str(),
-         builder.impossible());
-  for (const std::string& line :
-       not_measured_in_words(builder.at_full_scale(), builder.implausible(), builder.untold()))
-    warn("%s: %s\n", file_.path().c_str(), line.c_str());
+  CaptureInput::tell_of(builder, file_.path());
 }
 
 // Of the first file's header; who puts files of several power-ups behind one another is told by its times.

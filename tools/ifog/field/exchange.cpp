@@ -6,7 +6,7 @@
 
 #include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/running_mark.h"
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "msgs/state_name.h"
 
@@ -47,7 +47,7 @@ ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, con
       daemon_(running_daemon(field.state())) {
   if (!daemon_) return;
   live_ = std::make_unique<LiveStatus>(field.state(), *daemon_);
-  if (!live_->listen(kToldWithin, [&] { return live_->of(sensor_) != nullptr; }))
+  if (!live_->ask(kToldWithin, [&](const Statuses& all) { return all.contains(sensor_); }))
     throw std::runtime_error(process(*daemon_) + " has no sensor " + in_quotes(sensor_) +
                              ", expected it: nobody would see whether it takes a model");
   const status_t& status = *live_->of(sensor_);
@@ -67,16 +67,15 @@ void ModelExchange::put(const std::optional<Model>& model) const {
 }
 
 void ModelExchange::ask_for_reload() {
-  if (live_->gone()) {
-    const std::optional<pid_t> now = running_daemon(field_.state());
-    if (!now) throw std::runtime_error(process(*daemon_) + " has ended, and none runs in its place");
-    live_ = std::make_unique<LiveStatus>(field_.state(), *now);
-  }
+  // It may have been started again since.
+  const std::optional<pid_t> now = running_daemon(field_.state());
+  if (!now) throw std::runtime_error(process(*daemon_) + " has ended, and none runs in its place");
+  live_ = std::make_unique<LiveStatus>(field_.state(), *now);
   live_->reload(kTakenWithin);
 }
 
 bool ModelExchange::taken(const std::string& identity) {
-  return live_->listen(kTakenWithin, [&] {
+  return live_->ask(kTakenWithin, [&](const Statuses&) {
     const status_t* const status = live_->of(sensor_);
     return status != nullptr && status->model == identity && status->model_since != 0;
   });

@@ -26,7 +26,6 @@ class ModelExchange {
   ModelExchange(const Field& field, const SensorConfig& sensor, const ModelName& in_use);
 
   [[nodiscard]] bool daemon_runs() const { return daemon_.has_value(); }
-  // Of a daemon that runs.
   [[nodiscard]] LiveStatus& live() { return *live_; }
 
   // Nothing in `model`: the file goes. Throws std::runtime_error with one line; what was in place is then in

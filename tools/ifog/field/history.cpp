@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {

@@ -150,10 +150,9 @@ std::string Night::run() {
     failed_ = true;
   }
   // What is kept says nothing of what a file held.
-  const std::string& kept = failed_ ? kCannotBeJudged : said;
   if (gone_through_) {
     const StateInHand hand(field_.state());
-    write_bookmark(field_.state(), sensor_.name, {until, utc_now(), kept});
+    write_bookmark(field_.state(), sensor_.name, {until, utc_now(), failed_ ? kCannotBeJudged : said});
   }
   return said;
 }
@@ -250,7 +249,8 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   if (found.empty()) return "nothing found that the model in use leaves";
 
   std::string all;
-  for (const RecordedFile& file : files) all += sha256_hex(InputFile(file.path, std::deque<std::string>{file.path}).bytes());
+  for (const RecordedFile& file : files)
+    all += sha256_hex(InputFile(file.path, std::deque<std::string>{file.path}).bytes());
   const std::vector<std::string> hashes{sha256_hex(all)};
   const std::vector<double>& time_s = recorded.capture.time_s;
   const double fitted_to = time_s.front() + kFitTo * (time_s.back() - time_s.front());

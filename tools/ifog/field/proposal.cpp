@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "daemon/sensor/sensor_parts.h"
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/field/state_json.h"

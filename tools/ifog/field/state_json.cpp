@@ -3,7 +3,7 @@
 
 #include <stdexcept>
 
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 
@@ -33,6 +33,8 @@ void require_depth(const std::string& path, std::string_view text) {
 }  // namespace
 
 nlohmann::json parse_json(const std::string& text, const std::string& path) {
+  if (text.size() > kInputLimits.json_bytes)
+    throw std::runtime_error(path + ": is longer than any JSON of ours");
   require_depth(path, text);
   return nlohmann::json::parse(text, nullptr, false);
 }
@@ -46,9 +48,9 @@ std::optional<nlohmann::json> read_state_json(const std::string& path, const std
   const auto found = json.find("schema");
   if (found == json.end() || *found != schema)
     throw std::runtime_error(path + ": schema is " +
-                             (found == json.end()    ? "missing"
+                             (found == json.end()  ? "missing"
                               : found->is_string() ? "another"
-                                                     : found->type_name()) +
+                                                   : found->type_name()) +
                              ", expected " + schema);
   return json;
 }

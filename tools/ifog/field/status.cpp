@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <ctime>
 #include <exception>
-#include <map>
 #include <memory>
 #include <optional>
 #include <set>
@@ -224,7 +223,7 @@ ordered_json as_json(const std::string& name, const status_t* live, const Kept& 
 }
 
 // Names in the order of the configuration, then those besides.
-std::vector<std::string> names_of(const Field& field, const std::map<std::string, status_t>& statuses) {
+std::vector<std::string> names_of(const Field& field, const Statuses& statuses) {
   std::vector<std::string> out;
   std::set<std::string> known;
   const auto add = [&](const std::string& name) {
@@ -239,7 +238,7 @@ std::vector<std::string> names_of(const Field& field, const std::map<std::string
 
 struct Running {
   pid_t process = 0;  // 0: none
-  std::map<std::string, status_t> statuses{};
+  Statuses statuses{};
 };
 
 // What cannot be seen or asked is said.
@@ -249,8 +248,8 @@ Running running(const Field& field, double wait_s) {
     out.process = running_daemon(field.state()).value_or(0);
     if (out.process == 0) return out;
     LiveStatus live(field.state(), out.process);
-    live.listen(std::chrono::milliseconds(static_cast<std::int64_t>(wait_s * 1e3)),
-                [&] { return live.complete(); });
+    live.ask(std::chrono::milliseconds(static_cast<std::int64_t>(wait_s * 1e3)),
+             [](const auto&) { return true; });
     out.statuses = live.all();
   } catch (const std::exception& error) {
     warn("%s\n", error.what());

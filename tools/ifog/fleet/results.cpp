@@ -125,10 +125,10 @@ std::string Results::told_in_log(std::size_t gyro) const {
 }
 
 std::string Results::path(const FleetGyro& gyro, const std::string& file) const {
-  const fs::path own = fs::path(folder_) / "gyros" / gyro.serial;
-  make_folder(own);
-  return (own / file).string();
+  return (fs::path(folder_) / "gyros" / gyro.serial / file).string();
 }
+
+void Results::make_folder_of(const FleetGyro& gyro) const { make_folder(path(gyro, "")); }
 
 std::optional<TypeToMeasure> Results::type() const {
   return read_marker(path("type.json"), "ifog.type/1", [](const nlohmann::json& json) {

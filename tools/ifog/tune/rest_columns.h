@@ -2,11 +2,17 @@
 // What of a capture is at rest, in columns as a fit of its noise takes them.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <limits>
+#include <span>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "filters/rest/rest.h"
+#include "filters/series/series_view.h"
 #include "tools/ifog/captures/capture_view.h"
 
 namespace ifog::tools {
@@ -24,5 +30,49 @@ struct RestColumns {
 // stays the period. Of at most `most` rows of the capture, whatever is missing between them.
 [[nodiscard]] RestColumns rest_columns(const CaptureView& capture, const Rest& rest, double period_s,
                                        std::size_t most);
+
+inline Rest mostly_at_rest(const CaptureView& capture, double period_s, const std::string& path) {
+  const std::vector<SeriesView> axes(capture.rate_radps.begin(), capture.rate_radps.end());
+  std::vector<SeriesView> references;
+  for (const std::span<const double> reference : capture.reference_rate_radps)
+    if (!reference.empty()) references.emplace_back(reference);
+  Rest rest = find_rest(axes, references, period_s);
+  try {
+    require_rest(rest, period_s, capture.told_time_s(0));
+  } catch (const std::invalid_argument& error) {
+    throw std::runtime_error(
+        path + ": " + error.what() +
+        (references.empty() ? "" : "; a sensor turned beside a reference is for ifog diagnose"));
+  }
+  return rest;
+}
+
+inline RestColumns rest_columns(const CaptureView& capture, const Rest& rest, double period_s,
+                                std::size_t most) {
+  RestColumns out;
+  out.rate_radps.resize(capture.axes.size());
+  const std::size_t rows = std::min(capture.size(), most);
+  out.left_out = capture.size() - rows;
+  // An hour's hole in a fast record would be millions of missing samples, which tell the fit nothing; nor do
+  // all holes together, beyond ten times the rows.
+  constexpr double kLongestHole = 10000.0;
+  std::size_t room = 10 * rows, part = 0;
+  for (std::size_t row = 0; row < rows; ++row) {
+    const double steps =
+        row == 0 ? 1.0 : std::round((capture.time_s[row] - capture.time_s[row - 1]) / period_s);
+    const auto hole = static_cast<std::size_t>(std::clamp(steps - 1.0, 0.0, kLongestHole));
+    const std::size_t missing = std::min(hole, std::max<std::size_t>(room, 1));
+    room -= std::min(room, missing);
+    while (part < rest.at_rest.size() && rest.at_rest[part].end <= row) ++part;
+    const bool resting = part < rest.at_rest.size() && rest.at_rest[part].begin <= row;
+    constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t a = 0; a < out.rate_radps.size(); ++a) {
+      std::vector<double>& column = out.rate_radps[a];
+      column.resize(column.size() + missing, kMissing);
+      column.push_back(resting ? capture.rate_radps[a][row] : kMissing);
+    }
+  }
+  return out;
+}
 
 }  // namespace ifog::tools
