@@ -23,7 +23,6 @@
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/signals.h"
 #include "daemon/publish/publisher.h"
-#include "daemon/state/state_folder.h"
 #include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
@@ -73,8 +72,8 @@ int said(int code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // First of all: a reload or an end that is asked for while the configuration is read takes place after it.
-  ifog::block_signals();
+  // First of all: a reload that is asked for while the configuration is read takes place after it, and an end at once.
+  ifog::block_reload();
   keep_standard_streams();
   CLI::App app{"ifogd: real-time daemon for fibre-optic gyros", "ifogd"};
   app.set_version_flag("--version", ifog::version_text("ifogd"));
@@ -95,15 +94,12 @@ int main(int argc, char** argv) {
     ifog::Config config = ifog::read_config(file);
     ifog::set_up_log(config.log_level);
     const std::size_t sensors = config.sensors.size();
-    const std::string folder = ifog::state_folder(config.state_folder);
     ifog::Housekeeping housekeeping(std::move(config), check ? publish_nowhere : ifog::make_lcm_publisher);
     if (check) {
-      // Who checks may be another than who runs.
-      if (const std::string missed = ifog::state_folder_complaint(folder); !missed.empty())
-        std::fprintf(stderr, "%s: %s\n", file.c_str(), missed.c_str());
       std::printf("%s: good, %zu sensor(s)\n", file.c_str(), sensors);
       return said(0);
     }
+    ifog::block_signals();
     return housekeeping.run();
   } catch (const ifog::ConfigError& error) {
     std::fprintf(stderr, "%s\n", error.what());

@@ -9,7 +9,7 @@
 #include <memory>
 
 #include "daemon/channels/channel_fault.h"
-#include "drivers/flight/channel_value.h"
+#include "drivers/flight/entry.h"
 
 namespace ifog {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/config/channel_reader.h"
+#include "daemon/config/reading_context.h"
 
 #include <algorithm>
 #include <cctype>

@@ -9,14 +9,12 @@
 #include <sstream>
 #include <utility>
 
-#include "daemon/config/channel_reader.h"
 #include "daemon/config/lcm_url.h"
 #include "daemon/config/reading_context.h"
-#include "daemon/config/sensor_pairs.h"
 #include "daemon/config/table_reader.h"
-#include "daemon/config/transport_reader.h"
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 #include "filters/chain/plausibility.h"
 #include "filters/model_file/toml_file.h"
 #include "filters/settings/filter_table.h"
@@ -221,6 +219,7 @@ std::string SensorConfig::restart_for(const SensorConfig& other) const {
 SensorConfig SensorConfig::reloaded(const SensorConfig& fresh) const {
   SensorConfig out = *this;
   out.model = fresh.model;
+  out.model_adopted = fresh.model_adopted;
   out.filter = fresh.filter;
   out.start_up_s = fresh.start_up_s;
   out.lines = fresh.lines;
@@ -262,7 +261,11 @@ Config parse(const std::string& text, const std::string& path, bool recorded) {
   TableReader in(root, "", path, context.errors);
   if (const toml::table* const daemon = in.table("daemon")) read_daemon(*daemon, out, context);
   std::set<std::string> channels;
-  for (const toml::table* const sensor : in.tables("sensor")) {
+  const std::vector<const toml::table*> sensors = in.tables("sensor");
+  if (sensors.size() > kInputLimits.sensors)
+    throw ConfigError(path + ": " + std::to_string(sensors.size()) + " tables [[sensor]], expected at most " +
+                      std::to_string(kInputLimits.sensors));
+  for (const toml::table* const sensor : sensors) {
     out.sensors.push_back(read_sensor(*sensor, context));
     const SensorConfig& read = out.sensors.back();
     // By LCM channel, which has capitals only; a sensor takes three, and `a_status` has the second of `a`.
@@ -295,6 +298,20 @@ Config parse_config(const std::string& text, const std::string& path) { return p
 
 Config parse_recorded_config(const std::string& text, const std::string& path) {
   return parse(text, path, true);
+}
+
+void use_adopted_models(Config& config, const std::string& folder) {
+  if (folder.empty()) return;
+  for (SensorConfig& sensor : config.sensors) {
+    const std::string path = std::filesystem::absolute(adopted_model_path(folder, sensor.name)).string();
+    if (!sensor.model.empty() || !is_in_state_folder(path)) continue;
+    sensor.model = path;
+    sensor.model_adopted = true;
+    // So that a flight recording, too, names the model that was in use.
+    toml::table table = parse_toml(sensor.text, "");
+    table["sensor"][0].as_table()->insert_or_assign("model", sensor.model);
+    sensor.text = as_text(table);
+  }
 }
 
 Config read_config(const std::string& path) {

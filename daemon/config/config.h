@@ -87,6 +87,7 @@ struct SensorConfig {
   std::string name;  // letters, digits, _ and -; LCM channel IFOG_<NAME in capitals>
   std::string driver;
   std::string model;             // path, "" for none
+  bool model_adopted = false;    // it is in the state folder
   double nominal_rate_hz = 0.0;  // 0: what the driver says
   double range_radps = 0.0;      // full scale of every axis; 0: what the driver says
   Limits limits;                 // of every axis's rate, rad/s

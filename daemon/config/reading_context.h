@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the readers of all tables of a configuration share.
+// The readers of a configuration's tables, and what they share.
 #pragma once
 
 #include <filesystem>
@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/config/config.h"
 #include "daemon/config/table_reader.h"
 
 namespace ifog {
@@ -36,5 +37,16 @@ struct ReadingContext {
     return (folder / path).lexically_normal().string();
   }
 };
+
+// `where`: the table's key path. Complaints go into the context.
+TransportConfig read_transport(const toml::table& table, const std::string& where, ReadingContext& context);
+ChannelConfig read_channel(const toml::table& table, const std::string& where, ReadingContext& context);
+// minimum, maximum and max_step of values that are within ±most.
+Limits read_limits(TableReader& in, double most, const ReadingContext& context);
+
+// What no sensor shows alone: two that read one source and would take each other's bytes, and channels that
+// lead a sensor's published rate back into its own correction. Complaints, one line each; no file is opened.
+std::vector<std::string> shared_sources(const Config& config);
+std::vector<std::string> feedback_loops(const Config& config);
 
 }  // namespace ifog

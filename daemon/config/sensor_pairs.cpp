@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/config/sensor_pairs.h"
+#include "daemon/config/reading_context.h"
 
 #include <netinet/in.h>
 #include <sys/stat.h>

@@ -8,6 +8,7 @@
 
 #include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 #include "filters/model_file/toml_file.h"
 #include "filters/rules/names.h"
 
@@ -198,15 +199,19 @@ std::vector<const toml::table*> TableReader::tables(std::string_view key) {
 }
 
 void TableReader::refuse_the_rest() {
+  std::string known;
+  for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
+  std::size_t unknown = 0;
   for (const auto& [key, node] : table_) {
-    if (asked_.contains(key.str())) continue;
-    std::string known;
-    for (const std::string& name : asked_) known += (known.empty() ? "" : ", ") + name;
+    if (asked_.contains(key.str()) || unknown++ >= kInputLimits.unknown_keys) continue;
     const std::string meant = did_you_mean(key.str(), asked_);
     errors_.push_back(file_ + ":" + std::to_string(key.source().begin.line) + ": " +
                       printable(path(key.str())) + ": unknown key" + meant +
                       (meant.empty() ? "; known here: " : " Known here: ") + known);
   }
+  if (unknown > kInputLimits.unknown_keys)
+    errors_.push_back(file_ + ": " + std::to_string(unknown) + " unknown keys in " +
+                      (where_.empty() ? "it" : where_) + ", of which the first are named");
 }
 
 }  // namespace ifog

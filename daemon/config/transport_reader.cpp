@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "daemon/config/transport_reader.h"
+#include "daemon/config/reading_context.h"
 
 #include "daemon/config/table_reader.h"
 
@@ -36,6 +36,7 @@ UdpSettings read_udp(TableReader& in, const ReadingContext& context) {
   take(in.text("group"), out.group);
   take(in.text("interface"), out.interface);
   take(in.text("host"), out.host);
+  take(in.integer("host_port", 1, 65535), out.host_port);
   check_network(in, udp_complaint(out), told, context);
   return out;
 }

@@ -3,8 +3,10 @@
 // within 9 %.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -23,7 +25,18 @@ class LatencyHistogram {
   [[nodiscard]] std::uint64_t count() const noexcept { return total_; }
   [[nodiscard]] double max_us() const noexcept { return static_cast<double>(max_ns_) * 1e-3; }
   // Upper edge of the bucket that holds the fraction p of all; 0 when empty.
-  [[nodiscard]] double percentile_us(double p) const noexcept;
+  [[nodiscard]] double percentile_us(double p) const noexcept {
+    const double wanted = p * static_cast<double>(total_);
+    double seen = 0.0;
+    for (std::size_t b = 0; total_ > 0 && b < count_.size(); ++b) {
+      seen += count_[b];
+      if (seen < wanted) continue;
+      const double octave = std::ldexp(1.0, static_cast<int>(b / kPerOctave));
+      const double edge = octave * (1.0 + static_cast<double>(b % kPerOctave + 1) / kPerOctave);
+      return std::min(edge, static_cast<double>(max_ns_)) * 1e-3;
+    }
+    return max_us();
+  }
 
  private:
   static constexpr std::size_t kOctaves = 40, kPerOctave = 8;

@@ -8,6 +8,9 @@
 // longer.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 namespace ifog {
 
 // Whether a state that is rare has become usual: blocks are odd with probability 0.01 at most before, 0.9
@@ -15,7 +18,14 @@ namespace ifog {
 class UsualCusum {
  public:
   explicit UsualCusum(double threshold) : threshold_(threshold) {}
-  void take(bool odd) noexcept;
+  void take(bool odd) noexcept {
+    constexpr double kBefore = 0.01, kAfter = 0.9;
+    static const double up = std::log(kAfter / kBefore), down = std::log((1.0 - kAfter) / (1.0 - kBefore));
+    // No further than it takes as long to come back as it took to rise.
+    sum_ = std::clamp(sum_ + (odd ? up : down), 0.0, 2.0 * threshold_);
+    if (sum_ > threshold_) alarmed_ = true;
+    if (sum_ == 0.0) alarmed_ = false;
+  }
   // Once beyond the threshold, until it is back at zero.
   [[nodiscard]] bool alarmed() const noexcept { return alarmed_; }
   void restart() noexcept {
@@ -33,7 +43,15 @@ class ColourCusum {
  public:
   static constexpr double kFollows = 0.6;
   explicit ColourCusum(double threshold) : threshold_(threshold) {}
-  void take(double value) noexcept;
+  void take(double value) noexcept {
+    if (known_)
+      sum_ = std::clamp(sum_ + kFollows * last_ * value - 0.5 * kFollows * kFollows * last_ * last_, 0.0,
+                        2.0 * threshold_);
+    last_ = value;
+    known_ = true;
+    if (sum_ > threshold_) alarmed_ = true;
+    if (sum_ == 0.0) alarmed_ = false;
+  }
   void break_off() noexcept { known_ = false; }
   [[nodiscard]] bool alarmed() const noexcept { return alarmed_; }
   void restart() noexcept {

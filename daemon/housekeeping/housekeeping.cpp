@@ -131,11 +131,6 @@ void Housekeeping::start_all() {
     const Transport& transport = sensor->parts.pipeline->reader().transport();
     sensor->log->info("{} {} at {} Hz, publishing on {}", sensor->open ? "reading" : "trying again to open",
                       transport.name(), plan.facts.nominal_rate_hz, plan.lcm_channel);
-    if (claims_.emplace_back(config_.lcm_url, plan.lcm_channel).taken())
-      sensor->log->warn(
-          "another daemon publishes on {} of this lcm_url, too: who listens gets both as one sensor's; "
-          "expected a name or lcm_channel of its own for each",
-          plan.lcm_channel);
   }
   sources_->start();
 }
@@ -268,10 +263,13 @@ void Housekeeping::each_second(double interval_s) {
   if (!mark_.is_set() && mark_.set(state_folder(config_.state_folder)).empty() && mark_.is_set())
     log_->info("{}: marked as this daemon's", state_folder(config_.state_folder));
   double rate = 0.0;
+  std::vector<std::string> statuses;
   for (const auto& sensor : sensors_) {
     report_second(*sensor, interval_s);
+    statuses.emplace_back(buffer_.begin(), buffer_.end());
     rate += sensor->report.message().output_rate_hz;
   }
+  mark_.tell(statuses);
   bool stuck = false;
   for (const auto& sensor : sensors_)
     if (const char* const thread = stuck_thread(*sensor); watchdog_ && thread != nullptr) {
@@ -285,8 +283,7 @@ void Housekeeping::each_second(double interval_s) {
            std::to_string(std::lround(rate)) + " samples/s published");
 }
 
-// Before anything is opened: of two daemons with one state folder, the second has touched nothing. Who finds
-// the mark may ask for a reload, which waits as a blocked signal.
+// Before anything is opened: of two daemons with one state folder, the second has touched nothing.
 void Housekeeping::mark_as_running() {
   const std::string folder = state_folder(config_.state_folder);
   std::string missed = make_state_folder(folder);
@@ -303,7 +300,6 @@ int Housekeeping::run() {
   }
   if (config_.lock_memory)
     if (const std::string missed = lock_memory(); !missed.empty()) log_->warn("{}", missed);
-  const Signals signals;
   start_all();
   notify("READY=1\nSTATUS=" + std::to_string(sensors_.size()) + " sensor(s)");
   bool ended = false, reload_asked = false;
@@ -313,7 +309,7 @@ int Housekeeping::run() {
   for (int tick = 1; !ended; ++tick) {
     deadline_ns += kTick_ns;
     int signal = 0;
-    while ((signal = signals.wait(deadline_ns)) == SIGHUP) {
+    while ((signal = wait_for_signal(deadline_ns)) == SIGHUP) {
       reload_asked = true;
       if (monotonic_ns() >= deadline_ns) break;
     }
@@ -323,9 +319,10 @@ int Housekeeping::run() {
     }
     // Within the tick, which goes on to its status and its sign of life; the first at once, a flood of them
     // as one a second.
+    reload_asked = mark_.serve() || reload_asked;
     if (reload_asked && monotonic_ns() - reloaded_ns >= kReloadEvery_ns) {
       reload_asked = false;
-      reload();
+      mark_.answer(reload());
       reloaded_ns = monotonic_ns();
     }
     ended = true;

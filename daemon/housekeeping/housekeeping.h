@@ -15,21 +15,19 @@
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/status_report.h"
 #include "daemon/pipeline/assemble.h"
-#include "daemon/publish/channel_claim.h"
 #include "daemon/state/running_mark.h"
 
 namespace ifog {
 
 class Housekeeping {
  public:
-  // Throws ConfigError (a sensor that cannot be put together) or std::runtime_error (LCM). SIGTERM, SIGINT
-  // and SIGHUP must be blocked in the calling thread, so that all threads block them.
-  // It opens nothing but what `make_publisher` does.
+  // Throws ConfigError (a sensor that cannot be put together) or std::runtime_error (LCM).
+  // It makes no thread, and opens nothing but what `make_publisher` does.
   using PublisherMaker = std::function<std::unique_ptr<Publisher>(const std::string& lcm_url)>;
   explicit Housekeeping(Config config, const PublisherMaker& make_publisher = make_lcm_publisher);
   ~Housekeeping();
 
-  // Until SIGTERM, SIGINT or the end of all files. 0, or 1 when no sensor can run or a file could not be
+  // With these signals blocked in the calling thread, so that all threads block them: until SIGTERM, SIGINT or the end of all files. 0, or 1 when no sensor can run or a file could not be
   // read. Throws std::runtime_error with one line where another daemon works with the state folder or reads
   // a device.
   int run();
@@ -79,7 +77,8 @@ class Housekeeping {
   // Null where both of its threads come round.
   [[nodiscard]] static const char* stuck_thread(const Sensor& sensor);
   // Everything new is built before anything of it is used: the whole configuration takes effect, or nothing.
-  void reload();
+  // Gives what was refused, a line each, "" for nothing.
+  std::string reload();
   void say_what_needs_a_restart(const Config& fresh);
   // A sensor's complaint where its key is.
   static std::string told_at(const Config& config, const SensorConfig& sensor, const std::exception& error);
@@ -91,7 +90,6 @@ class Housekeeping {
   Config config_;
   std::shared_ptr<spdlog::logger> log_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
-  std::vector<ChannelClaim> claims_;  // of the sensors' LCM channels
   std::unique_ptr<ChannelSources> sources_;
   std::unique_ptr<Publisher> status_publisher_;
   RunningMark mark_;

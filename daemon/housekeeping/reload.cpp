@@ -84,7 +84,7 @@ void Housekeeping::use(Renewed renewed) {
   sensor.report.renew_watch();
 }
 
-void Housekeeping::reload() {
+std::string Housekeeping::reload() {
   notify("RELOADING=1\nMONOTONIC_USEC=" + std::to_string(monotonic_ns() / 1000));
   std::vector<Renewed> renewed;
   std::vector<std::string> errors;
@@ -103,7 +103,11 @@ void Housekeeping::reload() {
       errors.push_back(told_at(fresh, *found, error));
     }
   }
-  for (const std::string& error : errors) log_->error("{}", error);
+  std::string refused;
+  for (const std::string& error : errors) {
+    log_->error("{}", error);
+    refused += (refused.empty() ? "" : "\n") + error;
+  }
   if (errors.empty()) {
     say_what_needs_a_restart(fresh);
     for (Renewed& each : renewed) use(std::move(each));
@@ -111,6 +115,7 @@ void Housekeeping::reload() {
     log_->error("reload refused: nothing has changed for any sensor");
   }
   notify("READY=1");
+  return refused;
 }
 
 }  // namespace ifog

@@ -6,23 +6,11 @@
 
 namespace ifog {
 
-// For the calling thread and all that it makes: they come to housekeeping alone, as bytes of a file
-// descriptor, and what comes before housekeeping is there waits for it.
+// SIGHUP alone, which would end a process that is still reading its configuration: it waits for housekeeping.
+void block_reload();
+// For the calling thread and all that it makes: they come to wait_for_signal() alone.
 void block_signals();
-
-class Signals {
- public:
-  // Of blocked ones. Throws std::runtime_error.
-  Signals();
-  ~Signals();
-  Signals(const Signals&) = delete;
-  Signals& operator=(const Signals&) = delete;
-
-  // The next signal, 0 when none came until `deadline_ns` of the monotonic clock.
-  [[nodiscard]] int wait(std::int64_t deadline_ns) const;
-
- private:
-  int fd_;
-};
+// The next one, 0 when none came until `deadline_ns` of the monotonic clock. However often SIGHUP comes, it hides no end.
+[[nodiscard]] int wait_for_signal(std::int64_t deadline_ns);
 
 }  // namespace ifog

@@ -14,7 +14,6 @@
 #include <span>
 #include <vector>
 
-#include "drivers/flight/channel_value.h"
 #include "drivers/flight/entry.h"
 #include "drivers/transport/counter.h"
 #include "drivers/transport/transport.h"

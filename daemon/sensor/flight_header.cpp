@@ -1,31 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/sensor/flight_header.h"
 
+#include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "daemon/sensor/noise_memory.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/capture/candump.h"
 #include "drivers/capture/recording.h"
+#include "drivers/system/input_limits.h"
 
 namespace ifog {
 namespace {
 
-constexpr std::uintmax_t kMostAttached = 2U << 20U;
-
-void attach(const std::string& path, std::uintmax_t& room, FlightHeader& header) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(path, error);
-  if (error || size > room || header.files.contains(path)) return;
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  header.files[path] = text.str();
-  room -= size;
+// Within what all of them may have. One that is in the state folder is read as such.
+void attach(const std::string& path, bool of_state, std::size_t& room, FlightHeader& header) try {
+  if (header.files.contains(path)) return;
+  std::string text = of_state ? read_state_file(path, room) : InputFile(path).bytes();
+  // A header doubles line ends and backslashes.
+  const auto doubled = std::count(text.begin(), text.end(), '\n') + std::count(text.begin(), text.end(), '\\');
+  const std::size_t bytes = text.size() + static_cast<std::size_t>(doubled);
+  if (bytes > room) return;
+  room -= bytes;
+  header.files[path] = std::move(text);
+} catch (const std::runtime_error&) {
+  // Who reads the recording is told that it does not carry the file.
 }
 
 std::string source_of(const TransportConfig& transport) {
@@ -79,11 +82,11 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
   out.configuration = sensor.text;
   out.configuration_file = std::filesystem::absolute(config.file).string();
   if (!noise.empty()) out.files[noise_file_name(sensor.name)] = noise;
-  std::uintmax_t room = kMostAttached;
-  if (!sensor.model.empty()) attach(sensor.model, room, out);
+  std::size_t room = kInputLimits.carried_bytes;
+  if (!sensor.model.empty()) attach(sensor.model, sensor.model_adopted, room, out);
   out.options = with_files_in(sensor.folder, driver.table(), std::move(out.options));
   for (const std::string& key : file_settings(driver.table(), out.options))
-    attach(out.options[key], room, out);
+    attach(out.options[key], false, room, out);
   return out;
 }
 

@@ -11,8 +11,8 @@
 namespace ifog {
 
 // With the text of the model and of the files that the driver's options name, so that another computer reads
-// the recording as this one would. Files that cannot be read now or are larger than all of 2 MiB are left to
-// their names. `noise`: what the filter begins with of earlier runs, as the file it is kept in; "" for none.
+// the recording as this one would. Files that cannot be read now or are larger than
+// kInputLimits.carried_bytes together are missing, and who reads the recording has to name them. `noise`: what the filter begins with of earlier runs, as the file it is kept in; "" for none.
 FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver,
                            const std::string& noise);
 

@@ -6,7 +6,7 @@
 #include <exception>
 #include <filesystem>
 
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 
@@ -36,10 +36,9 @@ NoiseMemory::NoiseMemory(const std::string& folder, const std::string& sensor, c
   kept_.driver = driver;
   kept_.axes = facts.axes;
   kept_.sample_rate_hz = facts.nominal_rate_hz;
-  std::error_code none;
-  if (!std::filesystem::exists(path_, none)) return;
+  if (!is_in_state_folder(path_)) return;
   try {
-    const KeptNoise found = read_kept_noise(path_);
+    const KeptNoise found = parsed_state_file(path_, parse_kept_noise);
     const bool same = found.driver == driver && found.axes == facts.axes &&
                       std::abs(found.sample_rate_hz / facts.nominal_rate_hz - 1.0) < kSameRate;
     if (same) {

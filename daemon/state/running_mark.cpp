@@ -2,14 +2,23 @@
 #include "daemon/state/running_mark.h"
 
 #include <fcntl.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/time.h>
+#include <sys/un.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+
+#include "daemon/state/state_folder.h"
 
 namespace ifog {
 namespace {
@@ -33,32 +42,68 @@ bool is_plain(int fd) {
   return ::fstat(fd, &what) == 0 && S_ISREG(what.st_mode) && what.st_nlink == 1;
 }
 
+constexpr const char* kSocketName = "ifogd.socket";
+constexpr std::size_t kMostClients = 16;
+
+// In the open folder, whose path may be longer than such an address holds.
+sockaddr_un address_in(int folder) {
+  sockaddr_un out{};
+  out.sun_family = AF_UNIX;
+  std::snprintf(out.sun_path, sizeof out.sun_path, "/proc/self/fd/%d/%s", folder, kSocketName);
+  return out;
+}
+
+ucred peer_of(int fd) {
+  ucred out{0, static_cast<uid_t>(-1), static_cast<gid_t>(-1)};
+  socklen_t size = sizeof out;
+  (void)::getsockopt(fd, SOL_SOCKET, SO_PEERCRED, &out, &size);
+  return out;
+}
+
+// Root, this user, and the group of the folder, which may put models into it.
+bool may_ask(int fd, gid_t group) {
+  const ucred peer = peer_of(fd);
+  if (peer.uid == 0 || peer.uid == ::geteuid() || peer.gid == group) return true;
+  std::array<gid_t, 1024> groups{};
+  socklen_t size = sizeof groups;
+  if (::getsockopt(fd, SOL_SOCKET, SO_PEERGROUPS, groups.data(), &size) != 0) return false;
+  const gid_t* const end = groups.data() + size / sizeof groups[0];
+  return std::find(static_cast<const gid_t*>(groups.data()), end, group) != end;
+}
+
+// What does not fit into the socket is lost, and the other end sees that it is cut off.
+void reply(int fd, const std::string& text) {
+  const int room = 1 << 20;  // bytes; less where net.core.wmem_max is
+  (void)::setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &room, sizeof room);
+  (void)::send(fd, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
+  ::close(fd);
+}
+
 }  // namespace
 
 RunningMark::~RunningMark() {
-  if (fd_ >= 0) ::close(fd_);
+  for (const auto& [fd, question] : clients_) ::close(fd);
+  for (const int fd : {fd_, socket_})
+    if (fd >= 0) ::close(fd);
 }
 
 std::string RunningMark::set(const std::string& folder) {
   taken_ = false;
   if (folder.empty()) return "";
   const std::string path = mark_path(folder);
+  const auto cannot = [&](const std::string& why) {
+    if (fd_ >= 0) ::close(std::exchange(fd_, -1));
+    return path + ": cannot mark that a daemon runs: " + why;
+  };
   // Never through a link, and no FIFO: who may write into the folder may have put one there.
   fd_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0644);
-  if (fd_ < 0) return path + ": cannot mark that a daemon runs: " + reason(errno);
-  if (!is_plain(fd_)) {
-    ::close(std::exchange(fd_, -1));
-    return path + ": cannot mark that a daemon runs: no regular file";
-  }
+  if (fd_ < 0) return cannot(reason(errno));
+  if (!is_plain(fd_)) return cannot("no regular file");
   // Others may look, whatever the umask.
   (void)!::fchmod(fd_, 0644);
   struct flock lock = whole_file(F_WRLCK);
-  if (::fcntl(fd_, F_SETLK, &lock) == 0) return "";
-  const int error = errno;
-  if (error != EACCES && error != EAGAIN) {
-    ::close(std::exchange(fd_, -1));
-    return path + ": cannot mark that a daemon runs: " + reason(error);
-  }
+  if (::fcntl(fd_, F_SETLK, &lock) == 0) return listen_in(folder);
+  if (errno != EACCES && errno != EAGAIN) return cannot(reason(errno));
   lock = whole_file(F_WRLCK);
   const bool known = ::fcntl(fd_, F_GETLK, &lock) == 0 && lock.l_type == F_WRLCK && lock.l_pid > 0;
   ::close(std::exchange(fd_, -1));
@@ -67,21 +112,76 @@ std::string RunningMark::set(const std::string& folder) {
          " works with this state folder; expected one of its own for each";
 }
 
+std::string RunningMark::listen_in(const std::string& folder) {
+  const Fd holder(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  struct stat there {};
+  if (::fstat(holder, &there) == 0) group_ = there.st_gid;
+  socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
+  // That of a daemon that was killed, or what somebody put there: a name, which is never followed.
+  (void)::unlinkat(holder, kSocketName, 0);
+  const sockaddr_un address = address_in(holder);
+  // Whatever the umask of the service: the group asks, too. Nobody else is at work yet.
+  const mode_t before = ::umask(S_IXUSR | S_IXGRP | S_IRWXO);
+  const bool bound = ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
+  const int error = errno;
+  ::umask(before);
+  errno = error;
+  if (bound && ::listen(socket_, static_cast<int>(kMostClients)) == 0) return "";
+  return folder + "/" + kSocketName + ": ifog status and adopt cannot ask this daemon: " + reason(errno);
+}
+
+void RunningMark::tell(const std::vector<std::string>& statuses) {
+  statuses_.clear();
+  for (const std::string& status : statuses) {
+    const auto bytes = static_cast<std::uint32_t>(status.size());
+    statuses_.append(reinterpret_cast<const char*>(&bytes), sizeof bytes).append(status);
+  }
+}
+
+void RunningMark::answer(const std::string& complaint) {
+  std::erase_if(clients_, [&](const auto& client) {
+    const bool asks = client.second == static_cast<char>(DaemonQuestion::reload);
+    if (asks) reply(client.first, complaint);
+    return asks;
+  });
+}
+
+bool RunningMark::serve() {
+  for (int fd = 0; (fd = ::accept4(socket_, nullptr, nullptr, SOCK_CLOEXEC)) >= 0;) {
+    if (may_ask(fd, group_))
+      clients_.emplace_back(fd, 0);
+    else
+      ::close(fd);
+    if (clients_.size() <= kMostClients) continue;
+    ::close(clients_.front().first);
+    clients_.erase(clients_.begin());
+  }
+  bool asked = false;
+  std::erase_if(clients_, [&](auto& client) {
+    auto& [fd, question] = client;
+    char letter = 0;
+    const ssize_t n = ::recv(fd, &letter, 1, MSG_DONTWAIT);
+    if (n > 0) question = letter;
+    asked = asked || question == static_cast<char>(DaemonQuestion::reload);
+    // In the first second nothing is known yet.
+    const bool told = question == static_cast<char>(DaemonQuestion::status) && !statuses_.empty();
+    if (told) reply(fd, statuses_);
+    const bool gone = !told && (n == 0 || (n < 0 && errno != EAGAIN));
+    if (gone) ::close(fd);
+    return told || gone;
+  });
+  return asked;
+}
+
 std::optional<pid_t> running_daemon(const std::string& folder) {
   const std::string path = mark_path(folder);
-  const int fd = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+  const Fd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (fd < 0 && errno == ENOENT) return std::nullopt;
-  if (fd < 0) throw std::runtime_error(path + ": cannot see whether the daemon runs: " + reason(errno));
-  if (!is_plain(fd)) {
-    ::close(fd);
-    throw std::runtime_error(path + ": cannot see whether the daemon runs: no regular file");
-  }
   // Whether a lock for writing could be had may be asked by who can only read.
   struct flock lock = whole_file(F_WRLCK);
-  const int done = ::fcntl(fd, F_GETLK, &lock);
-  const int error = errno;
-  ::close(fd);
-  if (done != 0) throw std::runtime_error(path + ": cannot see whether the daemon runs: " + reason(error));
+  if (fd < 0 || !is_plain(fd) || ::fcntl(fd, F_GETLK, &lock) != 0)
+    throw std::runtime_error(path + ": cannot see whether the daemon runs: " +
+                             (fd < 0 || is_plain(fd) ? reason(errno) : "no regular file"));
   if (lock.l_type == F_UNLCK) return std::nullopt;
   // A lock of no process (-1), of one in another namespace (0) or for reading is not the daemon's: a signal
   // to such a number goes to others.
@@ -89,6 +189,42 @@ std::optional<pid_t> running_daemon(const std::string& folder) {
     throw std::runtime_error(path +
                              ": is locked by no process that can be seen from here, expected the daemon");
   return lock.l_pid;
+}
+
+std::string ask_daemon(const std::string& folder, pid_t daemon, DaemonQuestion question,
+                       std::chrono::milliseconds most) {
+  const std::string who = "the daemon (process " + std::to_string(daemon) + ")";
+  const auto fail = [&](const std::string& what) {
+    throw std::runtime_error(folder + "/" + kSocketName + ": " + what);
+  };
+  const Fd holder(::open(folder.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC));
+  struct stat there {
+  }, owner{};
+  if (::fstatat(holder, kSocketName, &there, AT_SYMLINK_NOFOLLOW) != 0 || ::fstat(holder, &owner) != 0)
+    fail(who + " cannot be asked: " + reason(errno));
+  if (!S_ISSOCK(there.st_mode)) fail("is no socket, expected that of the daemon");
+  const Fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const auto us = std::chrono::duration_cast<std::chrono::microseconds>(most).count();
+  const timeval patience{us / 1'000'000, us % 1'000'000};
+  for (const int option :
+       {SO_SNDTIMEO, SO_RCVTIMEO})  // also of a daemon that is stuck, whose backlog is full
+    (void)::setsockopt(fd, SOL_SOCKET, option, &patience, sizeof patience);
+  const sockaddr_un address = address_in(holder);
+  if (::connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    fail(who + " cannot be asked: " + reason(errno) +
+         (errno == EACCES ? ", expected root, its own user or a member of its group" : ""));
+  const ucred peer = peer_of(fd);
+  if (peer.pid != daemon || (peer.uid != 0 && peer.uid != owner.st_uid && peer.uid != ::geteuid()))
+    fail("is not of " + who + ", but of process " + std::to_string(peer.pid) + " of user " +
+         std::to_string(peer.uid));
+  const char letter = static_cast<char>(question);
+  std::string answer;
+  std::array<char, 65536> piece;
+  ssize_t n = ::send(fd, &letter, 1, MSG_NOSIGNAL);
+  while (n > 0 && (n = ::recv(fd, piece.data(), piece.size(), 0)) > 0)
+    answer.append(piece.data(), static_cast<std::size_t>(n));
+  if (n < 0) fail(who + " does not answer: " + reason(errno));
+  return answer;
 }
 
 }  // namespace ifog

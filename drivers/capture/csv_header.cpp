@@ -14,6 +14,7 @@
 #include "drivers/capture/column_times.h"
 #include "drivers/capture/column_words.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 #include "drivers/system/shell_word.h"
 
 namespace ifog {
@@ -191,6 +192,8 @@ class Chooser {
     CsvCell& cell = header_.cells[at];
     cell.range = measurable_in_file(column);
     cell.rate = is_rate_column(column.name);
+    if (cell.rate && ++rates_ > kInputLimits.csv_rates)
+      fail("more than " + std::to_string(kInputLimits.csv_rates) + " rates, expected at most that");
     cell.column = header_.names.size();
     header_.names.push_back(column.name);
   }
@@ -199,6 +202,7 @@ class Chooser {
   const std::vector<std::string>& names_;
   const std::string& path_;
   CsvHeader header_;
+  std::size_t rates_ = 0;
 };
 
 }  // namespace

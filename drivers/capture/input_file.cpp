@@ -23,8 +23,8 @@ namespace {
 
 std::string reason() { return std::generic_category().message(errno); }
 
-int opened(const std::string& path) {
-  if (path != "-") return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
+int opened(const std::string& path, int flags = 0) {
+  if (path != "-") return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | flags);
   // What one reader has taken no other will find.
   static std::atomic_flag taken = ATOMIC_FLAG_INIT;
   if (taken.test_and_set())
@@ -149,11 +149,17 @@ bool InputFile::open_next() {
   if (more_.empty()) return false;
   const std::string path = std::move(more_.front());
   more_.pop_front();
-  int fd = opened(path);
+  // Others may write into a recorder's folder: neither a link nor what has other names is taken from it.
+  int fd = opened(path, O_NOFOLLOW | O_NONBLOCK);
   // It may have been ended meanwhile.
   if (fd < 0 && errno == ENOENT && path.ends_with(kOpenEnding))
-    fd = opened(path.substr(0, path.size() - kOpenEnding.size()));
+    fd = opened(path.substr(0, path.size() - kOpenEnding.size()), O_NOFOLLOW | O_NONBLOCK);
   if (fd < 0) throw std::runtime_error(path + ": cannot open: " + reason());
+  struct stat info {};
+  if (fstat(fd, &info) != 0 || !S_ISREG(info.st_mode) || info.st_nlink != 1) {
+    ::close(fd);
+    throw std::runtime_error(path + ": is no recording of this folder alone, expected a file with one name");
+  }
   if (file_) behind_ += static_cast<std::size_t>(std::max<z_off_t>(0, gzoffset(file_.get())));
   file_.reset(gzdopen(fd, "rb"));
   if (!file_) {

@@ -10,6 +10,7 @@
 #include "drivers/capture/input_file.h"
 #include "drivers/ifog/decimal.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 
 namespace ifog {
 namespace {
@@ -287,6 +288,11 @@ TableForm table_form(std::string_view text, const std::string& path, const CsvLa
     separator = ',';
   if (!separator) separator = separator_of(lines);
   form.separator = separator.value_or(',');
+  for (const Line& line : lines)
+    if (!is_comment(line.text) && row_of(line.text, form.separator).cells > kInputLimits.csv_columns)
+      fail_at(path, line.number,
+              "more than " + std::to_string(kInputLimits.csv_columns) +
+                  " columns, expected at most that (cut -d, -f1-9 takes some)");
   const Header header = header_of(lines, form.separator, layout);
   std::size_t first = 0;  // row
   if (header.at) {

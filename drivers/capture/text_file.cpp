@@ -48,14 +48,4 @@ void TextOutput::deflate(std::string_view text, bool last) {
   } while (stream_->avail_out == 0);
 }
 
-std::string read_text_file(const std::string& path) { return InputFile(path).text(); }
-
-std::string read_bytes_file(const std::string& path) { return InputFile(path).bytes(); }
-
-void write_text_file(const std::string& path, std::string_view text) {
-  TextOutput file(path);
-  file.write(text);
-  file.finish();
-}
-
 }  // namespace ifog

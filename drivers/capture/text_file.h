@@ -15,8 +15,8 @@ struct z_stream_s;  // zlib's
 namespace ifog {
 
 // InputFile's text() and bytes(); "-" is standard input.
-std::string read_text_file(const std::string& path);
-std::string read_bytes_file(const std::string& path);
+inline std::string read_text_file(const std::string& path) { return InputFile(path).text(); }
+inline std::string read_bytes_file(const std::string& path) { return InputFile(path).bytes(); }
 
 // A text that is written while it is made. Compresses when the name ends in .gz; the bytes are the same
 // however the text is cut. "-" is standard output. Throws as OutputFile does.
@@ -40,6 +40,10 @@ class TextOutput {
 };
 
 // Compresses when the name ends in .gz; "-" is standard output. Throws as OutputFile does.
-void write_text_file(const std::string& path, std::string_view text);
+inline void write_text_file(const std::string& path, std::string_view text) {
+  TextOutput file(path);
+  file.write(text);
+  file.finish();
+}
 
 }  // namespace ifog

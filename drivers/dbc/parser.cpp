@@ -8,6 +8,7 @@
 #include "drivers/dbc/keywords.h"
 #include "drivers/dbc/scanner.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 
 namespace ifog::dbc {
 namespace {
@@ -67,8 +68,17 @@ class Parser {
     Message m;
     m.line = in_.line();
     m.refused = why;
+    add(std::move(m));
+  }
+  void add(Message m) {
     out_.messages.push_back(std::move(m));
-    signal_names_.clear();
+    names_.emplace_back();
+  }
+  // Of a message of out_. Null: it has no signal of that name.
+  Signal* signal_of(Message& message, std::string_view name) {
+    const auto& names = names_[static_cast<std::size_t>(&message - out_.messages.data())];
+    const auto found = names.find(name);
+    return found == names.end() ? nullptr : &message.signals[found->second];
   }
   static bool like_signal(std::string_view line) {
     return line.starts_with("SG") ||
@@ -134,7 +144,6 @@ class Parser {
     Message m;
     m.line = in_.line();
     (void)in_.word("BO_");
-    signal_names_.clear();
     std::uint32_t sent = 0;
     try {
       sent = static_cast<std::uint32_t>(in_.integer("a message id", 0xFFFFFFFFU));
@@ -143,7 +152,7 @@ class Parser {
       m.length = static_cast<std::uint32_t>(in_.integer("the length of a message in bytes", 65535));
     } catch (const ScanError& error) {
       m.refused = warn(error.line, error.what());
-      out_.messages.push_back(std::move(m));
+      add(std::move(m));
       in_.resume();
       return;
     }
@@ -164,7 +173,7 @@ class Parser {
     } else if (m.refused.empty()) {
       by_id_.emplace(sent, out_.messages.size());
     }
-    out_.messages.push_back(std::move(m));
+    add(std::move(m));
   }
 
   void signal() {
@@ -175,7 +184,7 @@ class Parser {
       unknown_message(warn(s.line, "a signal, expected a message (BO_) before the first"));
     s.name = in_.word("the name of a signal");
     std::vector<Signal>& signals = out_.messages.back().signals;
-    const auto [at, fresh] = signal_names_.emplace(s.name, signals.size());
+    const auto [at, fresh] = names_.back().emplace(s.name, signals.size());
     if (!fresh) {
       Signal& first = signals[at->second];
       refuse(first, s.line,
@@ -281,7 +290,7 @@ class Parser {
     (void)in_.word("SG_MUL_VAL_");
     Signal* s = named_ = named_signal();
     Message* message = named_message_;
-    const std::string selector(in_.word("the name of a multiplexor"));
+    const std::string_view selector = in_.word("the name of a multiplexor");
     std::vector<std::pair<std::uint64_t, std::uint64_t>> ranges;
     do {
       const std::uint64_t from = in_.integer("a multiplexor value", UINT64_MAX);
@@ -291,14 +300,12 @@ class Parser {
     } while (in_.accept(','));
     end_statement(line);
     if (s == nullptr) return;
-    const std::vector<Signal>& all = message->signals;
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const Signal& x) { return x.name == selector; });
-    if (found == all.end() || !found->selects) {
+    const Signal* const found = signal_of(*message, selector);
+    if (found == nullptr || !found->selects) {
       refuse(*s, line, in_quotes(selector) + " is no multiplexor of message " + printable(message->name));
       return;
     }
-    s->selector = static_cast<std::size_t>(found - all.begin());
+    s->selector = static_cast<std::size_t>(found - message->signals.data());
     s->selected = true;
     s->selected_by = std::move(ranges);
   }
@@ -336,12 +343,12 @@ class Parser {
   Signal* named_signal() {
     const std::size_t line = in_.line();
     named_message();
-    const std::string name(in_.word("the name of a signal"));
+    const std::string_view name = in_.word("the name of a signal");
     if (named_message_ == nullptr) return nullptr;
-    for (Signal& s : named_message_->signals)
-      if (s.name == name) return &s;
-    (void)warn(line, "message " + printable(named_message_->name) + " has no signal " + in_quotes(name));
-    return nullptr;
+    Signal* const found = signal_of(*named_message_, name);
+    if (found == nullptr)
+      (void)warn(line, "message " + printable(named_message_->name) + " has no signal " + in_quotes(name));
+    return found;
   }
 
   // A signal marked mN depends on the message's one multiplexor, unless SG_MUL_VAL_ named another.
@@ -368,8 +375,8 @@ class Parser {
 
   Scanner in_;
   Database out_;
-  std::map<std::uint32_t, std::size_t> by_id_;                    // with the flag bit, as in the file
-  std::map<std::string, std::size_t, std::less<>> signal_names_;  // of the last message
+  std::map<std::uint32_t, std::size_t> by_id_;                          // with the flag bit, as in the file
+  std::vector<std::map<std::string, std::size_t, std::less<>>> names_;  // signals of each message
   Message* named_message_ = nullptr;
   Signal* building_ = nullptr;  // which signal an error makes doubtful: the one being read,
   Signal* named_ = nullptr;     // or the one that the statement is about
@@ -379,6 +386,9 @@ class Parser {
 
 }  // namespace
 
-Database parse_database(std::string_view text, const std::string& file) { return Parser(text, file).parse(); }
+Database parse_database(std::string_view text, const std::string& file) {
+  if (text.size() > kInputLimits.dbc_bytes) throw std::runtime_error(file + ": is larger than any DBC file");
+  return Parser(text, file).parse();
+}
 
 }  // namespace ifog::dbc

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <new>
 
+#include "drivers/system/input_limits.h"
+
 namespace ifog {
 namespace {
 
@@ -91,7 +93,7 @@ bool read_block_head(std::span<const std::uint8_t> bytes, BlockPlace place, Bloc
   out.content = number_at<std::uint32_t>(bytes, 12);
   const bool known = bytes[4] >= 1 && bytes[4] <= 3 && bytes[5] <= 1;
   const bool packs = out.coding == BlockCoding::zlib;
-  return known && out.content <= kMostBlockContent &&
+  return known && out.content <= kInputLimits.block_bytes &&
          (packs ? out.stored < out.content : out.stored == out.content);
 }
 

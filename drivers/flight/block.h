@@ -19,7 +19,6 @@ enum class BlockCoding : std::uint8_t { plain = 0, zlib = 1 };
 
 inline constexpr std::uint32_t kBlockSync = 0x524649F1;  // bytes F1 'I' 'F' 'R', of a file's first block, too
 inline constexpr std::size_t kBlockHead = 16, kBlockTail = 4;
-inline constexpr std::size_t kMostBlockContent = 4U << 20U;
 
 // Where a block stands: its checksum holds only there. Header blocks have {0, 0}.
 struct BlockPlace {
@@ -50,7 +49,7 @@ class Deflater {
   std::unique_ptr<z_stream_s> stream_;
 };
 
-// Appends the block. What deflates to less is deflated, of data blocks. content: at most kMostBlockContent.
+// Appends the block. What deflates to less is deflated, of data blocks. content: at most kInputLimits.block_bytes.
 void append_block(std::vector<std::uint8_t>& to, BlockType type, BlockPlace place,
                   std::span<const std::uint8_t> content, Deflater& deflater);
 

@@ -7,7 +7,7 @@
 #include <functional>
 #include <span>
 
-#include "drivers/flight/channel_value.h"
+#include "drivers/flight/entry.h"
 #include "drivers/flight/flight_reader.h"
 #include "drivers/host/driver_instance.h"
 

@@ -59,8 +59,24 @@ std::int64_t time_of_day(std::string_view key, const std::string& text) {
   return out;
 }
 
+// Keys whose value is a text as it stands; one that is not there is empty.
+struct Text {
+  std::string_view key;
+  std::string FlightHeader::*text;
+};
+constexpr Text kTexts[] = {{"program", &FlightHeader::program},
+                           {"sensor", &FlightHeader::sensor},
+                           {"source", &FlightHeader::source},
+                           {"driver", &FlightHeader::driver},
+                           {"configuration_file", &FlightHeader::configuration_file},
+                           {"configuration", &FlightHeader::configuration},
+                           {"boot", &FlightHeader::boot},
+                           {"interface", &FlightHeader::interface}};
+
 void take(FlightHeader& out, std::string_view key, std::string value) {
   constexpr std::string_view kOption = "option.", kFile = "file.";
+  for (const Text& each : kTexts)
+    if (key == each.key) out.*each.text = value;
   if (key == "run")
     out.run = number<std::uint64_t>(key, value);
   else if (key == "number")
@@ -73,24 +89,8 @@ void take(FlightHeader& out, std::string_view key, std::string value) {
     out.opened_ns = number<std::int64_t>(key, value);
   else if (key == "powered_ns")
     out.powered_ns = time_of_day(key, value);
-  else if (key == "boot")
-    out.boot = std::move(value);
-  else if (key == "program")
-    out.program = std::move(value);
-  else if (key == "sensor")
-    out.sensor = std::move(value);
-  else if (key == "source")
-    out.source = std::move(value);
-  else if (key == "interface")
-    out.interface = std::move(value);
-  else if (key == "driver")
-    out.driver = std::move(value);
   else if (key == "channel")
     out.channels.push_back(std::move(value));
-  else if (key == "configuration")
-    out.configuration = std::move(value);
-  else if (key == "configuration_file")
-    out.configuration_file = std::move(value);
   else if (key.starts_with(kOption))
     out.options[unescaped(key.substr(kOption.size()))] = std::move(value);
   else if (key.starts_with(kFile))
@@ -116,12 +116,9 @@ std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
     for (const auto& [name, value] : named)
       if (name.find('=') == std::string::npos) add(kind + escaped(name), value);
   };
-  add("program", header.program);
-  add("sensor", header.sensor);
+  for (const Text& each : kTexts)
+    if (!(header.*each.text).empty()) add(std::string(each.key), header.*each.text);
   add("carries", kCarries[static_cast<int>(header.carries)]);
-  add("source", header.source);
-  if (!header.interface.empty()) add("interface", header.interface);
-  add("driver", header.driver);
   add_named("option.", header.options);
   for (const std::string& channel : header.channels) add("channel", channel);
   add("run", std::to_string(header.run));
@@ -130,9 +127,6 @@ std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
   if (header.settings != 0) add("settings", std::to_string(header.settings));
   add("opened_ns", std::to_string(header.opened_ns));
   if (header.powered_ns) add("powered_ns", std::to_string(*header.powered_ns));
-  if (!header.boot.empty()) add("boot", header.boot);
-  add("configuration_file", header.configuration_file);
-  add("configuration", header.configuration);
   add_named("file.", header.files);
   std::vector<std::uint8_t> out(kFixed + text.size());
   std::memcpy(out.data(), &header.file, sizeof header.file);

@@ -42,6 +42,7 @@ std::string resolve(const UdpSettings& settings, Addresses& out) {
     if (!out.host || out.host->is_multicast())
       return wrong("host", settings.host, "the sensor's numeric address, \"192.168.1.20\" or \"fd00::20\"");
   }
+  if (settings.host_port != 0 && !out.host) return "host_port: expected none without host";
   const bool joined = !settings.group.empty();
   if (joined && !settings.bind.empty())
     return wrong("bind", settings.bind, "no address beside group: what the group gets is listened to");
@@ -86,6 +87,7 @@ class UdpTransport final : public Transport {
   void take(std::size_t received) noexcept;
   void give_up(int error) noexcept;
   Delivery next() noexcept;
+  [[nodiscard]] bool is_of_port(std::size_t i) noexcept;
 
   UdpSettings settings_;
   Addresses addresses_;
@@ -93,6 +95,8 @@ class UdpTransport final : public Transport {
   unsigned interface_index_ = 0;
   std::int64_t next_look_ns_ = 0;
   std::uint32_t drops_ = 0;
+  std::uint16_t sends_from_ = 0;  // the port of the host that sends; 0: none has
+  std::int64_t sent_ns_ = 0;      // when it last did
   KernelStamps stamps_;
   std::vector<std::uint8_t> bytes_ = std::vector<std::uint8_t>(kDatagramsAtOnce * kLongest);
   std::array<iovec, kDatagramsAtOnce> vectors_{};
@@ -126,7 +130,7 @@ UdpTransport::UdpTransport(const UdpSettings& settings, Addresses addresses)
 bool UdpTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   socket_.close();
   count_ = next_ = 0;
-  drops_ = 0;
+  drops_ = sends_from_ = 0;
   IpSocket fresh(addresses_.local.family(), SOCK_DGRAM, name());
   const auto require = [this](int error, const char* what, const char* expected) {
     if (error != 0) throw OpenError(name(), what, error, expected);
@@ -170,8 +174,10 @@ void UdpTransport::join(const IpSocket& socket) const {
 void UdpTransport::send_opening(const IpSocket& socket) const {
   if (opening().empty()) return;
   socklen_t size = 0;
-  const auto to =
-      addresses_.host ? addresses_.host->at_port(settings_.port, settings_.interface, size) : std::nullopt;
+  const auto to = addresses_.host ? addresses_.host->at_port(
+                                        settings_.host_port != 0 ? settings_.host_port : settings_.port,
+                                        settings_.interface, size)
+                                  : std::nullopt;
   if (!to)
     throw OpenError(name(), "cannot send the driver's opening bytes", EDESTADDRREQ,
                     "host, the sensor's address");
@@ -241,11 +247,26 @@ void UdpTransport::take(std::size_t received) noexcept {
   }
 }
 
+bool UdpTransport::is_of_port(std::size_t i) noexcept {
+  const std::uint16_t port = ntohs(reinterpret_cast<const sockaddr_in&>(senders_[i]).sin_port);  // v6 too
+  if (settings_.host_port != 0) return port == settings_.host_port;
+  const bool another = sends_from_ != 0 && port != sends_from_;
+  if (another && arrivals_[i].ns < sent_ns_ + 2'000'000'000 /* no sensor restarts in less */) return false;
+  sends_from_ = port;
+  sent_ns_ = arrivals_[i].ns;
+  return true;
+}
+
 Delivery UdpTransport::next() noexcept {
   for (; next_ < count_; ++next_) {
     const std::size_t i = next_, length = messages_[i].msg_len;
     if (addresses_.host && !addresses_.host->is_host_of(senders_[i])) {
       report("datagrams from another host, which are left out", 0);
+      continue;
+    }
+    if (addresses_.host && !is_of_port(i)) {
+      report("datagrams from another port of host, which are left out; host_port says which is the sensor's",
+             0);
       continue;
     }
     if (length == 0) continue;

@@ -19,9 +19,12 @@ struct UdpSettings {
   std::string bind;
   std::string group;      // a multicast group in place of `bind`
   std::string interface;  // where the group is joined: required with it
-  // Datagrams from elsewhere are left out and counted. A driver's opening bytes go there, to the same port,
-  // and without it nowhere. Empty: from anywhere.
+  // Datagrams from elsewhere are left out and counted. A driver's opening bytes go there, and without it
+  // nowhere. Empty: from anywhere.
   std::string host;
+  // The port that the host's datagrams come from, and opening bytes go to. 0: the one that sends first, until it has
+  // been silent for two seconds; opening bytes go to `port`.
+  std::uint16_t host_port = 0;
   // Room for what waits for the reader, as the kernel counts it. What net.core.rmem_max forbids needs
   // CAP_NET_ADMIN, else it is a warning.
   std::uint32_t receive_buffer_bytes = 1U << 20U;

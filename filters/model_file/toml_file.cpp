@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 
 namespace ifog {
 namespace {
@@ -18,7 +19,6 @@ namespace {
 // The parser calls itself once for each part of a dotted key: 50 000 parts are the end of its stack. Throws
 // std::runtime_error with the line; text in quotes and comments counts for nothing.
 void require_short_keys(std::string_view text, const std::string& name) {
-  constexpr std::size_t kMostParts = 64;
   std::size_t dots = 0, line = 1;
   char quote = 0;
   bool comment = false;
@@ -37,9 +37,9 @@ void require_short_keys(std::string_view text, const std::string& name) {
       quote = c;
     } else if (std::string_view("=,[]{}").find(c) != std::string_view::npos) {
       dots = 0;
-    } else if (c == '.' && ++dots >= kMostParts) {
+    } else if (c == '.' && ++dots >= kInputLimits.toml_key_parts) {
       throw std::runtime_error(name + ":" + std::to_string(line) + ": a key of more than " +
-                               std::to_string(kMostParts) + " parts, expected one of a few");
+                               std::to_string(kInputLimits.toml_key_parts) + " parts, expected one of a few");
     }
   }
 }
@@ -47,7 +47,6 @@ void require_short_keys(std::string_view text, const std::string& name) {
 }  // namespace
 
 std::string read_toml_text(const std::string& path) {
-  constexpr std::size_t kLargest = 16U << 20U;
   const auto reason = [] { return std::generic_category().message(errno); };
   // Non-blocking, so that even the opening of a FIFO returns.
   const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
@@ -62,7 +61,7 @@ std::string read_toml_text(const std::string& path) {
     if (n < 0) wrong = "cannot read: " + reason();
     if (n <= 0) break;
     text.append(block.data(), static_cast<std::size_t>(n));
-    if (text.size() > kLargest) wrong = "has more than 16 MiB, expected a TOML file";
+    if (text.size() > kInputLimits.toml_bytes) wrong = "has more than 16 MiB, expected a TOML file";
   }
   close(fd);
   if (!wrong.empty()) throw std::runtime_error(path + ": " + wrong);

@@ -45,22 +45,35 @@ def deliveries(content):
         raise ValueError(f"{counted} entries in a file that says {ended}")
 
 
-def shifted(content, by_ns):
-    """The file as it would be had its arrival clock, and the wall clock behind it, been set by so much."""
+def rewritten(content, change):
+    """The file with change(kind, payload) in place of each block's payload."""
     out, number = b"", None
     for kind, payload in blocks(content):
         number = struct.unpack_from("<Q", payload)[0] if kind == HEADER else number
+        payload = change(kind, payload)
+        place = struct.pack("<QQ", number, len(out)) if kind != HEADER else bytes(16)
+        begin, end = struct.pack("<4sBB", b"\xf1IFR", kind, 0), struct.pack("<II", len(payload), len(payload))
+        head = begin + struct.pack("<H", zlib.crc32(place + begin + end) & 0xFFFF) + end
+        out += head + payload + struct.pack("<I", zlib.crc32(place + head + payload))
+    return out
+
+
+def shifted(content, by_ns):
+    """The file as it would be had its arrival clock, and the wall clock behind it, been set by so much."""
+    def shift(kind, payload):
         at, moved = 0, bytearray(payload)
         while kind == DATA and at < len(payload):
-            what, _, _, size, time_ns = struct.unpack_from("<BBHIq", payload, at)
+            _, _, _, size, time_ns = struct.unpack_from("<BBHIq", payload, at)
             if time_ns > 0:
                 struct.pack_into("<q", moved, at + 8, time_ns + by_ns)
             at += 16 + size
-        place = struct.pack("<QQ", number, len(out)) if kind != HEADER else bytes(16)
-        begin, end = struct.pack("<4sBB", b"\xf1IFR", kind, 0), struct.pack("<II", len(moved), len(moved))
-        head = begin + struct.pack("<H", zlib.crc32(place + begin + end) & 0xFFFF) + end
-        out += head + moved + struct.pack("<I", zlib.crc32(place + head + moved))
-    return out
+        return bytes(moved)
+    return rewritten(content, shift)
+
+
+def with_header(content, edit):
+    """The file with edit(text) in place of its header's text, behind the file's number and the format's version."""
+    return rewritten(content, lambda kind, payload: payload[:10] + edit(payload[10:]) if kind == HEADER else payload)
 
 
 def frame_text(payload):

@@ -68,8 +68,8 @@ ColumnStream::ColumnStream(ReceiveBytes receive) : receive_(std::move(receive)) 
   const Message message = begin();
   if (message.kind == Kind::refusal) refused(message.bytes);
   if (message.kind != Kind::header) no_stream();
-  header_.names = texts(kMostHdf5Columns, kLongestHdf5Name);
-  header_.units = texts(kMostHdf5Columns, kLongestHdf5Name);
+  header_.names = texts(kInputLimits.hdf5_columns, kLongestHdf5Name);
+  header_.units = texts(kInputLimits.hdf5_columns, kLongestHdf5Name);
   header_.comments = texts(kMostHdf5Comments, kLongestHdf5Text);
   header_.notices = texts(kMostNotices, kLongestNotice);
   header_.rows = number();

@@ -134,9 +134,9 @@ std::vector<std::string> Hdf5Columns::datasets_of_group() {
   unsigned order = 0;
   hdf5_demand(H5Gget_info(place_, &info) >= 0 && made.good() && H5Pget_link_creation_order(made, &order) >= 0,
               "its group cannot be read");
-  if (info.nlinks > kMostHdf5Columns)
+  if (info.nlinks > kInputLimits.hdf5_columns)
     refuse("the group has " + std::to_string(info.nlinks) + " members, expected at most " +
-           std::to_string(kMostHdf5Columns));
+           std::to_string(kInputLimits.hdf5_columns));
   const H5_index_t by = (order & H5P_CRT_ORDER_TRACKED) != 0 ? H5_INDEX_CRT_ORDER : H5_INDEX_NAME;
   std::vector<std::string> names;
   for (hsize_t i = 0; i < info.nlinks; ++i) {
@@ -213,8 +213,8 @@ void Hdf5Columns::add_dataset(const std::string& name, bool one) {
   for (const Part& part : parts) {
     const std::string column = parts.size() == 1 ? dataset : dataset + "[" + std::to_string(part.index) + "]";
     if (dataset != name && column != name) continue;
-    if (header_.names.size() == kMostHdf5Columns)
-      refuse("more than " + std::to_string(kMostHdf5Columns) + " columns, expected at most that");
+    if (header_.names.size() == kInputLimits.hdf5_columns)
+      refuse("more than " + std::to_string(kInputLimits.hdf5_columns) + " columns, expected at most that");
     stored_ += header_.rows * value_bytes;
     header_.names.push_back(column);
     header_.units.push_back(unit);
@@ -324,9 +324,9 @@ void Hdf5Columns::read_members(const Hdf5Wanted& wanted) {
     hdf5_demand(place_.good(), in_quotes(wanted.group) + " cannot be read");
   }
   const std::vector<std::string> there = members_of(type);
-  if (there.size() > kMostHdf5Columns)
+  if (there.size() > kInputLimits.hdf5_columns)
     refuse("a table of " + std::to_string(there.size()) + " columns, expected at most " +
-           std::to_string(kMostHdf5Columns));
+           std::to_string(kInputLimits.hdf5_columns));
   for (const std::string& name : wanted.names.empty() ? there : wanted.names) {
     const int member = H5Tget_member_index(type, name.c_str());
     if (member < 0) refuse("no column " + in_quotes(name) + ", the table has " + list_of(there));

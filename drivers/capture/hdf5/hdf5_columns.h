@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "drivers/capture/hdf5/hdf5_id.h"
+#include "drivers/system/input_limits.h"
 
 namespace ifog {
 
@@ -41,7 +42,6 @@ struct Hdf5Header {
   bool exact_time = false;  // the time is time_ns, which replaces time_s
 };
 
-inline constexpr std::size_t kMostHdf5Columns = 1000;
 inline constexpr std::size_t kLongestHdf5Name = 1000;      // bytes
 inline constexpr std::size_t kMostHdf5Comments = 100'000;  // lines
 inline constexpr std::size_t kLongestHdf5Text = 4096;      // bytes of a comment

@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 #include "drivers/units/units.h"
 
 namespace ifog::dbc {
@@ -48,9 +49,6 @@ std::string_view trimmed(std::string_view text) {
   return text;
 }
 
-// A DBC file of a whole vehicle has some megabytes; a device or an endless file given by mistake has more.
-constexpr std::size_t kLargestFile = 64U << 20U;
-
 std::string file_text(const plugin::Options& options) {
   const std::string path(options.text("dbc"));
   std::error_code ignored;
@@ -62,7 +60,7 @@ std::string file_text(const plugin::Options& options) {
   std::vector<char> block(1U << 16U);
   while (file.read(block.data(), static_cast<std::streamsize>(block.size())) || file.gcount() > 0) {
     text.append(block.data(), static_cast<std::size_t>(file.gcount()));
-    if (text.size() > kLargestFile) options.fail("dbc", "a DBC file of at most 64 MiB");
+    if (text.size() > kInputLimits.dbc_bytes) options.fail("dbc", "a DBC file of at most 64 MiB");
   }
   if (file.bad() || text.empty()) options.fail("dbc", "a DBC file that can be read and is not empty");
   return text;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Walks through the fields of a frame, of either byte order; and numbers made to fit into one.
+// What plugins make of a frame's fields: walks through them, of either byte order; numbers made to fit into one; time
+// stamps; and the environment channels of a sample, held from the frames that bring them to those that do not.
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <cstddef>
@@ -10,6 +13,8 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+
+#include "ifog/driver.h"
 
 namespace ifog::framing {
 
@@ -74,5 +79,40 @@ inline float float_of(double value, const std::string& what) {
                                 ", expected what a 32-bit float holds");
   return static_cast<float>(value);
 }
+
+class Channels {
+ public:
+  Channels() { held_.fill(std::numeric_limits<double>::quiet_NaN()); }
+  // A new value, which came with this sample. What is not finite is none.
+  void set(ifog_sample& sample, std::size_t channel, double value) noexcept {
+    if (!std::isfinite(value)) return;
+    held_[channel] = value;
+    sample.environment_fresh |= 1U << channel;
+  }
+  void copy_to(ifog_sample& sample) const noexcept {
+    std::copy(held_.begin(), held_.end(), sample.environment);
+  }
+
+ private:
+  std::array<double, IFOG_MAX_ENVIRONMENT> held_{};
+};
+
+// A count of ticks, as it is sent.
+class Stamp {
+ public:
+  // Of so many nanoseconds a tick.
+  explicit constexpr Stamp(std::int64_t tick_ns) : tick_ns_(tick_ns) {}
+  [[nodiscard]] constexpr std::int64_t time_ns(std::int64_t ticks) const noexcept { return ticks * tick_ns_; }
+  // The inverse: the stamp a device sends at this time, where that goes round after `modulus` ticks. Times
+  // before the origin stay in order.
+  [[nodiscard]] std::uint32_t stamp_at(std::int64_t time_ns, std::int64_t modulus) const noexcept {
+    const std::int64_t ticks = time_ns / tick_ns_ - (time_ns % tick_ns_ < 0 ? 1 : 0);
+    const std::int64_t stamp = ticks % modulus;
+    return static_cast<std::uint32_t>(stamp < 0 ? stamp + modulus : stamp);
+  }
+
+ private:
+  std::int64_t tick_ns_;
+};
 
 }  // namespace ifog::framing

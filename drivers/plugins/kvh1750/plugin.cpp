@@ -12,9 +12,7 @@
 #include <numbers>
 #include <optional>
 
-#include "drivers/plugins/framing/channels.h"
 #include "drivers/plugins/framing/fields.h"
-#include "drivers/plugins/framing/stamp.h"
 #include "drivers/plugins/kvh1750/frame.h"
 #include "drivers/plugins/kvh1750/frame_finder.h"
 #include "ifog/byte_driver.h"

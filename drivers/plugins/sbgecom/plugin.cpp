@@ -9,8 +9,7 @@
 #include <numbers>
 #include <optional>
 
-#include "drivers/plugins/framing/channels.h"
-#include "drivers/plugins/framing/stamp.h"
+#include "drivers/plugins/framing/fields.h"
 #include "drivers/plugins/sbgecom/message.h"
 #include "ifog/byte_driver.h"
 #include "ifog/driver.h"

@@ -7,9 +7,7 @@
 #include <numbers>
 #include <optional>
 
-#include "drivers/plugins/framing/channels.h"
 #include "drivers/plugins/framing/fields.h"
-#include "drivers/plugins/framing/stamp.h"
 #include "drivers/plugins/stdbin/telegram.h"
 #include "ifog/byte_driver.h"
 #include "ifog/driver.h"

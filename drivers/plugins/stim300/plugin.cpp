@@ -11,7 +11,6 @@
 #include <optional>
 #include <string>
 
-#include "drivers/plugins/framing/channels.h"
 #include "drivers/plugins/framing/fields.h"
 #include "drivers/plugins/stim300/datagram.h"
 #include "ifog/byte_driver.h"

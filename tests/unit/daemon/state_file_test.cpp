@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files of a folder that others may write: what stands under a name there is never followed.
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

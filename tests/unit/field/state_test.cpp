@@ -88,9 +88,7 @@ Proposal proposal_of(const Model& model, const ModelName& against) {
 TEST_F(StateFolder, ACommandToBeCopiedLooksAfterTheSameField) {
   FieldOptions options;
   options.state = path("its state");
-  options.lcm_url = "udpm://239.255.76.67:7667?ttl=0";
-  EXPECT_EQ(Field(options).command("adopt", "nose"), "ifog adopt nose --state '" + path("its state") +
-                                                         "' --lcm-url 'udpm://239.255.76.67:7667?ttl=0'");
+  EXPECT_EQ(Field(options).command("adopt", "nose"), "ifog adopt nose --state '" + path("its state") + "'");
   options = {};
   options.config = path("a b.toml");
   write("a b.toml",

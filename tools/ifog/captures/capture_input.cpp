@@ -185,6 +185,10 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
     throw std::runtime_error(line.starts_with(path) ? line : path + ": " + line);
   }
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", path.c_str(), loss.c_str());
+  tell_of(builder, path);
+}
+
+void CaptureInput::tell_of(const CaptureBuilder& builder, const std::string& path) {
   if (builder.missing() != 0)
     warn("%s: %zu samples are missing by the device's counter or clock\n", path.c_str(), builder.missing());
   if (builder.restarts() != 0)

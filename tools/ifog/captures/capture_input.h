@@ -90,6 +90,9 @@ struct CaptureInput {
   // Of a file of columns, also beside a driver that is there to write with.
   [[nodiscard]] LongTable read_long_columns(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
 
+  // What a driver's samples had besides: missing, repeated, of two devices; to the user.
+  static void tell_of(const CaptureBuilder& builder, const std::string& path);
+
  private:
   RowNotes column_rows(InputFile& file, RowSink& sink) const;
   [[nodiscard]] FileKind readable(const InputFile& file) const;

@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <limits>
 #include <map>
 #include <stdexcept>
@@ -15,8 +16,8 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture_builder.h"
 #include "filters/model_file/kept_noise.h"
+#include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/driver_of_run.h"
-#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -81,26 +82,43 @@ FlightInput::FlightInput(InputFile& file)
 bool FlightInput::names_the_driver() const { return driver_.empty() || driver_ == header().driver; }
 
 DriverInstance FlightInput::make_driver(const std::string& driver, const DriverSettings& options,
-                                        const std::vector<std::string>& folders) {
+                                        const std::vector<std::string>& folders,
+                                        const SensorConfig* configured) {
   driver_ = driver;
   options_ = options;
   folders_ = folders;
+  configured_ = configured;
   return made();
 }
 
+// A header is foreign: what it names is opened nowhere but in the recording itself.
 DriverInstance FlightInput::made() const {
   const bool other = !names_the_driver();
-  DriverSettings settings = other ? DriverSettings{} : header().options;
-  std::vector<std::unique_ptr<NamedText>> carried;
-  for (auto& [key, value] : settings)
-    if (const auto found = header().files.find(value); found != header().files.end())
-      value = carried.emplace_back(std::make_unique<NamedText>(found->second))->name();
-  for (const auto& [key, value] : options_) settings[key] = value;
   return with_name([&] {
     if (header().driver.empty() && !other)
       throw std::runtime_error(
           "is a recording of LCM messages, expected none of --driver and --option with it");
-    return driver_of_run(other ? driver_ : header().driver, settings, folders_);
+    if (other) return driver_of_run(driver_, options_, folders_);
+    DriverSettings settings = options_;
+    const std::shared_ptr<const Plugin> plugin = find_plugin(header().driver, plugin_folders(folders_));
+    const std::vector<std::string> files = file_settings(plugin->table(), header().options);
+    DriverSettings own;
+    if (configured_ != nullptr)
+      own = with_files_in(configured_->folder, plugin->table(), configured_->options);
+    std::vector<std::unique_ptr<NamedText>> carried;
+    for (const auto& [key, value] : header().options) {
+      const bool names_file = std::find(files.begin(), files.end(), key) != files.end();
+      const auto found = header().files.find(value);
+      if (settings.contains(key)) continue;
+      if (names_file && found == header().files.end() && !own.contains(key))
+        throw std::runtime_error("does not carry the file of its driver's option " + key + ", expected " +
+                                 (key == "dbc" ? "--dbc FILE" : "--option " + key + "=FILE"));
+      settings[key] = !names_file ? value
+                      : found == header().files.end()
+                          ? own.at(key)
+                          : carried.emplace_back(std::make_unique<NamedText>(found->second))->name();
+    }
+    return driver_of_run(header().driver, settings, folders_);
   });
 }
 
@@ -110,10 +128,11 @@ SensorConfig FlightInput::sensor() const {
 
 std::shared_ptr<const Model> FlightInput::model(const SensorConfig& sensor) const {
   const auto found = header().files.find(sensor.model);
-  if (found == header().files.end()) {
-    will_read("the recording's model", sensor.model);
-    return read_sensor_model(sensor);
-  }
+  if (sensor.model.empty()) return nullptr;
+  if (found == header().files.end())
+    throw std::runtime_error(file_.path() +
+                             ": does not carry the model that it was recorded with, expected --model FILE or "
+                             "--config FILE");
   return std::make_shared<const Model>(parse_model(found->second, sensor.model));
 }
 
@@ -178,29 +197,7 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
                                {},
                                [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
-  if (builder.missing() != 0)
-    warn("%s: %zu samples are missing by the device's counter or clock\n", file_.path().c_str(),
-         builder.missing());
-  if (builder.restarts() != 0)
-    warn("%s: the device's counter or clock jumped back %zu times: was it switched off and on?\n",
-         file_.path().c_str(), builder.restarts());
-  if (builder.clock_sets() != 0)
-    warn(
-        "%s: the device's clock was set %zu times while it measured on; there its times are by its counter "
-        "or its rate\n",
-        file_.path().c_str(), builder.clock_sets());
-  if (builder.repeated() != 0)
-    warn("%s: %zu samples came twice or after one that follows, and are left out\n", file_.path().c_str(),
-         builder.repeated());
-  if (builder.mixed() != 0)
-    warn("%s: %zu samples are of two devices that come mixed, and left out: which of them is wanted?\n",
-         file_.path().c_str(), builder.mixed());
-  if (builder.impossible() != 0)
-    warn("%s: %zu values of channels cannot be, in the unit of their name: left out\n", file_.path().c_str(),
-         builder.impossible());
-  for (const std::string& line :
-       not_measured_in_words(builder.at_full_scale(), builder.implausible(), builder.untold()))
-    warn("%s: %s\n", file_.path().c_str(), line.c_str());
+  CaptureInput::tell_of(builder, file_.path());
 }
 
 // Of the first file's header; who puts files of several power-ups behind one another is told by its times.

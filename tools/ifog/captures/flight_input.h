@@ -32,12 +32,14 @@ class FlightInput {
 
   // The driver of the recording with its options, those of `options` over them; another one, which then has
   // only `options`, where `driver` names it.
-  // folders: that plugins are looked for in; empty: the standard places. Where a later file of the recording
-  // names other options, it is made anew from them.
+  // folders: that plugins are looked for in; empty: the standard places. configured: whose files serve where the
+  // recording does not carry them; it outlives this. Where a later file of the recording names other options, it is
+  // made from them.
   [[nodiscard]] DriverInstance make_driver(const std::string& driver, const DriverSettings& options,
-                                           const std::vector<std::string>& folders = {});
-  // As the daemon had it configured, and the model it used: what the recording carries of it, else the file
-  // that it names. Null: none.
+                                           const std::vector<std::string>& folders = {},
+                                           const SensorConfig* configured = nullptr);
+  // As the daemon had it configured, and the model it used, which the recording carries. Null: none. Throws as above
+  // where it carries none of that name.
   [[nodiscard]] SensorConfig sensor() const;
   [[nodiscard]] std::shared_ptr<const Model> model(const SensorConfig& sensor) const;
   // The noise that the daemon's filter began with; nothing where it learned it in this recording.
@@ -68,6 +70,7 @@ class FlightInput {
   std::string driver_;
   DriverSettings options_;
   std::vector<std::string> folders_;
+  const SensorConfig* configured_ = nullptr;
 };
 
 }  // namespace ifog::tools

@@ -79,7 +79,7 @@ OfflineSettings settings_of(const DenoiseOptions& options, const std::optional<C
     out.sensor = flight->sensor();
   const bool as_recorded = flight != nullptr && !configured;
   out.sensor.filter = over(options.filter, std::move(out.sensor.filter));
-  if (!options.model.empty()) out.sensor.model = options.model;
+  if (!options.model.empty()) out.sensor.model_adopted = false, out.sensor.model = options.model;
   if (options.nominal_rate_hz > 0.0) out.sensor.nominal_rate_hz = options.nominal_rate_hz;
   if (options.start_up_s > 0.0) out.sensor.start_up_s = options.start_up_s;
   out.model =

@@ -103,7 +103,7 @@ Adoption take_into_use(const Field& field, const SensorConfig& sensor,
                        std::optional<std::uint64_t> recorded_before) {
   const StateInHand hand(field.state());
   Adoption now;
-  now.before = model_at(field.model_path(sensor));
+  now.before = model_in_use(field, sensor);
   now.proposal = waiting(field.state(), sensor.name, now.before.name);
   now.model = proposed_model(field.state(), now.proposal);
   require_that_it_fits(field, sensor, now.model);
@@ -128,7 +128,6 @@ void adopt(const AdoptArguments& arguments) {
   will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
-  catch_interrupts();
   const Field field(arguments.field);
   const SensorConfig& sensor = field.sensor(arguments.sensor);
   const std::optional<std::uint64_t> recorded_before = last_recording(sensor);
@@ -146,6 +145,7 @@ void adopt(const AdoptArguments& arguments) {
   }
   say("  the daemon has taken it; promised: %s\n", gain_text(proposal.gain).c_str());
   if (arguments.watch_s <= 0.0) return unwatched("nothing was watched");
+  catch_interrupts();
   const Watched watched = watch(now.exchange->live(), field, sensor, now.before.model.value_or(Model{}),
                                 now.model, recorded_before.value_or(0), arguments.watch_s);
   tell_innovations(watched);
@@ -173,7 +173,7 @@ void revert(const AdoptArguments& arguments) {
   const SensorConfig& sensor = field.sensor(arguments.sensor);
   const StateInHand hand(field.state());
   History history(field.state(), sensor.name);
-  const ModelInUse now = model_at(field.model_path(sensor));
+  const ModelInUse now = model_in_use(field, sensor);
   history.forget_what_never_was(now.name);
   const ModelChange* const in_force = history.in_force();
   if (in_force == nullptr)
@@ -215,7 +215,7 @@ void add_adopt(const Command& program) {
   const Command command = program.add_subcommand(
       "adopt", "Put a proposed model into use, and say whether its promise comes true");
   command.add_option("sensor", arguments->sensor, "name in the daemon's configuration").required();
-  arguments->field.add_to(command, true);
+  arguments->field.add_to(command);
   command.add_option("--watch", arguments->watch_s, "look on for so long, s; 0: do not")
       .within(0.0, 86400.0)
       .shows_default()
@@ -228,7 +228,7 @@ void add_revert(const Command& program) {
   auto arguments = std::make_shared<AdoptArguments>();
   const Command command = program.add_subcommand("revert", "Take the last adoption back");
   command.add_option("sensor", arguments->sensor, "name in the daemon's configuration").required();
-  arguments->field.add_to(command, true);
+  arguments->field.add_to(command);
   command.add_option("--json", arguments->json, "write what was changed as JSON, schema ifog.revert/1");
   command.callback([arguments] { revert(*arguments); });
 }

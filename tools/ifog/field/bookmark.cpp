@@ -3,7 +3,7 @@
 
 #include <filesystem>
 
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {

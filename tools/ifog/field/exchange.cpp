@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/field/exchange.h"
 
-#include <signal.h>
-
-#include <cerrno>
 #include <chrono>
-#include <filesystem>
 #include <stdexcept>
-#include <system_error>
 
 #include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/running_mark.h"
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "msgs/state_name.h"
 
@@ -20,7 +15,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kHeardWithin = 3s;   // a status comes every second
+constexpr auto kToldWithin = 3s;    // a status comes every second
 constexpr auto kTakenWithin = 15s;  // the daemon reloads at most once a second
 
 std::string process(pid_t id) { return "the daemon (process " + std::to_string(id) + ")"; }
@@ -50,24 +45,11 @@ ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, con
       sensor_(sensor.name),
       path_(field.model_path(sensor)),
       daemon_(running_daemon(field.state())) {
-  live_ = std::make_unique<LiveStatus>(field.lcm_url());
-  if (!daemon_) {
-    // One without a mark in the folder would go on with the old model, and nobody would see what comes of it.
-    if (live_->listen(kHeardWithin, [&] { return live_->of(sensor_) != nullptr; }))
-      throw std::runtime_error(
-          "sensor " + in_quotes(sensor_) + " is heard on " + field.lcm_url() +
-          ", of a daemon that has not marked " + field.state() +
-          " as its own: expected the state folder of that one (--state), and one that it "
-          "may write");
-    return;
-  }
-  if (::kill(*daemon_, 0) != 0)
-    throw std::runtime_error(process(*daemon_) + " cannot be asked to reload: " +
-                             std::generic_category().message(errno) + ", expected its own user or root");
-  if (!live_->listen(kHeardWithin, [&] { return live_->of(sensor_) != nullptr; }))
-    throw std::runtime_error(process(*daemon_) + " says nothing of sensor " + in_quotes(sensor_) + " on " +
-                             field.lcm_url() +
-                             ", expected its status: nobody would see whether it takes a model");
+  if (!daemon_) return;
+  live_ = std::make_unique<LiveStatus>(field.state(), *daemon_);
+  if (!live_->ask(kToldWithin, [&](const Statuses& all) { return all.contains(sensor_); }))
+    throw std::runtime_error(process(*daemon_) + " has no sensor " + in_quotes(sensor_) +
+                             ", expected it: nobody would see whether it takes a model");
   const status_t& status = *live_->of(sensor_);
   if (status.state != status_t::STATE_RUNNING) throw std::runtime_error(not_running(status));
   if (status.model != in_use.identity)
@@ -81,22 +63,19 @@ void ModelExchange::put(const std::optional<Model>& model) const {
     write_state_file(path_, model_text(*model));
     return;
   }
-  std::error_code error;
-  std::filesystem::remove(path_, error);
-  if (error) throw std::runtime_error(path_ + ": cannot remove: " + error.message());
+  remove_state_file(path_);
 }
 
-void ModelExchange::ask_for_reload() const {
-  // Asked anew: it may have been started again since, and its number be somebody else's.
+void ModelExchange::ask_for_reload() {
+  // It may have been started again since.
   const std::optional<pid_t> now = running_daemon(field_.state());
   if (!now) throw std::runtime_error(process(*daemon_) + " has ended, and none runs in its place");
-  if (::kill(*now, SIGHUP) != 0)
-    throw std::runtime_error(process(*now) +
-                             " cannot be asked to reload: " + std::generic_category().message(errno));
+  live_ = std::make_unique<LiveStatus>(field_.state(), *now);
+  live_->reload(kTakenWithin);
 }
 
 bool ModelExchange::taken(const std::string& identity) {
-  return live_->listen(kTakenWithin, [&] {
+  return live_->ask(kTakenWithin, [&](const Statuses&) {
     const status_t* const status = live_->of(sensor_);
     return status != nullptr && status->model == identity && status->model_since != 0;
   });

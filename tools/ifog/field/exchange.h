@@ -21,7 +21,7 @@ void require_that_it_fits(const Field& field, const SensorConfig& sensor, const 
 class ModelExchange {
  public:
   // Looks, changes nothing. `in_use`: what the file in place holds. Throws std::runtime_error with one line:
-  // the daemon runs and is not heard, may not be asked by this user, or uses another model; the sensor gives
+  // the daemon runs and cannot be asked, or uses another model; the sensor gives
   // no samples, so that nobody would see whether it takes one.
   ModelExchange(const Field& field, const SensorConfig& sensor, const ModelName& in_use);
 
@@ -34,7 +34,7 @@ class ModelExchange {
 
  private:
   void put(const std::optional<Model>& model) const;
-  void ask_for_reload() const;
+  void ask_for_reload();
   [[nodiscard]] bool taken(const std::string& identity);
   [[nodiscard]] std::string why_not_taken() const;
 

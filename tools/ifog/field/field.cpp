@@ -24,7 +24,7 @@
 
 namespace ifog::tools {
 
-void FieldOptions::add_to(const Command& command, bool listens) {
+void FieldOptions::add_to(const Command& command) {
   command
       .add_option("--config", config, std::string("the daemon's configuration; default: ") + kServiceConfig)
       .type_name("FILE");
@@ -34,16 +34,12 @@ void FieldOptions::add_to(const Command& command, bool listens) {
           std::string("the daemon's state folder; default: as configured, else $STATE_DIRECTORY, else ") +
               kServiceState)
       .type_name("FOLDER");
-  if (listens)
-    command.add_option("--lcm-url", lcm_url, "where the daemon publishes; default: as configured")
-        .type_name("URL");
 }
 
 std::string FieldOptions::as_typed() const {
   std::string text;
   if (!config.empty()) text += " --config " + shell_file(config);
   if (!state.empty()) text += " --state " + shell_file(state);
-  if (!lcm_url.empty()) text += " --lcm-url " + shell_word(lcm_url);
   return text;
 }
 
@@ -63,8 +59,6 @@ Field::Field(const FieldOptions& options) : typed_(options.as_typed()) {
     use_adopted_models(*config_, state_);
     will_read_files_of(*config_);
   }
-  lcm_url_ = options.lcm_url;
-  if (lcm_url_.empty()) lcm_url_ = config_ ? config_->lcm_url : Config{}.lcm_url;
 }
 
 const Config& Field::required_config() const {

@@ -11,10 +11,9 @@
 namespace ifog::tools {
 
 struct FieldOptions {
-  std::string config;   // --config; "": where the service has it, if it is there
-  std::string state;    // --state; "": as configured, else STATE_DIRECTORY, else where the service has it
-  std::string lcm_url;  // --lcm-url; "": as configured
-  void add_to(const Command& command, bool listens);
+  std::string config;  // --config; "": where the service has it, if it is there
+  std::string state;   // --state; "": as configured, else STATE_DIRECTORY, else where the service has it
+  void add_to(const Command& command);
   // Those that were given, as a shell takes them again: " --config F".
   [[nodiscard]] std::string as_typed() const;
 };
@@ -28,7 +27,6 @@ class Field {
   // Null: there is no configuration.
   [[nodiscard]] const Config* config() const { return config_ ? &*config_ : nullptr; }
   [[nodiscard]] const std::string& state() const { return state_; }
-  [[nodiscard]] const std::string& lcm_url() const { return lcm_url_; }
   // The file that was read, or looked for.
   [[nodiscard]] const std::string& config_path() const { return config_path_; }
   // A command about a sensor that looks after the same field, to be copied.
@@ -42,7 +40,7 @@ class Field {
 
  private:
   std::optional<Config> config_;
-  std::string config_path_, state_, lcm_url_, typed_;
+  std::string config_path_, state_, typed_;
 };
 
 // What a person writes into the state folder, the daemon's own user reads and writes on, and the other way

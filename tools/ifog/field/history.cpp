@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
@@ -72,7 +72,7 @@ void History::forget_what_never_was(const ModelName& in_use) {
 
 std::optional<Model> History::kept(const ModelName& name) const {
   if (name.sha256.empty()) return std::nullopt;
-  Model model = read_model(kept_path(name));
+  Model model = parsed_state_file(kept_path(name), parse_model);
   if (name_of(model) != name)
     throw std::runtime_error(kept_path(name) + ": is another model than " + name.identity);
   return model;

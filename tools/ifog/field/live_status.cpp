@@ -1,37 +1,52 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/field/live_status.h"
 
-#include <poll.h>
-
 #include <ifog/decode.h>
 #include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <stdexcept>
+#include <string_view>
+#include <thread>
 
+#include "daemon/state/running_mark.h"
+#include "drivers/ifog/quoted.h"
 #include "tools/ifog/console/interrupt.h"
 
 namespace ifog::tools {
+namespace {
 
-LiveStatus::LiveStatus(const std::string& lcm_url)
-    : listener_(lcm_url, [this](const lcm_recv_buf_t& message, const std::string&) {
-        status_t status{};
-        // One that is none of ours is passed over.
-        if (!decode_message(message.data, message.data_size, status)) return;
-        all_[status.sensor] = status;
-        if (each) each(status);
-      }) {
-  listener_.listen_to("IFOG_.*_STATUS");
+Statuses decoded(std::string_view answer) {
+  Statuses out;
+  for (std::uint32_t bytes = 0; answer.size() >= sizeof bytes;) {
+    std::memcpy(&bytes, answer.data(), sizeof bytes);
+    answer.remove_prefix(sizeof bytes);
+    status_t status{};
+    if (bytes <= answer.size() && decode_message(answer.data(), bytes, status)) out[status.sensor] = status;
+    answer.remove_prefix(std::min<std::size_t>(bytes, answer.size()));
+  }
+  return out;
 }
 
-bool LiveStatus::listen(std::chrono::milliseconds most, const std::function<bool()>& enough) {
+}  // namespace
+
+bool LiveStatus::ask(std::chrono::milliseconds most, const std::function<bool(const Statuses&)>& enough) {
   using Clock = std::chrono::steady_clock;
-  constexpr long kTurn_ms = 500;
+  constexpr std::chrono::milliseconds kBetween{500};  // twice as often as a status is made
   const Clock::time_point end = Clock::now() + most;
-  pollfd wanted{listener_.descriptor(), POLLIN, 0};
-  while (!enough()) {
-    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now()).count();
-    if (left <= 0 || interrupted()) return false;
-    if (poll(&wanted, 1, static_cast<int>(std::min<long>(left, kTurn_ms))) > 0) listener_.take();
+  for (;;) {
+    const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());
+    all_ = decoded(ask_daemon(folder_, daemon_, DaemonQuestion::status, std::max(left, 4 * kBetween)));
+    if (enough(all_)) return true;
+    if (left.count() <= 0 || interrupted()) return false;
+    std::this_thread::sleep_for(std::min(left, kBetween));
   }
-  return true;
+}
+
+void LiveStatus::reload(std::chrono::milliseconds most) const {
+  const std::string refused = ask_daemon(folder_, daemon_, DaemonQuestion::reload, most);
+  if (!refused.empty())
+    throw std::runtime_error("the daemon refused to reload: " + printable(refused, kLongestMessage));
 }
 
 const status_t* LiveStatus::of(const std::string& sensor) const {

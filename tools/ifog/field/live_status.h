@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the daemon says of its sensors while somebody listens.
+// What the daemon that works with a state folder says of its sensors, asked by the socket in that folder.
 #pragma once
+
+#include <sys/types.h>
 
 #include <chrono>
 #include <functional>
@@ -8,28 +10,30 @@
 #include <map>
 #include <string>
 
-#include "tools/ifog/captures/lcm_listener.h"
-
 namespace ifog::tools {
+
+// By the sensor's name as the daemon spells it.
+using Statuses = std::map<std::string, status_t>;
 
 class LiveStatus {
  public:
-  // Throws std::runtime_error with one line: an address that LCM cannot use.
-  explicit LiveStatus(const std::string& lcm_url);
+  LiveStatus(std::string folder, pid_t daemon) : folder_(std::move(folder)), daemon_(daemon) {}
 
-  // Until enough() or the time is over or the user interrupts. False: not enough.
-  bool listen(std::chrono::milliseconds most, const std::function<bool()>& enough);
+  // Asks twice a second until enough(), or the time is over, or the user interrupts. False: not enough. Throws
+  // std::runtime_error with one line: the daemon cannot be asked or does not answer.
+  bool ask(std::chrono::milliseconds most, const std::function<bool(const Statuses&)>& enough);
+  // Throws likewise, and with what was refused.
+  void reload(std::chrono::milliseconds most) const;
 
-  // The latest of each, by the sensor's name as the daemon spells it.
-  [[nodiscard]] const std::map<std::string, status_t>& all() const { return all_; }
-  // Null: not heard.
+  // As last answered.
+  [[nodiscard]] const Statuses& all() const { return all_; }
+  // Null: the daemon has no such sensor.
   [[nodiscard]] const status_t* of(const std::string& sensor) const;
-  // Called with every message.
-  std::function<void(const status_t&)> each;
 
  private:
-  std::map<std::string, status_t> all_;
-  LcmListener listener_;
+  std::string folder_;
+  pid_t daemon_;
+  Statuses all_;
 };
 
 }  // namespace ifog::tools

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <deque>
 #include <exception>
 #include <filesystem>
 #include <memory>
@@ -15,7 +16,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/input_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 #include "filters/model_file/sha256.h"
@@ -51,6 +52,8 @@ constexpr double kFitTo = 0.7;
 // At some averaging time the error falls by this much at least, and at none does it grow by more than that.
 constexpr double kLeastGain = 0.05;
 constexpr double kMostLoss = 0.02;
+
+const std::string kCannotBeJudged = "the recordings could not be judged; the night's log says why";
 
 // The newest of them that together are no more than so many bytes, or the newest.
 std::vector<RecordedFile> newest(std::vector<RecordedFile> files, double most_bytes) {
@@ -146,15 +149,16 @@ std::string Night::run() {
     said = error.what();
     failed_ = true;
   }
+  // What is kept says nothing of what a file held.
   if (gone_through_) {
     const StateInHand hand(field_.state());
-    write_bookmark(field_.state(), sensor_.name, {until, utc_now(), said});
+    write_bookmark(field_.state(), sensor_.name, {until, utc_now(), failed_ ? kCannotBeJudged : said});
   }
   return said;
 }
 
 std::string Night::judge(const std::vector<RecordedFile>& all) {
-  const ModelInUse in_use = model_at(field_.model_path(sensor_));
+  const ModelInUse in_use = model_in_use(field_, sensor_);
   // A warm-up that is not there yet would be found where two of them follow each other, too.
   const std::vector<RecordedFile> files = sensor_.powered_with_computer ? of_one_power_up(all) : all;
   if (files.size() < all.size())
@@ -245,7 +249,8 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   if (found.empty()) return "nothing found that the model in use leaves";
 
   std::string all;
-  for (const RecordedFile& file : files) all += sha256_hex(read_bytes_file(file.path));
+  for (const RecordedFile& file : files)
+    all += sha256_hex(InputFile(file.path, std::deque<std::string>{file.path}).bytes());
   const std::vector<std::string> hashes{sha256_hex(all)};
   const std::vector<double>& time_s = recorded.capture.time_s;
   const double fitted_to = time_s.front() + kFitTo * (time_s.back() - time_s.front());
@@ -342,7 +347,7 @@ void add_night(const Command& program) {
   auto arguments = std::make_shared<NightArguments>();
   const Command command = program.add_subcommand(
       "night", "Diagnose what was recorded since the last time, and propose a model where that pays");
-  arguments->field.add_to(command, false);
+  arguments->field.add_to(command);
   command.add_option("--sensor", arguments->sensors, "only these sensors").type_name("NAME");
   command.add_option("--least-rest", arguments->least_rest_s, "with less time at rest wait for more, s")
       .within(60.0, 1e7)

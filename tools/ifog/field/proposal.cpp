@@ -8,7 +8,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "daemon/state/state_file.h"
+#include "daemon/sensor/sensor_parts.h"
+#include "daemon/state/state_folder.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/field/state_json.h"
@@ -41,15 +42,10 @@ std::string plain_name(const json& from, const std::string& path) {
 
 // Models and pages of proposals that are no longer waiting.
 void remove_others(const std::string& state, const std::string& sensor, const std::optional<Proposal>& kept) {
-  std::error_code none;
   const std::string prefix = sensor + ".proposal-";
-  std::vector<fs::path> old;
-  for (const auto& entry : fs::directory_iterator(state, none)) {
-    const std::string name = entry.path().filename().string();
+  for (const std::string& name : names_in_state_folder(state))
     if (name.starts_with(prefix) && (!kept || (name != kept->model_file && name != kept->report_file)))
-      old.push_back(entry.path());
-  }
-  for (const fs::path& path : old) fs::remove(path, none);
+      remove_state_file(inside(state, name));
 }
 
 // A number that JSON may hold as null, which stands for no bound.
@@ -70,11 +66,13 @@ ModelName name_of(const Model& model) {
   return {model.identity(), hash};
 }
 
-ModelInUse model_at(const std::string& path) {
+ModelInUse model_in_use(const Field& field, const SensorConfig& sensor) {
   ModelInUse out;
-  std::error_code none;
-  if (path.empty() || !fs::exists(path, none)) return out;
-  out.model = read_model(path);
+  SensorConfig now = sensor;
+  now.model = field.model_path(sensor);
+  now.model_adopted = sensor.model_adopted || sensor.model.empty();
+  if (!is_in_state_folder(now.model)) return out;
+  out.model = *read_sensor_model(now);
   out.name = name_of(*out.model);
   return out;
 }
@@ -193,7 +191,7 @@ std::optional<Proposal> read_proposal(const std::string& state, const std::strin
 
 Model proposed_model(const std::string& state, const Proposal& proposal) {
   const std::string path = inside(state, proposal.model_file);
-  Model model = read_model(path);
+  Model model = parsed_state_file(path, parse_model);
   if (name_of(model).sha256 != proposal.model.sha256)
     throw std::runtime_error(path + ": is another model than the proposal says, expected " +
                              proposal.model.identity);
@@ -201,22 +199,15 @@ Model proposed_model(const std::string& state, const Proposal& proposal) {
 }
 
 void remove_proposal(const std::string& state, const std::string& sensor) {
-  std::error_code error;
-  fs::remove(index_path(state, sensor), error);
-  if (error) throw std::runtime_error(index_path(state, sensor) + ": cannot remove: " + error.message());
+  remove_state_file(index_path(state, sensor));
   remove_others(state, sensor, std::nullopt);
 }
 
 std::vector<std::string> sensors_with_proposal(const std::string& state) {
   std::vector<std::string> out;
-  std::error_code error;
-  for (const auto& entry : fs::directory_iterator(state, error)) {
-    const std::string name = entry.path().filename().string();
+  for (const std::string& name : names_in_state_folder(state))
     if (name.ends_with(kEnding) && name.size() > kEnding.size())
       out.push_back(name.substr(0, name.size() - kEnding.size()));
-  }
-  if (error && error != std::errc::no_such_file_or_directory)
-    throw std::runtime_error(state + ": cannot read: " + error.message());
   std::sort(out.begin(), out.end());
   return out;
 }

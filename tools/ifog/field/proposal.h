@@ -14,6 +14,7 @@
 
 #include "filters/model_file/model.h"
 #include "filters/promise/promise.h"
+#include "tools/ifog/field/field.h"
 
 namespace ifog::tools {
 
@@ -25,12 +26,12 @@ struct ModelName {
 [[nodiscard]] ModelName name_of(const Model& model);
 [[nodiscard]] nlohmann::ordered_json as_json(const ModelName& name);
 [[nodiscard]] ModelName name_from(const nlohmann::json& from);
-// The model of a file that need not be there.
+// A sensor's model, whose file need not be there.
 struct ModelInUse {
   std::optional<Model> model;
   ModelName name;
 };
-[[nodiscard]] ModelInUse model_at(const std::string& path);
+[[nodiscard]] ModelInUse model_in_use(const Field& field, const SensorConfig& sensor);
 
 // What a model gained, or promises to gain, on data it was not fitted on.
 struct AxisGain {

@@ -28,7 +28,7 @@ std::string why_stale(const Field& field, const Proposal& proposal) {
   if (field.config() == nullptr) return "";
   for (const SensorConfig& sensor : field.config()->sensors)
     if (sensor.name == proposal.sensor)
-      return model_at(field.model_path(sensor)).name != proposal.against ? ", which is no longer in use" : "";
+      return model_in_use(field, sensor).name != proposal.against ? ", which is no longer in use" : "";
   return "; " + field.config_path() + " has no such sensor";
 }
 
@@ -75,7 +75,7 @@ void add_proposals(const Command& program) {
   auto arguments = std::make_shared<ProposalsArguments>();
   const Command command =
       program.add_subcommand("proposals", "List the models that the nights have proposed");
-  arguments->field.add_to(command, false);
+  arguments->field.add_to(command);
   command.add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1");
   command.callback([arguments] { run(*arguments); });
 }

@@ -39,7 +39,7 @@ struct PowerUp {
 
 // Of the sensor, as the file says it; one that cannot be read says nothing, and is told of when it is.
 std::optional<PowerUp> power_up(const RecordedFile& file) try {
-  InputFile input(file.path);
+  InputFile input(file.path, std::deque<std::string>{file.path});
   const FlightInput flight(input);
   if (!flight.header().powered_ns) return std::nullopt;
   return PowerUp{*flight.header().powered_ns, flight.header().boot};
@@ -78,7 +78,9 @@ std::vector<RecordedFile> recorded_files(const SensorConfig& sensor) {
     const auto [end, wrong] = std::from_chars(name.data(), name.data() + name.size(), file.number);
     if (wrong != std::errc() || *end != '-') continue;
     file.opened = opened_at(name);
-    std::error_code gone;  // removed or renamed meanwhile
+    // No link: others may write there. None: removed or renamed meanwhile.
+    std::error_code gone;
+    if (entry.symlink_status(gone).type() != fs::file_type::regular) continue;
     file.bytes = entry.file_size(gone);
     if (gone) continue;
     file.path = entry.path().string();
@@ -120,7 +122,7 @@ Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFil
   InputFile input(folder, std::move(paths));
   const ReadingProgress progress(input);
   FlightInput flight(input);
-  DriverInstance driver = flight.make_driver("", {}, plugin_folders);
+  DriverInstance driver = flight.make_driver("", {}, plugin_folders, &sensor);
   Recorded out;
   out.capture = flight.capture(driver);
   if (out.capture.size() < 2) throw std::runtime_error(folder + ": fewer than two samples recorded");

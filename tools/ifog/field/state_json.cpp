@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/field/state_json.h"
 
-#include <filesystem>
 #include <stdexcept>
 
-#include "daemon/state/state_file.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 
 namespace ifog::tools {
 namespace {
 
-// Far more than any file of ours has, and far less than the stack of a parser that calls itself holds.
 void require_depth(const std::string& path, std::string_view text) {
-  constexpr std::size_t kMostDepth = 64;
   std::size_t depth = 0;
   bool quoted = false;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -23,9 +21,9 @@ void require_depth(const std::string& path, std::string_view text) {
     } else if (c == '"') {
       quoted = true;
     } else if (c == '[' || c == '{') {
-      if (++depth > kMostDepth)
-        throw std::runtime_error(path +
-                                 ": is JSON nested deeper than 64, which no file of the state folder is");
+      if (++depth > kInputLimits.json_depth)
+        throw std::runtime_error(path + ": is JSON nested deeper than " +
+                                 std::to_string(kInputLimits.json_depth) + ", which no file of ours is");
     } else if ((c == ']' || c == '}') && depth > 0) {
       --depth;
     }
@@ -34,23 +32,26 @@ void require_depth(const std::string& path, std::string_view text) {
 
 }  // namespace
 
-std::optional<nlohmann::json> read_state_json(const std::string& path, const std::string& schema) {
-  std::error_code none;
-  if (!std::filesystem::exists(path, none)) return std::nullopt;
-  constexpr std::size_t kMost = std::size_t{64} << 20U;  // bytes; a history of a year of nights has 1 MB
-  const std::string text = read_state_file(path, kMost);
+nlohmann::json parse_json(const std::string& text, const std::string& path) {
+  if (text.size() > kInputLimits.json_bytes)
+    throw std::runtime_error(path + ": is longer than any JSON of ours");
   require_depth(path, text);
-  const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);
+  return nlohmann::json::parse(text, nullptr, false);
+}
+
+std::optional<nlohmann::json> read_state_json(const std::string& path, const std::string& schema) {
+  const std::optional<std::string> text = state_file(path);
+  if (!text) return std::nullopt;
+  const nlohmann::json json = parse_json(*text, path);
   if (json.is_discarded() || !json.is_object())
     throw std::runtime_error(path + ": is no JSON object, expected schema " + schema);
   const auto found = json.find("schema");
   if (found == json.end() || *found != schema)
-    throw std::runtime_error(
-        path + ": schema = " +
-        (found == json.end()
-             ? "(missing)"
-             : printable(found->dump(-1, ' ', true, nlohmann::json::error_handler_t::replace))) +
-        ", expected " + schema);
+    throw std::runtime_error(path + ": schema is " +
+                             (found == json.end()  ? "missing"
+                              : found->is_string() ? "another"
+                                                   : found->type_name()) +
+                             ", expected " + schema);
   return json;
 }
 

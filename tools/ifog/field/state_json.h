@@ -8,6 +8,9 @@
 
 namespace ifog::tools {
 
+// Discarded where the text is no JSON. Throws std::runtime_error with one line: nested deeper than any file of ours.
+[[nodiscard]] nlohmann::json parse_json(const std::string& text, const std::string& path);
+
 // Nothing: no such file. Throws std::runtime_error with one line: unreadable, no JSON, another schema.
 [[nodiscard]] std::optional<nlohmann::json> read_state_json(const std::string& path,
                                                             const std::string& schema);

@@ -95,7 +95,7 @@ Kept kept_of(const Field& field, const std::string& name) {
       if (sensor.name != name) continue;
       out.gone = false;
       out.recordings = sensor.record.folder.empty() ? "" : sensor.record.folder + "/" + name;
-      out.model = model_at(field.model_path(sensor)).name;
+      out.model = model_in_use(field, sensor).name;
     }
   });
   look([&] { out.proposal = read_proposal(field.state(), name); });
@@ -147,7 +147,7 @@ void say_sensor(const std::string& name, const status_t* live, const Kept& kept,
         in_hertz(live->input_rate_hz).c_str(), in_hertz(live->output_rate_hz).c_str());
     say_live(*live);
   } else {
-    say("%s  nothing heard\n", printable(name).c_str());
+    say("%s  nothing known of now\n", printable(name).c_str());
   }
   say_recorded(live, kept.recordings);
   const std::string model = live != nullptr ? live->model : kept.model.identity;
@@ -222,8 +222,8 @@ ordered_json as_json(const std::string& name, const status_t* live, const Kept& 
   return out;
 }
 
-// Names in the order of the configuration, then those heard besides.
-std::vector<std::string> names_of(const Field& field, const LiveStatus& live) {
+// Names in the order of the configuration, then those besides.
+std::vector<std::string> names_of(const Field& field, const Statuses& statuses) {
   std::vector<std::string> out;
   std::set<std::string> known;
   const auto add = [&](const std::string& name) {
@@ -231,50 +231,55 @@ std::vector<std::string> names_of(const Field& field, const LiveStatus& live) {
   };
   if (field.config() != nullptr)
     for (const SensorConfig& sensor : field.config()->sensors) add(sensor.name);
-  for (const auto& [name, status] : live.all()) add(name);
+  for (const auto& [name, status] : statuses) add(name);
   for (const std::string& name : sensors_with_proposal(field.state())) add(name);
   return out;
 }
 
-// The process; 0: none. What cannot be seen is said.
-pid_t daemon_of(const Field& field) {
+struct Running {
+  pid_t process = 0;  // 0: none
+  Statuses statuses{};
+};
+
+// What cannot be seen or asked is said.
+Running running(const Field& field, double wait_s) {
+  Running out;
   try {
-    return running_daemon(field.state()).value_or(0);
+    out.process = running_daemon(field.state()).value_or(0);
+    if (out.process == 0) return out;
+    LiveStatus live(field.state(), out.process);
+    live.ask(std::chrono::milliseconds(static_cast<std::int64_t>(wait_s * 1e3)),
+             [](const auto&) { return true; });
+    out.statuses = live.all();
   } catch (const std::exception& error) {
     warn("%s\n", error.what());
-    return 0;
   }
+  return out;
 }
 
 void run(const StatusArguments& arguments) {
   will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
-  const pid_t daemon = daemon_of(field);
-  LiveStatus live(field.lcm_url());
-  const std::size_t expected = field.config() != nullptr ? field.config()->sensors.size() : 0;
-  live.listen(std::chrono::milliseconds(static_cast<std::int64_t>(arguments.wait_s * 1e3)),
-              [&] { return expected != 0 && live.all().size() >= expected; });
+  const Running now = running(field, arguments.wait_s);
   const std::string where = "state folder " + field.state();
-  if (daemon != 0)
-    say("ifogd runs, process %d, %s\n", static_cast<int>(daemon), where.c_str());
-  else if (!live.all().empty())
-    say("a daemon is heard on %s; none has marked %s as its own: it works with another, or may not write "
-        "there\n",
-        field.lcm_url().c_str(), where.c_str());
+  if (now.process != 0)
+    say("ifogd runs, process %d, %s\n", static_cast<int>(now.process), where.c_str());
   else
-    say("ifogd does not run; this is what %s knows\n", where.c_str());
+    say("ifogd does not run with %s; this is what the folder knows\n", where.c_str());
   ordered_json sensors = ordered_json::array();
-  for (const std::string& name : names_of(field, live)) {
+  for (const std::string& name : names_of(field, now.statuses)) {
     const Kept kept = kept_of(field, name);
-    say_sensor(name, live.of(name), kept, field.command("adopt", name));
-    sensors.push_back(as_json(name, live.of(name), kept));
+    const auto found = now.statuses.find(name);
+    const status_t* const live = found == now.statuses.end() ? nullptr : &found->second;
+    say_sensor(name, live, kept, field.command("adopt", name));
+    sensors.push_back(as_json(name, live, kept));
   }
   if (!arguments.json.empty())
     write_json(arguments.json,
                ordered_json{{"schema", "ifog.status/1"},
-                            {"running", daemon != 0},
-                            {"process", daemon != 0 ? ordered_json(daemon) : ordered_json(nullptr)},
+                            {"running", now.process != 0},
+                            {"process", now.process != 0 ? ordered_json(now.process) : ordered_json(nullptr)},
                             {"state_folder", field.state()},
                             {"sensors", sensors}});
 }
@@ -285,8 +290,8 @@ void add_status(const Command& program) {
   auto arguments = std::make_shared<StatusArguments>();
   const Command command = program.add_subcommand(
       "status", "All sensors of this computer's daemon: state, losses, model, proposal");
-  arguments->field.add_to(command, true);
-  command.add_option("--wait", arguments->wait_s, "listen at most so long, s")
+  arguments->field.add_to(command);
+  command.add_option("--wait", arguments->wait_s, "wait for the daemon's answer at most so long, s")
       .within(0.1, 3600.0)
       .shows_default()
       .type_name("SECONDS");

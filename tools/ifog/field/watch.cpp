@@ -7,9 +7,10 @@
 #include <cstdio>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 
-#include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
@@ -47,14 +48,19 @@ void weigh(Watched& out, const Field& field, const SensorConfig& sensor, const M
       bytes -= settling.front().bytes;
       settling.erase(settling.begin());
     }
-    if (all.empty()) throw std::runtime_error("nothing was recorded meanwhile");
+    if (all.empty()) {
+      out.not_weighed = "nothing was recorded meanwhile";
+      return;
+    }
     const std::size_t begin = rows_to_settle(sensor, settling, field);
     all.insert(all.begin(), settling.begin(), settling.end());
     const Recorded recorded = read_recorded(sensor, all, field.required_config().plugin_folders);
     out.gain = weigh_models(recorded, before, after, begin);
     if (out.gain.empty()) out.not_weighed = "the two models corrected alike meanwhile";
   } catch (const std::exception& error) {
-    out.not_weighed = error.what();
+    // Into the history goes nothing of what a recording holds.
+    warn("%s\n", error.what());
+    out.not_weighed = "the recordings could not be used";
   }
 }
 
@@ -69,8 +75,9 @@ Watched watch(LiveStatus& live, const Field& field, const SensorConfig& sensor, 
   std::optional<status_t> first;
   {
     Progress progress("watching " + sensor.name, static_cast<std::size_t>(std::max(1.0, seconds)));
-    live.each = [&](const status_t& status) {
-      if (status.sensor != sensor.name) return;
+    std::int64_t last = 0;
+    const auto take = [&](const status_t& status) {
+      if (std::exchange(last, status.utime) == status.utime) return;
       if (!first) first = status;
       ++out.statuses;
       out.divergences = status.divergences - first->divergences;
@@ -85,12 +92,17 @@ Watched watch(LiveStatus& live, const Field& field, const SensorConfig& sensor, 
       }
       progress.at(static_cast<std::size_t>(passed()));
     };
-    live.listen(std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3)),
-                [&] { return passed() >= seconds; });
-    live.each = nullptr;
+    try {
+      live.ask(std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1e3)), [&](const Statuses& all) {
+        if (const auto now = all.find(sensor.name); now != all.end()) take(now->second);
+        return passed() >= seconds;
+      });
+    } catch (const std::exception& error) {
+      warn("%s\n", error.what());
+    }
   }
   out.seconds = std::min(passed(), seconds);
-  out.whole = !interrupted();
+  out.whole = passed() >= seconds;
   weigh(out, field, sensor, before, after, recorded_before);
   return out;
 }

@@ -95,7 +95,7 @@ class FleetRun {
   [[nodiscard]] std::vector<std::size_t> undiagnosed() const {
     std::vector<std::size_t> missing;
     for (std::size_t i = 0; i < manifest_.gyros.size(); ++i)
-      if (!is_diagnosed(results_, manifest_.gyros[i], options_)) missing.push_back(i);
+      if (absent_.count(i) == 0 && !is_diagnosed(results_, manifest_.gyros[i], options_)) missing.push_back(i);
     return missing;
   }
 
@@ -119,6 +119,15 @@ class FleetRun {
     return ended;
   }
 
+  [[nodiscard]] std::map<std::size_t, std::string> without_captures() const {
+    std::map<std::size_t, std::string> out;
+    for (std::size_t i = 0; i < manifest_.gyros.size(); ++i)
+      for (const std::string& capture : manifest_.gyros[i].captures)
+        if (std::error_code none; !std::filesystem::exists(capture, none))
+          out.emplace(i, capture + ": cannot open: No such file or directory");
+    return out;
+  }
+
   // Of an earlier run: what stands there afterwards is of this one.
   void forget_failure(std::size_t gyro) const {
     const FleetGyro& of = manifest_.gyros[gyro];
@@ -134,7 +143,8 @@ class FleetRun {
   }
 
   void diagnose_all() {
-    if (!undiagnosed().empty()) results_.forget_type();
+    absent_ = without_captures();
+    if (!absent_.empty() || !undiagnosed().empty()) results_.forget_type();
     const auto said_why = [&](std::size_t gyro) {
       const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
       return done && done->failed.has_value();
@@ -148,7 +158,9 @@ class FleetRun {
       if (told.count(gyro) > 0) continue;
       const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
       const auto how = ended.find(gyro);
-      std::string why = done && done->failed ? *done->failed
+      const auto gone = absent_.find(gyro);
+      std::string why = gone != absent_.end() ? gone->second
+                        : done && done->failed ? *done->failed
                         : how != ended.end() ? how->second + results_.told_in_log(gyro)
                                              : "its captures change while they are read";
       population_.failed.push_back({gyro, std::move(why)});
@@ -244,6 +256,7 @@ class FleetRun {
   std::string options_;
   double level_;
   std::unique_ptr<Engine> engine_;
+  std::map<std::size_t, std::string> absent_;  // gyros without captures, and why no process looks at them
   Diagnosed diagnosed_;
   TypeToMeasure type_;
   std::map<std::size_t, GyroMeasured> measured_;

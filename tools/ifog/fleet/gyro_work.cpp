@@ -175,6 +175,7 @@ bool is_measured(const Results& results, const FleetGyro& gyro, const std::strin
 
 void work_on(const Results& results, const FleetGyro& gyro, const FleetSettings& settings) {
   const std::string options = settings.text();
+  results.make_folder_of(gyro);
   // Before anything is read: what changes while it is read is done again.
   const std::string inputs = identity_of(gyro, options);
   std::optional<Opened> opened;

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
 #include "filters/model_file/toml_file.h"
 
 namespace ifog::tools {
@@ -116,6 +117,8 @@ Manifest parse_manifest(std::string_view text, const std::string& path) {
     if (!names.insert(name).second)
       fail(path, gyro->source(), "serial = " + in_quotes(each.serial) + " stands twice, expected once");
     each.captures = captures_of(path, *gyro, each.serial, taken);
+    if (taken.size() > kInputLimits.captures)
+      fail(path, gyro->source(), "more than " + std::to_string(kInputLimits.captures) + " captures");
     manifest.gyros.push_back(std::move(each));
   }
   return manifest;

@@ -15,6 +15,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/console/json_file.h"
+#include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
 namespace {
@@ -45,7 +46,7 @@ auto read_marker(const std::string& path, const std::string& schema, Read&& read
   std::error_code none;
   if (!fs::is_regular_file(path, none)) return std::nullopt;
   try {
-    const nlohmann::json json = nlohmann::json::parse(read_text_file(path));
+    const nlohmann::json json = parse_json(read_text_file(path), path);
     if (json.at("schema") != schema) return std::nullopt;
     return read(json);
   } catch (const std::exception&) {
@@ -124,10 +125,10 @@ std::string Results::told_in_log(std::size_t gyro) const {
 }
 
 std::string Results::path(const FleetGyro& gyro, const std::string& file) const {
-  const fs::path own = fs::path(folder_) / "gyros" / gyro.serial;
-  make_folder(own);
-  return (own / file).string();
+  return (fs::path(folder_) / "gyros" / gyro.serial / file).string();
 }
+
+void Results::make_folder_of(const FleetGyro& gyro) const { make_folder(path(gyro, "")); }
 
 std::optional<TypeToMeasure> Results::type() const {
   return read_marker(path("type.json"), "ifog.type/1", [](const nlohmann::json& json) {

@@ -61,8 +61,10 @@ class Results {
   [[nodiscard]] std::string log(std::size_t gyro) const;
   // Where it is to be read why a process of the gyro failed: `, see LOG`, or why nothing could be said there.
   [[nodiscard]] std::string told_in_log(std::size_t gyro) const;
-  // Makes the gyro's folder.
+  // In the gyro's folder.
   [[nodiscard]] std::string path(const FleetGyro& gyro, const std::string& file) const;
+  // Before anything of it is written.
+  void make_folder_of(const FleetGyro& gyro) const;
 
   // Nothing where there is none, or one that cannot be read: it is made again.
   [[nodiscard]] std::optional<TypeToMeasure> type() const;
