@@ -20,7 +20,8 @@ except ModuleNotFoundError:
 import captures
 from real_table import NAMES
 
-MOST_ROWS = 12000
+MOST_ROWS = 4000
+LONGEST_STEP = 0.8  # s, of a sway of 2 s
 SPEED, GRAVITY = 900.0, 9.80665  # of the surface wave, m/s
 PERIODS = {"sway": (2.0, 6.0), "wave": (15.0, 60.0), "ride": (40.0, 200.0)}  # s
 
@@ -55,10 +56,11 @@ def moved(columns, kind, rng):
 
 
 def shortened(columns):
-    """Means of rows, so that the search takes seconds."""
+    """Means of rows and then a stretch of them, so that the search takes seconds and a sway is still one."""
     rows = len(columns["time_s"])
-    m = -(-rows // MOST_ROWS)
-    return {k: v[: rows // m * m].reshape(-1, m).mean(1) for k, v in columns.items()}
+    m = min(-(-rows // MOST_ROWS), max(1, int(LONGEST_STEP / np.median(np.diff(columns["time_s"])))))
+    kept = min(rows // m, MOST_ROWS)
+    return {k: v[: kept * m].reshape(-1, m).mean(1) for k, v in columns.items()}
 
 
 def main():

@@ -75,7 +75,7 @@ struct FineChannel {
   bool of_axis = false;     // the rate of another axis of the sensor
   double period = 0.0;      // of an angle without its wraps: only what repeats with it is a function of it
   // A quantity of the surroundings, that any form may be made of.
-  [[nodiscard]] bool environment() const { return (!moves || held) && !of_axis && period == 0.0; }
+  [[nodiscard]] bool environment() const { return !moves && !of_axis && period == 0.0; }
 };
 
 struct BlockData {

@@ -127,7 +127,7 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
   effect.meaning = candidate.is_earth_rate() ? meaning_of_earth_rate(effect) : meaning_of(effect);
   if (candidate.first_reading == FirstReading::kProxyShown)
     effect.meaning = "a proxy: larger than any gyro's " + std::string(name_of(candidate.form)) +
-                     " effect of " + effect.channel + ", which drifts with the cause";
+                     " effect of " + effect.channel + ", which moves or drifts with the cause";
   return effect;
 }
 

@@ -28,6 +28,8 @@ constexpr double kMargin = 4.0;
 constexpr std::array<Grade, 2> kGrades = {
     {{0.3, "an optical gyro", 1.0, 10.0, 60.0, 100.0}, {1e300, "a MEMS gyro", 360.0, 1080.0, 1152.0, 360.0}}};
 constexpr double kStandardGravity = 9.80665;
+// m/s: no surface wave and no vehicle is quicker. So what turns with an acceleration does so by 1/2c or more.
+constexpr double kQuickest = 8000.0;
 
 const Grade& grade_of(const BlockGrid& grid, const NoiseFit& noise) {
   const double density = std::sqrt(noise.white_variance * slow_white(noise.shape) * grid.block_s);
@@ -37,7 +39,7 @@ const Grade& grade_of(const BlockGrid& grid, const NoiseFit& noise) {
 }
 
 // rad/s per unit of the channel; none where nothing is specified.
-std::optional<double> most_of(const Grade& grade, const std::string& channel) {
+std::optional<double> specified(const Grade& grade, const std::string& channel) {
   const std::string unit = unit_of(channel);
   const double scale = kMargin * kDegreePerHour;
   switch (kind_of(channel)) {
@@ -55,6 +57,19 @@ std::optional<double> most_of(const Grade& grade, const std::string& channel) {
     default:
       return std::nullopt;
   }
+}
+
+struct Bound {
+  double most;  // rad/s per unit of the channel
+  const char* of;
+};
+
+// Where an acceleration may be that of a rotation, only what is too small for one is an error.
+std::optional<Bound> bound_of(const Grade& grade, const FineChannel& channel) {
+  const std::optional<double> most = specified(grade, channel.name);
+  if (!most) return std::nullopt;
+  const double turned = 0.5 / kQuickest * (unit_of(channel.name) == "g" ? kStandardGravity : 1.0);
+  return channel.moves && turned < *most ? Bound{turned, "what cannot be rotation"} : Bound{*most, grade.name};
 }
 
 double swing_of(const BlockGrid& grid, Eigen::VectorXd values) {
@@ -86,8 +101,8 @@ void doubt_proxies(const BlockData& data, SearchResult& found) {
     const double coefficient = found.fitted_coefficients[at];
     at += mine.width();
     if (!may_be_proxy(data, mine)) continue;
-    const std::optional<double> most = most_of(grade, data.channels[mine.channel].name);
-    if (!most || size_of(data, mine, coefficient) <= *most) continue;
+    const std::optional<Bound> bound = bound_of(grade, data.channels[mine.channel]);
+    if (!bound || size_of(data, mine, coefficient) <= bound->most) continue;
     mine.first_reading = found.chosen[i].candidate.first_reading = FirstReading::kProxyShown;
   }
 }
@@ -100,18 +115,18 @@ std::string proxies_in_words(const BlockData& data, const SearchResult& found) {
     const double coefficient = found.fitted_coefficients[at];
     at += each.width();
     if (each.first_reading != FirstReading::kProxyShown) continue;
-    const std::string& name = data.channels[each.channel].name;
+    const FineChannel& channel = data.channels[each.channel];
+    const Bound bound = bound_of(grade, channel).value_or(Bound{0.0, grade.name});
     std::array<char, 160> text{};
     std::snprintf(text.data(), text.size(), " explains the bias by %.3g °/h per %s, %s has at most %.3g",
-                  size_of(data, each, coefficient) / kDegreePerHour, unit_of(name).c_str(), grade.name,
-                  most_of(grade, name).value_or(0.0) / kDegreePerHour);
-    words += (words.empty() ? "" : "; ") + name + text.data();
+                  size_of(data, each, coefficient) / kDegreePerHour, unit_of(channel.name).c_str(), bound.of,
+                  bound.most / kDegreePerHour);
+    words += (words.empty() ? "" : "; ") + channel.name + text.data();
   }
   if (words.empty()) return words;
   return words +
-         ": it stands for something else that was not logged, as a sensor that drifts like a thermometer "
-         "does, "
-         "and nothing is corrected by it (--allow-proxies does). Log the temperature";
+         ": it stands for a rotation or for what was not logged, as a sensor that drifts like a thermometer "
+         "does, and nothing is corrected by it (--allow-proxies does). Log the temperature and a reference rate";
 }
 
 }  // namespace ifog
