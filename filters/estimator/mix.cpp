@@ -22,6 +22,9 @@ constexpr double kCommon = 0.65;
 // Twice the correlation of neighbours' errors, and what payments for the angle add.
 constexpr double kCorrelated = 2.8, kPaid = 1.27;
 
+// More than an output filter makes of white noise, so that what was given says that it is no motion.
+constexpr double kStronglyColoured = 8.0;
+
 double certain(double nats) { return 1.0 / (1.0 + exponential(-std::clamp(nats, -30.0, 30.0))); }
 
 }  // namespace
@@ -72,8 +75,10 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   }
   mean = all > 1e-9 ? (mean / all).eval() : risk[0];
   if (all > 1e-9) output /= all;
-  // No follower of a motion in white noise does better than this; in coloured noise it follows the noise.
+  // No follower of a motion in white noise does better than this. In coloured noise it follows the noise, and
+  // strongly coloured noise nearly as the raw measurement does.
   mean = (colour > kColoured).select(mean.max(1.0 + output), mean);
+  mean = (colour > kStronglyColoured).select(mean.max(2.0 - (1.0 - output) / colour), mean);
   const Lanes left = (1.0 - now.rest_gain) * now.innovation;
   const Lanes rest = left * left * now.inverse + 2.0 * now.rest_gain;
   const Lanes ahead = (0.5 * (mean - rest)).max(-kMostNats).min(kMostNats) / colour.sqrt();
