@@ -112,10 +112,16 @@ void add_switch(const BlockData& data, std::size_t channel, std::vector<Candidat
     found.push_back(candidate_of(Form::kLagged, channel, tau));
 }
 
-// Of a smooth channel, what is above the low-pass is its slope.
+// Whether its mean square may be that of a vibration. Above the low-pass a smooth channel has its slope; and
+// where no reference tells, what the sensor's own way may have made is left to it but for accelerations.
+bool vibrates(const FineChannel& channel) {
+  const Motion motion = motion_of(channel.name);
+  return !channel.smooth && motion != Motion::kAngle && (!channel.moves || motion == Motion::kAcceleration);
+}
+
 void add_vibration(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   const FineChannel& source = data.channels[channel];
-  if (source.smooth || source.period > 0.0 || motion_of(source.name) == Motion::kAngle) return;
+  if (!vibrates(source) || source.period > 0.0) return;
   for (const double tau : time_constants(data.grid, Form::kBandPower))
     found.push_back(candidate_of(Form::kBandPower, channel, tau));
   if (source.power.empty())
@@ -297,7 +303,7 @@ namespace {
 // one band beside another: a resonance of the coil answers one machine and not the next.
 void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPair>& pairs) {
   const FineChannel& source = data.channels[channel];
-  if (source.smooth || !source.power.empty() || motion_of(source.name) == Motion::kAngle) return;
+  if (!vibrates(source) || !source.power.empty()) return;
   for (const double tau : time_constants(data.grid, Form::kBandPower))
     pairs.push_back({candidate_of(Form::kBandPower, channel, tau),
                      candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});

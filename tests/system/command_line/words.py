@@ -115,7 +115,7 @@ class Checks:
         capture.write_text(self.write("theirs.csv", "Time [ms];Gyro Z", ";").read_text())
         read_with = ["--separator", ";", "--column", "rate_radps=Gyro Z:rad/s", "--time", "Time [ms]:s"]
         tuned = ifog("tune", capture, *read_with, "--state", "random-walk", "--write-model", model)
-        line = tuned.strip().splitlines()[-1].strip()
+        line = re.search(r"^to use it: (.*)$", tuned, re.M).group(1)
         self.copied(line, folder)
         assert (folder / "denoised.csv").stat().st_size > 0
         ifog("diagnose", "--quiet", capture, *read_with, "--write-model", model, "--report", report)
@@ -189,7 +189,7 @@ class Checks:
         done = ran("tune", capture, "--separator", ";", "--column", "rate_radps=Gyro\x07 Z:rad/s", "--time", "Time \x1b[31m[ms]:s",
                    "--state", "random-walk", "--write-model", model)
         assert done.returncode == 0, done
-        self.copied(done.stdout.strip().splitlines()[-1].strip(), folder)
+        self.copied(re.search(r"^to use it: (.*)$", done.stdout, re.M).group(1), folder)
         assert (folder / "denoised.csv").stat().st_size > 0
         hinted = ran("allan", self.write("theirs \x1b.csv", "t_ms;Gyro\x07Z_degps", ";"))
         for said in (done.stdout + done.stderr, hinted.stdout + hinted.stderr, *(ran(*map(str, command)).stderr for command in (

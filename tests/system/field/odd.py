@@ -127,7 +127,7 @@ class Odd:
                    "a night that was killed half way and begun again proposes: " + nose["said"])
         self.check((tail["sensor"], tail["proposed"]) == ("ta-il_2", "") and "model in use" in tail["said"], "and nothing to the sensor whose model is right: " + tail["said"])
         self.proposed = nose["proposed"]
-        shutil.copytree("state", "proposed")
+        shutil.copytree("state", "proposed", ignore=shutil.ignore_patterns("*.socket"))
 
     def propose_again(self):
         for name in os.listdir("proposed"):

@@ -217,7 +217,7 @@ file_s = 3
         self.check("no recording has been closed since" in self.run("night", "--config", self.config), "the next night begins where this one ended")
         self.proposal = document(self.path("state/nose.proposal.json"))
         document(self.path("state/nose.night.json"))
-        shutil.copytree(self.state, self.path("as-proposed"))
+        shutil.copytree(self.state, self.path("as-proposed"), ignore=shutil.ignore_patterns("*.socket"))
 
     def second_day(self):
         self.run("denoise", self.path("day2.log"), "--config", self.config, "--sensor", "nose", "--output", self.path("without.csv"))

@@ -98,13 +98,13 @@ TEST_F(HostileFile, AGzipBombOfShortLinesStopsToo) {
 // A wide header over short rows must not ask for rows × columns before it has seen them.
 TEST_F(HostileFile, AWideHeaderReservesNoMemory) {
   std::string text = "time_s,rate_radps";
-  for (int i = 0; i < 20'000; ++i) text += ",c" + std::to_string(i);
+  for (int i = 0; i < 4'000; ++i) text += ",c" + std::to_string(i);
   text += "\n0\n";
   for (int i = 0; i < 2'000'000; ++i) text += "1\n";
   std::ofstream(path_) << text;
   rusage before{}, after{};
   getrusage(RUSAGE_SELF, &before);
-  EXPECT_EQ(refusal(read_by_name), ":2: 1 cells, expected 20002 (a truncated line?)");
+  EXPECT_EQ(refusal(read_by_name), ":2: 1 cells, expected 4002 (a truncated line?)");
   getrusage(RUSAGE_SELF, &after);
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 200'000);
 }

@@ -297,9 +297,9 @@ std::uint64_t blocked_signals(pid_t process) {
   return 0;
 }
 
-// Held up at the first thing that it does, writing its version into a pipe that is full, it can no longer be
-// killed by a reload that comes too early.
-TEST_F(Ifogd, SignalsWaitFromItsFirstMoment) {
+// Blocked at the first thing that it does, writing its version into a pipe that is full, it can no longer be
+// killed by a reload that is too early. SIGTERM and Ctrl-C end it at once.
+TEST_F(Ifogd, AReloadWaitsFromItsFirstMoment) {
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
   ASSERT_EQ(fcntl(ends[1], F_SETFL, O_NONBLOCK), 0);
@@ -313,7 +313,7 @@ TEST_F(Ifogd, SignalsWaitFromItsFirstMoment) {
     execl(IFOG_BINARY_DIR "/daemon/ifogd", "ifogd", "--version", nullptr);
     _exit(127);
   }
-  constexpr std::uint64_t kOurs = 1U << (SIGHUP - 1) | 1U << (SIGINT - 1) | 1U << (SIGTERM - 1);
+  constexpr std::uint64_t kOurs = 1U << (SIGHUP - 1);
   for (int turn = 0; turn < 1000 && blocked_signals(child) != kOurs; ++turn) usleep(10'000);
   EXPECT_EQ(blocked_signals(child), kOurs);
   kill(child, SIGKILL);

@@ -45,7 +45,10 @@ void remove_others(const std::string& state, const std::string& sensor, const st
   const std::string prefix = sensor + ".proposal-";
   for (const std::string& name : names_in_state_folder(state))
     if (name.starts_with(prefix) && (!kept || (name != kept->model_file && name != kept->report_file)))
-      remove_state_file(inside(state, name));
+      try {
+        remove_state_file(inside(state, name));
+      } catch (const std::runtime_error&) {  // no file of ours: the others go all the same
+      }
 }
 
 // A number that JSON may hold as null, which stands for no bound.
