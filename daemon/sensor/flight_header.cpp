@@ -22,13 +22,13 @@ void attach(const std::string& path, bool of_state, std::size_t& room, FlightHea
   if (header.files.contains(path)) return;
   std::string text = of_state ? read_state_file(path, room) : InputFile(path).bytes();
   // A header doubles line ends and backslashes.
-  const auto doubled = std::count(text.begin(), text.end(), '\n') + std::count(text.begin(), text.end(), '\\');
+  const auto doubled =
+      std::count(text.begin(), text.end(), '\n') + std::count(text.begin(), text.end(), '\\');
   const std::size_t bytes = text.size() + static_cast<std::size_t>(doubled);
   if (bytes > room) return;
   room -= bytes;
   header.files[path] = std::move(text);
 } catch (const std::runtime_error&) {
-  // Who reads the recording is told that it does not carry the file.
 }
 
 std::string source_of(const TransportConfig& transport) {

@@ -123,9 +123,7 @@ std::string RunningMark::listen_in(const std::string& folder) {
   // Whatever the umask of the service: the group asks, too. Nobody else is at work yet.
   const mode_t before = ::umask(S_IXUSR | S_IXGRP | S_IRWXO);
   const bool bound = ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  const int error = errno;
-  ::umask(before);
-  errno = error;
+  ::umask(before);  // which leaves errno as it is
   if (bound && ::listen(socket_, static_cast<int>(kMostClients)) == 0) return "";
   return folder + "/" + kSocketName + ": ifog status and adopt cannot ask this daemon: " + reason(errno);
 }
@@ -163,7 +161,6 @@ bool RunningMark::serve() {
     const ssize_t n = ::recv(fd, &letter, 1, MSG_DONTWAIT);
     if (n > 0) question = letter;
     asked = asked || question == static_cast<char>(DaemonQuestion::reload);
-    // In the first second nothing is known yet.
     const bool told = question == static_cast<char>(DaemonQuestion::status) && !statuses_.empty();
     if (told) reply(fd, statuses_);
     const bool gone = !told && (n == 0 || (n < 0 && errno != EAGAIN));
@@ -206,8 +203,7 @@ std::string ask_daemon(const std::string& folder, pid_t daemon, DaemonQuestion q
   const Fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto us = std::chrono::duration_cast<std::chrono::microseconds>(most).count();
   const timeval patience{us / 1'000'000, us % 1'000'000};
-  for (const int option :
-       {SO_SNDTIMEO, SO_RCVTIMEO})  // also of a daemon that is stuck, whose backlog is full
+  for (const int option : {SO_SNDTIMEO, SO_RCVTIMEO})  // its backlog may be full, too
     (void)::setsockopt(fd, SOL_SOCKET, option, &patience, sizeof patience);
   const sockaddr_un address = address_in(holder);
   if (::connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
