@@ -8,8 +8,6 @@
 #include <cmath>
 #include <complex>
 #include <cstdio>
-#include <limits>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
