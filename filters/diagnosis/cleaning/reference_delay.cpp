@@ -8,8 +8,6 @@
 #include <cmath>
 #include <complex>
 #include <cstdio>
-#include <limits>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <unsupported/Eigen/FFT>
@@ -39,7 +37,8 @@ constexpr double kTold = 0.1;  // of a step: a delay that is known so well
 
 struct Pair {
   Series rate, reference;
-  Series without_jumps;  // the reference; empty: it has none
+  Series without_jumps;        // the reference; empty: it has none
+  std::vector<Series> others;  // references of the other axes, as late as this one
   double step_s = 0.0;
 };
 
@@ -73,6 +72,9 @@ std::optional<Pair> pair_of(const Record& record) {
     Samples reference = on_even_grid(record, period_s, record.reference_radps);
     pair.reference = means(reference, count);
     if (leave_out_jumps(reference, rate) > 0) pair.without_jumps = means(reference, count);
+    for (const std::span<const double> other : record.other_references)
+      if (!other.empty() && variance_of(other) > 0.0)
+        pair.others.push_back(means(on_even_grid(record, period_s, other), count));
     pair.step_s = period_s * static_cast<double>(count);
   } catch (const std::invalid_argument&) {
     return std::nullopt;  // no even clock, or hardly anything on it
@@ -115,35 +117,24 @@ double coarse_delay(const Pair& pair) {
   return static_cast<double>(best);
 }
 
-// Powers of the reference as it would be with a delay, and its slope over a step, by row.
-struct Regressors {
-  std::array<Series, kPowers> powers;
-  Series slope;
-};
-
-Regressors regressors_at(const Series& reference, double scale, double steps, bool with_slope) {
-  Regressors out;
-  const Samples moved = shifted(reference, steps);
-  for (std::size_t p = 0; p < kPowers; ++p) {
-    out.powers[p].resize(moved.size());
-    for (std::size_t i = 0; i < moved.size(); ++i)
-      out.powers[p][i] =
-          std::isfinite(moved[i]) ? std::pow(moved[i] / scale, static_cast<double>(p)) : std::nan("");
-  }
-  if (!with_slope) return out;
-  constexpr double kAside = 0.25;
-  const Samples behind = shifted(reference, steps + kAside);
-  out.slope.assign(behind.begin(), behind.end());
-  const Samples before = shifted(reference, steps - kAside);
-  for (std::size_t i = 0; i < before.size(); ++i) out.slope[i] = (out.slope[i] - before[i]) / (2.0 * kAside);
-  return out;
-}
-
-// Rate, powers of the reference, and last the slope.
-std::vector<Series> columns_of(const Pair& pair, const Regressors& regressors) {
+// Rate, powers of the reference as it would be with a delay, what the other axes were turned by, of which a
+// misalignment sees a share and which in coning is like the slope, and last the slope over a step.
+std::vector<Series> columns_of(const Pair& pair, double scale, double steps, bool with_slope) {
   std::vector<Series> columns{pair.rate};
-  columns.insert(columns.end(), regressors.powers.begin(), regressors.powers.end());
-  if (!regressors.slope.empty()) columns.push_back(regressors.slope);
+  const Samples moved = shifted(pair.reference, steps);
+  for (std::size_t p = 0; p < kPowers; ++p)
+    for (double& each : columns.emplace_back(moved.begin(), moved.end()))
+      if (std::isfinite(each)) each = std::pow(each / scale, static_cast<double>(p));
+  for (const Series& other : pair.others) {
+    const Samples its = shifted(other, steps);
+    columns.emplace_back(its.begin(), its.end());
+  }
+  if (!with_slope) return columns;
+  constexpr double kAside = 0.25;
+  const Samples behind = shifted(pair.reference, steps + kAside);
+  const Samples before = shifted(pair.reference, steps - kAside);
+  Series& slope = columns.emplace_back(behind.begin(), behind.end());
+  for (std::size_t i = 0; i < slope.size(); ++i) slope[i] = (slope[i] - before[i]) / (2.0 * kAside);
   return columns;
 }
 
@@ -165,6 +156,18 @@ Autoregression noise_beside(const std::vector<Series>& columns) {
   return Autoregression(left);
 }
 
+// By the angle turned: over an arc its sine is like the slope, and a law of the angle like a delay.
+std::vector<Series> once_a_turn(const Pair& pair) {
+  std::vector<Series> columns(2, Series(pair.reference.size()));
+  double angle = 0.0;
+  for (std::size_t i = 0; i < pair.reference.size(); ++i) {
+    if (std::isfinite(pair.reference[i])) angle += pair.reference[i] * pair.step_s;
+    columns[0][i] = std::cos(angle);
+    columns[1][i] = std::sin(angle);
+  }
+  return columns;
+}
+
 struct Delay {
   double steps = 0.0, error = 0.0;
   double gain = 0.0;  // twice the log-likelihood, over none
@@ -176,8 +179,7 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
   Delay delay;
   delay.steps = steps;
   for (int round = 0; round < kRounds; ++round) {
-    const std::vector<Series> columns =
-        columns_of(pair, regressors_at(pair.reference, scale, delay.steps, true));
+    const std::vector<Series> columns = columns_of(pair, scale, delay.steps, true);
     if (columns.front().size() < kLeast) return std::nullopt;
     const Autoregression noise = noise_beside(columns);
     const std::vector<Series> white = whitened(columns, noise);
@@ -188,13 +190,14 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
     if (fit.rows < kLeast || !std::isfinite(step) || of_reference <= 0.0) return std::nullopt;
     delay.error = std::sqrt(fit.last_variance) / of_reference;
     if (std::abs(step) < std::max(kSettled, 0.01 * delay.error)) {
-      const std::vector<Series> as_logged =
-          whitened(columns_of(pair, regressors_at(pair.reference, scale, 0.0, false)), noise);
+      std::vector<Series> as_logged = whitened(columns_of(pair, scale, 0.0, false), noise);
       const std::vector<std::uint8_t> known = complete_rows(as_logged);
       for (std::size_t i = 0; i < rows.size(); ++i)
         if (!known[i]) rows[i] = 0;
       const SeriesFit with = least_squares(white, rows);
       const SeriesFit without = least_squares(as_logged, rows);
+      for (const Series& each : once_a_turn(pair)) as_logged.push_back(noise.whitened(each));
+      if (least_squares(as_logged, rows).square < with.square) return std::nullopt;
       delay.gain = static_cast<double>(with.rows) * std::log(without.square / with.square);
       delay.steps += step;  // what is settled to a part of a sample may be known to less
       return delay;

@@ -2,7 +2,6 @@
 #include "filters/diagnosis/ramp/harmonic_sums.h"
 
 #include <cmath>
-#include <numbers>
 
 #include "filters/diagnosis/ramp/carrier.h"
 

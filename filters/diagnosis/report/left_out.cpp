@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/report/left_out.h"
 
-#include <array>
 #include <cmath>
 #include <cstdio>
 

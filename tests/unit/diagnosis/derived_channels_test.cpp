@@ -235,7 +235,7 @@ TEST(OtherAxes, ComeAsTheyAreWhereTheirReferencesAreLate) {
       EXPECT_NEAR(coefficient.value, 1e-4, 5e-6);
     }
   }
-  EXPECT_FALSE(found.effects.empty());
+  EXPECT_GE(found.effects.size(), 2U);
 }
 
 }  // namespace
