@@ -147,11 +147,31 @@ void Engine::screen(Step& s) noexcept {
 
 // The first measurement of an axis sets its state.
 void Engine::begin_axes(const Step& s) noexcept {
+  Follower& f = follow_;
+  const bool follows = settings_.follow_manoeuvres && rest_->rate_alone();
+  // What the rate did in a gap nobody knows: the filter at rest has to stand by what is measured now.
+  if (follows && !f.moving && s.sample.valid != 0 && s.dt_s > kShortGap * period_s_) {
+    f.moving = true;
+    f.known = false;
+    f.mix.begin_from_rest();
+    f.change.begin();
+  }
   const std::uint32_t first = s.sample.valid & ~started_;
   if (first == 0) return;
   rest_->shift_to(s.in.rate_radps, first);
   for (std::size_t a = 0; a < axes_; ++a)
-    if ((first >> a & 1U) != 0) follow_.trackers.seed(a, s.in.rate_radps[a]);
+    if ((first >> a & 1U) != 0) f.trackers.seed(a, s.in.rate_radps[a]);
+  // An axis that comes late is one that begins, and all share one gain.
+  if (follows && started_ != 0) {
+    rest_->set_variance(mean_noise());
+    f.since_moved = 0.0;
+    f.moving = true;
+    f.trackers.begin();
+    for (std::size_t a = 0; a < axes_; ++a)
+      f.trackers.seed(a, (first >> a & 1U) != 0 ? s.in.rate_radps[a] : rest_->rate(a));
+    f.mix.begin(0.0);
+    f.change.begin();
+  }
   started_ |= first;
 }
 

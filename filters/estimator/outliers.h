@@ -73,7 +73,7 @@ class Outliers {
   static constexpr double kMostSurprise = 1e6, kSurpriseMemory = 20.0;
   static constexpr double kRare = 1e-3, kMostRarity = 12.5, kEvidence = 18.0;
   static constexpr int kLongestWait = 16;                   // samples
-  static constexpr double kMemory = 8192.0, kYoung = 64.0;  // samples
+  static constexpr double kMemory = 8192.0, kYoung = 16.0;  // samples
 
   std::array<Lanes, kKept> kept_{};
   double seen_ = 0.0, share_ = 1e-8, surprise_ = 1.0, nearness_ = 0.0, squares_ = 0.0;

@@ -59,7 +59,6 @@ class Trackers {
   [[nodiscard]] double factor(std::size_t j, std::size_t axis) const noexcept;
   [[nodiscard]] bool predicts(std::size_t j) const noexcept { return state_[j].age >= kParabola; }
   [[nodiscard]] double age(std::size_t j) const noexcept { return state_[j].age; }
-  [[nodiscard]] double memory(std::size_t j) const noexcept { return memory_[j]; }
   // What it has of its memory by now, samples.
   [[nodiscard]] double length(std::size_t j) const noexcept { return state_[j].length; }
   // Samples over which it is compared with another filter: its impulse response has decayed.

@@ -41,7 +41,6 @@ class Unmeasured {
     lost.variance = std::min(lost.variance * (1.0 - gain) * (1.0 - gain), beside * beside + noise);
     if (lost.variance < 1e-3 * variance) lost.variance = 0.0;
   }
-  void forget(std::size_t axis) noexcept { lost_[axis] = {}; }
   // Of the axis, where the filter's is this.
   [[nodiscard]] double variance(std::size_t axis, double filters) const noexcept {
     const Lost& lost = lost_[axis];
