@@ -125,7 +125,7 @@ def satisfied(place, packet, value):
 def who_sits_there(place):
     """Another process in place of the daemon's socket, and another user at it."""
     os.rename("state/ifogd.socket", "state/mine")
-    fake = subprocess.Popen([PYTHON, "-c", "import socket, time\ns = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)\n"
+    fake = subprocess.Popen([PYTHON, "-c", "import socket, time\ns = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)\n"
                              "s.bind('state/ifogd.socket')\ns.listen()\nprint('there', flush=True)\ntime.sleep(60)"],
                             user=NOBODY, group=NOBODY, extra_groups=[], stdout=subprocess.PIPE)
     fake.stdout.readline()
@@ -147,7 +147,7 @@ def who_sits_there(place):
     # Who asks and never listens holds nothing up.
     deaf = []
     for _ in range(40):
-        asking = socket.socket(socket.AF_UNIX, socket.SOCK_SEQPACKET)
+        asking = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
         asking.settimeout(5)
         try:
             asking.connect("state/ifogd.socket")
