@@ -226,8 +226,8 @@ std::string boot_id() {
 std::shared_ptr<const Model> read_sensor_model(const SensorConfig& sensor) {
   if (sensor.model.empty()) return nullptr;
   try {
-    return std::make_shared<const Model>(
-        sensor.model_adopted ? parsed_state_file(sensor.model, parse_model) : read_model(sensor.model));
+    return std::make_shared<const Model>(sensor.model_adopted ? parsed_state_file(sensor.model, parse_model)
+                                                              : read_model(sensor.model));
   } catch (const std::exception& error) {
     throw KeyError("model", error.what());
   }

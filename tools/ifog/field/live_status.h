@@ -25,7 +25,6 @@ class LiveStatus {
   // Throws likewise, and with what was refused.
   void reload(std::chrono::milliseconds most) const;
 
-  // As last answered.
   [[nodiscard]] const Statuses& all() const { return all_; }
   // Null: the daemon has no such sensor.
   [[nodiscard]] const status_t* of(const std::string& sensor) const;

@@ -95,7 +95,8 @@ class FleetRun {
   [[nodiscard]] std::vector<std::size_t> undiagnosed() const {
     std::vector<std::size_t> missing;
     for (std::size_t i = 0; i < manifest_.gyros.size(); ++i)
-      if (absent_.count(i) == 0 && !is_diagnosed(results_, manifest_.gyros[i], options_)) missing.push_back(i);
+      if (absent_.count(i) == 0 && !is_diagnosed(results_, manifest_.gyros[i], options_))
+        missing.push_back(i);
     return missing;
   }
 
@@ -159,10 +160,10 @@ class FleetRun {
       const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
       const auto how = ended.find(gyro);
       const auto gone = absent_.find(gyro);
-      std::string why = gone != absent_.end() ? gone->second
+      std::string why = gone != absent_.end()  ? gone->second
                         : done && done->failed ? *done->failed
-                        : how != ended.end() ? how->second + results_.told_in_log(gyro)
-                                             : "its captures change while they are read";
+                        : how != ended.end()   ? how->second + results_.told_in_log(gyro)
+                                               : "its captures change while they are read";
       population_.failed.push_back({gyro, std::move(why)});
     }
   }
