@@ -23,6 +23,7 @@
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/signals.h"
 #include "daemon/publish/publisher.h"
+#include "daemon/state/state_folder.h"
 #include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
@@ -94,8 +95,12 @@ int main(int argc, char** argv) {
     ifog::Config config = ifog::read_config(file);
     ifog::set_up_log(config.log_level);
     const std::size_t sensors = config.sensors.size();
+    const std::string folder = ifog::state_folder(config.state_folder);
     ifog::Housekeeping housekeeping(std::move(config), check ? publish_nowhere : ifog::make_lcm_publisher);
     if (check) {
+      // The state folder need not be there: another user may run the daemon.
+      if (const std::string missed = ifog::state_folder_complaint(folder); !missed.empty())
+        std::fprintf(stderr, "%s: %s\n", file.c_str(), missed.c_str());
       std::printf("%s: good, %zu sensor(s)\n", file.c_str(), sensors);
       return said(0);
     }

@@ -131,6 +131,12 @@ void Housekeeping::start_all() {
     const Transport& transport = sensor->parts.pipeline->reader().transport();
     sensor->log->info("{} {} at {} Hz, publishing on {}", sensor->open ? "reading" : "trying again to open",
                       transport.name(), plan.facts.nominal_rate_hz, plan.lcm_channel);
+    if (claims_.emplace_back(config_.lcm_url, plan.lcm_channel).taken())
+      sensor->log->warn(
+          "another daemon publishes on {} of this lcm_url: subscribers receive both as one sensor; expected "
+          "a "
+          "name or lcm_channel of its own for each",
+          plan.lcm_channel);
   }
   sources_->start();
 }

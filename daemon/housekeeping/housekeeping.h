@@ -15,6 +15,7 @@
 #include "daemon/housekeeping/log.h"
 #include "daemon/housekeeping/status_report.h"
 #include "daemon/pipeline/assemble.h"
+#include "daemon/publish/channel_claim.h"
 #include "daemon/state/running_mark.h"
 
 namespace ifog {
@@ -27,8 +28,8 @@ class Housekeeping {
   explicit Housekeeping(Config config, const PublisherMaker& make_publisher = make_lcm_publisher);
   ~Housekeeping();
 
-  // With these signals blocked in the calling thread, so that all threads block them: until SIGTERM, SIGINT or the end of all files. 0, or 1 when no sensor can run or a file could not be
-  // read. Throws std::runtime_error with one line where another daemon works with the state folder or reads
+  // Until SIGTERM, SIGINT or the end of all files; these and SIGHUP must be blocked in the calling thread, so
+  // that all threads block them. Returns 0, or 1 when no sensor can run or a file could not be read. Throws std::runtime_error with one line where another daemon works with the state folder or reads
   // a device.
   int run();
 
@@ -90,6 +91,7 @@ class Housekeeping {
   Config config_;
   std::shared_ptr<spdlog::logger> log_;
   std::vector<std::unique_ptr<Sensor>> sensors_;
+  std::vector<ChannelClaim> claims_;  // of the sensors' LCM channels
   std::unique_ptr<ChannelSources> sources_;
   std::unique_ptr<Publisher> status_publisher_;
   RunningMark mark_;

@@ -28,13 +28,35 @@ std::string state_folder(const std::string& configured) {
   return all.substr(0, all.find(':'));
 }
 
+namespace {
+
+std::string cannot(const std::string& folder, const char* what, const std::string& why) {
+  return "daemon.state_folder = \"" + printable(folder) + "\": " + what + ": " + why +
+         ", expected a folder that the daemon may write, or a path that is free for it";
+}
+
+}  // namespace
+
+std::string state_folder_complaint(const std::string& folder) {
+  namespace fs = std::filesystem;
+  if (folder.empty()) return "";
+  std::error_code error;
+  fs::path there = folder;
+  while (!fs::exists(there, error) && there.has_parent_path() && there != there.parent_path())
+    there = there.parent_path();
+  if (error || !fs::is_directory(there, error))
+    return cannot(folder, "cannot be made",
+                  error ? error.message() : std::generic_category().message(ENOTDIR));
+  if (::access(there.c_str(), W_OK | X_OK) == 0) return "";
+  return cannot(folder, there == fs::path(folder) ? "cannot be written" : "cannot be made",
+                std::generic_category().message(errno));
+}
+
 std::string make_state_folder(const std::string& folder) {
   if (folder.empty()) return "";
   std::error_code error;
   const bool made = std::filesystem::create_directories(folder, error);
-  if (error)
-    return "daemon.state_folder = \"" + printable(folder) + "\": cannot be made: " + error.message() +
-           ", expected a folder that the daemon may write, or a path that is free for it";
+  if (error) return cannot(folder, "cannot be made", error.message());
   // Whatever the umask. As systemd/ifogd.service.in has it: the group puts models there.
   if (made) ::chmod(folder.c_str(), 02775);
   return "";

@@ -23,6 +23,9 @@ namespace ifog {
 // folder "": none.
 [[nodiscard]] std::string make_state_folder(const std::string& folder);
 
+// What make_state_folder() would complain of, by what is there now; makes nothing.
+[[nodiscard]] std::string state_folder_complaint(const std::string& folder);
+
 // The model of a sensor whose configuration names none.
 [[nodiscard]] std::string adopted_model_path(const std::string& folder, const std::string& sensor);
 

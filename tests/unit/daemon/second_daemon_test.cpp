@@ -59,6 +59,26 @@ TEST_F(SecondDaemon, OneStateFolderIsOneDaemons) {
   EXPECT_EQ(end(), 0) << said();
 }
 
+// A capture may be read by many; its channel is one daemon's.
+TEST_F(SecondDaemon, WhoPublishesOnATakenChannelSaysSo) {
+  write("ifogd.toml", kDaemon + sensor("nose"));
+  start();
+  ASSERT_TRUE(await([&] { return listener_->heard["IFOG_NOSE_STATUS"] >= 1; })) << said();
+  EXPECT_EQ(times_said("another daemon publishes"), 0);
+  write("capture.csv", "time_s,rate_radps\n0,0.1\n0.01,0.1\n0.02,0.1\n");
+  for (const std::string name : {"nose", "tail"}) {
+    write("other.toml", std::string(kDaemon) + "[[sensor]]\nname = \"" + name +
+                            "\"\ndriver = \"capture\"\n[sensor.options]\nrate_hz = 100\n" +
+                            "[sensor.transport]\ntype = \"file\"\npath = \"capture.csv\"\n");
+    run_second("other.toml");
+    EXPECT_EQ(
+        second_said().find("another daemon publishes on IFOG_NOSE of this lcm_url") != std::string::npos,
+        name == "nose")
+        << second_said();
+  }
+  EXPECT_EQ(end(), 0) << said();
+}
+
 TEST_F(SecondDaemon, AFolderOfRecordingsIsOneRecorders) {
   write("ifogd.toml", kDaemon + sensor("nose") + "[sensor.record]\nfolder = \"rec\"\n");
   const std::string record = "timeout 60 " IFOG_BINARY_DIR "/tools/ifog/ifog record --seconds 1 --output " +
@@ -85,6 +105,23 @@ TEST_F(SecondDaemon, AFolderOfRecordingsIsOneRecorders) {
   close(held);
   EXPECT_TRUE(await([&] { return times_said("all is recorded again, nothing is lost") == 1; })) << said();
   EXPECT_EQ(end(), 0) << said();
+}
+
+// The folder need not be there; who checks is told where it could not be made, and nothing is.
+TEST_F(SecondDaemon, AStateFolderThatCannotBeMadeIsSaidByTheCheck) {
+  write("file", "");
+  write("ifogd.toml", std::string(kDaemon) + "state_folder = \"file/state\"\n" + sensor("nose"));
+  const std::string check = "timeout 60 " IFOG_BINARY_DIR "/daemon/ifogd --check --config " +
+                            path("ifogd.toml") + " >" + path("said") + " 2>&1";
+  EXPECT_EQ(WEXITSTATUS(std::system(check.c_str())), 0) << said();
+  EXPECT_EQ(times_said("daemon.state_folder = \"" + path("file/state") +
+                       "\": cannot be made: Not a directory, expected a folder that the daemon may write"),
+            1)
+      << said();
+  write("ifogd.toml", std::string(kDaemon) + "state_folder = \"new/state\"\n" + sensor("nose"));
+  EXPECT_EQ(WEXITSTATUS(std::system(check.c_str())), 0) << said();
+  EXPECT_EQ(times_said("state_folder"), 0) << said();
+  EXPECT_FALSE(fs::exists(path("new")));
 }
 
 }  // namespace
