@@ -144,7 +144,8 @@ TextRoom CsvRows::begin(TextPieces& pieces) {
   while (plain < kHead && pieces.next(piece)) {
     std::string_view text = piece.text();
     if (head.empty() && begins_as_utf16(text))
-      throw std::runtime_error(path_ + ": is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
+      throw std::runtime_error(path_ +
+                               ": is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
     if (head.empty() && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte-order mark
     head += text;
     if (!text.starts_with('#')) plain += text.size();

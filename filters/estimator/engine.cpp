@@ -8,12 +8,9 @@
 
 namespace ifog {
 namespace {
-
 // Standard deviations that an innovation counts for at most where large ones are frequent at rest.
 constexpr double kNeverNoise = 20.0;
-
 Lanes to_lanes(const Axes& axes) noexcept { return {axes[0], axes[1], axes[2], 0.0}; }
-
 }  // namespace
 
 Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, int axes, double period_s)

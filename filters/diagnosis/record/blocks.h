@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "filters/diagnosis/record.h"
+#include "filters/effects/meaning.h"
 #include "filters/effects/shape.h"
 
 namespace ifog {
@@ -74,6 +75,12 @@ struct FineChannel {
   bool two_valued = false;  // a switch: its powers are itself
   bool of_axis = false;     // the rate of another axis of the sensor
   double period = 0.0;      // of an angle without its wraps: only what repeats with it is a function of it
+  // Its mean square may be that of a vibration. Above a low-pass a smooth channel has its slope; and without a
+  // reference the mean square of a velocity may be the sensor's own rotation.
+  [[nodiscard]] bool vibrates() const {
+    const Motion motion = motion_of(name);
+    return !smooth && motion != Motion::kAngle && (!moves || motion == Motion::kAcceleration);
+  }
   // A quantity of the surroundings, that any form may be made of.
   [[nodiscard]] bool environment() const { return !moves && !of_axis && period == 0.0; }
 };

@@ -11,7 +11,6 @@
 
 namespace ifog {
 namespace {
-
 constexpr double kHour = 3600.0;
 constexpr double kGridFactor = 2.5;    // between time constants: neighbours correlate above 0.95
 constexpr double kBlocksOfRate = 2.0;  // the shortest smoothing of a derivative: beyond a thermometer's steps
@@ -112,17 +111,17 @@ void add_switch(const BlockData& data, std::size_t channel, std::vector<Candidat
     found.push_back(candidate_of(Form::kLagged, channel, tau));
 }
 
-// Whether its mean square may be that of a vibration. Above the low-pass a smooth channel has its slope; and
-// where no reference tells, what the sensor's own way may have made is left to it but for accelerations.
-bool vibrates(const FineChannel& channel) {
-  const Motion motion = motion_of(channel.name);
-  return !channel.smooth && motion != Motion::kAngle && (!channel.moves || motion == Motion::kAcceleration);
+// Of what is slower than the average the power is a wave of twice the frequency, as a rotation's is.
+std::vector<double> bands_of(const BlockData& data, const FineChannel& source) {
+  std::vector<double> bands = time_constants(data.grid, Form::kBandPower);
+  if (source.moves) std::erase_if(bands, [](double tau) { return tau > kPowerAverage_s; });
+  return bands;
 }
 
 void add_vibration(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   const FineChannel& source = data.channels[channel];
-  if (!vibrates(source) || source.period > 0.0) return;
-  for (const double tau : time_constants(data.grid, Form::kBandPower))
+  if (!source.vibrates() || source.period > 0.0) return;
+  for (const double tau : bands_of(data, source))
     found.push_back(candidate_of(Form::kBandPower, channel, tau));
   if (source.power.empty())
     found.push_back(candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s));
@@ -234,7 +233,6 @@ void add_through_temperature(const BlockData& data, std::vector<Candidate>& foun
         found.push_back(product_of(data, one, other));
   }
 }
-
 }  // namespace
 
 bool Candidate::same_shape(const Candidate& other) const {
@@ -298,13 +296,12 @@ std::vector<Candidate> library(const BlockData& data) {
 }
 
 namespace {
-
 // Two band powers, one that weighs high frequencies more, make with coefficients of their own the power of
 // one band beside another: a resonance of the coil answers one machine and not the next.
 void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPair>& pairs) {
   const FineChannel& source = data.channels[channel];
-  if (!vibrates(source) || !source.power.empty()) return;
-  for (const double tau : time_constants(data.grid, Form::kBandPower))
+  if (!source.vibrates() || !source.power.empty()) return;
+  for (const double tau : bands_of(data, source))
     pairs.push_back({candidate_of(Form::kBandPower, channel, tau),
                      candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
 }
@@ -320,7 +317,6 @@ void add_scales(const BlockData& data, std::vector<NaturalPair>& pairs) {
     pairs.push_back({candidate_of(Form::kLinear, reference), product});
   }
 }
-
 }  // namespace
 
 std::vector<NaturalPair> natural_pairs(const BlockData& data) {
@@ -401,5 +397,4 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
   }
   return columns;
 }
-
 }  // namespace ifog

@@ -68,7 +68,8 @@ std::optional<Bound> bound_of(const Grade& grade, const FineChannel& channel) {
   const std::optional<double> most = specified(grade, channel.name);
   if (!most) return std::nullopt;
   const double turned = 0.5 / kQuickest * (unit_of(channel.name) == "g" ? kStandardGravity : 1.0);
-  return channel.moves && turned < *most ? Bound{turned, "what cannot be rotation"} : Bound{*most, grade.name};
+  return channel.moves && turned < *most ? Bound{turned, "what cannot be rotation"}
+                                         : Bound{*most, grade.name};
 }
 
 double swing_of(const BlockGrid& grid, Eigen::VectorXd values) {
@@ -125,7 +126,8 @@ std::string proxies_in_words(const BlockData& data, const SearchResult& found) {
   if (words.empty()) return words;
   return words +
          ": it stands for a rotation or for what was not logged, as a sensor that drifts like a thermometer "
-         "does, and nothing is corrected by it (--allow-proxies does). Log the temperature and a reference rate";
+         "does, and nothing is corrected by it (--allow-proxies does). Log the temperature and a reference "
+         "rate";
 }
 
 }  // namespace ifog

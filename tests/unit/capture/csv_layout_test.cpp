@@ -142,7 +142,8 @@ TEST(CsvLayout, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(read("t,w\n0,1e9\n", by).substr(0, 46), "a.csv:2: w is '1e9', which no sensor measures,");
   EXPECT_EQ(read("t,w\n0,0\n# note\n1e-9,3\n", layout({"rate_radps=w:rad"}, "t:s")).substr(0, 21),
             "a.csv:4: w has turned");
-  EXPECT_EQ(read("\xFF\xFEt", {}), "a.csv: is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
+  EXPECT_EQ(read("\xFF\xFEt", {}),
+            "a.csv: is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
 }
 
 TEST(CsvLayout, ARowOfUnitsBelowTheNamesJoinsThem) {

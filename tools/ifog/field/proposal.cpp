@@ -44,8 +44,7 @@ std::string plain_name(const json& from, const std::string& path) {
 void remove_others(const std::string& state, const std::string& sensor, const std::optional<Proposal>& kept) {
   const std::string prefix = sensor + ".proposal-";
   for (const std::string& name : names_in_state_folder(state))
-    if (name.starts_with(prefix) && (!kept || (name != kept->model_file && name != kept->report_file)))
-      try {
+    if (name.starts_with(prefix) && (!kept || (name != kept->model_file && name != kept->report_file))) try {
         remove_state_file(inside(state, name));
       } catch (const std::runtime_error&) {  // no file of ours: the others go all the same
       }
