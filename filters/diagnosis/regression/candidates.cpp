@@ -111,17 +111,10 @@ void add_switch(const BlockData& data, std::size_t channel, std::vector<Candidat
     found.push_back(candidate_of(Form::kLagged, channel, tau));
 }
 
-// Of what is slower than the average the power is a wave of twice the frequency, as a rotation's is.
-std::vector<double> bands_of(const BlockData& data, const FineChannel& source) {
-  std::vector<double> bands = time_constants(data.grid, Form::kBandPower);
-  if (source.moves) std::erase_if(bands, [](double tau) { return tau > kPowerAverage_s; });
-  return bands;
-}
-
 void add_vibration(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   const FineChannel& source = data.channels[channel];
   if (!source.vibrates() || source.period > 0.0) return;
-  for (const double tau : bands_of(data, source))
+  for (const double tau : time_constants(data.grid, Form::kBandPower))
     found.push_back(candidate_of(Form::kBandPower, channel, tau));
   if (source.power.empty())
     found.push_back(candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s));
@@ -250,7 +243,8 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form) {
   if (form == Form::kWarmUp) from = std::max(from, kShortestWarmUp_s);
   if (form == Form::kBandPower) {
     from = std::max(4.0 * grid.fine_s, 0.02);
-    to = std::min(to, 100.0);
+    // Of what is slower than the average it is no mean but a wave of twice the frequency, as of a rotation.
+    to = std::max(from, kPowerAverage_s);
   }
   std::vector<double> times;
   const double factor = form == Form::kBandPower ? 10.0 : kGridFactor;
@@ -301,7 +295,7 @@ namespace {
 void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPair>& pairs) {
   const FineChannel& source = data.channels[channel];
   if (!source.vibrates() || !source.power.empty()) return;
-  for (const double tau : bands_of(data, source))
+  for (const double tau : time_constants(data.grid, Form::kBandPower))
     pairs.push_back({candidate_of(Form::kBandPower, channel, tau),
                      candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
 }
