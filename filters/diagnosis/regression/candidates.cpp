@@ -115,7 +115,7 @@ void add_vibration(const BlockData& data, std::size_t channel, std::vector<Candi
   const FineChannel& source = data.channels[channel];
   if (!source.vibrates() || source.period > 0.0) return;
   for (const double tau : time_constants(data.grid, Form::kBandPower))
-    found.push_back(candidate_of(Form::kBandPower, channel, tau));
+    if (tau <= source.slowest_vibration_s()) found.push_back(candidate_of(Form::kBandPower, channel, tau));
   if (source.power.empty())
     found.push_back(candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s));
 }
@@ -243,8 +243,7 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form) {
   if (form == Form::kWarmUp) from = std::max(from, kShortestWarmUp_s);
   if (form == Form::kBandPower) {
     from = std::max(4.0 * grid.fine_s, 0.02);
-    // Of what is slower than the average it is no mean but a wave of twice the frequency, as of a rotation.
-    to = std::max(from, kPowerAverage_s);
+    to = std::min(to, 100.0);
   }
   std::vector<double> times;
   const double factor = form == Form::kBandPower ? 10.0 : kGridFactor;
@@ -296,8 +295,9 @@ void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPai
   const FineChannel& source = data.channels[channel];
   if (!source.vibrates() || !source.power.empty()) return;
   for (const double tau : time_constants(data.grid, Form::kBandPower))
-    pairs.push_back({candidate_of(Form::kBandPower, channel, tau),
-                     candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
+    if (tau <= source.slowest_vibration_s())
+      pairs.push_back({candidate_of(Form::kBandPower, channel, tau),
+                       candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
 }
 
 // A scale factor that is right where nobody knows: at that value of the channel neither of the two shows.
