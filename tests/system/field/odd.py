@@ -173,7 +173,7 @@ class Odd:
             os.rmdir("state")
             shutil.move("kept", "state")
             return
-        shutil.copytree("kept", "state", dirs_exist_ok=True)
+        shutil.copytree("kept", "state", dirs_exist_ok=True, ignore=shutil.ignore_patterns("*.socket"))
         refused = 0
         for pages in range(8):
             self.propose_again()
