@@ -81,9 +81,6 @@ struct FineChannel {
     const Motion motion = motion_of(name);
     return !smooth && motion != Motion::kAngle && (!moves || motion == Motion::kAcceleration);
   }
-  // The slowest time constant of a band power, s. Without a reference and without samples inside the steps,
-  // what is slower than 0.08 Hz is no vibration but sway, whose power is a wave as a rotation's is.
-  [[nodiscard]] double slowest_vibration_s() const { return moves && power.empty() ? 2.0 : 1e300; }
   // A quantity of the surroundings, that any form may be made of.
   [[nodiscard]] bool environment() const { return !moves && !of_axis && period == 0.0; }
 };

@@ -115,7 +115,7 @@ void add_vibration(const BlockData& data, std::size_t channel, std::vector<Candi
   const FineChannel& source = data.channels[channel];
   if (!source.vibrates() || source.period > 0.0) return;
   for (const double tau : time_constants(data.grid, Form::kBandPower))
-    if (tau <= source.slowest_vibration_s()) found.push_back(candidate_of(Form::kBandPower, channel, tau));
+    found.push_back(candidate_of(Form::kBandPower, channel, tau));
   if (source.power.empty())
     found.push_back(candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s));
 }
@@ -295,9 +295,8 @@ void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPai
   const FineChannel& source = data.channels[channel];
   if (!source.vibrates() || !source.power.empty()) return;
   for (const double tau : time_constants(data.grid, Form::kBandPower))
-    if (tau <= source.slowest_vibration_s())
-      pairs.push_back({candidate_of(Form::kBandPower, channel, tau),
-                       candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
+    pairs.push_back({candidate_of(Form::kBandPower, channel, tau),
+                     candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
 }
 
 // A scale factor that is right where nobody knows: at that value of the channel neither of the two shows.

@@ -74,8 +74,7 @@ void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidat
   const double least = std::log((power ? 0.3 : 2.0) * data.grid.fine_s);
   const std::vector<double> tried = time_constants(data.grid, model[at].form);
   low = std::max(low, model[at].form == Form::kWarmUp && !tried.empty() ? std::log(tried.front()) : least);
-  const double usual = tried.empty() ? 3600.0 : std::min(3600.0, 1.6 * tried.back());
-  const double most = power ? std::min(usual, data.channels[model[at].channel].slowest_vibration_s()) : usual;
+  const double most = tried.empty() ? 3600.0 : std::min(3600.0, 1.6 * tried.back());
   high = std::min(std::max(high, least), std::log(most));
   low = std::min(low, high);
   std::uintmax_t most_evaluations = 30;
