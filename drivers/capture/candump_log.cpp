@@ -50,7 +50,7 @@ class ShortTimes {
   std::size_t n_ = 0;
 };
 
-// next(line, ended): hands out one line at a time. Nothing: no line told.
+// next(line, ended): hands out one line at a time. nullopt: no line decides.
 template <typename Next>
 std::optional<bool> told_by(Next next, ShortTimes& times) {
   std::string_view line;

@@ -14,7 +14,7 @@ inline constexpr std::size_t kLongestDate = 64;
 
 // The seconds since 1970 of "2026-05-01T12:00:00.25Z": date and time of day, or a day alone; "/" for "-", the
 // year last as in "1.5.2026" (the day first) and "5/1/2026" (the month first, where that is a date), a month's
-// name as in "01-May-2026", a space for "T", AM or PM, seconds left out, a comma for the point, an offset of "+02:00", "+0200", "+02", "UTC";
+// name as in "01-May-2026", a space for "T", AM or PM, seconds missing, a comma for the point, an offset of "+02:00", "+0200", "+02", "UTC";
 // without one it is UTC. Of a time of day alone, "12:00:00.25", those since midnight. A leap second is the
 // second behind it. `to` takes the digits; the text is empty for what is no such date.
 std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to);

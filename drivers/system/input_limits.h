@@ -12,7 +12,7 @@ struct InputLimits {
   // TOML: configurations, models, manifests, scenarios.
   std::size_t toml_bytes = std::size_t{16} << 20U;  // a model with its covariance has 0.3 MB
   std::size_t toml_key_parts = 64;                  // of a dotted key: the parser calls itself for each
-  std::size_t unknown_keys = 100;                   // of a table, each told by name
+  std::size_t unknown_keys = 100;                   // of a table, each listed by name
   std::size_t sensors = 256;                        // of a configuration, two threads each
   std::size_t captures = 65'536;                    // of a manifest, all gyros together
   // JSON: histories, proposals, results of a fleet.

@@ -265,8 +265,7 @@ Delivery UdpTransport::next() noexcept {
       continue;
     }
     if (addresses_.host && !is_of_port(i)) {
-      report("datagrams from another port of host, which are left out; host_port says which is the sensor's",
-             0);
+      report("datagrams from another port of host are dropped; host_port says which is the sensor's", 0);
       continue;
     }
     if (length == 0) continue;

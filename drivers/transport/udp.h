@@ -19,7 +19,7 @@ struct UdpSettings {
   std::string bind;
   std::string group;      // a multicast group in place of `bind`
   std::string interface;  // where the group is joined: required with it
-  // Datagrams from elsewhere are left out and counted. A driver's opening bytes go there, and without it
+  // Datagrams from elsewhere are dropped and counted. A driver's opening bytes go there, and without it
   // nowhere. Empty: from anywhere.
   std::string host;
   // The port that the host's datagrams come from, and opening bytes go to. 0: the one that sends first, until it has

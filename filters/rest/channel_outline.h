@@ -22,7 +22,7 @@ class ChannelOutline {
   // Rows to a mean: a power of two.
   [[nodiscard]] std::size_t rows() const { return rows_; }
   // Of each `rows()` rows from the first on, in the channel's unit; NaN where none of them has a value. Rows
-  // behind the last whole mean are left out.
+  // behind the last whole mean are dropped.
   [[nodiscard]] const std::vector<double>& means() const { return means_; }
 
   void add(std::span<const double> values) {

@@ -10,8 +10,8 @@ One line a violation, FILE:LINE: what; exit 1 when there is one.
 
 import os
 import re
-import sys
-import tempfile
+
+from tree_check import main_of, proved
 
 # The map. A folder may include itself, what lies within it, and these; the longest entry that fits a file counts.
 # A file named here may be included where its folder may not.
@@ -182,34 +182,8 @@ def self_test():
         ("tools/ifog/bad.cpp", '#include "daemon/pipeline/pipeline.h"', "tools/ifog may use daemon/config, daemon/sensor, daemon/state"),
         ("tools/new/bad.cpp", '#include "filters/rules/rule.h"', "lies in no folder of the map"),
     ]
-    failed = 0
-    for extra in [None] + bad:
-        with tempfile.TemporaryDirectory() as tree:
-            files = dict(good)
-            if extra:
-                files[extra[0]] = extra[1] + "\n"
-            for name, text in files.items():
-                os.makedirs(os.path.dirname(os.path.join(tree, name)), exist_ok=True)
-                with open(os.path.join(tree, name), "w", encoding="utf-8") as out:
-                    out.write(text)
-            said = check(tree)
-            if not extra and said:
-                failed += 1
-                print("the good tree is refused:", *said, sep="\n  ")
-            if extra and not any(extra[2] in line for line in said):
-                failed += 1
-                print(f"{extra[0]} with {extra[1]} gives {said}, expected: {extra[2]}")
-    return failed
-
-
-def main():
-    if sys.argv[1:] == ["--self-test"]:
-        sys.exit(1 if self_test() else 0)
-    tree = sys.argv[1] if len(sys.argv) > 1 else os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..")
-    complaints = check(tree)
-    print(*complaints, sep="\n", end="\n" if complaints else "")
-    sys.exit(1 if complaints else 0)
+    return proved(check, good, bad)
 
 
 if __name__ == "__main__":
-    main()
+    main_of(check, self_test)

@@ -10,8 +10,8 @@ One line a violation, FILE:LINE: what; exit 1 when there is one.
 """
 import pathlib
 import re
-import sys
-import tempfile
+
+from tree_check import main_of, proved
 
 # Rooms that work with such files and no others, and single files that do.
 ROOMS = ("tools/ifog/field/", "daemon/sensor/noise_memory.", "daemon/recorder/", "daemon/housekeeping/")
@@ -78,30 +78,8 @@ def self_test():
         ("drivers/capture/new.cpp", 'const int fd = open((folder + "/ifogd.lock").c_str(), 0);', "open("),
         ("tools/ifog/field/field.cpp", "int nothing;", "stands nowhere"),
     ]
-    failed = 0
-    for extra in [None] + bad:
-        with tempfile.TemporaryDirectory() as tree:
-            for name, text in {**good, **({extra[0]: extra[1] + "\n"} if extra else {})}.items():
-                path = pathlib.Path(tree) / name
-                path.parent.mkdir(parents=True, exist_ok=True)
-                path.write_text(text, encoding="utf-8")
-            said = check(tree)
-        if not extra and said:
-            failed += 1
-            print("the good tree is refused:", *said, sep="\n  ")
-        if extra and not any(extra[2] in line for line in said):
-            failed += 1
-            print(f"{extra[0]} with {extra[1]} gives {said}, expected: {extra[2]}")
-    return failed
-
-
-def main():
-    if sys.argv[1:] == ["--self-test"]:
-        sys.exit(1 if self_test() else 0)
-    complaints = check(sys.argv[1] if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2])
-    print(*complaints, sep="\n", end="\n" if complaints else "")
-    sys.exit(1 if complaints else 0)
+    return proved(check, good, bad)
 
 
 if __name__ == "__main__":
-    main()
+    main_of(check, self_test)

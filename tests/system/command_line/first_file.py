@@ -204,6 +204,24 @@ class Checks:
         densities, _ = typed(angle, *shlex.split(re.search(r"--column \S+/sample", said).group(0)))
         assert abs(densities["x"] / N - 1) < 0.05, densities
 
+    def check_slow_noise_that_is_a_channels_effect(self):
+        """Twenty minutes in which 0.008 °/h/°C pass for a rate random walk that is not there; next to a temperature that it does not follow nothing is said."""
+        def found(name, temperature):
+            dice, rows = random.Random(4), []
+            for i in range(12_000):
+                at = i / 10
+                rows.append(f"{at:.1f},{(0.001 / 60 * math.sqrt(10) * dice.gauss(0, 1) + 0.008 / 3600 * 5 * math.sin(at / 150)) * RAD!r},{temperature(at):.2f}")
+            path = self.file(name, ["time_s,rate_x_radps,temperature_degC", *rows])
+            assert ran("allan", path, "--json", path.with_suffix(".json")).returncode == 0
+            axis = json.loads(path.with_suffix(".json").read_text())["axes"][0]
+            return axis["coefficients"]["K"], [f["text"] for f in axis["findings"] if "follow" in f["text"]]
+
+        k, said = found("follows.csv", lambda at: 25 + 5 * math.sin(at / 150))
+        assert len(said) == 1 and "temperature_degC" in said[0] and "run ifog diagnose" in said[0], said
+        assert k["present"] and k["std_error"] > 0.9 * k["value"], k
+        k, said = found("alone.csv", lambda at: 25 + 5 * math.sin(at / 9))
+        assert k["present"] and said == [] and k["std_error"] < 0.5 * k["value"], (k, said)
+
     def check_real_sensors_at_rest_are_no_fault_of_a_logger(self):
         """Dithered ring lasers among them, whose samples alternate."""
         for name in ("ln100_x_up", "rlg_vehicle", "adis16405_imu3_1hz", "blueseis_bs1_ramp"):

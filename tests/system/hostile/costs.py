@@ -8,19 +8,12 @@ usage: costs.py BUILD
 One line for each check, `ok` or `FAILED`.
 """
 import json
-import os
-import shutil
 import signal
 import socket
 import subprocess
-import sys
-import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import private_network  # noqa: E402
-
-from place import CONFIG, Place  # noqa: E402
+from place import CONFIG, main_of
 
 MANY = 50_000
 SECONDS = 15  # an idle processor needs 1 to 3 for the largest of them
@@ -133,24 +126,8 @@ def other_ports(place):
         daemon.terminate()
         daemon.wait(30)
         place.check(sensor["books"]["samples_in"] == sent and sensor["losses"]["log_faults"] > 200,
-                    f"{'the port that sent first' if not key else 'host_port'}: {sensor['books']['samples_in']} of {sent} of the sensor's, {sensor['losses']['log_faults']} others left out")
-
-
-def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    build = os.path.abspath(sys.argv[1])
-    private_network.enter()
-    work = tempfile.mkdtemp()
-    place = Place(build, work)
-    try:
-        for part in (large_files, signals, other_ports):
-            part(place)
-    finally:
-        os.chdir("/")
-        shutil.rmtree(work, ignore_errors=True)
-    sys.exit(place.failed > 0)
+                    f"{'the port that sent first' if not key else 'host_port'}: {sensor['books']['samples_in']} of {sent} of the sensor's, {sensor['losses']['log_faults']} others dropped")
 
 
 if __name__ == "__main__":
-    main()
+    main_of(__doc__, large_files, signals, other_ports)

@@ -10,10 +10,8 @@ One line for each check, `ok` or `FAILED`; `skipped` where not root. Exit 77 whe
 import os
 import shutil
 import subprocess
-import sys
-import tempfile
 
-from place import NOBODY, PYTHON, SECRET, Place, as_nobody
+from place import NOBODY, PYTHON, SECRET, as_nobody, main_of
 
 
 def content(path):
@@ -153,23 +151,5 @@ def races(place):
     place.check(swapped == b"swapped\n" and content("mine") == "mine", "the history is swapped with a link while it is written: what that leads to is as it was")
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    build = os.path.abspath(sys.argv[1])
-    if os.geteuid() != 0:
-        print("skipped  root against another user: not root here")
-        sys.exit(77)
-    work = tempfile.mkdtemp()
-    place = Place(build, work)
-    try:
-        for part in (adopting, reading, quoting, deep, races):
-            part(place)
-    finally:
-        os.chdir("/")
-        shutil.rmtree(work, ignore_errors=True)
-    sys.exit(place.failed > 0)
-
-
 if __name__ == "__main__":
-    main()
+    main_of(__doc__, adopting, reading, quoting, deep, races, root_for="root against another user")

@@ -15,15 +15,10 @@ import signal
 import socket
 import struct
 import subprocess
-import sys
-import tempfile
 import threading
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
-import private_network  # noqa: E402
-
-from place import NOBODY, PYTHON, Place  # noqa: E402
+from place import NOBODY, PYTHON, main_of
 
 GROUP, PORT = "239.255.76.67", 7667
 
@@ -163,32 +158,21 @@ def who_sits_there(place):
     place.check(True, "forty who ask and never listen hold nothing up")
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    build = os.path.abspath(sys.argv[1])
-    if os.geteuid() != 0:
-        print("skipped  a forger of another user: not root here")
-        sys.exit(77)
-    private_network.enter()
-    work = tempfile.mkdtemp()
-    place = Place(build, work)
-    try:
-        other = other_daemon(place, "5e-08")
-        shutil.rmtree("other")
-        os.remove("gyro2")
-        wanted = other_daemon(place, "2e-08")
-        vetoed(place, other)
-        satisfied(place, wanted, "2e-08")
-        who_sits_there(place)
-    finally:
-        place.stop()
-        if place.failed:
-            print(open("log").read()[-1500:])
-        os.chdir("/")
-        shutil.rmtree(work, ignore_errors=True)
-    sys.exit(place.failed > 0)
+def forged(place):
+    other = other_daemon(place, "5e-08")
+    shutil.rmtree("other")
+    os.remove("gyro2")
+    wanted = other_daemon(place, "2e-08")
+    vetoed(place, other)
+    satisfied(place, wanted, "2e-08")
+    who_sits_there(place)
+
+
+def ended(place):
+    place.stop()
+    if place.failed:
+        print(open("log").read()[-1500:])
 
 
 if __name__ == "__main__":
-    main()
+    main_of(__doc__, forged, root_for="a forger of another user", after=ended)

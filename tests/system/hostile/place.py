@@ -6,8 +6,13 @@ import os
 import shutil
 import signal
 import subprocess
+import sys
+import tempfile
 import threading
 import time
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
+import private_network  # noqa: E402
 
 NOBODY = 65534
 PYTHON = shutil.which("python3", path="/usr/bin:/bin") or "python3"  # one that anybody may run
@@ -157,3 +162,24 @@ class Place:
             self.daemon.send_signal(signal.SIGTERM)
             self.daemon.wait(30)
         self.daemon = None
+
+
+def main_of(usage, *parts, root_for="", after=lambda place: None):
+    """Each part with a place of its own making. root_for: what a user without its rights cannot try."""
+    if len(sys.argv) != 2:
+        sys.exit(usage)
+    build = os.path.abspath(sys.argv[1])
+    if root_for and os.geteuid() != 0:
+        print(f"skipped  {root_for}: not root here")
+        sys.exit(77)
+    private_network.enter()
+    work = tempfile.mkdtemp()
+    place = Place(build, work)
+    try:
+        for part in parts:
+            part(place)
+    finally:
+        after(place)
+        os.chdir("/")
+        shutil.rmtree(work, ignore_errors=True)
+    sys.exit(place.failed > 0)

@@ -12,13 +12,11 @@ import os
 import shutil
 import subprocess
 import sys
-import tempfile
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import flight_file  # noqa: E402
-import private_network  # noqa: E402
 
-from place import SECRET, URL, Place  # noqa: E402
+from place import SECRET, URL, main_of  # noqa: E402
 
 DBC = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../drivers/dbc/examples/ifogd_gyro.dbc"))
 CONFIG = """[daemon]
@@ -128,22 +126,11 @@ def a_spool_with_links(place, recording):
     place.check("at rest for" in said, "an old recording in the spool is read by the configuration: " + said)
 
 
-def main():
-    if len(sys.argv) != 2:
-        sys.exit(__doc__)
-    build = os.path.abspath(sys.argv[1])
-    private_network.enter()
-    work = tempfile.mkdtemp()
-    place = Place(build, work)
-    try:
-        recording = record(place)
-        a_file_of_this_computer(place, recording)
-        a_spool_with_links(place, recording)
-    finally:
-        os.chdir("/")
-        shutil.rmtree(work, ignore_errors=True)
-    sys.exit(place.failed > 0)
+def recordings(place):
+    recording = record(place)
+    a_file_of_this_computer(place, recording)
+    a_spool_with_links(place, recording)
 
 
 if __name__ == "__main__":
-    main()
+    main_of(__doc__, recordings)

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "filters/allan/confidence.h"
+#include "filters/allan/curve_miss.h"
 #include "tools/simulate/noise.h"
 
 namespace {
@@ -259,6 +260,25 @@ TEST(NoiseCoefficients, ValuesNextToNothingAreRefused) {
   for (const double scale : {1e-40, 1e-20, 1e20}) EXPECT_NEAR(fit(scale).N.value / (scale * N), 1.0, 1e-6);
   for (const double scale : {1e-155, 1e-150, 1e-140, 1e-100, 1e-70})
     EXPECT_THROW((void)fit(scale), std::invalid_argument) << scale;
+}
+
+// White noise of density N has the deviation N/√τ: terms that are a fifth too large are off by that at every τ, and
+// the bar of N then reaches what was put in. Those of the fit itself are off by chance in one record of a hundred.
+TEST(NoiseCoefficients, TermsOffTheCurveGetABarThatReachesIt) {
+  int missed = 0;
+  constexpr int kRecords = 60;
+  for (int i = 0; i < kRecords; ++i) {
+    const std::vector<double> rate =
+        ifog::simulate::noise({.N = 1e-5}, kRate, 1U << 15U, 900 + static_cast<std::uint64_t>(i));
+    const std::vector<ifog::Stretch> all{{0, rate.size()}};
+    const ifog::AngleSum sum(rate, all);
+    NoiseCoefficients found = ifog::noise_coefficients(sum, 1.0 / kRate);
+    missed += ifog::widen_to_curve(sum, 1.0 / kRate, found).departure > 0.0 ? 1 : 0;
+    found.N.value = 1.2e-5;
+    EXPECT_GT(ifog::widen_to_curve(sum, 1.0 / kRate, found).departure, std::log(1.1));
+    EXPECT_GE(found.N.std_error, 0.9 * (1.2e-5 - 1e-5));
+  }
+  EXPECT_LE(missed, 4);  // 0.6 expected; five by chance in fewer than one of a thousand such tests
 }
 
 }  // namespace

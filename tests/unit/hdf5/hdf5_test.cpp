@@ -240,7 +240,7 @@ TEST_F(Hdf5Folder, ReadsChunksOfAnySizeToTheBit) {
   }
 }
 
-// What all columns keep of unpacked chunks is bounded: beyond it the user is told how to pack the file anew.
+// What all columns keep of unpacked chunks is bounded: beyond it the message says how to repack the file.
 TEST_F(Hdf5Folder, SaysWhatMakesSmallerChunks) {
   write_chunks(path("c.h5"), {{}, {}, {}}, 25U << 20U, 25U << 20U);  // 200 MiB a column
   InputFile input(path("c.h5"));
