@@ -77,7 +77,8 @@ namespace {
 }
 std::string reason() { return std::generic_category().message(errno); }
 
-// Where a file is, its folder opened.
+// Where a file is, its folder opened. The name has no slash, so that O_NOFOLLOW at it forbids all that RESOLVE_BENEATH
+// and RESOLVE_NO_SYMLINKS of openat2 would.
 struct Place {
   explicit Place(const std::filesystem::path& path)
       : folder(::open(path.has_parent_path() ? path.parent_path().c_str() : ".",

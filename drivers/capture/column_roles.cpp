@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
+#include <cstdlib>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -19,6 +19,7 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kMostWays = 4;  // more than a message can show
+constexpr double kGravity_mps2 = 9.80665;
 
 // A column that may be a rate.
 struct Candidate {
@@ -27,6 +28,8 @@ struct Candidate {
   std::string axis;
   bool reference = false, increment = false;
 };
+
+using Rates = std::vector<Candidate>;
 
 // By sensor: columns whose names differ by the axis only belong together.
 using Sensors = std::map<std::string, std::vector<Candidate>>;
@@ -110,23 +113,47 @@ std::string unit_of(const TableSample& table, std::size_t place) {
   return angle_unit(last, false, false) ? last : "";
 }
 
+// Three columns as long together as gravity, in m/s² or g, are an accelerometer at rest.
+bool is_gravity(const TableSample& table, const std::vector<Candidate>& columns) {
+  std::vector<double> lengths;
+  for (std::size_t row = 0; row < table.cells[columns[0].place].size(); ++row) {
+    double square = 0.0;
+    for (const Candidate& column : columns) {
+      const std::vector<std::string>& cells = table.cells[column.place];
+      const double value = row < cells.size() ? std::strtod(cells[row].c_str(), nullptr) : 0.0;
+      square += value * value;
+    }
+    lengths.push_back(std::sqrt(square));
+  }
+  if (lengths.empty()) return false;
+  std::sort(lengths.begin(), lengths.end());
+  const auto at = [&](double share) {
+    return lengths[static_cast<std::size_t>(share * static_cast<double>(lengths.size() - 1))];
+  };
+  const double middle = at(0.5);
+  return at(0.75) - at(0.25) < 0.05 * middle &&
+         (std::abs(middle / kGravity_mps2 - 1.0) < 0.05 || std::abs(middle - 1.0) < 0.05);
+}
+
 // p, q and r together are body rates; x, y and z without another word are the axes of a file that holds one
-// sensor only, as phones write it.
+// sensor only, as phones write it. Beside w or qw they are a quaternion or a position.
 void add_triple(const TableSample& table, Sensors& sensors) {
   if (!sensors.empty()) return;
   std::vector<Candidate> body, bare;
+  bool attitude = false;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
     const std::string unit = unit_of(table, i);
-    if (words.size() == 1 && words.stem.size() == 1 && words.stem >= "p" && words.stem <= "r" &&
+    attitude = attitude || words.text == "w" || words.text == "qw" || words.text == "q_w";
+    if (words.text.size() == 1 && words.text >= "p" && words.text <= "r" &&
         (unit.empty() || angle_unit(unit, true, true)))
       body.push_back({i, unit.empty() ? "" : rate_unit(words, unit),
-                      std::string(1, static_cast<char>('x' + (words.stem[0] - 'p')))});
+                      std::string(1, static_cast<char>('x' + (words.text[0] - 'p')))});
     if (words.size() == 0 && !words.axis.empty() && unit.empty()) bare.push_back({i, "", words.axis});
   }
   if (body.size() == 3)
     sensors["p q r"] = body;
-  else if (bare.size() == 3)
+  else if (bare.size() == 3 && !attitude && !is_gravity(table, bare))
     sensors["x y z"] = bare;
 }
 
@@ -274,20 +301,25 @@ std::vector<TimeCandidate> in_every_unit(const TimeCandidate& time) {
                                       });
 }
 
-// Columns that have no names: one column of numbers is the rate, three are its axes, behind those of the
-// time.
-std::vector<Candidate> rates_by_place(const TableSample& table, const std::optional<TimeCandidate>& time) {
-  std::vector<Candidate> found;
+// Columns that have no names, behind those of the time: one of numbers is the rate, each three may be its
+// axes, of several those that are not as long as gravity.
+std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<TimeCandidate>& time) {
+  Rates found;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const bool of_time =
         time && ("+" + time->time.header + "+").find("+" + table.names[i] + "+") != std::string::npos;
     if (!of_time && varies(table.cells[i])) found.push_back({i, "", ""});
   }
-  if (found.size() > 3) found.resize(3);
-  if (found.size() == 2) found.resize(1);
-  for (std::size_t i = 0; found.size() == 3 && i < 3; ++i)
-    found[i].axis = std::string(1, static_cast<char>('x' + i));
-  return found;
+  if (found.size() < 3) return {found.empty() ? found : Rates(1, found[0])};
+  std::vector<Rates> sensors;
+  for (std::size_t first = 0; first + 3 <= found.size(); first += 3) {
+    Rates& axes = sensors.emplace_back(found.begin() + static_cast<std::ptrdiff_t>(first),
+                                       found.begin() + static_cast<std::ptrdiff_t>(first) + 3);
+    for (std::size_t i = 0; i < 3; ++i) axes[i].axis = std::string(1, static_cast<char>('x' + i));
+  }
+  const auto accelerometer = [&](const Rates& axes) { return is_gravity(table, axes); };
+  if (!std::all_of(sensors.begin(), sensors.end(), accelerometer)) std::erase_if(sensors, accelerometer);
+  return sensors;
 }
 
 }  // namespace
@@ -305,8 +337,7 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
   if (times.empty()) times.emplace_back();
   std::vector<Rates> sensors(1), rates;
   if (asked.columns.empty()) {
-    sensors = table.named ? choices_of(sensors_of(table, false))
-                          : std::vector<Rates>(1, rates_by_place(table, times[0]));
+    sensors = table.named ? choices_of(sensors_of(table, false)) : rates_by_place(table, times[0]);
     std::erase_if(sensors, [](const Rates& each) { return each.empty(); });
     if (sensors.empty()) {
       out.why = "no column is named as a gyro's rate";
@@ -364,25 +395,6 @@ std::string in_words(const CsvLayout& layout) {
             " in " + printable(column.unit.empty() ? column.name.substr(line + 1) : column.unit);
   }
   return text;
-}
-
-std::optional<double> stated_rate_hz(const std::vector<std::string>& comments) {
-  for (const std::string& comment : comments) {
-    std::string text;
-    for (const char c : comment) text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    std::size_t at = std::string::npos;
-    for (const char* name :
-         {"output rate", "sample rate", "sampling rate", "data rate", "sample frequency",
-          "sampling frequency", "sample_rate", "sampling_rate", "samplerate", "update rate"})
-      if (at == std::string::npos && (at = text.find(name)) != std::string::npos)
-        at += std::string_view(name).size();
-    if (at == std::string::npos) continue;
-    const std::size_t digits = text.find_first_of("0123456789", at);
-    if (digits == std::string::npos || digits > at + 12) continue;
-    const double rate_hz = std::strtod(text.c_str() + digits, nullptr);
-    if (rate_hz > 0.0 && rate_hz <= 1e6) return rate_hz;
-  }
-  return std::nullopt;
 }
 
 }  // namespace ifog

@@ -48,7 +48,4 @@ std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayou
 // "time 'Time (s)' in s, rate_x 'Gyroscope X (deg/s)' in deg/s", for the line that says how a file is read.
 std::string in_words(const CsvLayout& layout);
 
-// A stated sample rate, as loggers write it above the table: "Output Rate,200.0"; nothing where none is.
-std::optional<double> stated_rate_hz(const std::vector<std::string>& comments);
-
 }  // namespace ifog

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <optional>
 #include <string_view>
 
@@ -24,6 +27,14 @@ std::optional<double> number_in(const std::string& cell) {
   const char* const end = cell.data() + cell.size();
   const auto [at, error] = read_decimal(cell.data(), end, value);
   return error == std::errc() && at == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+// Without the rows of another sensor, which leave this one's columns empty.
+std::vector<std::string> filled(const std::vector<std::string>& cells) {
+  std::vector<std::string> out;
+  std::copy_if(cells.begin(), cells.end(), std::back_inserter(out),
+               [](const std::string& cell) { return !cell.empty(); });
+  return out;
 }
 
 std::vector<double> numbers_in(const std::vector<std::string>& cells) {
@@ -86,12 +97,13 @@ int rank_of(const std::string& name, const Words& words) {
        {"dt", "relative", "period", "delta", "integral", "id", "status", "valid", "offset", "zone", "delay",
         "age", "exposure", "week", "accuracy", "interval", "flags", "tflags"})
     if (words.has(not_time)) return 0;
-  constexpr std::array<std::string_view, 17> kTimes{
-      "time",           "timestamp", "stamp",   "t",       "utc",   "datetime",
-      "date",           "zeit",      "seconds", "elapsed", "tow",   "sow",
-      "sampletimefine", "timeusec",  "secs",    "millis",  "micros"};
+  constexpr std::array<std::string_view, 18> kTimes{
+      "time",           "timestamp", "stamp",   "t",       "utc",    "datetime",
+      "date",           "zeit",      "seconds", "elapsed", "tow",    "sow",
+      "sampletimefine", "timeusec",  "secs",    "millis",  "micros", "gpst"};
   const auto is_time = [&](const std::string& word) {
-    return std::find(kTimes.begin(), kTimes.end(), word) != kTimes.end();
+    return word.ends_with("time") || word.ends_with("stamp") ||
+           std::find(kTimes.begin(), kTimes.end(), word) != kTimes.end();
   };
   if (words.has("header") && words.has("stamp")) return 4;  // when it was measured, as ROS has it
   if (!words.words.empty() && std::all_of(words.words.begin(), words.words.end(), is_time)) return 3;
@@ -113,7 +125,7 @@ std::string time_unit_by_name(const TableSample& table, std::size_t place, const
 std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
   TimeCandidate out;
   out.time.header = table.names[place];
-  const std::vector<std::string>& cells = table.cells[place];
+  const std::vector<std::string> cells = filled(table.cells[place]);
   const bool dated = !cells.empty() && std::all_of(cells.begin(), cells.end(),
                                                    [](const std::string& cell) { return is_date(cell); });
   if (dated && cells.size() > 1 && cells.front() == cells.back()) return std::nullopt;  // the day of all rows
@@ -141,34 +153,43 @@ constexpr std::array<std::pair<std::string_view, int>, 14> kParts{{{"nsec", 9},
                                                                    {"ms", 3},
                                                                    {"msec", 3}}};
 
-// Without its last word, so that stamp.sec and stamp.nanosec are one.
-std::string all_but_last_word(const std::string& name) {
-  std::size_t end = name.size();
-  while (end > 0 && std::isalnum(static_cast<unsigned char>(name[end - 1])) != 0) --end;
-  return name.substr(0, end);
+// Digits behind the point of a word that names a part of a second; 0 for any other word.
+int digits_of(const std::string& word) {
+  const auto found =
+      std::find_if(kParts.begin(), kParts.end(), [&](const auto& each) { return each.first == word; });
+  return found == kParts.end() ? 0 : found->second;
 }
-std::string last_word(const std::string& name) {
-  std::string word = name.substr(all_but_last_word(name).size());
-  for (char& c : word) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return word;
+
+std::vector<std::string> words_of(const std::string& name) {
+  std::vector<std::string> words(1);
+  for (const char c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0)
+      words.emplace_back();
+    else
+      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return words;
+}
+
+// stamp.sec and stamp.nanosec, time_sec_imu and time_nanosec_imu: the same but for one word.
+bool names_a_second_and_its_part(const std::string& whole, const std::string& part) {
+  const std::vector<std::string> a = words_of(whole), b = words_of(part);
+  if (a.size() != b.size()) return false;
+  const auto [at, there] = std::mismatch(a.begin(), a.end(), b.begin());
+  if (at == a.end() || !std::equal(at + 1, a.end(), there + 1)) return false;
+  return (*at == "sec" || *at == "secs" || *at == "s" || *at == "seconds") && digits_of(*there) > 0;
 }
 
 // Two columns that are one time: seconds and a part of one, or a date and a time of day.
 std::optional<TimeCandidate> joined(const TableSample& table, std::size_t first, std::size_t second) {
-  const std::vector<std::string>&a = table.cells[first], &b = table.cells[second];
-  if (a.empty()) return std::nullopt;
+  const std::vector<std::string> a = filled(table.cells[first]), b = filled(table.cells[second]);
+  if (a.empty() || b.empty()) return std::nullopt;
   TimeCandidate out;
   out.time.header = table.names[first] + "+" + table.names[second];
   out.time.told = true;
   out.unit = "s";
   const bool day = is_date(a[0]) && a[0].find(':') == std::string::npos;
   if (day && is_date(b[0]) && b[0].find(':') != std::string::npos && b[0].find(':') < 3) return out;
-  const std::string of_second = last_word(table.names[second]);
-  const bool part =
-      std::any_of(kParts.begin(), kParts.end(), [&](const auto& each) { return each.first == of_second; });
-  const std::string of_first = last_word(table.names[first]);
-  const bool named = (of_first == "sec" || of_first == "secs" || of_first == "s" || of_first == "seconds") &&
-                     part && all_but_last_word(table.names[first]) == all_but_last_word(table.names[second]);
+  const bool named = names_a_second_and_its_part(table.names[first], table.names[second]);
   const std::vector<double> whole = numbers_in(a), parts = numbers_in(b);
   const auto is_whole = [](double v) { return v == std::floor(v); };
   const bool by_values = !table.named && whole.size() == a.size() && parts.size() == b.size() &&
@@ -186,7 +207,8 @@ std::vector<TimeCandidate> times_of(const TableSample& table) {
   std::vector<TimeCandidate> best;
   int rank = 1;
   for (std::size_t i = 0; i + 1 < table.names.size(); ++i)
-    if (const auto two = joined(table, i, i + 1)) return {*two};
+    if (const auto two = joined(table, i, i + 1)) best.push_back(*two);
+  if (!best.empty()) return best;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
     const int here = table.named ? rank_of(table.names[i], words) : 1;
@@ -228,11 +250,30 @@ std::string name_of_seconds(double unit_s) {
 
 int digits_of_second(const std::string& name, const std::vector<std::string>& cells) {
   if (!cells.empty() && is_date(cells[0])) return 0;
-  for (const auto& [word, digits] : kParts)
-    if (last_word(name) == word) return digits;
+  for (const std::string& word : words_of(name))
+    if (const int digits = digits_of(word); digits > 0) return digits;
   double most = 0.0;
   for (const double value : numbers_in(cells)) most = std::max(most, value);
   return most >= 1e6 ? 9 : most >= 1e3 ? 6 : 3;
+}
+
+std::optional<double> stated_rate_hz(const std::vector<std::string>& comments) {
+  for (const std::string& comment : comments) {
+    std::string text;
+    for (const char c : comment) text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::size_t at = std::string::npos;
+    for (const char* name :
+         {"output rate", "sample rate", "sampling rate", "data rate", "sample frequency",
+          "sampling frequency", "sample_rate", "sampling_rate", "samplerate", "update rate"})
+      if (at == std::string::npos && (at = text.find(name)) != std::string::npos)
+        at += std::string_view(name).size();
+    if (at == std::string::npos) continue;
+    const std::size_t digits = text.find_first_of("0123456789", at);
+    if (digits == std::string::npos || digits > at + 12) continue;
+    const double rate_hz = std::strtod(text.c_str() + digits, nullptr);
+    if (rate_hz > 0.0 && rate_hz <= 1e6) return rate_hz;
+  }
+  return std::nullopt;
 }
 
 }  // namespace ifog

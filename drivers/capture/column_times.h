@@ -2,6 +2,7 @@
 // Which column of a foreign table is its time, and in what unit: by its name, by its values, by both.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,5 +30,8 @@ std::string name_of_seconds(double unit_s);
 // Digits behind the point that a whole number in the second column of "sec+nsec" stands for: 9 for
 // nanoseconds, by its name or its values; 0 where the two are a date and a time of day.
 int digits_of_second(const std::string& name, const std::vector<std::string>& cells);
+
+// A stated sample rate, as loggers write it above the table: "Output Rate,200.0"; nothing where none is.
+std::optional<double> stated_rate_hz(const std::vector<std::string>& comments);
 
 }  // namespace ifog

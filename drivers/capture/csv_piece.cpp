@@ -49,7 +49,12 @@ bool is_no_row(std::string_view line) { return trimmed(line).empty() || line.fro
 // time of day.
 class JoinedTime {
  public:
-  void put(bool part, std::string_view cell) { (part ? part_ : whole_) = cell; }
+  // Loggers that hold all in one kind of number write 570443003.0.
+  void put(bool part, std::string_view cell) {
+    if (cell.ends_with(".0")) cell.remove_suffix(2);
+    (part ? part_ : whole_) = cell;
+  }
+  [[nodiscard]] bool is_empty() const { return whole_.empty() && part_.empty(); }
   // part_digits: of the second cell; 0: a time of day. Empty where that is no such number.
   std::string_view text(int part_digits) {
     std::string_view part = part_;
@@ -133,7 +138,9 @@ class Rows {
       if (place.values != nullptr) place.values->reserve(rows);
   }
 
-  void add(std::string_view line, std::size_t number) {
+  // False: a row of another sensor, which leaves the time and all columns of this one empty.
+  bool add(std::string_view line, std::size_t number) {
+    untimed_ = false;
     const char *at = line.data(), *const end = at + line.size();
     std::size_t place = 0;
     for (;; ++at) {
@@ -155,7 +162,9 @@ class Rows {
           std::to_string(place) + " cells, expected " + std::to_string(to_.size()) + " (a truncated line?)");
     if (header_.time_part != CsvHeader::kNone) take_joined_time(number);
     if (header_.time_place == CsvHeader::kNone) piece_.rows.time_s.push_back(static_cast<double>(rows_));
-    ++rows_;
+    if (untimed_) take_back(line, number);
+    if (!untimed_) ++rows_;
+    return !untimed_;
   }
 
  private:
@@ -198,7 +207,20 @@ class Rows {
     return behind;
   }
 
+  // The row that has no time.
+  void take_back(std::string_view line, std::size_t number) {
+    for (std::size_t i = 0; i < to_.size(); ++i) {
+      if (to_[i].means == Meaning::kNumber && !cell_at(line, i, separator_).empty())
+        fail_at(path_, number,
+                printable(header_.cells[header_.time_place].name) + " is missing, expected a time");
+      const bool value = to_[i].means == Meaning::kNumber || to_[i].means == Meaning::kOther;
+      if (value && to_[i].values != nullptr) to_[i].values->pop_back();
+    }
+  }
+
   void take_joined_time(std::size_t line) {
+    untimed_ = joined_.is_empty();
+    if (untimed_) return;
     const std::string_view text = joined_.text(header_.part_digits);
     if (text.empty())
       fail_at(path_, line,
@@ -208,6 +230,8 @@ class Rows {
   }
 
   void take_time(std::size_t place, std::string_view text, std::size_t line) {
+    untimed_ = text.empty();
+    if (untimed_) return;
     const TimeDigits digits(text, separator_ != ',');
     if (digits.is_date() && unit_s_ != 1.0)
       fail_at(path_, line,
@@ -254,6 +278,7 @@ class Rows {
   std::vector<Place> to_;  // by cell of a row
   JoinedTime joined_;
   std::size_t rows_ = 0;  // that were added
+  bool untimed_ = false;  // the row at hand has no time
 };
 
 }  // namespace
@@ -271,6 +296,7 @@ std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& he
     const std::string_view first = header.time_part == CsvHeader::kNone
                                        ? cell_at(line, header.time_place, header.separator)
                                        : joined.text(header.part_digits);
+    if (first.empty()) continue;
     return TimeStamps(TimeDigits(first, header.separator != ','),
                       header.layout.time.value_or(CsvTime{}).unit_s);
   }
@@ -294,9 +320,9 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
     const bool other = header.only_place != CsvHeader::kNone && !is_no_row(line) &&
                        cell_at(line, header.only_place, header.separator) != header.layout.only_value;
     if (!other && !is_no_row(line)) {
-      rows.add(line, lines.number());
       piece.row_bytes += line.size() + 1;
-      continue;
+      if (rows.add(line, lines.number())) continue;
+      ++piece.untimed;
     }
     if (line.starts_with('#')) piece.comments.append(trimmed(line.substr(1))) += '\n';
     ++skipped;

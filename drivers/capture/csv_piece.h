@@ -26,6 +26,7 @@ struct CsvPiece {
   std::vector<ImpossibleValues> impossible;  // by cell of a row; lines of the piece
   std::size_t lines = 0;
   std::size_t row_bytes = 0;  // of the lines that are rows
+  std::size_t untimed = 0;    // rows of another sensor, which have no time of this one
   bool decimals = false;      // in the first time
   int most_decimals = 0;      // of a time, or kAnyDecimals
 };

@@ -124,7 +124,7 @@ class CsvRows {
   RowNotes notes_;
   std::vector<ImpossibleValues> impossible_;  // by column
   std::optional<RowChecks> checks_;
-  std::size_t lines_ = 0;
+  std::size_t lines_ = 0, untimed_ = 0;
   bool decimals_ = false;             // in the first time
   int most_decimals_ = 0;             // of a time
   std::optional<TimeStamps> stamps_;  // once there is a row
@@ -225,6 +225,7 @@ void CsvRows::deliver(Piece& piece) {
   used_texts_.push_back(std::move(piece.text));
   merge(*parsed);
   lines_ += parsed->lines;
+  untimed_ += parsed->untimed;
   were_rows_(parsed->row_bytes);
   RowBlock& rows = parsed->rows;
   if (rows.size() > 0) {
@@ -258,6 +259,10 @@ void CsvRows::merge(const CsvPiece& piece) {
 
 void CsvRows::finish() {
   if (checks_->rows() == 0) throw std::runtime_error(path_ + ": no rows after the header");
+  if (untimed_ > 0)
+    notes_.notices.push_back(path_ + ": " + std::to_string(untimed_) + " rows without " +
+                             in_quotes(header_.cells[header_.time_place].name) +
+                             " are of another sensor and dropped");
   checks_->finish(impossible_, decimals_, ExactSteps(most_decimals_, unit_s()));
 }
 

@@ -13,9 +13,11 @@
 namespace ifog {
 namespace {
 
-constexpr double kFewestDegrees = 8.0;        // of freedom: the deviation is known to a quarter
-constexpr double kOneSigma = 0.682689;        // of a Gaussian variable within one standard deviation
-constexpr double kAtOne = 3.0, kAtTwo = 2.0;  // standard deviations: by chance once in a hundred records
+constexpr double kFewestDegrees = 8.0;  // of freedom: the deviation is known to a quarter
+constexpr double kOneSigma = 0.682689;  // of a Gaussian variable within one standard deviation
+// Standard deviations, each by chance in one of two hundred records of 15 octaves: neighbours have a
+// correlation of 0.5 (3000 records of white noise; tests/unit/allan/noise_coefficients_test.cpp).
+constexpr double kAtOne = 3.5, kAtTwo = 2.75;
 
 // (rad/s)² at τ, by term.
 struct Share {

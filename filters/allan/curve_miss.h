@@ -15,7 +15,7 @@ struct CurveMiss {
 };
 
 // Looks at the overlapping Allan deviation at every octave of τ where it has eight degrees of freedom or more.
-// A departure counts beyond three standard deviations, or beyond two at two octaves in a row to the same side.
+// A departure counts beyond 3.5 standard deviations, or beyond 2.75 at two octaves in a row to the same side.
 // The term that is most of the curve there gets an error bar which reaches the curve. Lines and left-out bands
 // stand out of the curve by themselves and say so: with them nothing is changed.
 CurveMiss widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& found);

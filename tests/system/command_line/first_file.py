@@ -158,6 +158,26 @@ class Checks:
         assert sorted(round(r["x"] / N) for r in readings) == [1, 3], readings
         assert "more than one column may be the rate" in said, said
 
+    def check_several_sensors_in_one_table(self):
+        """As public repositories hold them: accelerations in front of nameless rates, a quaternion beside its w, two sensors' rows in one table."""
+        shape = self.rows(lambda i, x, y, z: (672705976809250 + 5_000_000 * i, -0.12 + 1e-3 * (i % 7), 0.19 + 1e-3 * (i % 5), 9.699 - 1e-3 * (i % 3), x * RAD, y * RAD, z * RAD))
+        self.reads("nameless.csv", shape)
+        _, said = typed(self.folder / "nameless.csv")
+        assert "#2" not in said.split("to read it: ")[1], f"an acceleration is offered as a rate: {said}"
+        _, said = typed(self.file("both.csv", self.rows(lambda i, x, y, z: (i / RATE_HZ, x, y, z, 3 * x, 3 * y, 3 * z))))
+        assert "more than one column may be the rate" in said and "=#2:" in said and "=#5:" in said, said
+        for name, header in (("attitude.csv", "t_s,w,x,y,z"), ("strokes.csv", "time_seconds,q_w,q_x,q_y,q_z"), ("pose.csv", "t_s,x,y,z,qx,qy,qz,qw")):
+            _, said = typed(self.file(name, [header, *self.rows(lambda i, x, y, z: (i / RATE_HZ, 0.9999, 0.001 * (i % 7), -0.002, 0.007, 0, 0, 0)[:len(header.split(","))])]))
+            assert "no rate column among" in said, f"{name}: {said}"
+        _, said = typed(self.file("acceleration.csv", ["Attribute,Time stamp,x,y,z", *self.rows(lambda i, x, y, z: ("Acceleration", 63156 + 5 * i, 0.12, 0.06, 1.02 + 1e-3 * (i % 5)))]))
+        assert "no rate column among" in said, said
+        rows = self.rows(lambda i, x, y, z: ("", "", f"{1729521988 + i // RATE_HZ}.0", f"{i % RATE_HZ * 5_000_000}.0", "", x, y, z))
+        for i in range(ROWS - 1, 0, -RATE_HZ):
+            rows.insert(i, f"{1729521988 + i // RATE_HZ}.0,0.0,,,42.3,,,")
+        self.reads("outer_join.csv", ["timestamp_sec_gps,timestamp_nanosec_gps,timestamp_sec_imu,timestamp_nanosec_imu,latitude,gyro_x_dps,gyro_y_dps,gyro_z_dps", *rows],
+                   unasked=True, says=("time 'timestamp_sec_imu+timestamp_nanosec_imu'", "20 rows without 'timestamp_sec_imu' are of another sensor and dropped"))
+        self.reads("pedestrian.csv", ["GPST,Ax,Ay,Az,Gx,Gy,Gz", *self.rows(lambda i, x, y, z: (f"{390884.272 + i / RATE_HZ:.3f}", -1.8, -9.6, 1.4, x, y, z))], unasked=False)
+
     def check_stamps(self):
         header = "time_s,rate_x_radps"
         self.reads("packets.csv", [header, *self.rows(lambda i, x, y, z: (f"{0.03 + i // 7 * 0.035 + i % 7 * 1e-4:.6f}", x * RAD))], axes="x", says=("come in bursts", "at 200 Hz"))

@@ -117,7 +117,7 @@ TEST(NoiseCoefficients, QuantisationAloneIsNoOtherTerm) {
 // keep one angle in many, it was seen in three of four records; the most powerful test sees it in 99.8 % of
 // them (tests/bench/allan/ceiling).
 TEST(NoiseCoefficients, QuantisationDoesNotDrownWhatIsSlow) {
-  constexpr int kRecords = 60;
+  constexpr int kRecords = 100;
   const double N = std::sqrt(3.0 / 512.0) * 1e-6 * std::sqrt(kRate);
   int found = 0, others = 0;
   for (std::uint64_t record = 0; record < kRecords; ++record) {
@@ -265,20 +265,25 @@ TEST(NoiseCoefficients, ValuesNextToNothingAreRefused) {
 // White noise of density N has the deviation N/√τ: terms that are a fifth too large are off by that at every τ, and
 // the bar of N then reaches what was put in. Those of the fit itself are off by chance in one record of a hundred.
 TEST(NoiseCoefficients, TermsOffTheCurveGetABarThatReachesIt) {
-  int missed = 0;
-  constexpr int kRecords = 60;
+  int missed = 0, looked_at = 0;
+  constexpr int kRecords = 100;
   for (int i = 0; i < kRecords; ++i) {
     const std::vector<double> rate =
-        ifog::simulate::noise({.N = 1e-5}, kRate, 1U << 15U, 900 + static_cast<std::uint64_t>(i));
+        ifog::simulate::noise({.N = 1e-5}, kRate, 1U << 15U, 1900 + static_cast<std::uint64_t>(i));
     const std::vector<ifog::Stretch> all{{0, rate.size()}};
     const ifog::AngleSum sum(rate, all);
     NoiseCoefficients found = ifog::noise_coefficients(sum, 1.0 / kRate);
+    const bool correlated = found.markov && found.markov->present;
+    if (correlated || !found.lines_hz.empty() || !found.left_out_hz.empty())
+      continue;  // which say so themselves
+    ++looked_at;
     missed += ifog::widen_to_curve(sum, 1.0 / kRate, found).departure > 0.0 ? 1 : 0;
     found.N.value = 1.2e-5;
     EXPECT_GT(ifog::widen_to_curve(sum, 1.0 / kRate, found).departure, std::log(1.1));
     EXPECT_GE(found.N.std_error, 0.9 * (1.2e-5 - 1e-5));
   }
-  EXPECT_LE(missed, 4);  // 0.6 expected; five by chance in fewer than one of a thousand such tests
+  EXPECT_GE(looked_at, 90);
+  EXPECT_LE(missed, 5);  // 1.1 expected; six by chance in one of a thousand such tests
 }
 
 }  // namespace
