@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdio>
 
+#include "filters/effects/form.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 #include "tools/report/account.h"
 #include "tools/report/words.h"
 
@@ -29,8 +31,9 @@ std::string percent(double share) { return share >= 0.001 ? text("%.3g %%", 100.
 
 std::string chance(double p) { return p < 1e-6 ? "under one in a million" : text("%.2g", p); }
 
-// In the field's units, as on the report's page.
+// In the field's units, as on the report's page; when something happened as a time of the capture.
 std::string value_of(const ModelParameter& parameter) {
+  if (parameter.name == kTimeRange) return told_time(parameter.value) + " s";
   const report::FieldUnit field = report::field_unit(parameter.unit);
   return text("%.4g ± %.2g %s", parameter.value * field.scale, parameter.std_error * field.scale,
               field.unit.c_str());
