@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/recording.h"
 
+#include <string.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <stdexcept>
 #include <string_view>
 
 #include "drivers/capture/candump.h"
+#include "drivers/capture/column_names.h"
 #include "drivers/capture/name_ending.h"
 #include "drivers/ifog/quoted.h"
 
@@ -177,6 +180,13 @@ std::vector<std::string> losses(const RecordingCounts& counts) {
   say(counts.bytes_at_end, "bytes at the end are no whole frame (is the file cut off?)");
   say(counts.driver.frames_repeated, "frames left out because they came twice");
   say(counts.driver.samples_incomplete, "samples left out because some of their frames are missing");
+  if (const ifog_driver_counters& driver = counts.driver; driver.values_beyond > 0)
+    lines.push_back(
+        std::to_string(driver.values_beyond) +
+        " values are beyond the range that their description states, and kept: " +
+        printable({driver.beyond_name, ::strnlen(driver.beyond_name, sizeof driver.beyond_name)}) + " is " +
+        shortest(driver.beyond_value) + ", stated [" + shortest(driver.beyond_minimum) + ", " +
+        shortest(driver.beyond_maximum) + "]");
   say(counts.cut_off ? 1 : 0, "line at the end is no whole frame (is the file cut off?)");
   say(counts.remote_frames, "CAN remote frames passed over");
   say(counts.error_frames, "CAN error frames passed over");

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "drivers/ifog/unnamed_file.h"
+#include "drivers/system/unnamed_file.h"
 
 namespace ifog {
 

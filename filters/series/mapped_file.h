@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "drivers/ifog/unnamed_file.h"
+#include "drivers/system/unnamed_file.h"
 
 namespace ifog {
 

@@ -22,7 +22,7 @@ ALLOWED = {
     "drivers/ifog": [],
     # The one rule for quoting foreign text and for guessing what was meant, which plugins keep, too; for counting what a
     # device has taken, which captures and the daemon must find alike; and room beyond memory.
-    "filters": ["drivers/ifog/nearest.h", "drivers/ifog/quoted.h", "drivers/ifog/unnamed_file.h", "drivers/system", "drivers/timeline", "drivers/units/turn.h"],
+    "filters": ["drivers/ifog/nearest.h", "drivers/ifog/quoted.h", "drivers/system", "drivers/timeline", "drivers/units/turn.h"],
     "daemon": ["drivers", "filters", "msgs"],
     # Pictures are written and foreign names quoted by the one rule for each.
     "tools/report": ["drivers/capture/name_ending.h", "drivers/capture/output_file.h", "drivers/ifog/quoted.h", "drivers/system/shell_word.h", "filters"],

@@ -10,6 +10,7 @@ import math
 import os
 import random
 import re
+import struct
 import subprocess
 import sys
 
@@ -98,6 +99,16 @@ class Checks:
         assert self.one.read_bytes() == before and not new.exists()
         # A device is no file that could be lost.
         ifog("denoise", self.one, "--output", "/dev/null", "--json", "/dev/null")
+
+    def check_ranges_of_a_dbc_file_are_information(self):
+        """A signed rate with [0|100], as in public files: half of all motion is beyond, kept, counted and said once with both numbers."""
+        dbc, log, out = self.folder / "range.dbc", self.folder / "range.log", self.folder / "range.csv"
+        dbc.write_text('VERSION ""\nBU_: A\nBO_ 291 M: 8 A\n SG_ Rate : 0|16@1- (0.01,0) [0|100] "deg/s" A\n SG_ Count : 16|8@1+ (1,0) [0|255] "" A\n')
+        log.write_text("".join(f"({i * 0.01:.6f}) can0 123#{struct.pack('<hB', 5 * i - 500, i).hex()}0000000000\n" for i in range(200)))
+        text = said("convert", log, out, "--dbc", dbc, "--option", "signal=Rate", "--option", "counter=Count", "--option", "rate_hz=100")
+        assert text.count("100 values are beyond the range that their description states, and kept: Rate is -5, stated [0, 100]") == 1, text
+        rates = [float(row.split(",")[1]) for row in out.read_text().splitlines() if row[0].isdigit()]
+        assert len(rates) == 200 and abs(rates[0] + math.radians(5)) < 1e-12 and not any(map(math.isnan, rates)), rates[:3]
 
     def check_a_rate_that_is_missing_is_said_by_every_command(self):
         part = [math.nan if 500 <= i < 800 else v for i, v in enumerate(self.noise)]

@@ -22,7 +22,7 @@
 #include "drivers/capture/recording.h"
 #include "drivers/capture/time_stamps.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/ifog/unnamed_file.h"
+#include "drivers/system/unnamed_file.h"
 #include "drivers/transport/utc_now.h"
 #include "msgs/channel_name.h"
 #include "msgs/in_order.h"

@@ -175,11 +175,12 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
          options.capture.c_str(), static_cast<unsigned long long>(result.counts.mixed));
   if (rows.none_filtered())
     warn(
-        "%s: %s: denoised is the compensated rate; expected --process-noise and --measurement-noise, or a "
-        "shorter --start-up\n",
+        "%s: %s: denoised is the compensated rate; expected a --model of 'ifog tune' at rest, "
+        "--process-noise "
+        "and --measurement-noise, or a shorter --start-up\n",
         options.capture.c_str(),
         result.noise_known ? "what is wanted of it lies within the start-up that shows its noise"
-                           : "no longer than the start-up that shows its noise");
+                           : "no rest in it is as long as the start-up that shows its noise");
   tell_unusable(options.capture, rows, result);
   tell_not_as_published(options, rows, result);
   say("%s: %zu samples at %g Hz, %s\n", options.capture.c_str(), rows.written(), result.sample_rate_hz,
