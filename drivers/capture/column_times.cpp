@@ -122,6 +122,14 @@ std::string time_unit_by_name(const TableSample& table, std::size_t place, const
   return "";
 }
 
+// Both have counted the same seconds from the first row to the last.
+bool go_together(const std::vector<double>& a, const TimeCandidate& one, const std::vector<double>& b,
+                 const TimeCandidate& other) {
+  if (one.unit.empty() || other.unit.empty() || a.size() != b.size() || a.size() < kFewRows) return false;
+  const double s = (a.back() - a.front()) * one.time.unit_s, t = (b.back() - b.front()) * other.time.unit_s;
+  return std::abs(s - t) < 0.1 * std::abs(s) / static_cast<double>(a.size());
+}
+
 std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
   TimeCandidate out;
   out.time.header = table.names[place];
@@ -217,11 +225,13 @@ std::vector<TimeCandidate> times_of(const TableSample& table) {
     if (!found || (!table.named && !best.empty())) continue;
     if (here > rank) best.clear();
     rank = here;
-    // Twins say the same.
+    // Twins say the same, as a time of day and the seconds since the start do.
     const auto same = [&](const TimeCandidate& other) {
       const auto at =
           std::find(table.names.begin(), table.names.end(), other.time.header) - table.names.begin();
-      return table.cells[static_cast<std::size_t>(at)] == table.cells[i];
+      const std::vector<std::string>& cells = table.cells[static_cast<std::size_t>(at)];
+      return cells == table.cells[i] ||
+             go_together(numbers_in(cells), other, numbers_in(table.cells[i]), *found);
     };
     if (std::none_of(best.begin(), best.end(), same)) best.push_back(*found);
   }

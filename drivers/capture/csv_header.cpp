@@ -37,6 +37,18 @@ std::size_t place_of(const std::string& wanted, const std::vector<std::string>& 
               listed(names));
 }
 
+bool starts_with_letter(const std::string& cell) {
+  return !cell.empty() && ((cell[0] >= 'a' && cell[0] <= 'z') || (cell[0] >= 'A' && cell[0] <= 'Z'));
+}
+
+// Of the names of several sensors that of a gyro, else the first.
+std::set<std::string>::const_iterator the_gyro(const std::set<std::string>& names) {
+  const auto found = std::find_if(names.begin(), names.end(), [](const std::string& name) {
+    return name.find("yro") != std::string::npos || name.find("GYR") != std::string::npos;
+  });
+  return found == names.end() ? names.begin() : found;
+}
+
 class Chooser {
  public:
   Chooser(TableForm form, const std::string& path, const CsvLayout& layout)
@@ -69,14 +81,16 @@ class Chooser {
     fail_at(path_, form_.header_line > 0 ? form_.header_line : form_.last_line + 1, what);
   }
 
-  // Rows of several sensors in turn, which a column numbers.
+  // Rows of several sensors in turn, which a column numbers or names.
   void say_what_alternates() {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const Words words(names_[i]);
-      if (!words.has("id") && !words.has("sensor") && !words.has("device") && !words.has("instance") &&
-          !words.has("topic") && !words.has("i") && !words.has("imu"))
-        continue;
       const std::vector<std::string>& cells = form_.sample.cells[i];
+      const bool is_text = std::all_of(cells.begin(), cells.end(),
+                                       [](const std::string& cell) { return starts_with_letter(cell); });
+      if (!is_text && !words.has("id") && !words.has("sensor") && !words.has("device") &&
+          !words.has("instance") && !words.has("topic") && !words.has("i") && !words.has("imu"))
+        continue;
       const std::set<std::string> values(cells.begin(), cells.end());
       const auto changes = std::inner_product(cells.begin(), cells.empty() ? cells.end() : cells.end() - 1,
                                               cells.empty() ? cells.begin() : cells.begin() + 1,
@@ -85,7 +99,7 @@ class Chooser {
       header_.notices.push_back(path_ + ": " + in_quotes(names_[i]) + " is " +
                                 listed({values.begin(), values.end()}) +
                                 " in turn: rows of several sensors; one of them: --only " +
-                                shell_word(names_[i] + "=" + *values.begin()));
+                                shell_word(names_[i] + "=" + *the_gyro(values)));
     }
   }
 

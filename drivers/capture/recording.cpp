@@ -100,18 +100,6 @@ FileKind file_kind(const InputFile& file) {
   return by_name == FileKind::unknown && !is_text(file.head()) ? FileKind::bytes : by_name;
 }
 
-std::string other_can_log(std::string_view head) {
-  const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
-  if (head.starts_with("date ") && (has("base hex") || has("base dec")))
-    return "is a Vector ASC log, expected one of candump; 'asc2log' of can-utils makes it";
-  if (has(";$FILEVERSION="))
-    return "is a PEAK TRC log, expected one of candump; 'can_logconvert' of python-can makes it";
-  if (head.starts_with("Time Stamp,ID,Extended,"))
-    return "is a SavvyCAN log, expected one of candump; SavvyCAN saves it so, and 'log2asc' and 'asc2log' of "
-           "can-utils convert others";
-  return "";
-}
-
 namespace {
 
 // Two devices of one id would be taken for one.

@@ -37,9 +37,6 @@ FileKind file_kind(const InputFile& file);
 bool is_hdf5(const std::string& path);
 bool is_hdf5(const InputFile& file);
 
-// What makes a candump log of a CAN log of another program, "" for what is none.
-std::string other_can_log(std::string_view head);
-
 struct RecordingCounts {
   std::size_t samples = 0;
   ifog_driver_counters driver{};

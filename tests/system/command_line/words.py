@@ -107,6 +107,18 @@ class Checks:
                               stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120, check=False)
         assert done.returncode == 0, f"{line}: exit {done.returncode}: {done.stderr}"
 
+    def check_a_container_of_another_program_says_what_makes_columns(self):
+        """The first bytes as the formats' own descriptions have them."""
+        for name, head, words in (("a.xlsx", b"PK\x03\x04", "spreadsheet"), ("a.mat", b"MATLAB 5.0 MAT-file, Platform: GLNXA64", "save -v7.3"),
+                                  ("a.bag", b"#ROSBAG V2.0\n", "rostopic echo"), ("a.mcap", b"\x89MCAP0\r\n", "ros2 topic echo --csv"),
+                                  ("a.db3", b"SQLite format 3\0", "ros2 topic echo --csv"), ("a.ulg", b"ULog\x01\x12\x35\x01", "ulog2csv"),
+                                  ("a.bin", b"\xa3\x95\x80\x80\x59FMT", "mavlogdump.py"), ("a.npy", b"\x93NUMPY\x01\0v\0", "numpy.savetxt"),
+                                  ("a.parquet", b"PAR1\x15\x04", "to_csv")):
+            path = self.folder / name
+            path.write_bytes(head + bytes(600))
+            for command in (["allan"], ["denoise", "--output", self.folder / "x.csv"], ["tune"], ["diagnose"]):
+                refused(1, command[0], path, *command[1:], says=[words, name])
+
     def check_commands_to_be_copied_run_as_they_stand(self):
         """With blanks and quotes in every name, and with the options that the capture was read with."""
         folder = self.folder / "it's a folder"

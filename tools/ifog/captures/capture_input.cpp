@@ -9,6 +9,7 @@
 #include "drivers/capture/capture_builder.h"
 #include "drivers/capture/column_names.h"
 #include "drivers/capture/csv_rows.h"
+#include "drivers/capture/foreign_file.h"
 #include "drivers/capture/hdf5/hdf5_rows.h"
 #include "drivers/capture/name_ending.h"
 #include "drivers/ifog/quoted.h"
@@ -214,8 +215,9 @@ void CaptureInput::tell_of(const CaptureBuilder& builder, const std::string& pat
 }
 
 FileKind CaptureInput::readable(const InputFile& file) const {
-  if (const std::string other = other_can_log(file.head()); !other.empty())
-    throw std::runtime_error(file.path() + ": " + other);
+  std::string other = foreign_can_log(file.head());
+  if (other.empty() && !has_driver()) other = foreign_container(file.head());
+  if (!other.empty()) throw std::runtime_error(file.path() + ": " + other);
   if (has_ending(file.path(), ".toml"))
     throw std::runtime_error(file.path() +
                              ": is a TOML file, expected a capture; a model is given by --model FILE");

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "drivers/capture/capture_builder.h"
+#include "drivers/capture/foreign_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/series/samples.h"
@@ -276,9 +277,13 @@ void run(DenoiseOptions options) {
         flight->make_driver(options.input.driver_name(), options.input.settings(), folders);
     result = denoise_flight(*flight, driver, settings, !options.config.empty(), sink);
   } else if (kind == FileKind::bytes || kind == FileKind::candump) {
-    if (!options.input.has_driver())
+    if (!options.input.has_driver()) {
+      const std::string foreign = foreign_container(capture.head());
       throw std::runtime_error(
-          options.capture + ": is no capture in columns, expected --driver NAME, --dbc FILE or --config F");
+          options.capture + ": " +
+          (foreign.empty() ? "is no capture in columns, expected --driver NAME, --dbc FILE or --config F"
+                           : foreign));
+    }
     DriverInstance driver = options.input.make_driver(folders);
     result = denoise_recording(options.input, capture, driver, settings(), sink);
   } else {
