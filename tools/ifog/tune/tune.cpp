@@ -21,6 +21,7 @@
 #include "filters/rest/glitches.h"
 #include "filters/rest/noise_change.h"
 #include "filters/rest/rest.h"
+#include "filters/rest/value_faults.h"
 #include "filters/tune/candidate.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
@@ -172,6 +173,18 @@ json noise_json(const NoiseByAxis& noise) {
   return axes;
 }
 
+// What the values say of the program that logged them: what is fitted to such a record is no gyro's noise.
+void note_value_faults(const CaptureView& capture, const SampleClock& clock, const Rest& rest,
+                       std::vector<std::string>& notes) {
+  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
+    const std::span<const double> rate = capture.rate_radps[a];
+    for (const ValueFault& found :
+         value_faults(rate, common(stretches(capture.time_s, rate, clock), rest.at_rest), clock.period_s,
+                      [&](std::size_t i) { return capture.told_time_s(i); }))
+      notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + found.text);
+  }
+}
+
 // Single leaps are out of the capture afterwards, repaired holds what is there instead.
 void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest& rest,
                      std::vector<LongSeries>& repaired, std::vector<std::string>& notes) {
@@ -293,6 +306,7 @@ void run(const TuneArguments& options) {
   std::vector<std::string> notes;
   std::vector<LongSeries> repaired;
   repaired.reserve(capture.axes.size());
+  note_value_faults(capture, clock, rest, notes);
   leave_out_leaps(capture, clock, rest, repaired, notes);
   const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
   if (const std::string motion = in_words(rest, period, capture.told_time_s(0)); !motion.empty())
