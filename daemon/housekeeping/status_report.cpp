@@ -11,6 +11,7 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/transport.h"
+#include "msgs/counters.h"
 
 namespace ifog {
 namespace {
@@ -26,43 +27,6 @@ constexpr const char* kFrozen =
 // What the counter shows.
 constexpr const char* kMixed =
     "the sequence runs to and fro: two devices send on one line, and nothing of either is taken";
-
-struct Named {
-  const char* name;
-  std::int64_t status_t::*field;
-};
-
-// Those that stand still while all is well. What the recorder loses it says itself, once, and so are stale
-// channels told, by name.
-constexpr std::array kFaults{
-    Named{"frames_crc", &status_t::frames_crc},
-    Named{"frames_format", &status_t::frames_format},
-    Named{"log_faults", &status_t::log_faults},
-    Named{"bytes_skipped", &status_t::bytes_skipped},
-    Named{"frames_repeated", &status_t::frames_repeated},
-    Named{"samples_repeated", &status_t::samples_repeated},
-    Named{"samples_incomplete", &status_t::samples_incomplete},
-    Named{"sequence_gaps", &status_t::sequence_gaps},
-    Named{"sequence_missing", &status_t::sequence_missing},
-    Named{"ring_overflows", &status_t::ring_overflows},
-    Named{"samples_merged", &status_t::samples_merged},
-    Named{"kernel_drops", &status_t::kernel_drops},
-    Named{"stood_back", &status_t::stood_back},
-    Named{"transport_warnings", &status_t::transport_warnings},
-    Named{"can_error_frames", &status_t::can_error_frames},
-    Named{"reopened", &status_t::reopened},
-    Named{"lcm_failures", &status_t::lcm_failures},
-    Named{"imu_failures", &status_t::imu_failures},
-    Named{"invalid_samples", &status_t::invalid_samples},
-    Named{"saturated_samples", &status_t::saturated_samples},
-    Named{"implausible_samples", &status_t::implausible_samples},
-    Named{"channel_drops", &status_t::channel_drops},
-    Named{"channel_implausible", &status_t::channel_implausible},
-    Named{"out_of_range", &status_t::out_of_range},
-    Named{"corrections_refused", &status_t::corrections_refused},
-    Named{"divergences", &status_t::divergences},
-    Named{"events_lost", &status_t::events_lost},
-};
 
 std::int64_t as_signed(std::uint64_t count) { return static_cast<std::int64_t>(count); }
 
@@ -293,9 +257,11 @@ std::string StatusReport::wrong_rate() const {
 
 std::string StatusReport::moved() const {
   std::string out;
-  for (const Named& fault : kFaults)
-    if (const std::int64_t by = now_.*fault.field - before_.*fault.field; by != 0)
+  for (const StatusCounter& fault : kStatusCounters) {
+    const std::int64_t by = now_.*fault.count - before_.*fault.count;
+    if ((fault.use & kCounterLogged) != 0 && by != 0)
       out += (out.empty() ? "" : ", ") + std::string(fault.name) + " +" + std::to_string(by);
+  }
   return out;
 }
 

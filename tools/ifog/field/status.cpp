@@ -14,6 +14,7 @@
 
 #include "daemon/state/running_mark.h"
 #include "drivers/ifog/quoted.h"
+#include "msgs/counters.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command.h"
@@ -37,27 +38,6 @@ struct StatusArguments {
   std::string json;
   double wait_s = 2.5;  // a status comes every second
 };
-
-struct Loss {
-  const char* name;
-  std::int64_t status_t::*count;
-};
-constexpr std::array kLosses{Loss{"frames_crc", &status_t::frames_crc},
-                             Loss{"frames_format", &status_t::frames_format},
-                             Loss{"log_faults", &status_t::log_faults},
-                             Loss{"bytes_skipped", &status_t::bytes_skipped},
-                             Loss{"samples_incomplete", &status_t::samples_incomplete},
-                             Loss{"sequence_missing", &status_t::sequence_missing},
-                             Loss{"kernel_drops", &status_t::kernel_drops},
-                             Loss{"can_error_frames", &status_t::can_error_frames},
-                             Loss{"lcm_failures", &status_t::lcm_failures},
-                             Loss{"imu_failures", &status_t::imu_failures},
-                             Loss{"invalid_samples", &status_t::invalid_samples},
-                             Loss{"channel_drops", &status_t::channel_drops},
-                             Loss{"channel_implausible", &status_t::channel_implausible},
-                             Loss{"corrections_refused", &status_t::corrections_refused},
-                             Loss{"events_lost", &status_t::events_lost},
-                             Loss{"record_lost", &status_t::record_lost}};
 
 std::string utc(std::int64_t utime) {
   const std::time_t seconds = utime / 1'000'000;
@@ -108,8 +88,8 @@ Kept kept_of(const Field& field, const std::string& name) {
 
 std::string losses_text(const status_t& status) {
   std::string out;
-  for (const Loss& loss : kLosses)
-    if (const std::int64_t count = status.*loss.count; count != 0)
+  for (const StatusCounter& loss : kStatusCounters)
+    if (const std::int64_t count = status.*loss.count; (loss.use & kCounterListed) != 0 && count != 0)
       out += (out.empty() ? "" : ", ") + std::string(loss.name) + " " + std::to_string(count);
   return out.empty() ? "none" : out;
 }
@@ -175,7 +155,8 @@ ordered_json as_json(const std::string& name, const status_t* live, const Kept& 
   ordered_json out{{"sensor", name}, {"heard", live != nullptr}};
   if (live != nullptr) {
     ordered_json losses;
-    for (const Loss& loss : kLosses) losses[loss.name] = live->*loss.count;
+    for (const StatusCounter& loss : kStatusCounters)
+      if ((loss.use & kCounterListed) != 0) losses[loss.name] = live->*loss.count;
     out["state"] = state_name(live->state);
     out["fault"] = live->fault;
     out["input_rate_hz"] = live->input_rate_hz;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "msgs/counters.h"
 #include "msgs/flag_names.h"
 #include "msgs/state_name.h"
 
@@ -29,55 +30,6 @@ ordered_json flag_words(std::int32_t flags) {
     if ((flags & each.flag) != 0) out.push_back(each.name);
   return out;
 }
-
-constexpr std::array<std::pair<const char*, std::int64_t status_t::*>, 47> kCounts{
-    {{"samples_decoded", &status_t::samples_decoded},
-     {"samples_in", &status_t::samples_in},
-     {"samples_published", &status_t::samples_published},
-     {"samples_waiting", &status_t::samples_waiting},
-     {"bytes_read", &status_t::bytes_read},
-     {"bytes_framed", &status_t::bytes_framed},
-     {"bytes_pending", &status_t::bytes_pending},
-     {"frames_read", &status_t::frames_read},
-     {"frames_other", &status_t::frames_other},
-     {"frames_good", &status_t::frames_good},
-     {"frames_crc", &status_t::frames_crc},
-     {"frames_format", &status_t::frames_format},
-     {"log_faults", &status_t::log_faults},
-     {"bytes_skipped", &status_t::bytes_skipped},
-     {"frames_repeated", &status_t::frames_repeated},
-     {"samples_repeated", &status_t::samples_repeated},
-     {"samples_incomplete", &status_t::samples_incomplete},
-     {"sequence_gaps", &status_t::sequence_gaps},
-     {"sequence_missing", &status_t::sequence_missing},
-     {"ring_overflows", &status_t::ring_overflows},
-     {"samples_merged", &status_t::samples_merged},
-     {"kernel_drops", &status_t::kernel_drops},
-     {"stood_back", &status_t::stood_back},
-     {"transport_warnings", &status_t::transport_warnings},
-     {"can_error_frames", &status_t::can_error_frames},
-     {"reopened", &status_t::reopened},
-     {"lcm_failures", &status_t::lcm_failures},
-     {"imu_failures", &status_t::imu_failures},
-     {"invalid_samples", &status_t::invalid_samples},
-     {"saturated_samples", &status_t::saturated_samples},
-     {"implausible_samples", &status_t::implausible_samples},
-     {"channel_drops", &status_t::channel_drops},
-     {"channel_implausible", &status_t::channel_implausible},
-     {"gated", &status_t::gated},
-     {"channel_stale", &status_t::channel_stale},
-     {"out_of_range", &status_t::out_of_range},
-     {"corrections_refused", &status_t::corrections_refused},
-     {"events_lost", &status_t::events_lost},
-     {"record_deliveries", &status_t::record_deliveries},
-     {"record_lost", &status_t::record_lost},
-     {"record_lost_bytes", &status_t::record_lost_bytes},
-     {"record_file_bytes", &status_t::record_file_bytes},
-     {"record_removed", &status_t::record_removed},
-     {"floor_hits", &status_t::floor_hits},
-     {"manoeuvres", &status_t::manoeuvres},
-     {"divergences", &status_t::divergences},
-     {"filter_resets", &status_t::filter_resets}}};
 
 constexpr std::array<std::pair<const char*, double status_t::*>, 7> kFigures{
     {{"input_rate_hz", &status_t::input_rate_hz},
@@ -125,7 +77,7 @@ std::string message_json(std::string_view sensor, const status_t& message) {
   out["state"] = message.state;
   out["state_name"] = state_name(message.state);
   out["fault"] = message.fault;
-  for (const auto& [name, member] : kCounts) out[name] = message.*member;
+  for (const StatusCounter& each : kStatusCounters) out[each.name] = message.*each.count;
   for (const auto& [name, member] : kFigures) out[name] = message.*member;
   out["model_since"] = message.model_since;
   out["noticed"] = message.noticed;

@@ -5,6 +5,8 @@
 #include <limits>
 #include <utility>
 
+#include "msgs/counters.h"
+
 namespace ifog::tools {
 namespace {
 
@@ -74,28 +76,10 @@ std::vector<SensorView::Count> SensorView::flags() const {
 
 std::vector<SensorView::Count> SensorView::all_losses() const {
   const status_t s = status_.value_or(status_t{});
-  return {{"lost on LCM", way_.lost()},
-          {"missing by the device's counter", s.sequence_missing},
-          {"frames with a wrong checksum", s.frames_crc},
-          {"frames refused", s.frames_format},
-          {"bytes skipped", s.bytes_skipped},
-          {"frames repeated", s.frames_repeated},
-          {"samples repeated", s.samples_repeated},
-          {"samples incomplete", s.samples_incomplete},
-          {"merged", s.samples_merged},
-          {"not sent", s.lcm_failures},
-          {"increments not sent", s.imu_failures},
-          {"kernel drops", s.kernel_drops},
-          {"channel messages dropped", s.channel_drops},
-          {"line errors", s.can_error_frames},
-          {"device reopened", s.reopened},
-          {"log faults", s.log_faults},
-          {"invalid", s.invalid_samples},
-          {"channel values refused", s.channel_implausible},
-          {"samples with a stale channel", s.channel_stale},
-          {"corrections refused", s.corrections_refused},
-          {"not recorded", s.record_lost},
-          {"log lines dropped", s.events_lost}};
+  std::vector<Count> out{{"lost on LCM", way_.lost()}};
+  for (const StatusCounter& each : kStatusCounters)
+    if (*each.loss != '\0') out.push_back({each.loss, s.*each.count});
+  return out;
 }
 
 std::vector<SensorView::Count> SensorView::losses() const {
