@@ -38,7 +38,7 @@ void keep_standard_streams() {
   signal(SIGPIPE, SIG_IGN);
 }
 
-// Of --check, which opens nothing.
+// The publisher of --check, which opens nothing.
 class NowherePublisher final : public ifog::Publisher {
  public:
   bool publish(const char*, std::span<const std::uint8_t>) noexcept override { return false; }

@@ -20,7 +20,7 @@ namespace {
 // sooner, as a name may be mistyped.
 constexpr double kLasting_s = 10.0, kFirst_s = 2.0;
 
-// Of a channel of the sensor's frames there is no entry where the default age is good enough.
+// A channel of the sensor's frames has no entry while the default maximum age applies.
 ChannelConfig of_frame(const std::string& name, const std::vector<ChannelConfig>& configured) {
   const auto found = std::find_if(configured.begin(), configured.end(),
                                   [&](const ChannelConfig& channel) { return channel.name == name; });

@@ -29,7 +29,7 @@ std::string as_text(const toml::table& table) {
   return text.str();
 }
 
-// Of all keys, those of nested tables, too; a channel's by its name.
+// Notes the line of every key, nested tables included; a channel's keys stand under its name.
 void note_lines(const toml::table& table, const std::string& path, KeyLines& out) {
   for (const auto& [key, node] : table) {
     const std::string here = path + std::string(key.str());

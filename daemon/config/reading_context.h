@@ -27,7 +27,7 @@ void take(std::optional<U>&& given, T& setting) {
 struct ReadingContext {
   std::string file;
   std::filesystem::path folder;
-  // Of a flight recording: what was once recorded is read, however little sense it made.
+  // The configuration is a flight recording's: what was recorded is read, whether it is sensible or not.
   bool recorded = false;
   std::vector<std::string> errors;
 

@@ -17,7 +17,7 @@
 
 namespace ifog {
 
-// Of one moment in the reader thread: the samples as they are handed on, bytes and frames as of the end of
+// One moment of the reader thread: the samples as they are handed on, bytes and frames as of the end of
 // the last delivery, since within one the driver has not yet said what became of them.
 struct ReaderBooks {
   std::uint64_t bytes_read = 0, bytes_framed = 0, bytes_skipped = 0, bytes_pending = 0;
@@ -26,7 +26,7 @@ struct ReaderBooks {
   std::uint64_t decoded = 0, samples = 0, repeated = 0;
 };
 
-// Of one moment in the filter, between two increments.
+// One moment of the filter, between two increments.
 struct FilterBooks {
   std::uint64_t samples = 0;                       // of the device, in all increments taken from the queue
   std::uint64_t sent = 0, failed = 0, merged = 0;  // messages; merged: samples beyond a message's first

@@ -28,7 +28,7 @@ class LevelFilters {
   void take(double mean, double blocks, const Vector& keep, double count, double most_squares) noexcept;
 
   [[nodiscard]] Ratios ratios(std::size_t i) const noexcept;
-  // Of the last mean: its innovation and the variance of that in units of the white noise.
+  // The last mean's innovation, and its variance in units of the white noise.
   [[nodiscard]] double innovation(std::size_t i) const noexcept { return lane(i).innovation[i % kLanes]; }
   [[nodiscard]] double total(std::size_t i) const noexcept { return lane(i).total[i % kLanes]; }
   [[nodiscard]] Vector gain(std::size_t i) const noexcept;

@@ -23,7 +23,7 @@ constexpr double kUnlikelier = 0.5;
 // A mean counts for this many variances at most, once there are a few: a step or a slow turn is no noise, and
 // would hide the next ones for as long as the watch has run.
 constexpr double kClip = 25.0, kFew = 30.0;
-// What has been learned from so many blocks is chosen from anew after a twentieth as many.
+// The choice is made again when the number of blocks has grown by a twentieth.
 constexpr double kChosenAnew = 1.05;
 
 double sum(const LevelNoise::Vector& values) { return std::accumulate(values.begin(), values.end(), 0.0); }

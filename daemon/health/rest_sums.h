@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of a sensor's samples at rest, what the tests of its noise and its bias are made on: sums that only grow,
+// What the tests of a sensor's noise and bias need of its samples at rest: sums that only grow,
 // kept by the filter's hot path. Whoever looks from time to time takes differences.
 #pragma once
 

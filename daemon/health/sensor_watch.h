@@ -16,7 +16,7 @@
 // twenty of the alarms to the bias, which needs them most, as the others' bound is far above what they do;
 // the last cannot be wrong. See sequential_tests.h and step_test.h.
 //
-// A sensor that is turned rests at another rate afterwards, as the Earth turns: the level is then begun anew.
+// A sensor that is turned rests at another rate afterwards, as the Earth turns: the level then restarts.
 // One that is turned so slowly that it passes for rest is told as a step.
 #pragma once
 
@@ -53,13 +53,13 @@ class SensorWatch {
 
   // What there is by now, about once a second. samples, out_of_range: counters of published samples.
   void take(const RestSums& sums, std::uint64_t samples, std::uint64_t out_of_range);
-  // Another model is in use: what it leaves is learned anew.
+  // Another model is in use: what it leaves is learned again.
   void renew();
 
   [[nodiscard]] std::int32_t noticed() const;
   // What is noticed and what to do about it, one line; "" for nothing. only: these of it.
   [[nodiscard]] std::string words(std::int32_t only = ~0) const;
-  // Of the step that was found last, rad/s; 0: none was.
+  // The last step that was found, rad/s; 0: none was.
   [[nodiscard]] double step_radps() const { return step_radps_; }
   // For who wants to know how near it was: StepTest::nearest() of all axes.
   [[nodiscard]] double nearest_step() const;

@@ -80,7 +80,7 @@ bool StepTest::take(const LevelNoise::Innovation& innovation) noexcept {
     nearest = std::min(nearest, look(i));
   nearest_ = std::min(nearest_, nearest);
   if (nearest >= 1.0) {
-    // Of a step nothing is learned that the next one is measured by.
+    // A step teaches nothing about the noise that the next one is measured by.
     for (std::size_t i = 0; i < kLengths.size() && kLengths[i] <= begun_; ++i) {
       spreads_[i].count += 1.0;
       spreads_[i].mean_square +=

@@ -32,7 +32,7 @@ class StepTest {
 
   // A false alarm in so many blocks.
   explicit StepTest(double blocks_between_alarms) : alarms_per_block_(1.0 / blocks_between_alarms) {}
-  // True: a step is found, and the test begins anew.
+  // True: a step is found, and the test restarts.
   bool take(const LevelNoise::Innovation& innovation) noexcept;
   // The step that was found last, in the unit of the means.
   [[nodiscard]] double step() const noexcept { return step_; }
@@ -49,7 +49,7 @@ class StepTest {
     LevelNoise::Vector taken{};  // of a step of one
     double sum = 0.0, squares = 0.0, neighbours = 0.0, weight = 0.0;
   };
-  // Of the sums of windows of one length, over their variance if the innovations were white.
+  // Variance of the sums over windows of one length, relative to that of white innovations.
   struct Spread {
     double mean_square = 1.0, count = 0.0, latest = 0.0;
   };

@@ -39,7 +39,7 @@ class StatusReport {
 
   // What was noticed of the sensor with the last update() and was not before, in words; "" for nothing.
   [[nodiscard]] std::string newly_noticed() const;
-  // What the sensor was, is learned anew.
+  // Learns again what the sensor is like.
   void renew_watch() { watch_.renew(); }
 
   // A warning of the transport has been logged.
@@ -55,7 +55,7 @@ class StatusReport {
   [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
   [[nodiscard]] bool nothing_in_file(const Pipeline& pipeline) const;
   [[nodiscard]] std::string came() const;  // in words
-  // Of a wrong driver, wrong options or another baud rate, which counters alone do not say.
+  // The words for a wrong driver, option or baud rate, which counters alone do not say.
   [[nodiscard]] std::string nothing_of_it() const;
 
   ifog::status_t before_, now_;

@@ -31,7 +31,7 @@ namespace ifog {
 
 // What housekeeping wants to know of the filter, copied by the filter thread itself when asked.
 struct FilterSnapshot {
-  // Of channels nothing is known before the first sample.
+  // Nothing is known about channels before the first sample.
   FilterSnapshot() {
     channel.fill(std::numeric_limits<double>::quiet_NaN());
     channel_age_s.fill(std::numeric_limits<float>::infinity());
@@ -45,7 +45,7 @@ struct FilterSnapshot {
   std::array<float, kMaxChannels> channel_age_s;
   std::array<char, 64> model{};
   std::int64_t model_since_ns = 0;  // utime of the first sample with it; 0: there was none
-  // Of one moment: what lies between them is in the ring.
+  // One moment: what lies between them is in the ring.
   ReaderBooks reader;
   FilterBooks books;
   // Allan deviation of the compensated rate at 2^k samples since start-up, motion included.

@@ -13,7 +13,7 @@
 
 namespace ifog {
 
-// Of threads that run on the same processors.
+// What threads share that run on the same processors.
 class SharedProcessors {
  public:
   // processors > 0: how many they are.
@@ -41,7 +41,7 @@ class SharedProcessors {
 
   static constexpr std::int64_t kShare = 3, kOf = 4;  // three quarters
   static constexpr std::int64_t kWindow_ns = 100'000'000;
-  // Of a window that was all work. Longer work than that is none: the process was stopped, the machine slept.
+  // The rest behind a window that was all work. Longer work is none: the process was stopped, the machine slept.
   static constexpr std::int64_t kLongestRest_ns = kWindow_ns * (kOf - kShare) / kShare;
 
  private:
@@ -89,7 +89,7 @@ class ProcessorShare {
                                     0, SharedProcessors::kLongestRest_ns);
   }
 
-  // Of a processor; a sensor of 5 kHz takes a twentieth where an IMU's frame takes 10 µs.
+  // Share of a processor; a sensor of 5 kHz needs a twentieth where an IMU's frame needs 10 µs.
   static constexpr double kMuch = 0.1;
   SharedProcessors* shared_;
   double part_ = 0.0;

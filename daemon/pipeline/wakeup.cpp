@@ -44,7 +44,7 @@ void Wakeup::give_back(bool wake_it) noexcept {
 void Wakeup::wake() noexcept { syscall(SYS_futex, &state_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0); }
 
 void Wakeup::sleep() noexcept {
-  // The word goes to and fro while the place is lent; the sleeper notices only when it falls asleep anew.
+  // The word goes to and fro while the place is lent; the sleeper notices only when it falls asleep again.
   for (std::uint32_t now; (now = state_.load(std::memory_order_acquire)) != kAwake;)
     syscall(SYS_futex, &state_, FUTEX_WAIT_PRIVATE, now, nullptr, nullptr, 0);
 }

@@ -14,7 +14,7 @@
 namespace ifog {
 namespace {
 
-// Of any length, in a name that has 107 characters: FNV-1a.
+// A text of any length in a name of at most 107 characters: its FNV-1a hash.
 std::string short_name(const std::string& text) {
   std::uint64_t hash = 0xCBF29CE484222325U;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;

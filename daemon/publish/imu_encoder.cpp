@@ -11,7 +11,7 @@
 namespace ifog {
 namespace {
 
-// Of three axes, behind what waits of them.
+// Adds three axes to what waits of them.
 void add(const Axes& from, bool waits, double* to) noexcept {
   for (std::size_t i = 0; i < kMaxAxes; ++i) to[i] = waits ? to[i] + from[i] : from[i];
 }

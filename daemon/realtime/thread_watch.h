@@ -10,7 +10,7 @@
 
 namespace ifog {
 
-// Of /proc/self/task/TID/stat.
+// The fields of /proc/self/task/TID/stat.
 struct ThreadTime {
   char state = '?';         // R: running, or ready to
   std::uint64_t ticks = 0;  // of processor, in the kernel, too

@@ -185,7 +185,7 @@ void Recorder::judge(std::int64_t now_ns) {
     troubled_ = true;
     say("recorder: " + archive_.path() + ": " +
             (error != 0 ? archive_.complaint() + ", nothing is recorded until it takes more"
-                        : std::string("slower than what is to be recorded, a part is left out")) +
+                        : std::string("slower than what is to be recorded, a part is dropped")) +
             "; what is lost is counted",
         false);
   } else if (troubled_ && error == 0 && !losing) {

@@ -30,7 +30,7 @@ class Recorder {
   void start();
   // After the reader thread: takes what is still on the tape to the disk and ends the file.
   void stop();
-  // Of what comes behind the tape's note of these settings (Tape::note_settings), which begins a file.
+  // Sets the header for what follows the tape's note of these settings (Tape::note_settings), which begins a file.
   void set_header(FlightHeader header, std::uint32_t settings);
 
   // What the log should say, each trouble once and its end once; "" for nothing new. good: it is over.
@@ -39,7 +39,7 @@ class Recorder {
   [[nodiscard]] std::uint64_t file_bytes() const noexcept { return file_bytes_.value(); }
   [[nodiscard]] std::uint64_t files_removed() const noexcept { return files_removed_.value(); }
   [[nodiscard]] std::uint64_t entries_unwritten() const noexcept { return unwritten_.value(); }
-  // Of what came: what found no room, was taken away while it was written, or at the end found no disk.
+  // Deliveries that found no room, were overwritten while being written, or at the end found no disk.
   [[nodiscard]] std::uint64_t lost_deliveries() const noexcept {
     return tape_.counters().lost_deliveries.value() + lost_deliveries_.value();
   }

@@ -47,10 +47,10 @@ NoiseMemory::NoiseMemory(const std::string& folder, const std::string& sensor, c
       remark_ = in_words(found);
     } else {
       remark_ = path_ + ": is of driver \"" + printable(found.driver) + "\", " + std::to_string(found.axes) +
-                " axes at " + std::to_string(found.sample_rate_hz) + " Hz: learned anew";
+                " axes at " + std::to_string(found.sample_rate_hz) + " Hz: learned again";
     }
   } catch (const std::exception& error) {
-    remark_ = std::string(error.what()) + ": learned anew";
+    remark_ = std::string(error.what()) + ": learned again";
   }
 }
 

@@ -14,7 +14,7 @@
 
 namespace ifog {
 
-// Of the file, in the state folder as in a flight recording.
+// The file's name, in the state folder as in a flight recording.
 [[nodiscard]] inline std::string noise_file_name(const std::string& sensor) { return sensor + ".noise.toml"; }
 
 class NoiseMemory {

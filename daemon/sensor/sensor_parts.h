@@ -45,7 +45,7 @@ ChainChoice chain_choice(const SensorConfig& sensor, const Model* model);
 // suspended time since then included. Nothing is known of others.
 std::optional<std::int64_t> powered_ns(const SensorConfig& sensor);
 
-// Of the computer's run since it was switched on, as the service manager hands it on (IFOGD_BOOT_ID) or the
+// Identifies the computer's run since it was switched on, as the service manager hands it on (IFOGD_BOOT_ID) or the
 // kernel has it, which a confined service does not see; "" where neither says.
 std::string boot_id();
 

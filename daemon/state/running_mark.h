@@ -28,7 +28,7 @@ class RunningMark {
   RunningMark& operator=(const RunningMark&) = delete;
 
   [[nodiscard]] bool is_set() const { return fd_ >= 0; }
-  // Of this process, until it has succeeded. folder "": none. Gives a complaint, "" for none: no right to the
+  // Marks this process as the running one. folder "": does nothing. Gives a complaint, "" for none: no right to the
   // folder, or another daemon works with it, which is_taken() then says.
   [[nodiscard]] std::string set(const std::string& folder);
   [[nodiscard]] bool is_taken() const { return taken_; }

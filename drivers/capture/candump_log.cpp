@@ -41,7 +41,7 @@ class ShortTimes {
     ++n_;
     return std::nullopt;
   }
-  // Of a log in which none did.
+  // True at the end of a log in which none did.
   [[nodiscard]] bool at_end() const { return n_ > 2 && all_same_ && before_ > 0; }
 
  private:

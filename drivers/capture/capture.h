@@ -58,12 +58,12 @@ Capture read_capture(InputFile& file, const CsvLayout& layout = {});
 
 // The same of a text already at hand; `path` stands for the file in messages. A table needs no rate column.
 Table read_table(InputFile& file, const CsvLayout& layout = {});
-// Of rows as something reads them into a sink.
+// The table of the rows that `read` delivers into its sink.
 Table table_of(const std::function<RowNotes(RowSink&)>& read);
 Table parse_table(std::string_view text, const std::string& path, const CsvLayout& layout = {});
 Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout = {});
 
-// Of a table at hand. Throws std::runtime_error with one line: no rate, a reference without its rate.
+// The capture in a table. Throws std::runtime_error with one line: no rate, a reference without its rate.
 Capture capture_of(Table table, const std::string& path);
 
 // What the columns of these names are to a capture.

@@ -21,7 +21,7 @@ bool never_known(const std::vector<double>& values) {
 double period_of(const ifog_description& description) {
   return description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0;
 }
-// Of the frames: axes, then channels.
+// The columns of a driver's samples: axes, then channels.
 std::vector<std::string> columns_of(const ifog_description& description) {
   std::vector<std::string> out;
   for (std::uint32_t i = 0; i < description.axes; ++i)
@@ -30,7 +30,7 @@ std::vector<std::string> columns_of(const ifog_description& description) {
   return out;
 }
 
-// Of the same columns: samples of both become rows in the same way.
+// Both have the same columns: their samples become rows in the same way.
 bool same_samples(const ifog_description& a, const ifog_description& b) {
   return a.kind == b.kind && a.sequence_modulus == b.sequence_modulus &&
          a.has_device_time == b.has_device_time && a.nominal_rate_hz == b.nominal_rate_hz &&
@@ -90,7 +90,7 @@ double CaptureBuilder::believable(std::size_t channel, double value) {
   return kMissing;
 }
 
-// Of the rates just added: the same limits that the daemon's chain has.
+// Applies the limits of the daemon's chain to the rates just added.
 void CaptureBuilder::hold_to_what_can_be(const ifog_sample& sample) {
   bool at_end = false, beyond = false;
   for (std::uint32_t i = 0; i < description_.axes; ++i) {

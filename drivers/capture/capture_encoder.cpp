@@ -82,7 +82,7 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
   }
   for (std::size_t i = 0; i < capture.axes.size(); ++i)
     if (!capture.reference_rate_radps[i].empty())
-      notices_.push_back("left out, no device sends it: the reference rate" +
+      notices_.push_back("not sent, as no device does: the reference rate" +
                          (capture.axes[i].empty() ? "" : " of axis " + capture.axes[i]));
 
   channels_.resize(d.environments, nullptr);
@@ -102,7 +102,7 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
   for (std::uint32_t i = 0; i < d.environments; ++i)
     if (channels_[i] == nullptr) add(without_column, d.environment[i]);
   if (!without_place.empty())
-    notices_.push_back("left out, the format as set up has no place for it: " + without_place);
+    notices_.push_back("not sent, as the format as set up has no place for it: " + without_place);
   if (!without_column.empty())
     notices_.push_back(
         "no data for these fields, sent as invalid, or as 0 where the format has no invalid: " +

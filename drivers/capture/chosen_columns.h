@@ -21,7 +21,7 @@ UnitConversion conversion_of(const CsvColumn& column);
 // as_rates(). steps: between the times of the block.
 void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps);
 
-// Of all rows, because whether an angle stays within one turn only the whole says.
+// Needs all rows, because only the whole says whether an angle stays within one turn.
 // Says in the notes where differences of an angle undo each other, as those of increments do.
 void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, RowNotes& notes,
               const std::string& path);

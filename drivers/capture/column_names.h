@@ -29,7 +29,7 @@ std::string shortest(double value);
 
 // Throws std::runtime_error: "PATH:LINE: WHAT"; without the line where it is 0, as of a file that has none.
 [[noreturn]] void fail_at(const std::string& path, std::size_t line, const std::string& what);
-// Of a column that was chosen without a unit, whose own name says another than was wanted.
+// The complaint about a column that was chosen without a unit and whose own name says another than was wanted.
 std::string unit_by_name(const std::string& header, const std::string& unit, const std::string& option);
 
 }  // namespace ifog

@@ -41,7 +41,7 @@ bool starts_with_letter(const std::string& cell) {
   return !cell.empty() && ((cell[0] >= 'a' && cell[0] <= 'z') || (cell[0] >= 'A' && cell[0] <= 'Z'));
 }
 
-// Of the names of several sensors that of a gyro, else the first.
+// The name that is a gyro's among those of several sensors, else the first.
 std::set<std::string>::const_iterator the_gyro(const std::set<std::string>& names) {
   const auto found = std::find_if(names.begin(), names.end(), [](const std::string& name) {
     return name.find("yro") != std::string::npos || name.find("GYR") != std::string::npos;

@@ -128,7 +128,7 @@ class CsvRows {
   bool decimals_ = false;             // in the first time
   int most_decimals_ = 0;             // of a time
   std::optional<TimeStamps> stamps_;  // once there is a row
-  // Memory of pieces that are done with: where pages are made for each piece anew that costs as much as the
+  // Memory of pieces that are done with, used again: making pages for each piece costs as much as the
   // reading.
   std::vector<TextRoom> used_texts_;
   std::vector<RowBlock> used_rows_;
@@ -164,7 +164,7 @@ TextRoom CsvRows::begin(TextPieces& pieces) {
     if (cell.column < columns.size()) columns[cell.column] = {cell.name, cell.range, cell.rate};
   checks_.emplace(path_, header_.layout, std::move(columns), sink_, notes_);
   sink_.begin(header_.names);
-  // Of rates the leaps are looked for, whoever wants them.
+  // Leaps are looked for in every rate, whoever wants it.
   for (CsvCell& cell : header_.cells)
     if (cell.column < header_.names.size()) cell.kept = cell.rate || sink_.wants(cell.column);
   return piece;

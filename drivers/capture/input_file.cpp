@@ -46,7 +46,7 @@ std::deque<std::string> recordings_among(const std::string& folder, std::error_c
   return out;
 }
 
-// Of a folder of several sensors' recordings, as a configuration names it, those of one; "" where it is none.
+// Names one sensor's folder inside a folder of several sensors' recordings; "" where it is no such folder.
 std::string such_as(const std::string& folder) {
   std::vector<std::string> of_a_sensor;
   std::error_code error;
@@ -76,7 +76,7 @@ constexpr std::size_t kGrowthFree = 256U << 20U;
 // Follows where the last line begins, block by block: no second look at each byte.
 class LineLength {
  public:
-  // Of text, whose last n bytes are new. Throws when a line is too long, also one without its end so far.
+  // Checks text whose last n bytes are new. Throws when a line is too long, also one without its end so far.
   void check(const std::string& path, std::string_view text, std::size_t n) {
     const std::size_t from = text.size() - n;
     const std::size_t first = std::min(text.find('\n', from), text.size());

@@ -48,7 +48,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOneLette
                                                                                       {"A", "current"},
                                                                                       {"g", "accel"}}};
 
-// Of the capture's column, before its conversion.
+// The range in the file's unit: that of the capture's column before its conversion.
 Measurable before(const Measurable& range, const UnitConversion& conversion) {
   const double a = (range.least - conversion.offset) / conversion.scale;
   const double b = (range.most - conversion.offset) / conversion.scale;

@@ -62,7 +62,7 @@ Destination destination_of(const std::string& path, std::error_code& error) {
   return follow(path, error);
 }
 
-// Of a file on its way. Not the process's number: one that a kill left behind would block every later process of that number,
+// Name of a file that is being written. It has no process number: one left by a kill would block every later process of that number,
 // the same each day on a computer that starts alike.
 std::string passing_name() {
   std::uint64_t number = 0;

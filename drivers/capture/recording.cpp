@@ -166,8 +166,8 @@ std::vector<std::string> losses(const RecordingCounts& counts) {
   say(counts.driver.frames_format, "frames or samples that are not as the format or the options say");
   say(counts.driver.bytes_skipped - counts.bytes_at_end, "bytes that are part of no frame");
   say(counts.bytes_at_end, "bytes at the end are no whole frame (is the file cut off?)");
-  say(counts.driver.frames_repeated, "frames left out because they came twice");
-  say(counts.driver.samples_incomplete, "samples left out because some of their frames are missing");
+  say(counts.driver.frames_repeated, "frames dropped because they came twice");
+  say(counts.driver.samples_incomplete, "samples dropped because some of their frames are missing");
   if (const ifog_driver_counters& driver = counts.driver; driver.values_beyond > 0)
     lines.push_back(
         std::to_string(driver.values_beyond) +
@@ -176,9 +176,9 @@ std::vector<std::string> losses(const RecordingCounts& counts) {
         shortest(driver.beyond_value) + ", stated [" + shortest(driver.beyond_minimum) + ", " +
         shortest(driver.beyond_maximum) + "]");
   say(counts.cut_off ? 1 : 0, "line at the end is no whole frame (is the file cut off?)");
-  say(counts.remote_frames, "CAN remote frames passed over");
-  say(counts.error_frames, "CAN error frames passed over");
-  say(counts.xl_frames, "CAN XL frames passed over");
+  say(counts.remote_frames, "CAN remote frames skipped");
+  say(counts.error_frames, "CAN error frames skipped");
+  say(counts.xl_frames, "CAN XL frames skipped");
   say(counts.dropped_frames, "CAN frames were dropped before candump could read them, as the log says");
   return lines;
 }

@@ -109,7 +109,7 @@ void RowChecks::told(std::size_t row, const std::string& what) {
 
 void RowChecks::tell_impossible(const FileColumn& column, const ImpossibleValues& found) {
   if (found.count == 0) return;
-  // Of a text the line is told, and what stands in it.
+  // A text file's message names the line and what stands in it.
   const std::size_t line = found.line;
   const std::string thing = line == 0 ? "value" : "cell";
   const std::string what = what_no_sensor_measures(

@@ -135,7 +135,7 @@ void RowClock::take(RowBlock& rows) {
   drop_repeats(rows);
   std::size_t begin = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    // Of rows that were spread the first keeps its stamp.
+    // The first of rows that were spread keeps its stamp.
     const double since_s = rows.time_s[i] - rows.time_s[i - 1];
     if (since_s <= within_s_) continue;
     spread(rows, begin, i, rows.time_s[i]);

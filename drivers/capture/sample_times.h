@@ -53,7 +53,7 @@ class SampleTimes {
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
   // Samples that were not there by the device's counter, or by its clock where it has none.
   [[nodiscard]] std::size_t missing() const { return missing_; }
-  // Of those, the ones that may also be a clock that was set: neither counter nor arrival times decide.
+  // Those of the restarts that may also be a clock that was set: neither counter nor arrival times decide.
   [[nodiscard]] std::size_t untold() const { return untold_; }
   // Number of restarts: the counter or the clock jumped back without a discontinuity.
   [[nodiscard]] std::size_t restarts() const { return restarted_; }

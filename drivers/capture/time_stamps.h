@@ -47,7 +47,7 @@ struct TimeOrigin {
 struct SaidTime {
   double whole_s = 0.0, beyond_s = 0.0;
 
-  // Of any decimal number or date; nothing of what is neither, or not finite.
+  // Parses any decimal number or date; nullopt for what is neither, or not finite.
   [[nodiscard]] static std::optional<SaidTime> parse(std::string_view text);
   // Whether a time is before this one, by half a ns or more.
   [[nodiscard]] bool is_after(const TimeOrigin& origin, double since_s) const {
@@ -64,14 +64,14 @@ class TimeStamps {
   // first: a time that is not after any other, which may be no number; unit_s: seconds in one.
   TimeStamps(std::string_view first, double unit_s);
 
-  // Of whole numbers.
+  // Stamps of whole numbers.
   TimeStamps(std::int64_t first, double unit_s) : TimeStamps(std::to_string(first), unit_s) {}
 
   // So many in the text's unit since the origin, each within the rounding of one double: nothing but the
   // difference is rounded. False where the text is no number in plain digits, of which there may be other
   // ways to write one. `decimals` becomes the digits behind the point where that is more.
   [[nodiscard]] bool since(std::string_view text, double& value, int& decimals) const;
-  // Of a time that was read otherwise.
+  // Seconds since the first for a time that was read otherwise.
   [[nodiscard]] double since(double absolute) const {
     return absolute - static_cast<double>(whole_) - beyond();
   }
@@ -99,7 +99,7 @@ void append_time(std::string& out, const TimeOrigin& origin, double since_s);
 class ExactSteps {
  public:
   ExactSteps() = default;  // times may lie anywhere
-  // Of a column with so many decimals in units of unit_s.
+  // Steps of a column with so many decimals in units of unit_s.
   ExactSteps(int decimals, double unit_s);
   [[nodiscard]] double between(double before_s, double now_s) const;
   // The tick that a time is, which was rounded on its way.

@@ -74,7 +74,7 @@ class Parser {
     out_.messages.push_back(std::move(m));
     names_.emplace_back();
   }
-  // Of a message of out_. Null: it has no signal of that name.
+  // A signal of a message of out_; null: it has none of that name.
   Signal* signal_of(Message& message, std::string_view name) {
     const auto& names = names_[static_cast<std::size_t>(&message - out_.messages.data())];
     const auto found = names.find(name);

@@ -273,7 +273,7 @@ void FlightArchive::turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush) 
 
 std::uint64_t FlightArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
   turn(now_ns, wall_ns, true);
-  // Of a full disk the end, which is small, may still be taken: the error is that of what was not.
+  // A full disk may still accept the end, which is small: the error is that of what was not accepted.
   if (open_)
     if (const int ended = end_file(now_ns, wall_ns, false); entries_waiting_ == 0) error_ = ended;
   waiting_.clear();

@@ -29,7 +29,7 @@ class Playback {
                                in_quotes(header.driver) + " after sensor " + in_quotes(first_.sensor) +
                                " of driver " + in_quotes(first_.driver) +
                                " or with other channels, expected recordings of one");
-    // Of another run the channels are unknown until it says them.
+    // The channels of another run are unknown until it says them.
     if (!begun_ || header.run != run_) {
       outside_.assign(header.channels.size(), {});
       wall_shift_ns_ = 0;

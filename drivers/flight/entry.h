@@ -89,7 +89,7 @@ struct ChannelValue {
   double value = std::numeric_limits<double>::quiet_NaN();
   std::int64_t time_ns = 0;  // of the measurement, arrival clock; 0: none came yet
 
-  // Of a sample that came at `now_ns`; infinite until the first value, never negative.
+  // Age at the arrival `now_ns` of a sample; infinite until the first value, never negative.
   [[nodiscard]] float age_s(std::int64_t now_ns) const noexcept {
     if (time_ns == 0) return std::numeric_limits<float>::infinity();
     return std::max(0.0F, static_cast<float>(now_ns - time_ns) * 1e-9F);

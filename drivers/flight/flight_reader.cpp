@@ -219,7 +219,7 @@ std::vector<std::string> losses(const FlightCounts& counts) {
   const auto say = [&](std::uint64_t n, const std::string& what) {
     if (n != 0) lines.push_back(std::to_string(n) + " " + what);
   };
-  say(counts.damaged_bytes, "bytes are damaged and were passed over");
+  say(counts.damaged_bytes, "bytes are damaged and were skipped");
   say(counts.torn_bytes, "bytes at the end of a recording are no whole block (what wrote it was killed)");
   say(counts.open_files, "recording(s) without an end: still being written, or what wrote it was killed");
   say(counts.cut_off_runs,

@@ -39,7 +39,7 @@ class FlightReader {
   // As InputFile::read: up to so many bytes, fewer only at the end.
   using Source = std::function<std::size_t(char*, std::size_t)>;
   explicit FlightReader(Source source) : source_(std::move(source)) {}
-  // Of a recording in memory, which stays as it is as long as the reader is used.
+  // Reads a recording in memory, which must stay as it is while the reader is used.
   explicit FlightReader(std::span<const std::uint8_t> recording);
 
   enum class Item {
@@ -83,7 +83,7 @@ class FlightReader {
   std::uint64_t file_entries_ = 0;                        // of the present file, so far
   bool in_file_ = false, closed_ = false, whole_ = true;  // whole_: nothing of the file is missing
   bool goes_on_ = false;                                  // by its end, the run of the file before does
-  // Of what came first and last in this run, 0: nothing of a known time; by how much its wall clock was set.
+  // Arrival of the first and last entry of this run, 0: none has a known time; by how much its wall clock was set.
   std::int64_t run_began_ns_ = 0, arrived_ns_ = 0, wall_set_ns_ = 0;
   std::int64_t last_run_ended_ns_ = 0;  // by the wall clock; 0: there was none
   std::int64_t closed_ns_ = 0;          // wall clock, of the file before once it is closed_

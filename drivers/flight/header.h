@@ -22,7 +22,7 @@ struct FlightHeader {
   std::uint64_t run = 0;     // random, of the recorder's run
   std::uint64_t number = 0;  // of the file in its folder; the next of the same run goes on where this ends
   std::uint64_t began = 0;   // number of the file that the run began with; 0: not known
-  // Of the settings that all in the file was filtered with, in the run: 0 from its beginning, another from
+  // Number, within the run, of the settings that everything in the file was filtered with: 0 from its beginning, another from
   // the file's first sample on.
   std::uint32_t settings = 0;
   std::int64_t opened_ns = 0;  // wall clock

@@ -16,7 +16,7 @@ namespace ifog {
 
 namespace decimal {
 
-// Of a number in digits that no double holds: too small, not too large. By the place of its first digit that
+// True if a number in digits that no double holds is too small rather than too large, by the place of its first digit that
 // is not 0.
 inline bool too_small(const char* at, const char* end) noexcept {
   constexpr long kFar = 1'000'000'000;

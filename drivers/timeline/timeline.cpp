@@ -273,7 +273,7 @@ void Timeline::by_counter(const Frame& frame, const Look& now, Step& step) const
   }
 }
 
-// Of a device with neither, or whose clock begins. Behind a silence a frame that comes by itself is prompt;
+// For a device with neither, or whose clock begins. Behind a silence a frame that comes by itself is prompt;
 // else what is told is what the line of due times advances by, spread over a few samples.
 void Timeline::by_elapsed(const Frame& frame, const Look& now, Step& step) noexcept {
   constexpr std::uint32_t kAlone = 2;

@@ -241,7 +241,7 @@ bool CandumpFile::wanted(const CandumpEntry& entry) const noexcept {
                      [&](const CanId& id) { return id.id == entry.frame.id && id.extended == extended; });
 }
 
-// Of entry_: nothing else of its id has come on another interface.
+// True if no frame with the id of entry_ has come on another interface.
 bool CandumpFile::of_one_device() noexcept {
   const std::string_view other = buses_.other(entry_.frame, entry_.interface);
   if (other.empty()) return true;

@@ -14,7 +14,7 @@ class IpSocket {
   IpSocket() = default;
   // `type`: SOCK_DGRAM or SOCK_STREAM. Throws OpenError, which names `name`.
   IpSocket(int family, int type, const std::string& name);
-  // Of a listening TCP socket, the next that connected; not open for none, errno then says why.
+  // The next connection of a listening TCP socket; not open where there is none, errno then says why.
   static IpSocket accepted(const IpSocket& listener) noexcept;
   ~IpSocket() { close(); }
   IpSocket(const IpSocket&) = delete;

@@ -25,7 +25,7 @@ class SoleReader {
   SoleReader(const SoleReader&) = delete;
   SoleReader& operator=(const SoleReader&) = delete;
 
-  // Of what `fd` has open, which may be what is held already. Throws DeviceTaken, and holds what it held.
+  // Claims what `fd` has open, which may be what is held already. Throws DeviceTaken, and holds what it held.
   void take(int fd, const std::string& device);
   // For a child, too, that has inherited the descriptor.
   void release() noexcept;

@@ -31,7 +31,7 @@ namespace ifog {
 // What one read() brought. Points into the transport: valid until the next read().
 struct Delivery {
   std::span<const std::uint8_t> bytes;  // a byte transport
-  // Of the last of `bytes`, arrival clock; 0: not known, because this process was held up and read late what
+  // Arrival of the last of `bytes`; 0: not known, because this process was delayed and read late what
   // may have come at any time since.
   std::int64_t arrival_ns = 0;
   std::int64_t read_ns = 0;                // when it was read, arrival clock
@@ -212,7 +212,7 @@ class Transport {
   bool returning_ = false;  // the next delivery is the first since the device came back
   Backlog backlog_;
   int stop_event_;
-  // Of the thread that reads. In one order with stopped_: either stop() finds it and rings, or the reader
+  // Alarm of the thread that reads. In one order with stopped_: either stop() finds it and rings, or the reader
   // finds that it is stopped.
   std::atomic<int> alarm_{-1};
   // Relaxed: each stands for itself. A reader may see a state before its reason, which is words for a person;
@@ -220,7 +220,7 @@ class Transport {
   std::atomic<bool> stopped_{false};
   std::atomic<TransportState> state_{TransportState::gone};
   std::atomic<int> reason_{0};
-  // Of each kind the first, written once and then published.
+  // The first fault of each kind, written once and then published.
   struct KindOfFault {
     TransportFault fault;
     std::array<char, 60> text{};

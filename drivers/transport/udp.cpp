@@ -261,7 +261,7 @@ Delivery UdpTransport::next() noexcept {
   for (; next_ < count_; ++next_) {
     const std::size_t i = next_, length = messages_[i].msg_len;
     if (addresses_.host && !addresses_.host->is_host_of(senders_[i])) {
-      report("datagrams from another host, which are left out", 0);
+      report("datagrams from another host, which are dropped", 0);
       continue;
     }
     if (addresses_.host && !is_of_port(i)) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of a device's running angle: whether the turn between two values of it, with none in between, is known.
+// Whether the turn between two successive values of a device's running angle is known.
 #pragma once
 
 #include <cmath>

@@ -18,7 +18,7 @@ namespace ifog {
 // one sample.
 class AngleSum {
  public:
-  // Of more rates, wherever they are, the angles are in a file.
+  // The angles of more rates than this are in a file.
   static constexpr std::size_t kMostInMemory = std::size_t{1} << 23U;
 
   // No NaN inside a stretch. Takes 8 bytes a sample, in memory where the rates are, else in a file.

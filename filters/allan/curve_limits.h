@@ -25,7 +25,7 @@ class CurveLimits {
     bool refuted = false;
     std::size_t from_m = 1;  // shortest octave from which on the term is within the curve
   };
-  // Of a term of at least this variance. One that is too much only at the shortest m, and beyond them is a
+  // Judges a term of at least this variance. One that is too much only at the shortest m, and beyond them is a
   // good part of the curve, is held back there by a filter and not refuted; but for quantisation, which at
   // every m is what there is at the shortest.
   [[nodiscard]] Verdict judge(Term term, double variance) const;

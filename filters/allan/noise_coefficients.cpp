@@ -37,7 +37,7 @@ constexpr double kBound = kNested;
 // A ramp competes with a random walk estimated from few numbers, so its likelihood ratio has a long tail.
 constexpr double kRampPresent = 10.0;
 constexpr double kOneSided = 1.959964;
-// Of less the likelihood's curvature, which has its square in the denominator, is no number any more.
+// Below this the likelihood's curvature, which has the square in its denominator, is no number any more.
 constexpr double kLeastPower = 1e-120;
 
 // Variance of `term` at which the likelihood, the others at their best, has fallen by kBound/2. The root of
@@ -141,7 +141,7 @@ class TermSets {
     return {mean, std::sqrt(std::max(0.0, second / weight - mean * mean))};
   }
 
-  // Of the variances, over all sets.
+  // Mean of the variances over all sets.
   [[nodiscard]] TermVariances variances() const {
     TermVariances mean{};
     double weight = 0.0;

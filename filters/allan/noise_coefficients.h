@@ -27,7 +27,7 @@ struct NoiseCoefficient {
   double std_error = 0.0;  // one standard deviation; of an absent term upper/1.96
   double upper = 0.0;      // above the truth in 97.5 % of records, those included where the term stays unseen
   double score = 0.0;      // how many standard deviations the record asks for it
-  // Of a term that is there: below this averaging time it would be more than the whole curve, which a filter
+  // For a term that is present: below this averaging time it would be more than the whole curve, which a filter
   // holds down there; 0 where it is within the curve all along.
   double from_s = 0.0;
 };

@@ -57,7 +57,7 @@ class NoiseLikelihood {
   };
   struct State {
     double log_likelihood = 0.0;
-    // Of the log-likelihood: gradient = pull − push, both >= 0; both and information by variance in units.
+    // The log-likelihood's gradient is pull − push, both >= 0; both and information by variance in units.
     Eigen::Vector4d pull = Eigen::Vector4d::Zero(), push = Eigen::Vector4d::Zero();
     Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   };

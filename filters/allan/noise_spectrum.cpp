@@ -133,7 +133,7 @@ double slow_edge(std::size_t samples) {
   return edge * std::exp2(last_spectrum(samples) - last_level(samples));
 }
 
-// Of the first `count` without the constant every second one, from the `first` on: alike or opposite on
+// Every second of the first `count` cosines without the constant, from the `first` on: alike or opposite on
 // either side of the middle.
 Eigen::MatrixXd cosines(std::size_t n, std::size_t count, std::size_t first) {
   Eigen::MatrixXd w(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>((count - first + 1) / 2));

@@ -30,7 +30,7 @@ struct SpectralBin {
   bool used = true;
 };
 
-// Of the slowest part of one stretch what is alike on either side of its middle, or what is opposite.
+// The part of one stretch's slowest frequencies that is alike on either side of its middle, or opposite.
 struct SlowPart {
   Eigen::VectorXd value;                           // rad/s
   std::array<Eigen::MatrixXd, kTerms> covariance;  // for one unit of each term's variance
@@ -52,7 +52,7 @@ struct NoiseSpectrum {
 
 inline constexpr std::size_t kShortestStretch = 64;  // samples; shorter ones say nothing
 
-// Of all stretches together. A level takes at most some thousand segments, evenly over the record (more would
+// Spectrum of all stretches together. A level takes at most some thousand segments, evenly over the record (more would
 // sharpen what is known to a tenth of a per cent), and the slow part is that of the longest stretches.
 [[nodiscard]] NoiseSpectrum noise_spectrum(const AngleSum& sum);
 

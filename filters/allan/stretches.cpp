@@ -145,7 +145,7 @@ std::vector<double> some_steps(const SeriesView& time_s, std::size_t stride) {
   return some;
 }
 
-// Of stamps that scatter; near: what their steps one by one say.
+// Period of stamps that scatter; near: what their steps one by one say.
 double scattered_period(const SeriesView& time_s, double near_s) {
   Period out{.period_s = near_s};
   for (int round = 0; round < 3; ++round) out = mean_period(time_s, out.period_s, true);
@@ -161,7 +161,7 @@ double scattered_period(const SeriesView& time_s, double near_s) {
   return even ? all_s : out.period_s;
 }
 
-// Of an even clock whose stamps are in ticks of more than half its period, as those of single precision far
+// Period of an even clock whose stamps are in ticks of more than half its period, as those of single precision far
 // from 0 are: steps of one tick and of two, which would be holes. 0: they are none. A stamp is never further
 // from an even clock than a tick; of holes by chance so many are, or there are few of them.
 double even_period(const SeriesView& time_s, double tick_s) {

@@ -32,7 +32,7 @@ struct SampleClock {
 // time_s strictly increasing, at least two samples; throws std::invalid_argument otherwise. The median step
 // decides what a gap is, so up to half of the steps may be gaps. Time stamps rounded to coarse ticks
 // alternate between steps of k and k + 1 ticks; a step counts as a gap only if the stamps stay late after it.
-// Of stamps that scatter see filters/allan/scattered_stamps.h.
+// For stamps that scatter see filters/allan/scattered_stamps.h.
 [[nodiscard]] SampleClock sample_clock(const SeriesView& time_s);
 
 struct Hole {

@@ -41,7 +41,7 @@ Eigen::MatrixXd quadratic_form(std::size_t angles, std::size_t m) {
   return form;
 }
 
-// Of the angle, up to what no difference sees.
+// Covariance of the angle, up to what no difference sees.
 Eigen::MatrixXd covariance(std::size_t angles, const TermVariances& terms) {
   const auto n = static_cast<Eigen::Index>(angles);
   Eigen::VectorXd lag(n);
@@ -56,7 +56,7 @@ Eigen::MatrixXd covariance(std::size_t angles, const TermVariances& terms) {
   return c;
 }
 
-// Of the form over its mean: eigenvalues of F^½·C·F^½.
+// Distribution of the form over its mean: eigenvalues of F^½·C·F^½.
 std::vector<WeightedChiSquared> law_of(const Eigen::MatrixXd& form, const Eigen::MatrixXd& c, double mean) {
   const SymmetricEigen root = symmetric_eigen(form);
   const Eigen::MatrixXd half =

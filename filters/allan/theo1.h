@@ -19,7 +19,7 @@ struct LongPoint {
   AllanInterval interval;
 };
 
-// Of the longest stretch, for τ beyond the longest a trusted Allan variance has (a quarter of it) up to 0.75
+// Theo1 of the longest stretch, for τ beyond the longest a trusted Allan variance has (a quarter of it) up to 0.75
 // of it, `per_decade` to a factor of ten; at least one. The angle is taken at some 128 places, which such
 // long averages do not notice. terms as for allan_intervals. Empty for stretches of fewer than 64 samples.
 [[nodiscard]] std::vector<LongPoint> theo1(const AngleSum& sum, const TermVariances& terms, double confidence,

@@ -79,12 +79,12 @@ class Incrementer {
   FittedClock clock_;
   int early_ = 0;                   // arrivals before the line of labels, in a row
   std::int64_t late_since_ns_ = 0;  // arrivals have been behind it since then; 0: they are not
-  // Of late, by a device's own clock: its samples take so much longer than a nominal period.
+  // Recent sample times by a device's own clock, in nominal periods.
   double clocked_periods_ = 0.0, clocked_samples_ = 0.0;
   Timeline timeline_;
   bool started_ = false;
   bool reopened_ = false;
-  // Of the reading before; its channels are kept below.
+  // The reading before; its channels are kept below.
   struct Last {
     std::int64_t wall_shift_ns = 0, utime_ns = 0, came_ns = 0;
     bool clocked = false;

@@ -20,7 +20,7 @@ constexpr double kShortGap = 16.0;
 // Samples that show the noise: octaves up to 256 samples at least.
 constexpr double kLeastStartUp = 4096.0, kMostStartUp = 20000.0;
 
-// Of the first effect on that channel.
+// Line of the first effect on that channel.
 std::uint32_t line_of(const Model& model, const std::string& channel) {
   for (const Effect& effect : model.effects)
     for (const std::string& used : {effect.channel, effect.with_channel})
@@ -223,8 +223,8 @@ void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {
   }
 }
 
-// Of an axis that has had no value 0, with a variance that says how well that is known, would be believed;
-// and of one that the filter in use has not been given yet. That one holds what was known of it.
+// 0 for an axis without a value would be believed, with a variance that says how well it is known;
+// the same holds for an axis that the filter in use has not received yet: it keeps what was known.
 void SignalChain::hold_unmeasured(ChainOutput& out) noexcept {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   EstimatorOutput& now = out.estimate;

@@ -89,7 +89,7 @@ class ChainParts {
   [[nodiscard]] const std::string& model_identity() const { return identity_; }
   // The settings in use, with the noise once it is known.
   [[nodiscard]] const FilterSettings& filter() const { return filter_; }
-  // Of each axis its own noises over filter()'s; the driving one not known: as its noise.
+  // Each axis's own noises over filter()'s; where the driving one is unknown, as its noise.
   [[nodiscard]] const AxisShares& shares() const { return shares_; }
   // Nobody told the driving noise: it is learned.
   [[nodiscard]] bool learns_walk() const { return learns_process_noise_; }
@@ -145,7 +145,7 @@ class SignalChain {
   std::unique_ptr<ChainParts> swap(std::unique_ptr<ChainParts> parts) noexcept;
 
   [[nodiscard]] const ChainParts& parts() const { return *parts_; }
-  // Of the estimator in use, with its counters going on from those of the estimators before it. During
+  // Health of the estimator in use; its counters continue those of the estimators before it. During
   // start-up only the counters say something.
   [[nodiscard]] EstimatorHealth health() const noexcept;
 

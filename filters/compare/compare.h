@@ -46,7 +46,7 @@ struct ComparisonRow {
       adev_radps;                // nothing: the record is too short or too coarse
   double heading_end_rad = 0.0;  // ∫(denoised − compensated)dt over the record
   double heading_max_rad = 0.0;  // its largest excursion
-  // Of the filter at rest's innovations, outside manoeuvres: within one its rule learns nothing and the
+  // By the innovations of the filter at rest, outside manoeuvres: within one its rule learns nothing and the
   // output is not its own. Nothing when fewer than forty samples are at rest.
   std::optional<double> whiteness_lag1;  // lag-1 autocorrelation, 0 when white
   // Σ n ρ_k² / 20 over lags 1 … 20: 1 when white, larger when not (Box and Pierce)

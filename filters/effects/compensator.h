@@ -37,7 +37,7 @@ enum CompensatorFlags : std::uint32_t {
 struct CompensatorInput {
   double dt_s = 0.0;  // time covered by this sample; after a gap, the whole gap
   Axes rate_radps{};  // NaN: not measured
-  // Of dt, what rate_radps says nothing of: a gap. The angle turned in it is not known.
+  // The part of dt that rate_radps does not cover: a gap. The angle turned in it is not known.
   Axes missed_s{};
   std::span<const double> channels{};  // in the order of Compensator::channels(); NaN: missing now
   std::span<const double> age_s{};     // of each channel's value; empty: all are as old as the sample
@@ -46,7 +46,7 @@ struct CompensatorInput {
 struct CompensatorOutput {
   Axes compensated_radps{};
   Axes correction_radps{};  // what was subtracted
-  // Of the correction: parameter covariance, leaving the range, and what a dead zone may hide.
+  // Variance of the correction: parameter covariance, leaving the range, and what a dead zone may hide.
   Axes variance_rad2ps2{};
   std::uint32_t flags = 0;  // CompensatorFlags
 };
@@ -115,8 +115,8 @@ class Compensator {
     bool of_rate;           // of any axis
     std::size_t parameter;  // row of the coefficient in the covariance, kNone without
     std::vector<Factor> factors;
-    // Of the factors that do not depend on the rate, and the flags that go with them: as they are until one
-    // of these channels moves.
+    // Sum of the factors that do not depend on the rate, and their flags: valid until one
+    // of these channels changes.
     Value channels{};
     std::uint32_t flags = 0;
     bool usable = false, doubtful = false;  // doubtful: outside the range of a channel

@@ -23,7 +23,7 @@ ChannelRange range_of(const std::string& channel, const std::vector<ChannelRange
   return found;
 }
 
-// Of a channel that comes beside the rates.
+// Range of a channel that comes besides the rates.
 ChannelRange range_of_channel(const std::string& channel, const std::vector<ChannelRange>& known) {
   ChannelRange found = range_of(channel, known);
   found.fades = motion_of(channel) != Motion::kNone;

@@ -42,7 +42,7 @@ class DelayedReading {
   double hold(double dt_s) noexcept { return step(latest_, dt_s); }
   void restart() noexcept { count_ = 0; }
 
-  // Of another compensator's, that is as late as this.
+  // Continues another compensator's reading, which has the same delay.
   void take_over(const DelayedReading& previous) noexcept {
     if (previous.delay_s_ != delay_s_) return;
     std::copy(previous.kept_.begin(), previous.kept_.end(), kept_.begin());

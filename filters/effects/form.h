@@ -85,15 +85,15 @@ std::string_view name_of(Form form);
 // 0 when the effect has no parameter of that name.
 [[nodiscard]] double parameter(const Effect& effect, std::string_view name);
 
-// Of a dead zone or a transition: its parameter beside the coefficient, in the channel's unit.
+// Parameter of a dead zone or a transition besides the coefficient, in the channel's unit.
 inline constexpr std::string_view kHalfWidth = "half_width";
 
 // What a form's time constant is called: "lag_s" of lagged, "time_constant_s" of warm_up, "bandwidth_s" of
 // the others.
 [[nodiscard]] std::string_view time_constant_name(Form form);
-// Of a product: of its second factor.
+// Name of the time constant; a product's is that of its second factor.
 [[nodiscard]] std::string_view time_constant_name(const Effect& effect);
-// Of a form that may have a second one: "average_s" of band_power, "second_lag_s" of lagged.
+// Name of the second time constant of a form that may have one: "average_s" of band_power, "second_lag_s" of lagged.
 [[nodiscard]] std::string_view second_time_constant_name(Form form);
 [[nodiscard]] std::string_view second_time_constant_name(const Effect& effect);
 

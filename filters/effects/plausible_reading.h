@@ -10,7 +10,7 @@
 
 namespace ifog {
 
-// Of one channel. A reading is refused that is outside the range of the fit by far more than a channel goes
+// Judges one channel's readings. One is refused that is outside the range of the fit by far more than a channel goes
 // there, or that leaps there as this channel never did; for a minute, and for as long as it is one number
 // again and again.
 class PlausibleReading {
@@ -40,7 +40,7 @@ class PlausibleReading {
  private:
   static constexpr double kBelievedAfter_s = 60.0;
   static constexpr double kFar = 20.0;  // spans outside
-  // Of a channel that is slow: the most it moves in a reading, in spans, as many moves have shown; and the
+  // For a channel that is slow: the most it moves in a reading, in spans, as many moves have shown; and the
   // least leap, in spans and in the largest of those moves.
   static constexpr double kSlow = 0.15;
   static constexpr int kMoves = 8;

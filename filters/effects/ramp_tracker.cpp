@@ -73,7 +73,7 @@ double add_sample(const float* now, const float* before, double error, double we
   return information;
 }
 
-// Of the phase, at which the mean over it has that share of the power of the table's slope.
+// Variance of the phase at which the mean over it has that share of the power of the table's slope.
 double variance_that_keeps(double share, const std::vector<std::complex<double>>& parts) {
   const auto kept = [&](double sigma) {
     double all = 0.0;

@@ -40,7 +40,7 @@ struct RampSettings {
   double phase_walk = 0.0;     // of the true phase against k times the angle, cycles/sqrt(s)
 };
 
-// Of an effect "rebuilt_ramp". Throws std::invalid_argument with what is wrong with it.
+// Settings of an effect "rebuilt_ramp". Throws std::invalid_argument with what is wrong with it.
 RampSettings ramp_settings(const Effect& effect);
 
 struct RampSample {
@@ -86,7 +86,7 @@ class RampTracker : private RampState {
   // exception.
   double step(const RampSample& in) noexcept;
   [[nodiscard]] bool locked() const noexcept { return locked_; }
-  // Of the ramp, cycles in [0, 1); k times the angle turned since the start where it is not locked.
+  // Phase of the ramp, cycles in [0, 1); k times the angle turned since the start where it is not locked.
   [[nodiscard]] double phase() const noexcept;
   void restart() noexcept;
   // The same ramp of another tracker goes on where that one is. False when it is not the same.
@@ -132,7 +132,7 @@ class RampTracker : private RampState {
   RampSettings settings_;
   std::vector<double> tables_;  // kVague of kSteps + 1, each over phases half as vague as the one before
   Comb wide_, near_by_;         // for acquiring and for following
-  // Of the phase, cycles^2: so vague it is of no use; so sharp it cannot be told from.
+  // Variances of the phase, cycles^2: above the first it is of no use; below the second it counts as exact.
   double most_variance_ = 0.0, least_variance_ = 0.0;
 };
 

@@ -28,7 +28,7 @@ double curve_reach(const ShapeSettings& settings) noexcept {
   return power_of(settings.form) > 1 ? settings.half_width : 0.0;
 }
 
-// Of the channel, as far as that.
+// The channel as far as its reach.
 double followed(const ShapeSettings& settings, const Reach& channel) noexcept {
   const double reach = curve_reach(settings);
   return channel.edge + std::clamp(channel.past_the_edge(), -reach, reach);

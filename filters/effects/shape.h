@@ -55,13 +55,13 @@ class Shape {
   // quadratic and band_power.
   double step_over(double value, double scatter, double dt_s) noexcept;
   void restart() noexcept { started_ = false; }
-  // Of a warm_up, before its first sample: ShapeSettings::elapsed_s.
+  // For a warm_up, before its first sample: ShapeSettings::elapsed_s.
   void begin(double elapsed_s) noexcept { settings_.elapsed_s = elapsed_s; }
 
   // One sample of a channel that may have left the range the shape was fitted on; see reach.h.
   double step(const Reach& channel, double dt_s) noexcept;
 
-  // Of a form without memory: its value at one value of the channel.
+  // Value of a form without memory at one value of the channel.
   [[nodiscard]] double at(double value) const noexcept;
   // Likewise, going on beyond the range as far as a fit may.
   [[nodiscard]] double at(const Reach& channel) const noexcept;

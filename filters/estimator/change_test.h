@@ -6,7 +6,7 @@
 // at most e^18 by chance once in e^18 samples (Ville's inequality). What no tracker predicts is found by its
 // size alone: innovations of variance 4 R against R, which finds shaking.
 //
-// Of colour only this is known: by how much the sums of innovations over each horizon vary at rest. It is
+// The only thing known about colour is by how much the sums of innovations over each horizon vary at rest. It is
 // learned there, and begins with the widest that the known noise allows with its third differences.
 #pragma once
 

@@ -91,7 +91,7 @@ Lanes Engine::rest_rate() const noexcept {
   return rate;
 }
 
-// Of the filter at rest; one that has just been moved is as slow as what it has had is long.
+// Lag of the filter at rest; after a move it is as slow as what it has received since is long.
 double Engine::lag() const noexcept {
   return std::max(1.0, std::min(settled_lag_ > 0.0 ? settled_lag_ : 1e300, follow_.since_moved + 1.0));
 }

@@ -15,7 +15,7 @@ constexpr std::uint64_t kLagEvery = 256;
 constexpr double kReachAfter = 256.0;
 // Trackers as long as this take part whatever the lag: they follow motions that begin slowly.
 constexpr double kLeastReach = 48.0;
-// Of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 deg/s.
+// Largest rate of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 deg/s.
 constexpr double kMostRestRate = 0.02;
 // Lags of rest after which the end of a manoeuvre, and where it moved the filter to, have faded.
 constexpr double kYoungLags = 7.0;

@@ -14,7 +14,7 @@ namespace ifog {
 using Lanes = Eigen::Array<double, 4, 1>;
 static_assert(kMaxAxes < Lanes::SizeAtCompileTime);
 
-// Of the axes, in their order.
+// Sum over the axes, in their order.
 [[nodiscard]] inline double sum_of_axes(const Lanes& lanes) noexcept {
   return 0.0 + lanes[0] + lanes[1] + lanes[2];
 }

@@ -17,7 +17,7 @@ constexpr double kRestPrior = 4.0;    // nats that the filter at rest has to be 
 constexpr double kMostAhead = 12.0;
 constexpr double kBreaks = 12.0;     // nats by which a longer tracker is surely wrong and begins again
 constexpr double kLeastRest = 64.0;  // samples, before rest is believed
-// Of two neighbours' difference white noise makes this part of the difference of their variances.
+// Share of the difference of two neighbours' variances that white noise makes in their difference.
 constexpr double kCommon = 0.65;
 // Twice the correlation of neighbours' errors, and what payments for the angle add.
 constexpr double kCorrelated = 2.8, kPaid = 1.27;

@@ -48,7 +48,7 @@ class Mix {
   [[nodiscard]] bool raw() const noexcept { return gain_ > kRawGain; }
 
  private:
-  // Of the axes measured; 0 before any is.
+  // Least over the axes measured; 0 before any is.
   [[nodiscard]] double least(const Lanes& lanes) const noexcept;
   static constexpr double kFailed = 6.0, kFound = 9.0;  // nats
   static constexpr double kRawGain = 0.7;

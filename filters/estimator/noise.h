@@ -95,7 +95,7 @@ class Noise {
     const double bow = 8.0 * x * (1.0 - 2.0 * std::abs(x));
     return bow * (0.775 + 0.225 * std::abs(bow));
   }
-  // Of third differences. A converter at rest between two changes of its last digit shows none.
+  // R by third differences. A converter at rest between two changes of its last digit shows none.
   [[nodiscard]] double usual() const noexcept { return std::max({slow_, 1e-9 * known_, of_steps()}); }
 
   static constexpr double kThird = 20.0;                             // 1 + 9 + 9 + 1
@@ -103,7 +103,7 @@ class Noise {
   static constexpr double kClip = 25.0;
   // n overlapping third differences of white noise have a mean square of variance 2 (1 + 1.3) / n R^2.
   static constexpr double kThirdVariance = 4.6, kSurely = 3.0;
-  // Of 32 overlapping third differences the mean square scatters by 0.4: four standard deviations.
+  // The mean square of 32 overlapping third differences scatters by 0.4: four standard deviations.
   static constexpr double kSurelyLouder = 2.6;
   static constexpr double kNoDigit = 1e300;
   static constexpr double kTurn = 6.283185307179586;

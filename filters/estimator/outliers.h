@@ -62,7 +62,7 @@ class Outliers {
   }
   [[nodiscard]] bool rare() const noexcept { return share_ <= kRare; }
   [[nodiscard]] std::size_t run() const noexcept { return run_; }
-  // Of the run's measurements the i-th of the last ones, oldest first.
+  // The i-th of the run's last measurements, oldest first.
   [[nodiscard]] std::size_t kept() const noexcept { return std::min(run_, kKept); }
   [[nodiscard]] const Lanes& kept(std::size_t i) const noexcept { return kept_[(run_ - kept() + i) % kKept]; }
   void end_run() noexcept { run_ = 0; }

@@ -122,7 +122,7 @@ class SizedRestFilter final : public RestFilter {
     refresh();
   }
 
-  // Of a bank: the mean of its cores' under their long-run weights. Every G(1) is one where the model holds
+  // For a bank, the mean over its cores under their long-run weights. Every G(1) is one where the model holds
   // a constant rate, and the delay of a sum of filters is then the sum of their delays. Not the likeliest
   // core's: in noise the likeliest changes now and then, between lags that are up to five powers of ten
   // apart, and no rotation comes with it.

@@ -41,7 +41,7 @@ class Unmeasured {
     lost.variance = std::min(lost.variance * (1.0 - gain) * (1.0 - gain), beside * beside + noise);
     if (lost.variance < 1e-3 * variance) lost.variance = 0.0;
   }
-  // Of the axis, where the filter's is this.
+  // Variance of the axis, where the filter's is `filters`.
   [[nodiscard]] double variance(std::size_t axis, double filters) const noexcept {
     const Lost& lost = lost_[axis];
     return lost.now ? std::max(filters, lost.variance + lost.moved) : filters + lost.variance;

@@ -30,7 +30,7 @@ constexpr double kTails = 0.1;
 constexpr double kStretchRatio = 8.0 * kMostRatio;
 // -2 log-likelihood by which two stretches surely differ: e^6.
 constexpr double kSurely = 12.0;
-// Of -2 log-likelihood, a standard error wide.
+// Difference of −2 log-likelihood that is one standard error wide.
 constexpr double kNearly = 1.0;
 // Blocks of all axes that bound a walk.
 constexpr double kLeastBlocks = 16.0;

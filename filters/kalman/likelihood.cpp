@@ -36,12 +36,12 @@ class GainOf {
   [[nodiscard]] const Vector& gain() const { return core_.gain; }
   [[nodiscard]] const Vector& measurement() const { return core_.h; }
   [[nodiscard]] const Matrix& transition() const { return transition_; }
-  // Of the innovation.
+  // Variance of the innovation.
   [[nodiscard]] double variance() const { return variance_; }
 
   // To the next sample's prediction.
   void predict();
-  // Of this sample's prediction.
+  // Corrects this sample's prediction.
   void correct();
   // Over 2^half samples and as many again, with the gain in their middle; whether it is still what it was.
   bool hold(std::size_t half);

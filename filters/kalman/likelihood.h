@@ -56,7 +56,7 @@ struct LikelihoodTerms {
                                          double measurement_noise, const LikelihoodRecord& record,
                                          double dt_s);
 
-// Of one axis.
+// Likelihood terms of one axis.
 [[nodiscard]] LikelihoodTerms likelihood(const StateModel& model, double process_noise,
                                          double measurement_noise, std::span<const double> rate, double dt_s);
 

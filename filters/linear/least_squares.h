@@ -25,7 +25,7 @@ class LeastSquares {
 // What a fit of the columns leaves of the measured.
 Eigen::VectorXd left_by(const Columns& columns, const Eigen::VectorXd& measured);
 
-// Of all coefficients that fit equally well the shortest: dependent columns share what they explain.
+// The shortest of all coefficients that fit equally well: dependent columns share what they explain.
 Eigen::VectorXd shortest_coefficients(const Eigen::MatrixXd& columns, const Eigen::VectorXd& measured);
 
 }  // namespace ifog

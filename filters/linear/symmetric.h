@@ -34,7 +34,7 @@ class CholeskyFactor {
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
   // L times `columns`: of independent ones, such of covariance A.
   [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& columns) const;
-  // Of L, half of A's.
+  // Log determinant of L, half of A's.
   [[nodiscard]] double log_determinant() const;
 
  private:

@@ -34,7 +34,7 @@ const std::vector<FormRules>& form_rules() {
       {"absolute", {kCoefficient}},
       {"cosine", {kCoefficient}},
       {"sine", {kCoefficient}},
-      // Of 0 the low-pass is the channel itself, and nothing is above it.
+      // With 0 the low-pass is the channel itself, and nothing is above it.
       {"band_power",
        {kCoefficient, {"bandwidth_s", true, Values::kPositive}, {"average_s", false, Values::kNotNegative}}},
       {"transition", {kCoefficient, {"half_width", true, Values::kPositive}}},

@@ -31,7 +31,7 @@ const FormRules* rules_of_form(std::string_view form);
 // Which a product can be with, beside its own channel.
 const std::vector<std::string_view>& forms_of_product();
 
-// Of an effect; a product has its second form's beside its coefficient.
+// Parameters of an effect; a product has its second form's besides its coefficient.
 std::vector<ParameterRule> parameters_of(std::string_view form, std::string_view with_form);
 
 [[nodiscard]] bool allows(const ParameterRule& rule, double value);

@@ -13,7 +13,7 @@ namespace ifog {
 namespace {
 
 constexpr const char* kSchema = "ifog.noise/2";
-// Of a variance in (rad/s)^2, of a square or a count: beyond it no figure of a sensor lies.
+// Largest variance in (rad/s)^2, square or count: no sensor's figure is beyond it.
 constexpr double kMostKept = 1e18;
 
 class Reader {
@@ -60,7 +60,7 @@ class Reader {
 std::string kept_noise_text(const KeptNoise& kept) {
   const LearnedNoise& noise = kept.noise;
   std::string text =
-      "# What ifogd has learned of this sensor's noise at rest. Delete it, and it is learned anew.\n";
+      "# What ifogd has learned of this sensor's noise at rest. Delete it, and it is learned again.\n";
   const auto line = [&text](const char* key, const std::string& value, const char* meaning = "") {
     text += std::string(key) + " = " + value + meaning + "\n";
   };
@@ -89,7 +89,7 @@ KeptNoise parse_kept_noise(std::string_view text, const std::string& name) {
   if (axes != std::floor(axes) || axes > kMaxAxes)
     in.fail("axes", "expected 1 to " + std::to_string(kMaxAxes));
   kept.axes = static_cast<int>(axes);
-  // Of a file that does not say: it is taken for another one.
+  // A file that does not name its model is regarded as another model's.
   kept.noise.set_model(in.words_or("model", "?"));
   // The smallest that is no denormal: what is divided by stays a number.
   constexpr double kPositive = 1e-300;

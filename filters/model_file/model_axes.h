@@ -18,7 +18,7 @@ std::string effects_of_no_axis(const Model& model, std::span<const std::string> 
 // That, and noise of an axis that a sensor of these has not; a line each.
 std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std::string> axes);
 
-// Of each of several axes what its noise, N squared, or its walk, K squared, is over the mean of all: a
+// Noise N² and walk K² of each of several axes, relative to the mean of all: a
 // filter's own noises are of that. Nothing where the model does not say it of every axis.
 struct AxisShares {
   std::optional<Axes> noise, walk;

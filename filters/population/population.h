@@ -86,7 +86,7 @@ bool is_of_type(const TypePrior& prior, double level);
 // z, robust spread and, where errors are known, random effects of a parameter from its values.
 void describe(PopulationParameter& parameter);
 
-// Of described parameters.
+// Those among described parameters that stand out.
 std::vector<StandingOut> standing_out(const std::vector<PopulationParameter>& parameters);
 
 }  // namespace ifog

@@ -37,7 +37,7 @@ double log_sum(const TypePrior& prior, double ratio) {
   return most + std::log(std::exp(with - most) + std::exp(without - most));
 }
 
-// Of the members but `left_out`, over that of nobody having it.
+// Log likelihood of the members without `left_out`, relative to that of nobody having it.
 double log_likelihood(const TypePrior& prior, std::span<const Estimate> estimates, std::size_t left_out) {
   double sum = 0.0;
   for (std::size_t i = 0; i < estimates.size(); ++i)

@@ -11,8 +11,8 @@ struct OnCircle {
   double sine = 0.0, cosine = 1.0;
 };
 
-// Of so many turns, by Taylor's series of an eighth of a turn at most, to 2e-9. Of 1e9 turns and more nothing
-// is known: as of none.
+// Sine and cosine of so many turns, by Taylor's series of an eighth of a turn at most, to 2e-9. 1e9 turns and more count
+// as none.
 [[nodiscard]] inline OnCircle on_circle(double turns) noexcept {
   constexpr double kPi = 0x1.921fb54442d18p+1;
   if (!(std::abs(turns) < 1e9)) return {};

@@ -21,7 +21,7 @@ class ChannelOutline {
   [[nodiscard]] const std::string& name() const { return name_; }
   // Rows to a mean: a power of two.
   [[nodiscard]] std::size_t rows() const { return rows_; }
-  // Of each `rows()` rows from the first on, in the channel's unit; NaN where none of them has a value. Rows
+  // Mean of each `rows()` rows from the first on, in the channel's unit; NaN where none of them has a value. Rows
   // behind the last whole mean are dropped.
   [[nodiscard]] const std::vector<double>& means() const { return means_; }
 

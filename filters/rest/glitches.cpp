@@ -14,7 +14,7 @@ namespace ifog {
 namespace {
 
 constexpr double kFar = 30.0;
-// Of white noise a sample less the middle of its neighbours has 1.5 times its variance.
+// In white noise a sample less the median of its neighbours has 1.5 times its variance.
 constexpr double kOfMedian = 1.4826 / 1.224744871391589;
 // Samples about one: a change of the noise fills at least half of a block or of the next one. Of fewer second
 // differences no deviation is taken, and of as many it is off by a fifth at times.
@@ -71,7 +71,7 @@ class Yardstick {
     });
     if (some.size() < 3) return;
     all_ = kOfMedian * middle_of(some);
-    // Of a coarse sensor most neighbours are the same, but for the rounding of their digits.
+    // Most neighbours of a coarse sensor are the same, but for the rounding of their digits.
     least_ = std::max(kRounding * largest, std::isfinite(smallest_step) ? 0.5 * smallest_step : 0.0);
   }
   // No more than at() says anywhere.
@@ -165,7 +165,7 @@ std::string in_words(const Glitches& glitches, const std::function<double(std::s
                 one ? " leaps" : "s leap", one ? "" : "the first ", told_time(time_s(glitches.first)).c_str(),
                 glitches.most_times,
                 glitches.few.empty() ? "more than one in a thousand, which these figures take for noise"
-                                     : "a fault of the logger or the line, left out of these figures");
+                                     : "a fault of the logger or the line, not used in these figures");
   return text.data();
 }
 

@@ -25,7 +25,7 @@ constexpr double kParted = 32.0;
 // A departure, over its standard deviation, that the noise of one octave has in any of the two thousand
 // stretches in fewer than one record of two thousand: as simulated, tests/bench/allan.
 constexpr double kSurely = 5.2;
-// Of the deviation. Less is of no consequence.
+// Change of the deviation. Less is of no consequence.
 constexpr double kMaterial = 1.25;
 // Those octaves of a stretch that was found count as changed, too, in which it departs by this.
 constexpr double kAlso = 3.0;
@@ -34,7 +34,7 @@ constexpr std::size_t kMostChanges = 3;
 // the usual one is the mean of so many.
 constexpr double kMostTimes = 5.0;
 constexpr double kUsual = 128.0;
-// Of the values, what differs by less does not differ: their rounding. Of a coarse sensor most neighbours are
+// Relative difference below which two values are the same: their rounding. Most neighbours of a coarse sensor are
 // the same; what is usual is said by those that are not.
 constexpr double kRoundedAway = 1e-13;
 // Beyond, what is loud or quiet stands against next to nothing.
@@ -161,7 +161,7 @@ double mean_magnitude(const Octave& octave, std::size_t begin, std::size_t end) 
   return count > 0.0 ? sum / count : 0.0;
 }
 
-// Of the four quarters the mean of the middle two.
+// Mean of the middle two of the four quarters.
 double middle_magnitude(const Octave& octave, std::size_t begin, std::size_t end) {
   std::array<double, kFine> quarters{};
   const std::size_t length = (end - begin) / kFine;
@@ -180,7 +180,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// Of one time, by what means of so many neighbouring times differ from the next ones, of which a change is a
+// By what means of so many neighbouring times differ from the next ones, relative to one time, of which a change is a
 // few: noise with long tails has more than normal noise, and a resonance that swells and fades over several
 // times more in their means than in one.
 double deviation_by(const std::vector<double>& root, std::size_t together) {
@@ -195,7 +195,7 @@ double deviation_by(const std::vector<double>& root, std::size_t together) {
 
 Loudness loudness_of(const Octave& octave) {
   const double count = octave.beyond_rounding, share = count / count_of(octave, 0, kCells);
-  // Of a coarse sensor's, of which a share is no zero, how many that are varies, too, and comes in pairs: one
+  // Only a share of a coarse sensor's differences is not zero; how many varies, too, and they come in pairs: one
   // change of the value is in two of them.
   const double wanted = kFewest * (1.0 + 3.0 * (1.0 - share));
   Loudness out;
@@ -207,7 +207,7 @@ Loudness loudness_of(const Octave& octave) {
   for (std::size_t t = 0; t < times; ++t)
     if (const double here = count_of(octave, t * out.cells_each, (t + 1) * out.cells_each); here > 0.0)
       counts.push_back(here);
-  // Of a time without a hole.
+  // The usual number of values at a time without a hole.
   const double usual = median(counts);
   for (std::size_t t = 0; t < times; ++t) {
     const std::size_t begin = t * out.cells_each, end = begin + out.cells_each;
@@ -218,7 +218,7 @@ Loudness loudness_of(const Octave& octave) {
   }
   if (out.root.size() < kFewestTimes) return out = {};
   constexpr double kOfMiddle = 1.3;  // variance of the mean of the middle two of four over that of all four
-  // Of the mean magnitude of n normal variables the relative variance is (pi / 2 - 1) / n, of its root a
+  // The mean magnitude of n normal variables has the relative variance (pi / 2 - 1) / n, its root a
   // quarter.
   const double each = 0.25 * (0.5708 + 2.0 * (1.0 - share)) / share;
   const double least = std::sqrt(each / usual * (usual < kParted ? 1.0 : kOfMiddle)) * median(out.root);

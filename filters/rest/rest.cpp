@@ -40,7 +40,7 @@ double quantile(std::vector<double> values, double p) {
 
 using Window = RestWindow;
 
-// Of four quarters, of which an outlier spoils one: the mean is that of the middle two, the scatter the
+// By four quarters, of which an outlier spoils one: the mean is that of the middle two, the scatter the
 // second smallest. All four at once, as each sample waits for the one before it in its quarter.
 Window window_of(std::span<const double> rate) {
   constexpr std::size_t kQuarters = 4;
@@ -100,7 +100,7 @@ void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<
     if (i > 0 && std::isfinite(windows[i - 1].mean))
       steps.push_back(std::abs(windows[i].mean - windows[i - 1].mean));
   }
-  // Of the quieter windows, so that a record that mostly moves is still told from its rest: a normal variable
+  // From the quieter windows, so that the rest of a record that mostly moves is still found: a normal variable
   // stays within 0.385 of its standard deviation in 30 % of cases.
   const double usual = quantile(steps, kQuieter) / 0.385;
   const double quiet = quantile(scatters, kQuieter);
@@ -186,7 +186,7 @@ Rest::SlowTurns slow_turns_of(const std::vector<double>& leap, const std::vector
   return found;
 }
 
-// Of rows too far apart for windows: one that is far off for its turn.
+// For rows too far apart for windows: a row far off the others is a turn.
 Rest::SlowTurns dwells_of(std::span<const SeriesView> axes) {
   Rest::SlowTurns found;
   for (const SeriesView& rate : axes) {
@@ -222,7 +222,7 @@ Rest as_samples(const std::vector<State>& state, std::size_t window, std::size_t
   return rest;
 }
 
-// Sample by sample: what is set anew at each of them has no windows.
+// Sample by sample: a rate that is set at each of them has no windows.
 Rest rest_by_references(std::span<const SeriesView> references, std::size_t samples) {
   std::vector<State> state(std::max<std::size_t>(1, samples), State::kResting);
   for (const SeriesView& reference : references) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Of a series, long ones read piece by piece, what is a number.
+// Sum of the finite values of a series; long series are read piece by piece.
 #pragma once
 
 #include <cmath>

@@ -83,7 +83,7 @@ class Resident {
     UnnamedFile* file;
     std::size_t offset;  // bytes
   };
-  // Of what add() was told of and is still there, a file to write.
+  // The file behind an address that add() was given and that is still mapped.
   Place place_of(const void* at) {
     const std::lock_guard lock(guard_);
     const auto mapped = std::prev(mapped_.upper_bound(at));
@@ -108,7 +108,7 @@ class Resident {
         changed_.wait(lock, [this] { return ends_ || !mapped_.empty(); });
       else
         changed_.wait_for(lock, kLook, [this] { return ends_; });
-      // Of a file that is shared, not private, this loses nothing: what was written is in the kernel's cache.
+      // The mapping is shared, so this loses nothing: what was written is in the kernel's cache.
       if (resident_bytes(statm) > kMostResident)
         for (const auto& [at, mapped] : mapped_)
           ::madvise(const_cast<void*>(at), mapped.bytes, MADV_DONTNEED);

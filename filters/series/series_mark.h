@@ -13,7 +13,7 @@
 
 namespace ifog {
 
-// Of every bit of a series: two that differ have the same once in 2^128.
+// A digest of every bit of a series: two that differ have the same once in 2^128.
 struct SeriesMark {
   std::size_t size = 0;
   std::array<std::uint64_t, 4> lanes{};

@@ -19,7 +19,7 @@ struct FilterSettings {
   // noise spectral density of the rate, (rad/s)^2/s; measurement variance at the nominal period, (rad/s)^2.
   double process_noise = 0.0;      // 0: not given; taken from the model file, else from start-up data
   double measurement_noise = 0.0;  // 0: not given, likewise
-  // Of the state model: AR/MA coefficients, correlation time, line frequency…
+  // Parameters of the state model: AR/MA coefficients, correlation time, line frequency…
   std::vector<double> state_parameters;
 
   int window = 50;  // N of IRWE, IAE, RAE

@@ -28,8 +28,8 @@ constexpr std::size_t kPiece = std::size_t{1} << 16U;
 constexpr std::size_t kOverlap = std::size_t{1} << 14U;
 constexpr double kMostMemory = 2000.0;
 
-// Of each sample the estimate of its squared error, less what all memories have in common, over R. Level 0:
-// of the measurement itself.
+// Estimated squared error of each sample, less what all memories have in common, over R. Level 0:
+// the measurement itself.
 std::vector<double> risks(const RateCourse& part, double noise, Level level) {
   const std::size_t length = part.rate.size();
   std::vector<double> risk(length, 2.0);
@@ -83,7 +83,7 @@ RateCourse part_of(const RateCourse& course, std::size_t begin, std::size_t end)
           {}};
 }
 
-// Of one run of motion.
+// Finds the memories within one run of motion.
 void find_in(const RateCourse& run, double noise, double longest, std::span<float> memories) {
   const std::size_t length = memories.size();
   for (std::size_t begin = 0; begin < length; begin += kPiece) {

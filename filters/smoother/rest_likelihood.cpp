@@ -45,7 +45,7 @@ struct Trial {
   double count = 0.0;
 };
 
-// Of a walk so much of the noise a block. noise: about what it is, to tell what is far.
+// Likelihood of a walk of `ratio` of the noise a block. noise: roughly its variance, to recognise outliers.
 Trial judge(const Stretches& rest, double ratio, double noise) {
   Trial out;
   double squares = 0.0, logs = 0.0, product = 1.0;
@@ -71,7 +71,7 @@ Trial judge(const Stretches& rest, double ratio, double noise) {
   return out;
 }
 
-// Of a difference of neighbours, whatever walks.
+// Rough variance of the noise, by differences of neighbours, which a walk does not change.
 double about(const Stretches& rest) {
   std::vector<double> squares;
   std::size_t begin = 0;

@@ -154,7 +154,7 @@ Smoothed smooth_axis(const FilterSettings& settings, bool learn_walk, const Axis
   return smooth_course(course, noise);
 }
 
-// Of each axis its noise over the mean of all, as it is rough; 1 where that is not known.
+// Each axis's noise over the mean of all, by its roughness; 1 where that is not known.
 std::vector<double> loudness(std::span<const std::span<const double>> rates, std::span<const double> steps) {
   std::vector<double> rough;
   double mean = 0.0, known = 0.0;

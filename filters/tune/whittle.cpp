@@ -29,7 +29,7 @@ class Objective {
     candidate_.density(theta, spectrum_, density_);
     const auto bins = static_cast<Eigen::Index>(density_.size());
     const auto n = static_cast<Eigen::Index>(theta.size());
-    // Of ln f.
+    // Derivatives of ln f.
     Eigen::MatrixXd slope(bins, n);
     std::vector<double> other = theta;
     for (Eigen::Index i = 0; i < n; ++i) {

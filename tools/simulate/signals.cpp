@@ -216,7 +216,7 @@ struct Making {
   }
 };
 
-// Of the channel's value now. False: of no such kind.
+// Makes an effect of the channel's value now. False: it is of no such kind.
 bool make_of_value(const Making& m) {
   const Recipe& e = m.e;
   const std::span<const double> channel = m.channel;
@@ -259,7 +259,7 @@ bool make_of_value(const Making& m) {
   return true;
 }
 
-// Of what the channel was before, too.
+// Makes an effect of the channel's history.
 bool make_of_history(const Making& m) {
   const Recipe& e = m.e;
   const std::span<const double> channel = m.channel;
@@ -305,7 +305,7 @@ bool make_of_history(const Making& m) {
   return true;
 }
 
-// Of time and of chance, without a channel.
+// Makes an effect of time or chance, without a channel.
 void make_of_time(Making& m) {
   const Recipe& e = m.e;
   const Grid& grid = m.grid;

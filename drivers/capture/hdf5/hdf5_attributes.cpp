@@ -14,7 +14,7 @@ std::string fixed_text(const char* at, std::size_t size, bool blanks) {
   return text;
 }
 
-// Of any length each, as other programs read most easily.
+// Texts of variable length, which other programs read most easily.
 void write_texts(hid_t object, const char* name, const Hdf5Id& space, const std::vector<std::string>& texts) {
   const Hdf5Id type(H5Tcopy(H5T_C_S1));
   std::vector<const char*> at;

@@ -18,7 +18,7 @@ inline constexpr const char* kHdf5ExactTime = "time_ns";
 inline constexpr const char* kHdf5Of = "of";
 inline constexpr const char* kHdf5Comments = "comments";  // on the group: the `#` lines, without the '#'
 
-// Of an attribute that is a text or an array of texts, at most so many of at most so many bytes each; empty
+// The texts of an attribute, at most so many of at most so many bytes each; empty
 // where there is none, or it is no text.
 std::vector<std::string> hdf5_texts(hid_t object, const char* name, std::size_t most, std::size_t longest);
 // The unit that a dataset says, "" for none.

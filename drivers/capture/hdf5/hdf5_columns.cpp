@@ -75,7 +75,7 @@ Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
     refuse(in_quotes(group) + " is a type, expected a group of datasets");
   header_.comments = hdf5_texts(place_, kHdf5Comments, kMostHdf5Comments, kLongestHdf5Text);
   if (header_.comments.empty() && H5Aexists(place_, kHdf5Comments) > 0)
-    header_.notices.push_back("passed over: its comments, expected an attribute of texts");
+    header_.notices.push_back("not read: its comments, expected an attribute of texts");
   check_size(wanted);
   time_ = header_.exact_time ? kHdf5ExactTime : wanted.time;
 }
@@ -120,7 +120,7 @@ void Hdf5Columns::open(const Hdf5Source& source) {
   hdf5_demand(file_.good(), "cannot be read as HDF5");
 }
 
-// Of each dataset that is opened from here on and that is not open.
+// Applies to each dataset that is opened from here on.
 void Hdf5Columns::keep_unpacked(std::size_t bytes) {
   hdf5_demand(H5Pset_chunk_cache(access_, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, bytes, 1.0) >= 0,
               "the HDF5 library does not start");
@@ -180,7 +180,7 @@ void Hdf5Columns::read_group(const Hdf5Wanted& wanted) {
   else
     for (const std::string& name : names) add_dataset(name, !wanted.names.empty());
   if (!groups_.empty() && !columns_.empty())
-    header_.notices.push_back("passed over: the groups " + list_of(groups_) + "; --group reads one");
+    header_.notices.push_back("not read: the groups " + list_of(groups_) + "; --group reads one");
 }
 
 // one: of a matrix a column is asked for, "name[1]".
@@ -285,7 +285,7 @@ std::vector<Hdf5Columns::Part> Hdf5Columns::take_rows(hid_t dataset, const std::
   return parts;
 }
 
-// Of a foreign group: its datasets of numbers that are as long as most of them.
+// Takes from a foreign group the datasets of numbers that are as long as most of them.
 void Hdf5Columns::add_what_is_a_column(const std::vector<std::string>& names) {
   std::map<hsize_t, std::vector<std::string>> by_rows;
   for (const std::string& name : names) {

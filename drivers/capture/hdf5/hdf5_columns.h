@@ -36,7 +36,7 @@ struct Hdf5Header {
   std::vector<std::string> comments;
   std::vector<std::string> notices;
   std::uint64_t rows = 0;
-  // Of a time in integers, which a double may not hold: the first of them, that all of its values are counted
+  // For a time in integers, which a double may not hold: the first of them, that all of its values are counted
   // from.
   std::optional<std::int64_t> time_from;
   bool exact_time = false;  // the time is time_ns, which replaces time_s

@@ -22,7 +22,7 @@ namespace ifog {
 namespace {
 
 constexpr rlim_t kMostMemory = 2ULL << 30U;  // bytes, beside what the program had and a copy of the file
-// Of processor time, from one block to the next; beside it a chunk may be unpacked so slowly.
+// Processor time from one block to the next, and how slowly a chunk may be unpacked besides.
 constexpr std::size_t kMostSeconds = 5, kLeastUnpacked = 32U << 20U;  // s, bytes/s
 
 std::string reason() { return std::generic_category().message(errno); }

@@ -95,7 +95,7 @@ std::size_t place_of_time(const Hdf5Header& header, const CsvLayout& layout, con
                                   header.names.begin());
 }
 
-// Of a file that is no capture by its names: the columns that they give, or those that were asked for beside
+// For a file that is no capture by its names: the columns that they give, or those that were asked for besides
 // them. notice: how it is read.
 CsvLayout layout_of(const Hdf5File& file, const std::string& group, CsvLayout asked, std::string& notice) {
   if (!asked.only_header.empty() || asked.sample_rate_hz)

@@ -100,7 +100,7 @@ class Channels {
 // A count of ticks, as it is sent.
 class Stamp {
  public:
-  // Of so many nanoseconds a tick.
+  // A stamp whose tick has so many nanoseconds.
   explicit constexpr Stamp(std::int64_t tick_ns) : tick_ns_(tick_ns) {}
   [[nodiscard]] constexpr std::int64_t time_ns(std::int64_t ticks) const noexcept { return ticks * tick_ns_; }
   // The inverse: the stamp a device sends at this time, where that goes round after `modulus` ticks. Times

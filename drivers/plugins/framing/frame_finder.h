@@ -154,7 +154,7 @@ class FrameFinder {
     return false;
   }
 
-  // Of an intact frame and those inside it: what would have come out had the bytes come one by one.
+  // For an intact frame and those inside it: what would have come out had the bytes come one by one.
   Place ends_first(Place outer) noexcept {
     std::size_t end = outer.at + outer.length;
     Place first = outer;

@@ -20,7 +20,7 @@ constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 // The stamp is a time of day once the device knows it, else since power-up.
 constexpr std::int64_t kTick_ns = 100'000, kTicksOfADay = 864'000'000,
                        kTicksOfTheField = std::int64_t{1} << 32U;
-// Of a counter of 32 bits: what a count of lost samples needs.
+// The part of a 32-bit counter that a count of lost samples needs.
 constexpr std::uint32_t kSequenceModulus = 1U << 16U;
 
 // Environment channels.

@@ -47,7 +47,7 @@ inline constexpr std::array<Content, 24> kContents{
 
 inline constexpr std::size_t kCrcLength = 4, kTermination = 2;
 
-// Of the datagram, without termination.
+// Length of the datagram, without termination.
 constexpr std::size_t length_of(const Content& content) noexcept {
   const std::size_t triads = 1U + (content.acceleration ? 1U : 0U) + (content.inclination ? 1U : 0U);
   return 1 + triads * (10 + (content.temperature ? 7U : 0U)) + (content.pps || content.aux ? 4U : 0U) + 3 +

@@ -14,6 +14,7 @@ import pathlib
 import random
 import re
 import shlex
+import struct
 import sys
 
 from run import main_of, ran
@@ -264,6 +265,17 @@ class Checks:
             assert ran("allan", capture, "--json", to).returncode == 0, name
             found = [f["name"] for axis in json.loads(to.read_text())["axes"] for f in axis["findings"]]
             assert found == [], f"{name}: {found}"
+
+    def check_ranges_of_a_dbc_file_are_information(self):
+        """A signed rate with [0|100], as in public files: half of all motion is beyond, kept, counted and said once with both numbers."""
+        dbc, log, out = self.folder / "range.dbc", self.folder / "range.log", self.folder / "range.csv"
+        dbc.write_text('VERSION ""\nBU_: A\nBO_ 291 M: 8 A\n SG_ Rate : 0|16@1- (0.01,0) [0|100] "deg/s" A\n SG_ Count : 16|8@1+ (1,0) [0|255] "" A\n')
+        log.write_text("".join(f"({i * 0.01:.6f}) can0 123#{struct.pack('<hB', 5 * i - 500, i).hex()}0000000000\n" for i in range(200)))
+        done = ran("convert", log, out, "--dbc", dbc, "--option", "signal=Rate", "--option", "counter=Count", "--option", "rate_hz=100")
+        text = done.stdout + done.stderr
+        assert done.returncode == 0 and text.count("100 values are beyond the range that their description states, and kept: Rate is -5, stated [0, 100]") == 1, text
+        rates = [float(row.split(",")[1]) for row in out.read_text().splitlines() if row[0].isdigit()]
+        assert len(rates) == 200 and abs(rates[0] + math.radians(5)) < 1e-12 and not any(map(math.isnan, rates)), rates[:3]
 
     def check_files_of_others(self):
         if not CASES.is_dir():

@@ -288,11 +288,11 @@ class Checks:
         assert again["effects"] == [], again["effects"]
 
     def check_a_column_that_reads_as_a_difference(self):
-        """A model names a difference of two columns "A - B": a column of that name is left out and said, and the model it writes is one."""
+        """A model names a difference of two columns "A - B": a column of that name is dropped and said, and the model it writes is one."""
         odd, model = self.folder / "odd.csv", self.folder / "odd.toml"
         odd.write_text(self.capture.read_text().replace("temperature_degC", "inlet - outlet_degC", 1))
         said = ifog("diagnose", odd, "--write-model", model)
-        assert "'inlet - outlet_degC' was left out" in said, said
+        assert "'inlet - outlet_degC' was dropped" in said, said
         ifog("denoise", odd, "--model", model, "--output", self.folder / "odd_out.csv")
         found = ifog("diagnose", odd, "--column", "rate_radps=rate_radps:rad/s", "--column", "temperature_degC=inlet - outlet_degC")
         assert "linear of temperature_degC" in found, found

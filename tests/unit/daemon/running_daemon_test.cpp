@@ -209,7 +209,7 @@ TEST_F(RunningDaemon, NoiseIsKeptOverRestartsWithItsDate) {
 
   write("state/nose.noise.toml", before.substr(0, before.size() / 2));
   ASSERT_EQ(run_to_the_end(""), 0) << said();
-  EXPECT_EQ(times_said("learned anew"), 1) << said();
+  EXPECT_EQ(times_said("learned again"), 1) << said();
   EXPECT_EQ(samples(), first) << kept();
 
   // A folder that is not there is made; where none can be, it is said once.

@@ -116,7 +116,7 @@ TEST_F(Recording, KvhFormatsKeepRatesTimesAndGaps) {
     EXPECT_EQ(missing_, 40U) << format;
   }
   ASSERT_EQ(notices_.size(), 2U);
-  EXPECT_EQ(notices_[0], "left out, the format as set up has no place for it: extra_V");
+  EXPECT_EQ(notices_[0], "not sent, as the format as set up has no place for it: extra_V");
 }
 
 TEST_F(Recording, AnglesAndIncrementsBecomeTheSameRates) {

@@ -167,7 +167,7 @@ TEST_F(LcmLog, WhatCameTwiceIsLeftOutAndSaid) {
     const Capture capture = read("");
     EXPECT_EQ(testing::internal::GetCapturedStderr(),
               path_ + ": t = 0 is 2023-11-14 22:13:20 UTC, the first message\n" + path_ +
-                  ": 3 messages on IFOG_NOSE came twice or after one that follows, and are left out (two "
+                  ": 3 messages on IFOG_NOSE came twice or after one that follows, and are dropped (two "
                   "recorders wrote at once, or a clock was set back)\n");
     ASSERT_EQ(capture.time_s.size(), 10U) << clock_ns;
     for (std::size_t n = 0; n < 10; ++n) {
@@ -331,7 +331,7 @@ TEST_F(LcmLog, WhatIsDamagedIsLeftOutAndSaid) {
   EXPECT_EQ(read("").time_s.size(), 3U);
   EXPECT_NE(
       testing::internal::GetCapturedStderr().find(path_ + ": " + std::to_string(event) +
-                                                  " bytes in 1 place(s) are no messages and are left out, "
+                                                  " bytes in 1 place(s) are no messages and are dropped, "
                                                   "the first from byte " +
                                                   std::to_string(event) + " on (is the file damaged?)\n"),
       std::string::npos);

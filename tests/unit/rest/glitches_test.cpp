@@ -43,7 +43,7 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
   const std::vector<Stretch> all{{0, rate.size()}};
   const Glitches found = find_glitches(rate, all);
   EXPECT_EQ(found.count, 3U);
-  EXPECT_NE(in_words(found, [](std::size_t) { return 0.0; }).find("left out of these figures"),
+  EXPECT_NE(in_words(found, [](std::size_t) { return 0.0; }).find("not used in these figures"),
             std::string::npos);
   const std::optional<LongSeries> without = without_leaps(rate, found);
   ASSERT_TRUE(without);

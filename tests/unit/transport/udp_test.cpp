@@ -132,7 +132,7 @@ TEST(UdpTransport, DatagramsFromElsewhereAreLeftOutAndCounted) {
   while (seen.empty()) seen = text_of(transport->read(kForever));
   EXPECT_EQ(seen, "yes");
   EXPECT_EQ(transport->counters().malformed, 1U);
-  EXPECT_STREQ(transport->fault().what, "datagrams from another host, which are left out");
+  EXPECT_STREQ(transport->fault().what, "datagrams from another host, which are dropped");
 }
 
 // Whoever floods the port with datagrams of his own cannot keep read() from returning at its time.

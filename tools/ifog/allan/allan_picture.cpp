@@ -30,7 +30,7 @@ struct Extent {
   // Along the averaging times, 0 to 1.
   [[nodiscard]] double tau_at(double place) const { return first * std::pow(last / first, place); }
   [[nodiscard]] double place_of(double tau) const { return std::log(tau / first) / std::log(last / first); }
-  // Of the picture, which leaves some room above and below.
+  // Lower edge of the picture, which leaves some room above and below.
   [[nodiscard]] double bottom() const { return low / 3.0; }
   [[nodiscard]] double top() const { return high * 2.0; }
   [[nodiscard]] bool shows(double sigma) const { return sigma > bottom() && sigma < top(); }
@@ -75,7 +75,7 @@ Curve curve_of(const AllanRecord& record, Extent& extent) {
   return curve;
 }
 
-// Of a curve at τ, between its points on the logarithmic picture; 0 outside.
+// Value of a curve at τ, interpolated in logarithms; 0 outside.
 double height_at(const Curve& curve, double tau) {
   const auto above = std::lower_bound(curve.tau_s.begin(), curve.tau_s.end(), tau);
   if (curve.tau_s.empty() || above == curve.tau_s.end()) return 0.0;

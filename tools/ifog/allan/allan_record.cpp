@@ -37,7 +37,7 @@ bool is_dead(const SeriesView& values) {
   return true;
 }
 
-// Of a row, for who is told of it.
+// Time of a row as people are shown it.
 double told_time_s(const LongTable& table, std::size_t row) {
   return table.origin.told(SeriesView(table.time_s).at(row));
 }
@@ -189,7 +189,7 @@ AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const 
   if (later)
     record.notes.push_back(of.name + ": " + column.name + ": until " +
                            told_time(told_time_s(of.table, started)) +
-                           " s the filter had not started and this is the compensated rate: left out");
+                           " s the filter had not started and this is the compensated rate: dropped");
   if (const std::string motion = in_words(of.rest, of.clock.period_s, told_time_s(of.table, rows.begin));
       !motion.empty())
     record.notes.push_back(of.name + ": " + motion + "; only the rest is analysed");

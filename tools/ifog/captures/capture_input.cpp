@@ -81,7 +81,7 @@ CsvLayout CaptureInput::layout() const {
   if (!time.empty()) out.time = parsed("--time", time, CsvTime::parse);
   if (sample_rate_hz > 0.0) out.sample_rate_hz = sample_rate_hz;
   if (out.time && out.sample_rate_hz)
-    throw WrongUsage("--sample-rate", "stands beside --time, expected one of them");
+    throw WrongUsage("--sample-rate", "cannot go with --time, expected one of them");
   if (!only.empty())
     parsed("--only", only, [&out](const std::string& text) { return out.parse_only(text), 0; });
   out.keep_repeats = repeats == "keep";
@@ -141,7 +141,7 @@ DriverSettings CaptureInput::settings() const {
       throw WrongUsage("--option", "gives " + in_quotes(option.substr(0, equals)) + " twice");
   }
   if (!dbc.empty() && !out.emplace("dbc", dbc).second)
-    throw WrongUsage("--dbc", "stands beside --option dbc=…, expected one of them");
+    throw WrongUsage("--dbc", "cannot go with --option dbc=…, expected one of them");
   return out;
 }
 
@@ -201,13 +201,13 @@ void CaptureInput::tell_of(const CaptureBuilder& builder, const std::string& pat
         "or its rate\n",
         path.c_str(), builder.clock_sets());
   if (builder.repeated() != 0)
-    warn("%s: %zu samples came twice or after one that follows, and are left out\n", path.c_str(),
+    warn("%s: %zu samples came twice or after one that follows, and are dropped\n", path.c_str(),
          builder.repeated());
   if (builder.mixed() != 0)
-    warn("%s: %zu samples are of two devices that come mixed, and left out: which of them is wanted?\n",
+    warn("%s: %zu samples are of two devices that come mixed, and dropped: which of them is wanted?\n",
          path.c_str(), builder.mixed());
   if (builder.impossible() != 0)
-    warn("%s: %zu values of channels cannot be, in the unit of their name: left out\n", path.c_str(),
+    warn("%s: %zu values of channels cannot be, in the unit of their name: dropped\n", path.c_str(),
          builder.impossible());
   for (const std::string& line :
        not_measured_in_words(builder.at_full_scale(), builder.implausible(), builder.untold()))
@@ -234,9 +234,9 @@ FileKind CaptureInput::readable(const InputFile& file) const {
 RowNotes CaptureInput::column_rows(InputFile& file, RowSink& sink) const {
   const bool hdf5 = is_hdf5(file);
   if (hdf5 && !separator.empty())
-    throw WrongUsage("--separator", "stands beside an HDF5 file, expected a CSV file");
+    throw WrongUsage("--separator", "cannot go with an HDF5 file, expected a CSV file");
   if (!hdf5 && !group.empty())
-    throw WrongUsage("--group", "stands beside " + in_quotes(file.path()) + ", expected an HDF5 file");
+    throw WrongUsage("--group", "cannot go with " + in_quotes(file.path()) + ", expected an HDF5 file");
   const ReadingProgress progress(file);
   RowNotes notes = hdf5 ? read_hdf5_rows(file, group, layout(), sink) : read_csv_rows(file, layout(), sink);
   tell(notes.notices, notes.faults);

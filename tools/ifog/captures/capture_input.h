@@ -28,7 +28,7 @@ struct CaptureInput {
   std::string dbc;                   // --dbc F: the driver option `dbc`
   std::string channel;  // --channel C: of a candump log the CAN interface, of an LCM log the channel
 
-  // Of a CSV or HDF5 file that is no capture by its header, see csv_layout.h.
+  // Options for a CSV or HDF5 file that is no capture by its header, see csv_layout.h.
   std::vector<std::string> columns;  // --column NAME=HEADER:UNIT
   std::string time;                  // --time HEADER:UNIT
   double sample_rate_hz = 0.0;       // --sample-rate HZ; 0: not given
@@ -87,7 +87,7 @@ struct CaptureInput {
   // As a capture. `sha256`, where it is wanted: of the file as it was unpacked.
   [[nodiscard]] LongCapture read_long_capture(const std::string& path, std::string* sha256 = nullptr,
                                               const LongTableSink::Wanted& wanted = {}) const;
-  // Of a file of columns, also beside a driver that is there to write with.
+  // Reads a file of columns, also where a driver is given that is there to write with.
   [[nodiscard]] LongTable read_long_columns(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
 
   // What a driver's samples had besides: missing, repeated, of two devices; to the user.

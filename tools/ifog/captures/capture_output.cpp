@@ -128,7 +128,7 @@ void write_recording(const LongTable& table, const std::string& from, const std:
     else
       to_bytes(encoder, pieces, table.size(), to);
     if (encoder.rows_left_out() != 0)
-      warn("%s: %zu rows without a rate are left out: the format cannot say so\n", from.c_str(),
+      warn("%s: %zu rows without a rate are dropped: the format cannot say so\n", from.c_str(),
            encoder.rows_left_out());
     if (const double lost_s = encoder.time_lost_s();
         std::abs(lost_s) > std::max(1.5 / encoder.rate_hz(), 1e-3 * encoder.elapsed_s()))

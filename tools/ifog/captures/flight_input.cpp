@@ -200,7 +200,7 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
   CaptureInput::tell_of(builder, file_.path());
 }
 
-// Of the first file's header; who puts files of several power-ups behind one another is told by its times.
+// By the first file's header; files of several power-ups behind one another show in the times.
 std::optional<double> FlightInput::since_power_up_s(std::int64_t first_ns) const {
   const auto powered_ns = header().powered_ns;
   if (!powered_ns || first_ns < *powered_ns) return std::nullopt;

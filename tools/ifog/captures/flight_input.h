@@ -26,7 +26,7 @@ class FlightInput {
   explicit FlightInput(InputFile& file);
 
   [[nodiscard]] const FlightHeader& header() const { return reader_.header(); }
-  // Of what has been read of it.
+  // Counts of what has been read of it.
   [[nodiscard]] const FlightCounts& counts() const { return reader_.counts(); }
   [[nodiscard]] const std::string& path() const { return file_.path(); }
 

@@ -27,7 +27,7 @@ class LcmChannelMessages {
   // rates: the LCM channel that carries the sensor's rates; its status is on that with _STATUS behind it.
   explicit LcmChannelMessages(const std::string& rates) : status_(rates + "_STATUS") {}
 
-  // Of any message of the log; what carries no channels is passed over, names that no capture's column may
+  // Takes the channels of any message of the log. Others are dropped, and so are names that no capture's column may
   // have as well.
   void take(const std::string& channel, std::span<const std::uint8_t> message,
             const std::function<void(const Said&)>& sink) const;
@@ -44,7 +44,7 @@ class LcmChannelNames {
   // A row of rates came.
   void end_row() { ++rows_; }
 
-  // Of the columns that have a value in some row: whether the status says it. Its own view of a channel is
+  // For each column that has a value in some row: whether it is the status's. The status's view of a channel is
   // scaled and held to its limits, so it stands over a message of that name.
   [[nodiscard]] std::map<std::string, bool> of_status() const;
 

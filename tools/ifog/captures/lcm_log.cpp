@@ -204,13 +204,13 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
   if (axes == 0) throw std::runtime_error(path + ": has no message on channel " + wanted);
   if (left_out > 0)
     warn(
-        "%s: %zu messages on %s came twice or after one that follows, and are left out (two recorders wrote "
+        "%s: %zu messages on %s came twice or after one that follows, and are dropped (two recorders wrote "
         "at "
         "once, or a clock was set back)\n",
         path.c_str(), left_out, printable(wanted).c_str());
   if (log.places() > 0)
     warn(
-        "%s: %zu bytes in %zu place(s) are no messages and are left out, the first from byte %zu on (is the "
+        "%s: %zu bytes in %zu place(s) are no messages and are dropped, the first from byte %zu on (is the "
         "file damaged?)\n",
         path.c_str(), log.damaged(), log.places(), log.first_place());
   if (const std::size_t left = log.size() - log.at(); left > 0)

@@ -31,7 +31,7 @@ struct LongTable : RowNotes {
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
   [[nodiscard]] std::vector<std::string> names() const;
-  // Of a recording: axes and channels that never had a value. Throws std::runtime_error where nothing is
+  // Drops axes and channels of a recording that never had a value. Throws std::runtime_error where nothing is
   // left.
   void leave_out_unknown(const std::string& path);
   // The axes of rates that never had one, whose columns are gone from here on, with their references.

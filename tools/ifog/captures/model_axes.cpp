@@ -29,7 +29,7 @@ Model without_axes(Model model, const std::vector<std::string>& axes) {
     if (is_out(effect.axis)) continue;
     const bool of_rate = is_out(axis_of_rate(effect.channel));
     if (of_rate || is_out(axis_of_rate(effect.with_channel))) {
-      warn("not corrected: %s of %s%s: that axis was left out\n", effect.form.c_str(),
+      warn("not corrected: %s of %s%s: that axis was dropped\n", effect.form.c_str(),
            printable(of_rate ? effect.channel : effect.with_channel).c_str(),
            effect.axis.empty() ? "" : (" in " + effect.axis).c_str());
       continue;

@@ -47,11 +47,11 @@ bool repeats_one_value(std::span<const double> values) {
 
 void tell_stuck(const std::string& name, const std::string& axis, std::span<const double> rate) {
   const double value = *std::find_if(rate.begin(), rate.end(), [](double v) { return !std::isnan(v); });
-  warn("%s: %s is %.6g rad/s in all of its %zu rows: the axis is stuck, and left out\n", name.c_str(),
+  warn("%s: %s is %.6g rad/s in all of its %zu rows: the axis is stuck, and dropped\n", name.c_str(),
        rate_of(axis).c_str(), value, rate.size());
 }
 
-// Of one capture.
+// What is unusable in one capture.
 std::vector<std::string> unusable(const CaptureView& capture, const std::string& name) {
   std::vector<std::string> missing, stuck;
   for (std::size_t a = 0; a < capture.axes.size(); ++a)
@@ -88,7 +88,7 @@ std::string missing_in_words(const std::string& column, std::size_t missing, std
 }
 
 void tell_left_out(const std::string& name, const std::string& column, std::size_t rows) {
-  warn("%s: %s is missing in all %zu rows: the axis is left out\n", name.c_str(), column.c_str(), rows);
+  warn("%s: %s is missing in all %zu rows: the axis is dropped\n", name.c_str(), column.c_str(), rows);
 }
 
 std::string expected_axes(const std::vector<std::string>& axes) {

@@ -12,7 +12,7 @@ namespace ifog::tools {
 // What is a number is held to it from then on, decimal, finite and in its range (checked_values.h), and a
 // value that is not what the help says is refused by the same words.
 //
-// Of every option of every command, once all are there: FILE, NAME, NUMBER or N for a type that nobody has
+// Rewrites the types of every option, once all commands are there: FILE, NAME, NUMBER or N for a type that nobody has
 // named, a|b for a choice, and a range as the end of the help: "more than 0", "1 to 1000".
 void in_plain_words(CLI::App& app);
 

@@ -30,7 +30,7 @@ void redraw(std::size_t before, const std::vector<std::string>& lines);
 // so that nobody makes a complaint of it on the way.
 struct ReaderGone : std::exception {};
 
-// Of the whole run: what was said has arrived. Throws std::runtime_error with one line: full, closed, …, or
+// Makes sure that all output of the run has arrived. Throws std::runtime_error with one line: full, closed, …, or
 // ReaderGone.
 void finish_saying();
 

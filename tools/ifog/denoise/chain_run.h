@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chain as the daemon runs it, over what was recorded of one sensor: begun anew where the daemon began,
+// The chain as the daemon runs it, over what was recorded of one sensor: restarted where the daemon started,
 // its parts exchanged where it exchanged them.
 #pragma once
 
@@ -12,7 +12,7 @@
 
 namespace ifog::tools {
 
-// Of a driver's samples. path: of the recording, for messages. Throws std::runtime_error with one line where
+// Settings for a driver's samples. path: the recording's, for messages. Throws std::runtime_error with one line where
 // nobody knows the sample rate.
 [[nodiscard]] ChainSettings recording_settings(const OfflineSettings& settings, const DriverInstance& driver,
                                                const std::string& path);

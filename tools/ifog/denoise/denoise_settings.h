@@ -31,7 +31,7 @@ struct DenoiseOptions {
   [[nodiscard]] bool over_the_recording() const;
 };
 
-// Of --config; empty without.
+// The sensor of --config; empty without.
 struct ConfiguredSensor {
   SensorConfig sensor;
   std::vector<std::string> plugin_folders;

@@ -64,7 +64,7 @@ class DenoisedRows {
   bool add(double time_s, const Increment& increment, const ChainOutput& out);
   // What was kept, of all rows: smoothing fills its last two columns. After the last sample.
   [[nodiscard]] DenoisedColumns& columns() { return columns_; }
-  // Of the rows in the part from here on. name: of the capture. Throws
+  // Ends the rows of the part. name: the capture's. Throws
   // std::runtime_error with one line when there are none, or none with a value, or as OutputFile does.
   void finish(const std::string& name);
 

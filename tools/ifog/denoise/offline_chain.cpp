@@ -48,7 +48,7 @@ std::vector<std::size_t> chosen_channels(const LongTable& capture, const Capture
   return out;
 }
 
-// Of the median step, which holes cannot move; of the mean where the stamps are too coarse or scatter too
+// By the median step, which holes cannot move; by the mean where the stamps are too coarse or scatter too
 // much for that.
 double rate_of(const SeriesView& time_s, const SampleClock& clock) {
   constexpr double kCoarse = 1e-4;

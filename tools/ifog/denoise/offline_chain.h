@@ -67,7 +67,7 @@ struct OfflineResult {
   std::vector<std::string> left_out;  // effects of the model that are not corrected
   std::string model;                  // identity
   double sample_rate_hz = 0.0;        // nominal
-  // Of a flight recording: something is missing there, or its run's beginning, and the filter of the daemon
+  // For a flight recording: something is missing there, or its run's beginning, and the filter of the daemon
   // may have stood otherwise.
   std::optional<double> not_as_published_from_s;
   // Samples that the daemon's filter had as one with others, so that these rows are more than it published,
@@ -85,8 +85,8 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
                               const OfflineSettings& settings, const OfflineSink& sink);
 // The samples, times and channels that the daemon had.
 // As it was recorded: settings are asked for at the first file, at each with which the daemon took others
-// into use, and at each run of the daemon, which begins anew. `fixed`: they are one for all of it, and only
-// the runs begin anew.
+// into use, and at each restart of the daemon. `fixed`: they are one for all of it, and only
+// the restarts count.
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
                              const std::function<OfflineSettings()>& settings, bool fixed,
                              const OfflineSink& sink);

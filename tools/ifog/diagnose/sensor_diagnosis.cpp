@@ -118,7 +118,7 @@ void require_each_once(const std::vector<CaptureView>& captures, const std::vect
     }
 }
 
-// Of those that are there; 0 of none.
+// Mean of those that are there; 0 where there are none.
 double mean_of(std::span<const double> values) {
   const FiniteSum finite = finite_sum(values);
   return finite.count > 0.0 ? finite.sum / finite.count : 0.0;
@@ -174,7 +174,7 @@ auto naming_a_capture(const std::vector<std::string>& names, const Work& work) {
   try {
     return work();
   } catch (const std::invalid_argument& error) {
-    // Of several captures the diagnosis names the one it means.
+    // With several captures the diagnosis names the one it means.
     const std::string what = error.what();
     const bool named = std::any_of(names.begin(), names.end(),
                                    [&](const std::string& name) { return what.starts_with(name + ": "); });
@@ -230,7 +230,7 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
       failed[i] = std::current_exception();
     }
   });
-  // Of the first axis that has one, whichever came first.
+  // The failure of the first axis that has one, whichever came first.
   for (const std::exception_ptr& failure : failed)
     if (failure) std::rethrow_exception(failure);
   return found;
@@ -265,7 +265,7 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
         if (reads_as_difference(column.name))
           remarks.push_back(
               in_quotes(column.name) +
-              " was left out: \" - \" in a name stands for a difference of two columns; another name "
+              " was dropped: \" - \" in a name stands for a difference of two columns; another name "
               "(--column) makes it a channel");
     }
   const std::string earth = captures.size() == 1 ? vertical_rate(captures.front(), wanted.threads) : "";

@@ -36,7 +36,7 @@ class History {
 
   // Both write the file, whole. `replaced`: kept beside it first.
   void add(ModelChange change, const std::optional<Model>& replaced);
-  // Of the last change.
+  // Sets the outcome of the last change.
   void set_outcome(const std::string& outcome);
   // The last change did not come about.
   void take_back();

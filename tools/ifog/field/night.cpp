@@ -106,7 +106,7 @@ class Night {
   std::string run();
   // The recordings could not be judged: what run() gave is why.
   [[nodiscard]] bool failed() const { return failed_; }
-  // Of the model that was proposed, "": none.
+  // The model that was proposed, "": none.
   [[nodiscard]] const std::string& proposed() const { return proposed_; }
   // What came of the last adoption, in words; "" where that was not judged.
   [[nodiscard]] const std::string& promise() const { return promise_; }
@@ -136,7 +136,7 @@ std::string Night::run() {
   std::vector<RecordedFile> files = recorded_files(sensor_);
   std::erase_if(files, [](const RecordedFile& file) { return file.open; });
   const std::optional<Bookmark> bookmark = read_bookmark(field_.state(), sensor_.name);
-  // Numbers that begin anew are those of a new folder.
+  // Numbers that start again are those of a new folder.
   const bool same_folder = bookmark && !files.empty() && files.back().number >= bookmark->until;
   if (same_folder)
     std::erase_if(files, [&](const RecordedFile& file) { return file.number <= bookmark->until; });
@@ -181,7 +181,7 @@ std::string Night::judge(const std::vector<RecordedFile>& all) {
   return said;
 }
 
-// Of a recording that does not say when the sensor was switched on, the daemon's correction of a warm-up
+// In a recording that does not say when the sensor was switched on, the daemon's correction of a warm-up
 // cannot be made again: the drift that is left would be taken for another cause, and corrected twice.
 std::string Night::not_to_be_judged(const ModelInUse& in_use, const Recorded& recorded) const {
   if (!corrects_warm_up(in_use) || recorded.capture.since_power_up_s) return "";
@@ -204,7 +204,7 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
   const ModelChange last = history.changes().back();
   if (in_use.name != last.model) return;
   std::vector<RecordedFile> since = files;
-  // By their numbers, for the wall clock may have been set since; numbers that begin anew are all newer.
+  // By their numbers, for the wall clock may have been set since; numbers that start again are all newer.
   if (!last.recorded)
     std::erase_if(since, [&](const RecordedFile& file) { return file.opened < last.when; });
   else if (!since.empty() && since.back().number >= *last.recorded)

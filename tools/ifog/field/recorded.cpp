@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of NUMBER-20260131T130509Z.ifr: 2026-01-31T13:05:09Z; "" of another name.
+// 2026-01-31T13:05:09Z for NUMBER-20260131T130509Z.ifr; "" for another name.
 std::string opened_at(std::string_view name) {
   const std::size_t dash = name.find('-');
   if (dash == std::string_view::npos || name.size() < dash + 17) return "";
@@ -37,7 +37,7 @@ struct PowerUp {
   std::string boot;
 };
 
-// Of the sensor, as the file says it; one that cannot be read says nothing, and is told of when it is.
+// The sensor's power-up as the file says it; a file that cannot be read says nothing here and is reported when it is read.
 std::optional<PowerUp> power_up(const RecordedFile& file) try {
   InputFile input(file.path, std::deque<std::string>{file.path});
   const FlightInput flight(input);

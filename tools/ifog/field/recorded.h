@@ -22,11 +22,11 @@ struct RecordedFile {
   std::string opened;  // UTC, as utc_now() writes it
 };
 
-// Of the sensor's folder, by number; none where there is no such folder.
+// The files of the sensor's folder, by number; none where there is no such folder.
 [[nodiscard]] std::vector<RecordedFile> recorded_files(const SensorConfig& sensor);
 
 // Those of one power-up of the sensor, of several that with most bytes, where the recordings say when it was
-// switched on: a warm-up begins anew with each. All of them where they do not say.
+// switched on: each power-up has its own warm-up. All of them where they do not say.
 [[nodiscard]] std::vector<RecordedFile> of_one_power_up(const std::vector<RecordedFile>& files);
 
 struct Recorded {

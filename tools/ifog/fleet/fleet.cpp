@@ -129,7 +129,7 @@ class FleetRun {
     return out;
   }
 
-  // Of an earlier run: what stands there afterwards is of this one.
+  // Removes an earlier run's failure: what stands there afterwards is this one's.
   void forget_failure(std::size_t gyro) const {
     const FleetGyro& of = manifest_.gyros[gyro];
     if (const auto done = results_.done(of); done && done->failed) results_.forget_done(of);
@@ -138,7 +138,7 @@ class FleetRun {
       results_.forget_measured(of, type_.id);
   }
 
-  // What is not written anew would pass for this run's.
+  // What is not written again would pass for this run's.
   void forget_with_prior() const {
     for (const FleetGyro& gyro : manifest_.gyros) results_.forget_with_prior(gyro);
   }

@@ -44,7 +44,7 @@ void add_noise(const nlohmann::json& noise, const std::string& axis, std::size_t
   }
 }
 
-// Of each axis that the model has noise of. Throws std::runtime_error with one line.
+// Noise of each axis for which the model has it. Throws std::runtime_error with one line.
 std::map<std::string, nlohmann::json> noise_by_axis(const std::string& path, const Model& model) {
   try {
     const nlohmann::json noise = parse_json(read_text_file(path), path).at("noise");

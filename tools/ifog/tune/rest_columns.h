@@ -11,7 +11,7 @@
 
 namespace ifog::tools {
 
-// Of all axes together. Throws std::runtime_error with one line, path in front, where the sensor was mostly
+// Rest of all axes together. Throws std::runtime_error with one line, path in front, where the sensor was mostly
 // turned.
 [[nodiscard]] Rest mostly_at_rest(const CaptureView& capture, double period_s, const std::string& path);
 

@@ -110,7 +110,7 @@ void print(const Tuning& tuning) {
   const TunedModel& chosen = tuning.models[tuning.chosen];
   say("\n%s\n", chosen.settings.state.c_str());
   for (std::size_t i = 0; i < tuning.chosen; ++i)
-    say("  %s is likelier: passed over, %s\n", tuning.models[i].settings.state.c_str(),
+    say("  %s is likelier: rejected, %s\n", tuning.models[i].settings.state.c_str(),
         tuning.models[i].passed_over.c_str());
   for (const TunedFigure& f : chosen.figures) {
     if (f.std_error)
@@ -326,7 +326,7 @@ void run(const TuneArguments& options) {
   }
   say("%s: %zu samples at %.6g Hz%s\n", options.capture.c_str(), tuning.samples, 1.0 / period,
       capture.axes.size() > 1 ? ", all axes under one model" : "");
-  if (left > 0) say("the last %zu rows are left out; --samples %zu takes all\n", left, capture.size());
+  if (left > 0) say("the last %zu rows are dropped; --samples %zu takes all\n", left, capture.size());
   for (const std::string& note : notes) say("note: %s\n", note.c_str());
   print(tuning);
   print_held_out(tuning, capture.axes);
