@@ -43,7 +43,8 @@ void SensorView::take(const rate_t& message) {
 
 void SensorView::take(status_t message) {
   status_ = std::move(message);
-  came_ = true;
+  came_ = status_came_ = true;
+  status_age_s_ = 0.0;
 }
 
 void SensorView::end_interval(double seconds) {
@@ -51,6 +52,7 @@ void SensorView::end_interval(double seconds) {
   judged_ = true;
   shown_ = shown_ || in_interval_ > 0 || status_;
   silent_s_ = std::exchange(came_, false) ? 0.0 : silent_s_ + seconds;
+  status_age_s_ = std::exchange(status_came_, false) ? 0.0 : status_age_s_ + seconds;
   flagged_before_ = std::exchange(flagged_, {});
   axes_.clear();
   if (in_interval_ > 0) history_.resize(sums_.size());

@@ -24,6 +24,8 @@ struct AxisView {
 
 class SensorView {
  public:
+  // Two statuses have not come: a daemon that was killed says nothing of its end.
+  static constexpr double kStale_s = 2.5;
   // Intervals the spark line remembers.
   static constexpr std::size_t kRemembered = 120;
 
@@ -39,10 +41,17 @@ class SensorView {
   [[nodiscard]] bool shown() const { return shown_; }    // an interval with rates or a status has ended
   // The last message came so long ago, s, at the end of the interval.
   [[nodiscard]] double silent_s() const { return silent_s_; }
+  [[nodiscard]] bool silent() const { return silent_s_ > kStale_s; }
+  // Null: none came, or so long ago, s, that it says nothing of now.
+  [[nodiscard]] const status_t* live_status() const {
+    return status_ && status_age_s_ <= kStale_s ? &*status_ : nullptr;
+  }
+  [[nodiscard]] double status_age_s() const { return status_age_s_; }
   [[nodiscard]] bool two_publishers() const { return way_.two_publishers(); }
   [[nodiscard]] double message_rate_hz() const { return rate_hz_; }
   [[nodiscard]] const std::string& model() const { return model_; }
   [[nodiscard]] const std::vector<AxisView>& axes() const { return axes_; }  // none: nothing came
+  [[nodiscard]] std::size_t axis_count() const { return sums_.size(); }      // of the last message
   [[nodiscard]] const std::deque<double>& history(std::size_t axis) const { return history_[axis]; }
   [[nodiscard]] const std::optional<status_t>& status() const { return status_; }
 
@@ -64,7 +73,7 @@ class SensorView {
 
   std::int64_t messages_ = 0, in_interval_ = 0;
   bool came_ = false;  // anything, in the interval
-  double silent_s_ = 0.0;
+  double silent_s_ = 0.0, status_age_s_ = 0.0;
   bool judged_ = false, shown_ = false;
   double rate_hz_ = 0.0;
   LcmLoss way_;
@@ -74,6 +83,7 @@ class SensorView {
   std::vector<std::deque<double>> history_;
   std::array<std::int64_t, kFlagNames.size()> flagged_{}, flagged_before_{};
   std::optional<status_t> status_;
+  bool status_came_ = false;  // in the interval
   std::vector<std::int64_t> forgotten_;
 };
 

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/ifog/monitor/known_sensor.h"
 #include "tools/ifog/monitor/sensor_view.h"
 
 namespace ifog::tools {
@@ -23,8 +24,20 @@ struct LineStyle {
   RateUnit unit = RateUnit::automatic;
 };
 
-// Names from the network in them are as they came, but without control characters.
-std::vector<std::string> view_lines(std::string_view name, const SensorView& sensor, const LineStyle& style);
+enum class Tone { plain, figure, good, warning, bad };  // figure: an axis's
+const char* tone_name(Tone tone);
+
+struct ShownLine {
+  std::string text;
+  Tone tone = Tone::plain;
+};
+
+// How the sensor does, in a word.
+Tone tone_of(const SensorView& sensor);
+
+// Names from the network in them are as they came, but without control characters. `known`: null for nothing.
+std::vector<ShownLine> view_lines(std::string_view name, const SensorView& sensor, const LineStyle& style,
+                                  const KnownSensor* known = nullptr);
 
 // Columns that a text takes on a terminal: bytes that begin a character.
 std::size_t columns_of(std::string_view text);

@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// Asks once a second, draws, and shows nothing as of now that is not. Whatever it is told is text: names come from the network.
+'use strict';
+const DEGREE = Math.PI / 180, HOURLY = DEGREE / 3600, STALE_S = 3;
+let chosen = '', answer = null, answered = -Infinity;
+const $ = id => document.getElementById(id);
+const colour = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
+const axisColour = name => colour(['x', 'y', 'z'].includes(name) ? name : 'x');
+
+function add(parent, tag, text, kind) {
+  const made = document.createElement(tag);
+  if (text !== undefined) made.textContent = text;
+  if (kind) made.className = kind;
+  parent.append(made);
+  return made;
+}
+
+// °/h for a rate that people call slow, else °/s; of the figures and the picture alike.
+function unitOf(values) {
+  const most = values.reduce((m, v) => v === null ? m : Math.max(m, Math.abs(v)), 0);
+  return most < 0.1 * DEGREE ? { is: HOURLY, name: '°/h', digits: 4 } : { is: DEGREE, name: '°/s', digits: 5 };
+}
+const number = (value, unit) => typeof value === 'number' ? (value / unit.is).toFixed(unit.digits) : '–';
+
+// The step of a scale with at most so many: 1, 2 or 5 times a power of ten.
+function stepOf(span, most) {
+  const raw = span / most, ten = 10 ** Math.floor(Math.log10(raw));
+  return ten * [1, 2, 5, 10].find(n => n * ten >= raw * 0.999);
+}
+
+// A canvas as wide as it is shown, in CSS pixels, emptied.
+function sheet(canvas) {
+  const box = canvas.getBoundingClientRect(), dense = window.devicePixelRatio || 1;
+  canvas.width = Math.round(box.width * dense);
+  canvas.height = Math.round(box.height * dense);
+  const pen = canvas.getContext('2d');
+  pen.scale(dense, dense);
+  pen.font = '12px system-ui, "DejaVu Sans", sans-serif';
+  return { pen, width: box.width, height: box.height };
+}
+
+function grid({ pen }, from, to, text, at) {
+  pen.strokeStyle = colour('grid');
+  pen.fillStyle = colour('faint');
+  pen.lineWidth = 1;
+  pen.beginPath();
+  pen.moveTo(...from);
+  pen.lineTo(...to);
+  pen.stroke();
+  pen.fillText(text, ...at);
+}
+
+function line({ pen }, points, of) {
+  pen.strokeStyle = of;
+  pen.lineWidth = 2;
+  pen.beginPath();
+  let down = false;
+  for (const point of points) {
+    if (point) down ? pen.lineTo(...point) : pen.moveTo(...point);
+    down = Boolean(point);
+  }
+  pen.stroke();
+}
+
+// The last minute: raw from its least to its greatest within a bin, denoised as a line. A place without samples stays empty.
+function drawMinute(canvas, axis, bin_s) {
+  const page = sheet(canvas), { pen, width, height } = page;
+  const seen = [...axis.low, ...axis.high, ...axis.denoised].filter(v => v !== null);
+  if (!seen.length) return;
+  const unit = unitOf(seen), least = seen.reduce((a, b) => Math.min(a, b)) / unit.is, most = seen.reduce((a, b) => Math.max(a, b)) / unit.is;
+  const room = Math.max((most - least) * 0.06, Math.abs(most) * 1e-6, 1e-9), low = least - room, high = most + room;
+  const step = stepOf(high - low, height / 36), digits = Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9)));
+  const labels = [];
+  for (let v = Math.ceil(low / step) * step; v <= high; v += step) labels.push([v, v.toFixed(digits)]);
+  const left = Math.max(...labels.map(([, text]) => pen.measureText(text).width), 20) + 8, foot = height - 18, last = axis.denoised.length;
+  const x = i => left + (i + 0.5) / last * (width - left), y = v => foot - (v - low) / (high - low) * (foot - 8);
+  for (const [v, text] of labels) grid(page, [left, y(v)], [width, y(v)], text, [0, y(v) + 4]);
+  for (const ago of [60, 45, 30, 15, 0]) {
+    const at = left + (1 - ago / (last * bin_s)) * (width - left), text = ago ? `−${ago} s` : 'now';
+    const wide = pen.measureText(text).width;
+    grid(page, [at, foot], [at, foot + 4], text, [Math.min(Math.max(at - wide / 2, left), width - wide), height - 3]);
+  }
+  pen.fillStyle = colour('raw');
+  const bar = Math.max(1, (width - left) / last);
+  axis.low.forEach((v, i) => {
+    if (v === null || axis.high[i] === null) return;
+    const top = y(axis.high[i] / unit.is);
+    pen.fillRect(x(i) - bar / 2, top, bar + 0.5, Math.max(1, y(v / unit.is) - top));
+  });
+  line(page, axis.denoised.map((v, i) => v === null ? null : [x(i), y(v / unit.is)]), axisColour(axis.name));
+  return unit;
+}
+
+function drawAllan(sensor) {
+  const curves = sensor.axes.map(axis => ({ name: axis.name, points: axis.allan.map((v, k) => [sensor.allan_tau0_s * 2 ** k, v / HOURLY])
+    .filter(([tau, v]) => tau > 0 && v > 0) })).filter(curve => curve.points.length);
+  $('allan').hidden = !curves.length;
+  if (!curves.length) return;
+  const page = sheet($('allan').querySelector('canvas')), { pen, width, height } = page, all = curves.flatMap(curve => curve.points);
+  const ends = k => [Math.floor(Math.min(...all.map(p => Math.log10(p[k])))), Math.ceil(Math.max(...all.map(p => Math.log10(p[k]))) + 1e-9)];
+  const [[left10, right10], [low10, high10]] = [ends(0), ends(1)], left = 52, foot = height - 20;
+  const x = tau => left + (Math.log10(tau) - left10) / (right10 - left10) * (width - left - 16), y = v => foot - (Math.log10(v) - low10) / (high10 - low10) * (foot - 8);
+  const name = k => k < -3 || k > 4 ? `1e${k}` : String(Number((10 ** k).toPrecision(1)));
+  for (let k = low10; k <= high10; ++k) grid(page, [left, y(10 ** k)], [width, y(10 ** k)], name(k), [0, y(10 ** k) + 4]);
+  for (let k = left10; k <= right10; ++k) grid(page, [x(10 ** k), 8], [x(10 ** k), foot], name(k), [x(10 ** k) - 8, height - 4]);
+  for (const { name: axis, points } of curves) {
+    line(page, points.map(([tau, v]) => [x(tau), y(v)]), axisColour(axis));
+    pen.fillStyle = axisColour(axis);
+    for (const [tau, v] of points) pen.fillRect(x(tau) - 2, y(v) - 2, 4, 4);
+    const [tau, v] = points.at(-1);
+    pen.fillText(axis === 'rate' ? '' : axis, x(tau) + 5, y(v) + 4);
+  }
+}
+
+function drawAxes(sensor, stale) {
+  const place = $('axes');
+  while (place.children.length > sensor.axes.length) place.lastChild.remove();
+  while (place.children.length < sensor.axes.length) {
+    const made = add(place, 'section');
+    add(made, 'p', undefined, 'figures');
+    add(made, 'canvas').setAttribute('role', 'img');
+    add(made, 'p', undefined, 'legend');
+  }
+  sensor.axes.forEach((axis, a) => {
+    const [figures, canvas, legend] = place.children[a].children, now = stale ? {} : axis;
+    const unit = unitOf([now.rate_radps ?? 0]), picture = drawMinute(canvas, axis, sensor.bin_s);
+    figures.replaceChildren();
+    add(figures, 'b', `${axis.name} ${number(now.rate_radps, unit)} ${unit.name}`).style.color = axisColour(axis.name);
+    const noise = unitOf([now.raw_noise_radps ?? 0]);
+    add(figures, 'span', `noise ${number(now.noise_radps, noise)} (raw ${number(now.raw_noise_radps, noise)}) ${noise.name}`);
+    add(figures, 'span', `angle ${number(now.angle_rad, { is: DEGREE, digits: 6 })}°`);
+    legend.textContent = picture ? `last minute, ${picture.name}: denoised (line) over the span of raw` : 'no samples in the last minute';
+    canvas.setAttribute('aria-label', `${axis.name}: ${legend.textContent}`);
+  });
+}
+
+function show() {
+  const silent_s = (performance.now() - answered) / 1000, stale = silent_s > STALE_S || (answer && answer.age_s > STALE_S);
+  document.body.classList.toggle('stale', Boolean(stale));
+  const now = $('now');
+  now.className = stale ? 'bad' : '';
+  if (!answer) return void (now.textContent = stale && silent_s !== Infinity ? 'no answer from ifog monitor' : 'connecting');
+  now.textContent = silent_s > STALE_S ? `no answer from ifog monitor for ${Math.round(silent_s)} s: what stands here is old` :
+    stale ? `ifog monitor is held up for ${Math.round(answer.age_s)} s` : answer.waiting;
+  const sensor = answer.sensor;
+  $('sensors').replaceChildren();
+  for (const [name, tone] of answer.sensors) {
+    const button = add($('sensors'), 'button', name, stale ? 'plain' : tone);
+    button.setAttribute('aria-pressed', String(name === answer.chosen));
+    button.onclick = () => { chosen = name; ask(); };
+  }
+  if (!sensor) return;
+  drawAxes(sensor, stale);
+  drawAllan(sensor);
+  $('lines').replaceChildren();
+  if (!stale) for (const [tone, text] of sensor.lines) add($('lines'), 'p', text.trim(), tone);
+}
+
+async function ask() {
+  try {
+    const got = await fetch('data?sensor=' + encodeURIComponent(chosen), { signal: AbortSignal.timeout(2500) });
+    if (!got.ok) throw new Error(got.statusText);
+    answer = await got.json();
+    answered = performance.now();
+  } catch { /* show() says since when */ }
+  show();
+}
+
+async function keepAsking() {
+  await ask();
+  setTimeout(keepAsking, 1000);
+}
+document.addEventListener('visibilitychange', show);
+window.addEventListener('resize', show);
+matchMedia('(prefers-color-scheme: dark)').addEventListener('change', show);
+keepAsking();
