@@ -7,7 +7,7 @@
 #include <string>
 
 #include "tools/ifog/field/field.h"
-#include "tools/ifog/monitor/known_sensor.h"
+#include "tools/ifog/monitor/view_lines.h"
 
 namespace ifog::tools {
 

@@ -109,8 +109,6 @@ void Monitor::take_message(const lcm_recv_buf_t& buffer, const std::string& name
       ++crowded_;
       return;
     }
-    if constexpr (std::is_same_v<Message, rate_t>)
-      if (web_) web_->take(name, message);
     sensors_[name].take(std::move(message));
   }
 }

@@ -7,6 +7,7 @@
 #include <deque>
 #include <ifog/rate_t.hpp>
 #include <ifog/status_t.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,8 +27,11 @@ class SensorView {
  public:
   // Two statuses have not come: a daemon that was killed says nothing of its end.
   static constexpr double kStale_s = 2.5;
-  // Intervals the spark line remembers.
+  // Intervals that are remembered.
   static constexpr std::size_t kRemembered = 120;
+  struct Second {
+    double raw_low_radps, raw_high_radps, rate_radps;  // NaN: nothing came
+  };
 
   void take(const rate_t& message);
   void take(status_t message);
@@ -52,7 +56,7 @@ class SensorView {
   [[nodiscard]] const std::string& model() const { return model_; }
   [[nodiscard]] const std::vector<AxisView>& axes() const { return axes_; }  // none: nothing came
   [[nodiscard]] std::size_t axis_count() const { return sums_.size(); }      // of the last message
-  [[nodiscard]] const std::deque<double>& history(std::size_t axis) const { return history_[axis]; }
+  [[nodiscard]] const std::deque<Second>& history(std::size_t axis) const { return history_[axis]; }
   [[nodiscard]] const std::optional<status_t>& status() const { return status_; }
 
   struct Count {
@@ -68,6 +72,7 @@ class SensorView {
   struct Sums {
     std::int64_t count = 0, raw_count = 0;
     double mean = 0.0, square = 0.0, raw_mean = 0.0, raw_square = 0.0, angle = 0.0;
+    double raw_low = std::numeric_limits<double>::quiet_NaN(), raw_high = raw_low;
   };
   [[nodiscard]] std::vector<Count> all_losses() const;
 
@@ -80,7 +85,7 @@ class SensorView {
   std::string model_;
   std::vector<Sums> sums_;
   std::vector<AxisView> axes_;
-  std::vector<std::deque<double>> history_;
+  std::vector<std::deque<Second>> history_;
   std::array<std::int64_t, kFlagNames.size()> flagged_{}, flagged_before_{};
   std::optional<status_t> status_;
   bool status_came_ = false;  // in the interval

@@ -83,11 +83,13 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
   const std::size_t taken = columns_of(out) + 2;
   if (taken + kLeastSpark > style.width) return out;
   const std::size_t room = std::min(kMostSpark, style.width - taken);
-  const SparkLine whole = spark_line(sensor.history(a), room);
+  std::vector<double> rates;
+  for (const SensorView::Second& each : sensor.history(a)) rates.push_back(each.rate_radps);
+  const SparkLine whole = spark_line(rates, room);
   const std::size_t for_scale = columns_of(scale(whole));
   if (!std::isfinite(whole.span) || taken + for_scale + kLeastSpark > style.width)
     return out + "  " + whole.text;
-  const SparkLine line = spark_line(sensor.history(a), std::min(room, style.width - taken - for_scale));
+  const SparkLine line = spark_line(rates, std::min(room, style.width - taken - for_scale));
   return out + "  " + line.text + scale(line);
 }
 

@@ -2,11 +2,11 @@
 // A sensor as lines of text, for a screen of any width and for a file.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "tools/ifog/monitor/known_sensor.h"
 #include "tools/ifog/monitor/sensor_view.h"
 
 namespace ifog::tools {
@@ -22,6 +22,15 @@ struct LineStyle {
   std::size_t width = 0;  // columns; 0: as wide as it takes
   bool details = true;    // latency, books, channels
   RateUnit unit = RateUnit::automatic;
+};
+
+// What this computer's own files say of a sensor that is heard: its messages carry neither driver nor transport, and of the model
+// an identity.
+struct KnownSensor {
+  std::string driver;           // "kvh1750, serial /dev/ttyUSB0"
+  std::string model, identity;  // "nose.toml of 2026-11-27 01:30", and that model's identity; "" without one
+  std::string proposal;         // that waits, in one line; "" for none
+  std::set<std::string> channels;  // configured besides those of its own frames
 };
 
 enum class Tone { plain, figure, good, warning, bad };  // figure: an axis's

@@ -62,32 +62,25 @@ function line({ pen }, points, of) {
   pen.stroke();
 }
 
-// The last minute: raw from its least to its greatest within a bin, denoised as a line. A place without samples stays empty.
-function drawMinute(canvas, axis, bin_s) {
-  const page = sheet(canvas), { pen, width, height } = page;
-  const seen = [...axis.low, ...axis.high, ...axis.denoised].filter(v => v !== null);
+// The last two minutes: raw from the least to the greatest of each second, denoised as a line. A second without samples stays empty.
+function drawMinutes(canvas, axis) {
+  const page = sheet(canvas), { pen, width, height } = page, seen = axis.seconds.flat().filter(v => v !== null), MOST = 120;
   if (!seen.length) return;
-  const unit = unitOf(seen), least = seen.reduce((a, b) => Math.min(a, b)) / unit.is, most = seen.reduce((a, b) => Math.max(a, b)) / unit.is;
+  const unit = unitOf(seen), least = Math.min(...seen) / unit.is, most = Math.max(...seen) / unit.is;
   const room = Math.max((most - least) * 0.06, Math.abs(most) * 1e-6, 1e-9), low = least - room, high = most + room;
   const step = stepOf(high - low, height / 36), digits = Math.max(0, Math.min(9, -Math.floor(Math.log10(step) + 1e-9)));
   const labels = [];
   for (let v = Math.ceil(low / step) * step; v <= high; v += step) labels.push([v, v.toFixed(digits)]);
-  const left = Math.max(...labels.map(([, text]) => pen.measureText(text).width), 20) + 8, foot = height - 18, last = axis.denoised.length;
-  const x = i => left + (i + 0.5) / last * (width - left), y = v => foot - (v - low) / (high - low) * (foot - 8);
-  for (const [v, text] of labels) grid(page, [left, y(v)], [width, y(v)], text, [0, y(v) + 4]);
-  for (const ago of [60, 45, 30, 15, 0]) {
-    const at = left + (1 - ago / (last * bin_s)) * (width - left), text = ago ? `−${ago} s` : 'now';
-    const wide = pen.measureText(text).width;
+  const left = Math.max(...labels.map(([, text]) => pen.measureText(text).width), 20) + 8, foot = height - 18, bar = (width - left) / MOST;
+  const x = i => width - (axis.seconds.length - i - 0.5) * bar, y = v => foot - (v / unit.is - low) / (high - low) * (foot - 8);
+  for (const [v, text] of labels) grid(page, [left, y(v * unit.is)], [width, y(v * unit.is)], text, [0, y(v * unit.is) + 4]);
+  for (const ago of [120, 90, 60, 30, 0]) {
+    const at = width - ago * bar, text = ago ? `−${ago} s` : 'now', wide = pen.measureText(text).width;
     grid(page, [at, foot], [at, foot + 4], text, [Math.min(Math.max(at - wide / 2, left), width - wide), height - 3]);
   }
   pen.fillStyle = colour('raw');
-  const bar = Math.max(1, (width - left) / last);
-  axis.low.forEach((v, i) => {
-    if (v === null || axis.high[i] === null) return;
-    const top = y(axis.high[i] / unit.is);
-    pen.fillRect(x(i) - bar / 2, top, bar + 0.5, Math.max(1, y(v / unit.is) - top));
-  });
-  line(page, axis.denoised.map((v, i) => v === null ? null : [x(i), y(v / unit.is)]), axisColour(axis.name));
+  axis.seconds.forEach(([from, to], i) => from !== null && pen.fillRect(x(i) - bar / 2, y(to), bar + 0.5, Math.max(1, y(from) - y(to))));
+  line(page, axis.seconds.map(([, , v], i) => v === null ? null : [x(i), y(v)]), axisColour(axis.name));
   return unit;
 }
 
@@ -123,13 +116,13 @@ function drawAxes(sensor, stale) {
   }
   sensor.axes.forEach((axis, a) => {
     const [figures, canvas, legend] = place.children[a].children, now = stale ? {} : axis;
-    const unit = unitOf([now.rate_radps ?? 0]), picture = drawMinute(canvas, axis, sensor.bin_s);
+    const unit = unitOf([now.rate_radps ?? 0]), picture = drawMinutes(canvas, axis);
     figures.replaceChildren();
     add(figures, 'b', `${axis.name} ${number(now.rate_radps, unit)} ${unit.name}`).style.color = axisColour(axis.name);
     const noise = unitOf([now.raw_noise_radps ?? 0]);
     add(figures, 'span', `noise ${number(now.noise_radps, noise)} (raw ${number(now.raw_noise_radps, noise)}) ${noise.name}`);
     add(figures, 'span', `angle ${number(now.angle_rad, { is: DEGREE, digits: 6 })}°`);
-    legend.textContent = picture ? `last minute, ${picture.name}: denoised (line) over the span of raw` : 'no samples in the last minute';
+    legend.textContent = picture ? `last two minutes, ${picture.name}: denoised (line), raw from its least to its greatest` : 'no samples in the last two minutes';
     canvas.setAttribute('aria-label', `${axis.name}: ${legend.textContent}`);
   });
 }
