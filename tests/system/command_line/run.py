@@ -265,6 +265,16 @@ class Checks:
             has(row, "rule", "settings", "rmse_radps", "std_radps", "adev_radps")
             has(row["adev_radps"], "0.1", "1", "10", "100")
             assert row["rmse_radps"] is None, "no reference was given"
+        # The verdict, against the table's own figures; and the picture shows what the others differ.
+        best = min(found["rows"], key=lambda row: row["adev_radps"]["1"])
+        verdict, = found["verdict"]
+        assert verdict["figure"] == "adev_radps 1" and verdict["best"] == best["rule"] and verdict["best_radps"] == best["adev_radps"]["1"], verdict
+        for row in found["rows"]:
+            near(row["above_best"], row["adev_radps"]["1"] / best["adev_radps"]["1"] - 1, 1e-9, "above_best of " + row["rule"])
+        picture = self.folder / "compare.svg"
+        said = ifog("compare", self.folder / "white.csv", "--plot", picture)
+        assert verdict["text"] in said and verdict["text"] in picture.read_text(), said
+        assert picture.read_text().count(" less " + best["rule"]) == len(rules) - 1, "a row of differences for each other rule"
 
     def check_diagnose_and_correct(self):
         """Found, written, and gone from the capture's own residual: through `denoise --model`, causally."""
