@@ -193,6 +193,13 @@ file_s = 3
                    "as CSV likewise, and nothing of what it does not know")
         self.check("no proposal waits" in self.run("proposals", "--config", self.config), "no proposal to begin with")
         self.check("no recording has been closed" in self.run("night", "--config", self.config), "a night without recordings is one line")
+        os.makedirs(self.path("record/nose"))
+        half = self.path("record/nose/000001-20260131T130509Z.ifr.open")
+        with open(half, "wb") as file:
+            file.truncate(5_000_000)
+        self.check("closes at 16.0 MB or at 2026-01-31T13:05:12Z, which is over: does ifogd run?" in self.run("night", "--config", self.config),
+                   "and of one that is being written says when it will be closed")
+        os.remove(half)
 
     def first_day(self):
         self.start()
