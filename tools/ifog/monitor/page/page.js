@@ -7,10 +7,8 @@ const $ = id => document.getElementById(id);
 const colour = name => getComputedStyle(document.documentElement).getPropertyValue('--' + name).trim();
 const axisColour = name => colour(['x', 'y', 'z'].includes(name) ? name : 'x');
 
-function add(parent, tag, text, kind) {
-  const made = document.createElement(tag);
-  if (text !== undefined) made.textContent = text;
-  if (kind) made.className = kind;
+function add(parent, tag, text = '', kind = '') {
+  const made = Object.assign(document.createElement(tag), { textContent: text, className: kind });
   parent.append(made);
   return made;
 }
@@ -39,20 +37,15 @@ function sheet(canvas) {
   return { pen, width: box.width, height: box.height };
 }
 
-function grid({ pen }, from, to, text, at) {
-  pen.strokeStyle = colour('grid');
+function grid(pen, from, to, text, at) {
+  line(pen, [from, to], colour('grid'), 1);
   pen.fillStyle = colour('faint');
-  pen.lineWidth = 1;
-  pen.beginPath();
-  pen.moveTo(...from);
-  pen.lineTo(...to);
-  pen.stroke();
   pen.fillText(text, ...at);
 }
 
-function line({ pen }, points, of) {
+function line(pen, points, of, wide = 2) {
   pen.strokeStyle = of;
-  pen.lineWidth = 2;
+  pen.lineWidth = wide;
   pen.beginPath();
   let down = false;
   for (const point of points) {
@@ -64,7 +57,7 @@ function line({ pen }, points, of) {
 
 // The last two minutes: raw from the least to the greatest of each second, denoised as a line. A second without samples stays empty.
 function drawMinutes(canvas, axis) {
-  const page = sheet(canvas), { pen, width, height } = page, seen = axis.seconds.flat().filter(v => v !== null), MOST = 120;
+  const { pen, width, height } = sheet(canvas), seen = axis.seconds.flat().filter(v => v !== null), MOST = 120;
   if (!seen.length) return;
   const unit = unitOf(seen), least = Math.min(...seen) / unit.is, most = Math.max(...seen) / unit.is;
   const room = Math.max((most - least) * 0.06, Math.abs(most) * 1e-6, 1e-9), low = least - room, high = most + room;
@@ -73,14 +66,14 @@ function drawMinutes(canvas, axis) {
   for (let v = Math.ceil(low / step) * step; v <= high; v += step) labels.push([v, v.toFixed(digits)]);
   const left = Math.max(...labels.map(([, text]) => pen.measureText(text).width), 20) + 8, foot = height - 18, bar = (width - left) / MOST;
   const x = i => width - (axis.seconds.length - i - 0.5) * bar, y = v => foot - (v / unit.is - low) / (high - low) * (foot - 8);
-  for (const [v, text] of labels) grid(page, [left, y(v * unit.is)], [width, y(v * unit.is)], text, [0, y(v * unit.is) + 4]);
+  for (const [v, text] of labels) grid(pen, [left, y(v * unit.is)], [width, y(v * unit.is)], text, [0, y(v * unit.is) + 4]);
   for (const ago of [120, 90, 60, 30, 0]) {
     const at = width - ago * bar, text = ago ? `−${ago} s` : 'now', wide = pen.measureText(text).width;
-    grid(page, [at, foot], [at, foot + 4], text, [Math.min(Math.max(at - wide / 2, left), width - wide), height - 3]);
+    grid(pen, [at, foot], [at, foot + 4], text, [Math.min(Math.max(at - wide / 2, left), width - wide), height - 3]);
   }
   pen.fillStyle = colour('raw');
   axis.seconds.forEach(([from, to], i) => from !== null && pen.fillRect(x(i) - bar / 2, y(to), bar + 0.5, Math.max(1, y(from) - y(to))));
-  line(page, axis.seconds.map(([, , v], i) => v === null ? null : [x(i), y(v)]), axisColour(axis.name));
+  line(pen, axis.seconds.map(([, , v], i) => v === null ? null : [x(i), y(v)]), axisColour(axis.name));
   return unit;
 }
 
@@ -89,15 +82,15 @@ function drawAllan(sensor) {
     .filter(([tau, v]) => tau > 0 && v > 0) })).filter(curve => curve.points.length);
   $('allan').hidden = !curves.length;
   if (!curves.length) return;
-  const page = sheet($('allan').querySelector('canvas')), { pen, width, height } = page, all = curves.flatMap(curve => curve.points);
+  const { pen, width, height } = sheet($('allan').querySelector('canvas')), all = curves.flatMap(curve => curve.points);
   const ends = k => [Math.floor(Math.min(...all.map(p => Math.log10(p[k])))), Math.ceil(Math.max(...all.map(p => Math.log10(p[k]))) + 1e-9)];
   const [[left10, right10], [low10, high10]] = [ends(0), ends(1)], left = 52, foot = height - 20;
   const x = tau => left + (Math.log10(tau) - left10) / (right10 - left10) * (width - left - 16), y = v => foot - (Math.log10(v) - low10) / (high10 - low10) * (foot - 8);
   const name = k => k < -3 || k > 4 ? `1e${k}` : String(Number((10 ** k).toPrecision(1)));
-  for (let k = low10; k <= high10; ++k) grid(page, [left, y(10 ** k)], [width, y(10 ** k)], name(k), [0, y(10 ** k) + 4]);
-  for (let k = left10; k <= right10; ++k) grid(page, [x(10 ** k), 8], [x(10 ** k), foot], name(k), [x(10 ** k) - 8, height - 4]);
+  for (let k = low10; k <= high10; ++k) grid(pen, [left, y(10 ** k)], [width, y(10 ** k)], name(k), [0, y(10 ** k) + 4]);
+  for (let k = left10; k <= right10; ++k) grid(pen, [x(10 ** k), 8], [x(10 ** k), foot], name(k), [x(10 ** k) - 8, height - 4]);
   for (const { name: axis, points } of curves) {
-    line(page, points.map(([tau, v]) => [x(tau), y(v)]), axisColour(axis));
+    line(pen, points.map(([tau, v]) => [x(tau), y(v)]), axisColour(axis));
     pen.fillStyle = axisColour(axis);
     for (const [tau, v] of points) pen.fillRect(x(tau) - 2, y(v) - 2, 4, 4);
     const [tau, v] = points.at(-1);
@@ -110,9 +103,9 @@ function drawAxes(sensor, stale) {
   while (place.children.length > sensor.axes.length) place.lastChild.remove();
   while (place.children.length < sensor.axes.length) {
     const made = add(place, 'section');
-    add(made, 'p', undefined, 'figures');
+    add(made, 'p', '', 'figures');
     add(made, 'canvas').setAttribute('role', 'img');
-    add(made, 'p', undefined, 'legend');
+    add(made, 'p', '', 'legend');
   }
   sensor.axes.forEach((axis, a) => {
     const [figures, canvas, legend] = place.children[a].children, now = stale ? {} : axis;

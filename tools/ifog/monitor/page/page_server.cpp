@@ -19,6 +19,8 @@
 #include <thread>
 #include <utility>
 
+#include "page_source.h"
+
 namespace ifog::tools {
 namespace {
 
@@ -165,8 +167,10 @@ class PageServer::Server final : public httplib::Server {
     if (request.method != "GET" && request.method != "HEAD") return refuse(405, "read only\n");
     if (request.path == "/data")
       return response.set_content(data_(request.get_param_value("sensor")), "application/json");
-    for (const PagePart& part : kPageParts)
-      if (request.path == part.path) return response.set_content(part.text, part.size, part.type);
+    if (request.path == "/") return response.set_content(kPageHtml, "text/html; charset=utf-8");
+    if (request.path == "/page.css") return response.set_content(kPageStyle, "text/css; charset=utf-8");
+    if (request.path == "/page.js")
+      return response.set_content(kPageScript, "text/javascript; charset=utf-8");
     refuse(404, "expected /\n");
   }
 

@@ -3,7 +3,6 @@
 // once and the others wait; each gets one answer, within kPatience and for a request of at most kMostBytes.
 #pragma once
 
-#include <array>
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -12,13 +11,6 @@
 #include <string>
 
 namespace ifog::tools {
-
-// The page's own files, as the build takes them from beside this one.
-struct PagePart {
-  const char *path, *type, *text;
-  std::size_t size;
-};
-extern const std::array<PagePart, 3> kPageParts;
 
 struct PageAddress {
   std::string host;
