@@ -31,6 +31,21 @@ void attach(const std::string& path, bool of_state, std::size_t& room, FlightHea
 } catch (const std::runtime_error&) {
 }
 
+// Of a log that can be looked into before it is read: a FIFO cannot.
+std::string interface_of(const TransportConfig& transport, const DriverInstance& driver) {
+  std::error_code error;
+  if (!transport.interface.empty() || !std::filesystem::is_regular_file(transport.path, error))
+    return transport.interface;
+  try {
+    return first_interface(InputFile(transport.path).head(),
+                           [&](const ifog_can_frame& frame) { return wants(driver.description(), frame); });
+  } catch (const std::runtime_error&) {
+    return {};
+  }
+}
+
+}  // namespace
+
 std::string source_of(const TransportConfig& transport) {
   switch (transport.kind) {
     case TransportConfig::Kind::serial:
@@ -46,21 +61,6 @@ std::string source_of(const TransportConfig& transport) {
   }
   return transport.path;
 }
-
-// Of a log that can be looked into before it is read: a FIFO cannot.
-std::string interface_of(const TransportConfig& transport, const DriverInstance& driver) {
-  std::error_code error;
-  if (!transport.interface.empty() || !std::filesystem::is_regular_file(transport.path, error))
-    return transport.interface;
-  try {
-    return first_interface(InputFile(transport.path).head(),
-                           [&](const ifog_can_frame& frame) { return wants(driver.description(), frame); });
-  } catch (const std::runtime_error&) {
-    return {};
-  }
-}
-
-}  // namespace
 
 FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver,
                            const std::string& noise) {

@@ -20,4 +20,7 @@ FlightHeader flight_header(const SensorConfig& sensor, const Config& config, con
 // Throws std::runtime_error with one line: what this version does not understand of it.
 SensorConfig recorded_sensor(const FlightHeader& header);
 
+// "/dev/ttyUSB0", "can0", "udp port 4000", a path.
+std::string source_of(const TransportConfig& transport);
+
 }  // namespace ifog

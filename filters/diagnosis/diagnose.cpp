@@ -239,7 +239,9 @@ class Run {
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
     say(unexplained_beside_claims(result_, records_.size()));
-    say(grown_in_words(result_, samples_of(errors_)));
+    // Of figures that the part kept back takes the place of, judge() says it.
+    if (TimeShare{options_.fit_from, options_.fit_to}.whole())
+      say(grown_in_words(result_, samples_of(errors_)));
     if (as_logged_) say(faults_in_words(result_, errors_));
     say(no_ramp_because_);
     if (result_.hysteresis)

@@ -327,7 +327,8 @@ std::string Chart::plot_data(const Frame& f) const {
     series.push_back(std::move(each));
   }
   const auto axis = [](const ChartAxis& a, const Scale& scale) {
-    return nlohmann::json{{"log", a.log}, {"low", scale.low()}, {"high", scale.high()}, {"label", a.label}};
+    return nlohmann::json{
+        {"log", a.log}, {"low", scale.low()}, {"high", scale.high()}, {"label", a.label}, {"names", a.names}};
   };
   return nlohmann::json{{"frame", {f.left, f.right, f.top, f.bottom}},
                         {"x", axis(x_, sx)},

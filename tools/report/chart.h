@@ -28,7 +28,7 @@ class Chart {
   void line_in_time(Role role, const std::string& label, std::vector<double> time, std::vector<double> y);
   void points(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
   void band(Role role, std::vector<double> x, std::vector<double> low, std::vector<double> high);
-  // A thin dashed curve that is no data and does not widen the axes, with a word of its colour at a place of
+  // A thin pale curve, never dashed as some of the data is, that is no data and does not widen the axes, with a word of its colour at a place of
   // its own, or without one.
   struct Word {
     std::string text;

@@ -2,7 +2,9 @@
 #include "tools/report/diagnosis_page.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include "drivers/system/shell_word.h"
 #include "filters/effects/form.h"
@@ -19,9 +21,9 @@
 namespace ifog::report {
 namespace {
 
-std::string parameter_rows(const Effect& e) {
+std::string parameter_rows(const FoundEffect& found) {
   std::string out;
-  for (const ModelParameter& p : e.parameters) {
+  for (const ModelParameter& p : shown_parameters(found)) {
     const FieldUnit unit = field_unit(p.unit);
     std::string name = p.name;
     for (const std::string_view suffix : {"_hz", "_s"}) {  // the unit has a column of its own
@@ -50,7 +52,7 @@ std::string effect_section(const PageAxis& axis, std::size_t index) {
       "scope=\"col\">parameter</th><th scope=\"col\" class=\"n\">value</th><th "
       "scope=\"col\">unit</th></tr></thead>"
       "<tbody>\n" +
-      parameter_rows(found.effect) + "</tbody></table></div>\n";
+      parameter_rows(found) + "</tbody></table></div>\n";
   return out + "<div class=\"pair\">\n" + traced_picture(axis, index) +
          contribution_picture(*axis.diagnosis, index) + "</div>\n";
 }
@@ -80,9 +82,17 @@ std::string figures_table(const Diagnosis& d) {
   return out + "</tbody></table></div>\n";
 }
 
+// The figure that gained most comes first.
 std::string tiles(const Diagnosis& d) {
   std::string out;
-  for (const char* key : {"residual_rms_radps", "rms_10s_radps", "adev_1s_radps", "heading_drift_rad"}) {
+  std::array keys{"residual_rms_radps", "rms_10s_radps", "adev_1s_radps", "heading_drift_rad"};
+  const auto left = [&](const char* key) {
+    const auto before = d.before.find(key), after = d.after.find(key);
+    const bool told = before != d.before.end() && after != d.after.end() && before->second > 0.0;
+    return told ? after->second / before->second : std::numeric_limits<double>::infinity();
+  };
+  std::stable_sort(keys.begin(), keys.end(), [&](const char* a, const char* b) { return left(a) < left(b); });
+  for (const char* key : keys) {
     const auto before = d.before.find(key), after = d.after.find(key);
     if (before == d.before.end() || after == d.after.end() || !std::isfinite(before->second)) continue;
     const Figure f = figure(key);

@@ -45,8 +45,11 @@ std::string on_axis(const std::string& axis) { return axis.empty() ? "" : ", axi
 std::string count(std::size_t n, std::size_t of) { return std::to_string(n) + " of " + std::to_string(of); }
 
 // Gyros from the left to the right, the first of the manifest being 1, none at the frame's edge.
-ChartAxis gyro_axis(std::size_t last) {
-  return {"gyro, in the manifest's order", false, 0.5, static_cast<double>(last) + 1.5};
+ChartAxis gyro_axis(const std::vector<std::string>& serials, std::size_t last) {
+  constexpr std::size_t kLongest = 16;
+  ChartAxis axis{"gyro, in the manifest's order", false, 0.5, static_cast<double>(last) + 1.5};
+  for (const std::string& serial : serials) axis.names.push_back(printable(serial, kLongest));
+  return axis;
 }
 
 // With room above and below, so that a band is seen to end.
@@ -60,8 +63,8 @@ ChartAxis roomy_axis(const std::string& label, std::initializer_list<const std::
   return {label, false, least - room, most + room};
 }
 
-// Every gyro's coefficient alone and with what the type says, over its number in the manifest.
-std::string gyros_picture(const TypeEffect& effect) {
+// Every gyro's coefficient alone and with what the type says, in the manifest's order.
+std::string gyros_picture(const TypeEffect& effect, const std::vector<std::string>& serials) {
   const FieldUnit unit = field_unit(effect.effect.parameters.front().unit);
   std::vector<double> x, own, with_x, with, band_x, low, high;
   for (const EffectInGyro& each : effect.gyros) {
@@ -73,7 +76,7 @@ std::string gyros_picture(const TypeEffect& effect) {
     with.push_back(each.with_prior->value * unit.scale);
   }
   if (x.size() < 2) return "";
-  const ChartAxis along = gyro_axis(effect.gyros.back().gyro);
+  const ChartAxis along = gyro_axis(serials, effect.gyros.back().gyro);
   for (const double end : {*along.low, *along.high}) {
     band_x.push_back(end);
     low.push_back((effect.prior.mean - effect.prior.spread) * unit.scale);
@@ -91,7 +94,7 @@ std::string gyros_picture(const TypeEffect& effect) {
       "The band is the type: mean and one standard deviation from gyro to gyro.");
 }
 
-std::string effect_section(const TypeEffect& effect) {
+std::string effect_section(const TypeEffect& effect, const std::vector<std::string>& serials) {
   const FieldUnit unit = field_unit(effect.effect.parameters.front().unit);
   const std::size_t measured = effect.all.count;
   const auto value = [&](double v, double error) {
@@ -117,7 +120,7 @@ std::string effect_section(const TypeEffect& effect) {
          escaped(sentence(effect.effect.meaning)) + "</p>\n" +
          table("In " + std::to_string(measured) + " gyros, standard errors one sigma", {"what", "value"},
                rows) +
-         gyros_picture(effect);
+         gyros_picture(effect, serials);
 }
 
 // Noise in the units that data sheets give it in.
@@ -148,13 +151,12 @@ std::string parameter_row(const PopulationParameter& each) {
 
 std::string z_picture(const Population& p) {
   if (p.serials.size() < 2) return "";
-  const ChartAxis along = gyro_axis(p.serials.size() - 1);
+  const ChartAxis along = gyro_axis(p.serials, p.serials.size() - 1);
   const std::vector<double> limits = {-kStandsOut, kStandsOut};  // seen also where no gyro is near them
   std::vector<double> drawn = limits;
   for (std::size_t i = 0; i < std::min(kMostDrawn, p.parameters.size()); ++i)
     drawn.insert(drawn.end(), p.parameters[i].z.begin(), p.parameters[i].z.end());
-  Chart chart("How far each gyro is from the median",
-              "Robust z of every parameter, over the gyro's number in the manifest.", along,
+  Chart chart("How far each gyro is from the median", "Robust z of every parameter, over the gyros.", along,
               roomy_axis("distance from the median (robust σ)", {&drawn}));
   for (const double limit : limits)
     chart.guide(Role::kRaw, {*along.low, *along.high}, {limit, limit}, {"", 0.0, limit, "start"});
@@ -254,7 +256,7 @@ std::string fleet_page(const FleetPage& page) {
   const Population& p = *page.population;
   const std::string title = "Gyros of type " + escaped(printable(p.type));
   std::string effects;
-  for (const TypeEffect& each : p.effects) effects += effect_section(each);
+  for (const TypeEffect& each : p.effects) effects += effect_section(each, p.serials);
   const std::string body =
       section("account", "In short", account(p)) +
       section("failed", "Without a result", failures_section(p)) +

@@ -4,7 +4,7 @@
 namespace ifog::report {
 namespace {
 
-// data-plot: {frame: [left, right, top, bottom] px, x, y: {log, low, high, label},
+// data-plot: {frame: [left, right, top, bottom] px, x, y: {log, low, high, label, names},
 // series: [{style, name, kind, x, y, high}]}: float32, base64; x may be the index of a series that has the
 // same. One for a telephone has data-frame and takes the rest from the chart before it. The dash of a number
 // is the true minus, as everywhere in the page.
@@ -35,6 +35,8 @@ function ticks(axis, low, high, wanted) {
       for (const m of all) if (m * 10 ** d >= low && m * 10 ** d <= high) out.push(m * 10 ** d);
     return out;
   }
+  for (let k = Math.max(1, Math.ceil(low)); k <= Math.min(axis.names.length, high); ++k) out.push(k);
+  if (axis.names.length) return out.filter((v, i) => i % Math.ceil(out.length / (wanted + 1)) === 0);
   const rough = (high - low) / wanted, decade = 10 ** Math.floor(Math.log10(rough));
   const step = decade * (rough / decade < 1.5 ? 1 : rough / decade < 3.5 ? 2 : rough / decade < 7.5 ? 5 : 10);
   const first = Math.ceil(low / step), count = Math.min(50, Math.floor(high / step) - first + 1);
@@ -102,7 +104,7 @@ for (const chart of document.querySelectorAll('svg[data-plot],svg[data-frame]'))
     const along = ticks(plot.x, ...view, Math.max(3, Math.round((right - left) / 90))), up = ticks(plot.y, low, high, 6);
     for (const v of along) {
       make(moving, 'path', {class: 'grid', d: `M${sx.px(v)} ${top}V${bottom}`});
-      make(moving, 'text', {class: 'tick', x: sx.px(v), y: bottom + 16, 'text-anchor': 'middle'}, beside(v, along));
+      make(moving, 'text', {class: 'tick', x: sx.px(v), y: bottom + 16, 'text-anchor': 'middle'}, plot.x.names[v - 1] ?? beside(v, along));
     }
     for (const v of up) {
       make(moving, 'path', {class: 'grid', d: `M${left} ${sy.px(v)}H${right}`});
@@ -130,10 +132,10 @@ for (const chart of document.querySelectorAll('svg[data-plot],svg[data-frame]'))
       const i = s.name ? nearest(s, x) : -1;
       if (i < 0) continue;
       if (!lines.length) at = s.x[i];
-      lines.push(s.name + ' ' + text(s.y[i], 4) + (s.kind === 'points' ? ' at ' + text(s.x[i], 4) : ''));
+      lines.push(s.name + ' ' + text(s.y[i], 4) + (s.kind === 'points' ? ' at ' + (plot.x.names[s.x[i] - 1] ?? text(s.x[i], 4)) : ''));
     }
     if (!lines.length) return;
-    lines.unshift(plot.x.label.replace(/ \(.*/, '') + ' ' + text(at, 6));
+    lines.unshift(plot.x.label.replace(/ \(.*/, '') + ' ' + (plot.x.names[Math.round(at) - 1] ?? text(at, 6)));
     cursor.setAttribute('d', `M${px} ${top}V${bottom}`);
     say.replaceChildren();
     const box = make(say, 'rect', {class: 'card', rx: 4}), flip = px > (left + right) / 2;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "tools/report/text.h"
 
@@ -14,7 +15,7 @@ void Bounds::take(double value, bool log) {
 }
 
 Scale::Scale(const ChartAxis& axis, const Bounds& data, double from_px, double to_px)
-    : log_(axis.log), from_(from_px), to_(to_px) {
+    : log_(axis.log), names_(axis.names), from_(from_px), to_(to_px) {
   low_ = axis.low.value_or(data.low);
   high_ = axis.high.value_or(data.high);
   if (log_) {
@@ -54,6 +55,10 @@ std::vector<Tick> Scale::ticks(int wanted) const {
           out.push_back({m * std::pow(10.0, d), number(m * std::pow(10.0, d), 1), m == 1.0});
     return out;
   }
+  for (std::size_t i = 0; i < names_.size(); ++i)
+    if (const double at = static_cast<double>(i) + 1.0; at >= low_ && at <= high_)
+      out.push_back({at, names_[i], true});
+  if (!names_.empty()) return out;
   const double raw = (high_ - low_) / wanted;
   int decade = static_cast<int>(std::floor(std::log10(raw)));
   const double ten = std::pow(10.0, decade);

@@ -13,7 +13,8 @@ struct ChartAxis {
   std::string label;
   bool log = false;  // values that are not positive are left out
   std::optional<double> low, high;
-  bool numbered = true;  // false: a neighbour that shares the axis has the numbers
+  bool numbered = true;              // false: a neighbour that shares the axis has the numbers
+  std::vector<std::string> names{};  // of 1, 2, 3, ... in place of numbers
 };
 
 // The least and the greatest value that can be drawn.
@@ -51,6 +52,7 @@ class Scale {
  private:
   [[nodiscard]] bool inside(double exponent) const;
   bool log_;
+  std::vector<std::string> names_;
   double low_ = 0.0, high_ = 1.0, from_, to_;
 };
 

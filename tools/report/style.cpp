@@ -18,7 +18,7 @@ constexpr const char* kChartRules = R"css(
 .chart .frame{stroke:var(--rule);stroke-width:1;fill:none}
 .chart .mark{stroke:var(--muted);stroke-width:1;stroke-dasharray:2 3;fill:none}
 .chart .line{fill:none;stroke-width:1.5;stroke-linejoin:round}
-.chart .guide{fill:none;stroke-width:1;stroke-dasharray:6 4}
+.chart .guide{fill:none;stroke-width:1;stroke-opacity:.5}
 .chart .band{stroke:none;fill-opacity:.18}
 .chart .band.before{fill:var(--before)}
 .chart .band.after{fill:var(--after)}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/words.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -92,6 +93,20 @@ std::string effect_words(const Effect& e) {
   if (!e.with_channel.empty())
     out = channel_words(e.channel) + " × " + (e.with_form == "linear" ? "" : e.with_form + " ") +
           channel_words(e.with_channel);
+  return out;
+}
+
+std::vector<ModelParameter> shown_parameters(const FoundEffect& found) {
+  std::vector<ModelParameter> out = found.effect.parameters;
+  if (found.effect.form != "line" || out.size() < 2) return out;
+  const double amplitude = std::hypot(out[0].value, out[1].value),
+               both = std::hypot(out[0].std_error, out[1].std_error);
+  const double along =
+      found.likelihood_ratio > 0.0 ? amplitude / std::sqrt(found.likelihood_ratio) : out[0].std_error;
+  const double across = std::sqrt(std::max(both * both - along * along, 0.0));
+  const double phase_deg = std::atan2(out[1].value, out[0].value) / kDegree;
+  out[0] = {"amplitude", amplitude, along, out[0].unit};
+  out[1] = {"phase", phase_deg, amplitude > 0.0 ? std::min(180.0, across / amplitude / kDegree) : 180.0, "°"};
   return out;
 }
 

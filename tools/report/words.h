@@ -3,7 +3,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "filters/diagnosis/diagnosis.h"
 #include "filters/model_file/model.h"
 
 namespace ifog::report {
@@ -12,6 +14,10 @@ std::string channel_label(const std::string& column);  // "temperature (°C)"
 std::string channel_words(const std::string& column);  // "temperature"
 std::string abscissa_label(const Effect& effect);      // what its effect is drawn against
 std::string effect_words(const Effect& effect);        // "quadratic in temperature", "line at 3.31 Hz"
+
+// As a person reads them: a line by amplitude and phase, of amplitude * cos(2 pi f t - phase). The amplitude's error is from the
+// likelihood, for cosine and sine share that of the frequency, which turns the phase alone.
+std::vector<ModelParameter> shown_parameters(const FoundEffect& found);
 
 // A figure of `before` and `after`: its label and its value in the field's unit, from the key's unit ending.
 struct Figure {

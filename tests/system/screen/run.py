@@ -75,6 +75,9 @@ class Terminal:
     def text(self):
         return "\n".join(line.rstrip() for line in self.screen.display)
 
+    def colours(self):
+        return {cell.fg for row in self.screen.buffer.values() for cell in row.values()} - {"default"}
+
     def wait_for(self, judge, what, seconds=20):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
@@ -136,6 +139,7 @@ def see_figures_and_keys(seen):
     seen.wait_for(lambda s: "°/h" in s and "°/s" in s, "each rate in the unit that suits it")
     seen.wait_for(lambda s: "nothing lost" in s and "books:" in s and "latency p50" in s, "nothing lost, and the books that say so")
     seen.wait_for(lambda s: any(c in s for c in "▁▂▃▄▅▆▇█"), "a spark line")
+    seen.wait_for(lambda s: seen.colours() >= {"green"}, "running is green")
     seen.press("d")
     seen.wait_for(lambda s: axes(s) and "books:" not in s, "d: without details")
     seen.press("u")
@@ -164,6 +168,18 @@ def see_sizes(seen):
         widest = max(len(line) for line in seen.text().splitlines())
         if widest > columns:
             raise SystemExit(f"FAILED: a line of {widest} at {columns} columns")
+
+
+def see_no_colour(ifog):
+    """no-color.org: lines at a terminal, and the screen."""
+    for more, wanted in (([], set()), (["--plain"], set()), (["--plain"], {"green"})):
+        os.environ["NO_COLOR"] = "" if wanted else "1"
+        seen = Terminal([ifog, "monitor", *more])
+        seen.wait_for(lambda s: axes(s) and "running" in s, f"{' '.join(more) or 'a screen'}, NO_COLOR={os.environ['NO_COLOR']}")
+        if seen.colours() & {"green", "red", "brown"} != wanted:
+            raise SystemExit(f"FAILED: colours {seen.colours()}, expected {wanted or 'none'}")
+        os.kill(seen.pid, signal.SIGTERM)
+        seen.exit_code()
 
 
 def see_lines(ifog):
@@ -209,6 +225,7 @@ def main():
             see_figures_and_keys(seen)
             see_sizes(seen)
             see_lines(ifog)
+            see_no_colour(ifog)
             see_the_end(seen, daemon)
         finally:
             if daemon.poll() is None:

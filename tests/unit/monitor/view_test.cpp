@@ -46,11 +46,13 @@ status_t status_message() {
   return out;
 }
 
-std::string joined(const std::vector<std::string>& lines) {
+std::string joined(const std::vector<ShownLine>& lines) {
   std::string out;
-  for (const std::string& line : lines) out += line + "\n";
+  for (const ShownLine& line : lines) out += line.text + "\n";
   return out;
 }
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
 TEST(MonitorView, FiguresOfASecondAreThoseOfItsMessages) {
   SensorView view;
@@ -150,7 +152,7 @@ TEST(MonitorView, NoLineIsWiderThanTheScreen) {
          {RateUnit::automatic, RateUnit::degree_per_hour, RateUnit::radian_per_second}) {
       const auto lines = view_lines("NOSE", view, {width, true, unit});
       ASSERT_GT(lines.size(), 8U);
-      for (const std::string& line : lines) {
+      for (const auto& [line, tone] : lines) {
         EXPECT_LE(columns_of(line), std::max<std::size_t>(width, 95)) << line;
         if (line.find("angle") != std::string::npos) {
           EXPECT_LE(columns_of(line), width) << line;
@@ -159,15 +161,85 @@ TEST(MonitorView, NoLineIsWiderThanTheScreen) {
       }
     }
   const auto wide = view_lines("NOSE", view, {200, true, RateUnit::automatic});
-  EXPECT_NE(wide[1].find("▁"), std::string::npos);
-  EXPECT_NE(wide[1].find("█"), std::string::npos);
+  EXPECT_NE(wide[1].text.find("▁"), std::string::npos);
+  EXPECT_NE(wide[1].text.find("█"), std::string::npos);
+}
+
+// At rest the rate steps by 1e-6 rad/s (0.2063 °/h): the line is as high as its seven steps.
+TEST(MonitorView, TheSparkLineSaysHowHighItIs) {
+  SensorView view;
+  for (int i = 0; i < 8; ++i) {
+    view.take(rate(i, {1e-6 * i}));
+    view.end_interval(1.0);
+  }
+  EXPECT_TRUE(
+      has(view_lines("NOSE", view, {120, true, RateUnit::automatic})[1].text, "▁▂▃▄▅▆▇█  span 1.4439"))
+      << joined(view_lines("NOSE", view, {120, true, RateUnit::automatic}));
+}
+
+// What a sensor does not have is no fault of it; a channel that somebody configured is missed.
+TEST(MonitorView, WhatASensorDoesNotHaveIsNotShown) {
+  SensorView view;
+  view.take(rate(0, {1e-6, 1e-6, 1e-6}));
+  status_t health = status_message();
+  health.nis_mean[1] = health.whiteness[1] = 0.0;
+  view.take(health);
+  view.end_interval(1.0);
+  std::string text = joined(view_lines("NOSE", view, {}));
+  EXPECT_FALSE(has(text, "latency")) << text;
+  EXPECT_FALSE(has(text, "y NIS")) << text;
+  EXPECT_TRUE(has(text, "z NIS 0.99")) << text;
+  EXPECT_TRUE(has(text, "supply_V 12 (5 s old)")) << text;
+  EXPECT_FALSE(has(text, "not heard of")) << text;
+  KnownSensor known;
+  known.channels = {"hull\x1b[2J"};
+  text = joined(view_lines("NOSE", view, {}, &known));
+  EXPECT_TRUE(has(text, "hull\\x1b[2J not heard of")) << text;
+}
+
+TEST(MonitorView, DriverModelAndProposalAreNamedWhereTheyAreKnown) {
+  SensorView view;
+  rate_t message = rate(0, {1e-6});
+  message.model = "0123456789ab";
+  view.take(message);
+  view.take(status_message());
+  view.end_interval(1.0);
+  KnownSensor known{"kvh1750, serial /dev/ttyUSB0",
+                    "nose.toml of 2026-11-27 01:30",
+                    "0123456789ab",
+                    "proposal of today",
+                    {}};
+  std::string text = joined(view_lines("NOSE", view, {}, &known));
+  EXPECT_TRUE(has(text, "model nose.toml of 2026-11-27 01:30\n")) << text;
+  EXPECT_TRUE(has(text, "driver kvh1750, serial /dev/ttyUSB0")) << text;
+  EXPECT_TRUE(has(text, "proposal of today")) << text;
+  EXPECT_FALSE(has(text, "0123456789ab")) << text;
+  known.identity = "another";
+  text = joined(view_lines("NOSE", view, {}, &known));
+  EXPECT_TRUE(has(text, "model 0123456789ab, not what nose.toml of 2026-11-27 01:30 holds")) << text;
+}
+
+// Rates without the statuses that belong to them: what the last one said is not of now.
+TEST(MonitorView, AnOldStatusIsNotShownWithNewRates) {
+  SensorView view;
+  view.take(status_message());
+  for (int second = 0; second < 5; ++second) {
+    view.take(rate(second, {1e-6}));
+    view.end_interval(1.0);
+  }
+  const auto lines = view_lines("NOSE", view, {});
+  const std::string text = joined(lines);
+  EXPECT_TRUE(has(text, "no status for 4 s")) << text;
+  for (const char* old : {"running", "nothing lost", "fault", "NIS", "books", "coil_degC"})
+    EXPECT_FALSE(has(text, old)) << old << " is in\n" << text;
+  EXPECT_EQ(lines[0].tone, Tone::warning);
 }
 
 TEST(MonitorView, ASparkLineGoesFromTheLeastToTheGreatest) {
-  EXPECT_EQ(spark_line(std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7}, 20), "▁▂▃▄▅▆▇█");
-  EXPECT_EQ(spark_line(std::vector<double>{9, 0, std::nan(""), 1}, 3), "▁ █");
-  EXPECT_EQ(spark_line(std::vector<double>{5, 5}, 3), "▅▅");
-  EXPECT_EQ(spark_line(std::vector<double>{}, 3), "");
+  EXPECT_EQ(spark_line(std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7}, 20).text, "▁▂▃▄▅▆▇█");
+  EXPECT_EQ(spark_line(std::vector<double>{9, 0, std::nan(""), 1}, 3).text, "▁ █");
+  EXPECT_EQ(spark_line(std::vector<double>{5, 5}, 3).text, "▅▅");
+  EXPECT_EQ(spark_line(std::vector<double>{}, 3).text, "");
 }
 
 TEST(MonitorJson, EveryFieldByTheNameOfItsType) {

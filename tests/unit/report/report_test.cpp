@@ -13,6 +13,7 @@
 #include "tools/report/chart.h"
 #include "tools/report/diagnosis_page.h"
 #include "tools/report/picture.h"
+#include "tools/report/style.h"
 #include "tools/report/text.h"
 #include "tools/report/traced.h"
 #include "tools/report/words.h"
@@ -41,6 +42,32 @@ TEST(ReportText, UnitsOfTheField) {
   EXPECT_EQ(field_unit("s").unit, "s");
   EXPECT_EQ(figure("rms_10s_radps").label, "RMS of 10 s means");
   EXPECT_EQ(figure("heading_drift_rad").unit, "°");
+}
+
+// 3, 4, 5: amplitude 5e-7 at atan2(4, 3) = 53.13 deg. Along it 1/10 by the likelihood, of errors that are 3e-8 and 6e-8 the rest
+// across, sqrt(45 - 25) e-8 over 5e-7 = 5.12 deg.
+TEST(ReportText, ALineHasAmplitudeAndPhase) {
+  ifog::FoundEffect found;
+  found.effect.form = "line";
+  found.effect.parameters = {
+      {"cosine", 3e-7, 3e-8, "rad/s"}, {"sine", 4e-7, 6e-8, "rad/s"}, {"frequency_hz", 50.0, 0.1, "Hz"}};
+  found.likelihood_ratio = 100.0;
+  const auto shown = shown_parameters(found);
+  ASSERT_EQ(shown.size(), 3U);
+  EXPECT_EQ(shown[0].name, "amplitude");
+  EXPECT_NEAR(shown[0].value, 5e-7, 1e-12);
+  EXPECT_NEAR(shown[0].std_error, 5e-8, 1e-13);
+  EXPECT_NEAR(shown[1].value, 53.13, 0.01);
+  EXPECT_NEAR(shown[1].std_error, 5.12, 0.01);
+}
+
+// Fitted terms are drawn as guides beside data of which some is dashed.
+TEST(ReportChart, GuidesAreNeitherDashedNorAsStrongAsData) {
+  const std::string style = page_style();
+  const std::size_t at = style.find(".chart .guide{");
+  const std::string rule = style.substr(at, style.find('}', at) - at);
+  EXPECT_EQ(rule.find("dasharray"), std::string::npos) << rule;
+  EXPECT_NE(rule.find("stroke-opacity:.5"), std::string::npos) << rule;
 }
 
 // Where the data says a dot is, the picture has it: 0 and 10 on a linear axis, 1 and 100 on a logarithmic
@@ -255,6 +282,14 @@ TEST(ReportPage, ManyEffectsAreAListInShort) {
   EXPECT_EQ(count_of(page_of(e).substr(0, html.find("class=\"tiles\"")),
                      "<p><strong>One effect was found.</strong> "),
             1U);
+}
+
+// The heading gained most, to an eighteenth.
+TEST(ReportPage, TheStrongestFigureComesFirst) {
+  const std::string html = page_of(ifog::example::make());
+  const std::size_t first = html.find("class=\"tile\""), end = html.find("</div>", first);
+  EXPECT_NE(html.substr(first, end - first).find("heading at the end"), std::string::npos)
+      << html.substr(first, end - first);
 }
 
 TEST(ReportPage, NothingFoundIsAResult) {

@@ -28,6 +28,7 @@
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/compare/compare_picture.h"
+#include "tools/ifog/compare/verdict.h"
 #include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/filter_options.h"
@@ -177,20 +178,24 @@ std::string cell(const std::optional<double>& value, double scale, const char* f
   return text;
 }
 
-void print_axis(const Comparison& result, int axis, bool reference) {
-  say("%-10s %10s", "rule", "std");
+void print_axis(const Comparison& result, int axis, bool reference, const Verdict& verdict) {
+  say("%-10s %7s %10s", "rule", "above", "std");
   for (const double tau : kComparedTaus) say(" %9s", ("ADEV " + tau_name(tau) + "s").c_str());
   if (reference) say(" %10s %10s %8s", "RMSE", "bias", "lag s");
   say(" %11s %8s %7s %7s %6s %7s %7s\n", "heading deg", "max", "at rest", "lag-1", "NIS", "20s 90%",
       "5s 90%");
+  std::size_t rule = 0;
   for (const ComparisonRow& row : result.rows) {
     if (row.axis != axis) continue;
-    say("%-10s %10s", row.rule.c_str(), cell(row.std_radps, 1.0 / kDegreePerHour, "%.4g").c_str());
+    const bool is_rule = row.rule != "raw";
+    say("%-10s %7s %10s", row.rule.c_str(),
+        is_rule ? cell(verdict.above[rule++], 100.0, "%.2g %%").c_str() : "",
+        cell(row.std_radps, 1.0 / kDegreePerHour, "%.4g").c_str());
     for (const auto& value : row.adev_radps) say(" %9s", cell(value, 1.0 / kDegreePerHour, "%.4g").c_str());
     if (reference)
       say(" %10s %10s %8s", cell(row.rmse_radps, 1.0 / kDegreePerHour, "%.4g").c_str(),
           cell(row.bias_radps, 1.0 / kDegreePerHour, "%.3g").c_str(), cell(row.lag_s, 1.0, "%.4f").c_str());
-    if (row.rule == "raw") {
+    if (!is_rule) {
       say("\n");
       continue;
     }
@@ -202,17 +207,29 @@ void print_axis(const Comparison& result, int axis, bool reference) {
 }
 
 void write_comparison(const Options& options, const CaptureView& capture, double period_s,
-                      const Motion& motion, const Comparison& result, const FilterSettings& settings) {
-  json rows = json::array(), raw = json::array();
+                      const Motion& motion, const Comparison& result, const FilterSettings& settings,
+                      const std::vector<Verdict>& verdicts) {
+  json rows = json::array(), raw = json::array(), told = json::array();
   for (const ComparisonRow& row : result.rows)
     (row.rule == "raw" ? raw : rows)
         .push_back(row_json(row, capture.axes[static_cast<std::size_t>(row.axis)], settings));
+  // Rows are by rule, and within a rule by axis.
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    rows[r]["above_best"] = verdicts[r % verdicts.size()].above[r / verdicts.size()];
+  for (std::size_t a = 0; a < verdicts.size(); ++a)
+    told.push_back({{"axis", capture.axes[a]},
+                    {"figure", verdicts[a].figure},
+                    {"best", rows[verdicts[a].best * verdicts.size() + a]["rule"]},
+                    {"best_radps", verdicts[a].best_radps},
+                    {"raw_radps", verdicts[a].raw_radps},
+                    {"text", verdicts[a].text}});
   write_json(options.json_file, json{{"schema", "ifog.compare/1"},
                                      {"capture", options.capture},
                                      {"samples", capture.size()},
                                      {"samples_at_rest", motion.rest.resting()},
                                      {"motion", motion.words},
                                      {"sample_rate_hz", 1.0 / period_s},
+                                     {"verdict", told},
                                      {"raw", raw},
                                      {"rows", rows}});
 }
@@ -263,17 +280,22 @@ void run(const Options& options) {
       options.capture.c_str(), capture.size(), 1.0 / in.period_s, s.state.c_str(), s.process_noise,
       s.measurement_noise, s.window);
   if (!motion.words.empty()) say("note: %s\n", motion.words.c_str());
-  say("rates in deg/h; heading: integral of denoised - compensated; at rest: share of samples outside\n"
+  say("above: what the verdict's figure is more than the best rule's; rates in deg/h; heading: integral of "
+      "denoised - compensated; at rest: share of samples outside\n"
       "manoeuvres, and of their innovations lag-1: correlation, NIS: squares over their variance, median "
       "over\n"
       "that of a normal law; steps of 20 and 5 sigma in samples to 90 %%\n");
+  std::vector<Verdict> verdicts;
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     if (!capture.axes[a].empty()) say("\naxis %s\n", capture.axes[a].c_str());
-    print_axis(result, static_cast<int>(a), reference && !in.reference[a].empty());
+    verdicts.push_back(verdict_of(result, static_cast<int>(a)));
+    print_axis(result, static_cast<int>(a), reference && !in.reference[a].empty(), verdicts.back());
+    say("%s\n", verdicts.back().text.c_str());
   }
-  if (!options.json_file.empty()) write_comparison(options, capture, in.period_s, motion, result, s);
+  if (!options.json_file.empty())
+    write_comparison(options, capture, in.period_s, motion, result, s, verdicts);
   if (!options.plot_file.empty()) {
-    draw_comparison(options.plot_file, capture, result, compare.rules);
+    draw_comparison(options.plot_file, capture, result, compare.rules, verdicts);
     say("picture: %s\n", options.plot_file.c_str());
   }
 }

@@ -45,13 +45,13 @@ report::Thinned drawn(const CaptureView& capture, const report::TimeAxis& axis,
   return report::thinned(time, rate);
 }
 
-// What the outputs keep to once their filters have started, in °/h: the first twentieth and the outermost two
+// What the differences keep to once the filters have started, in °/h: the first twentieth and the outermost two
 // in a thousand values left out, with a margin. None: no number among them.
-void keep_range(ChartAxis& axis, const std::vector<const Samples*>& outputs_radps) {
+void keep_range(ChartAxis& axis, const std::vector<Samples>& differences_radps) {
   Samples values;
-  for (const Samples* const output : outputs_radps)
-    for (std::size_t i = output->size() / 20; i < output->size(); ++i)
-      if (std::isfinite((*output)[i])) values.push_back((*output)[i] * (1.0 / kDegreePerHour));
+  for (const Samples& difference : differences_radps)
+    for (std::size_t i = difference.size() / 20; i < difference.size(); ++i)
+      if (std::isfinite(difference[i])) values.push_back(difference[i] * (1.0 / kDegreePerHour));
   if (values.empty()) return;
   const std::size_t cut = values.size() / 1000;
   const auto nth = [&](std::size_t n) {
@@ -64,86 +64,98 @@ void keep_range(ChartAxis& axis, const std::vector<const Samples*>& outputs_radp
   axis.high = high + margin;
 }
 
-// The rows of one axis of the sensor.
-class AxisRows {
- public:
-  AxisRows(const CaptureView& capture, const Comparison& result, const std::vector<std::string>& rules,
-           std::size_t axis)
-      : rules_(rules),
-        prefix_(capture.axes[axis].empty() ? "" : "axis " + capture.axes[axis] + ": "),
-        time_(capture.told_time_s(0), capture.told_time_s(capture.size() - 1)),
-        raw_(drawn(capture, time_, capture.rate_radps[axis])) {
-    const SampleClock clock = sample_clock(capture.time_s);
-    raw_allan_ = allan(capture, capture.rate_radps[axis], clock);
-    std::vector<const Samples*> outputs;
-    for (std::size_t r = 0; r < rules.size(); ++r) {
-      outputs.push_back(&result.denoised[r][axis]);
-      outputs_.push_back(drawn(capture, time_, *outputs.back()));
-      allan_.push_back(allan(capture, *outputs.back(), clock));
-    }
-    keep_range(rate_, outputs);
-    report::Bounds tau, sigma;
-    const auto take = [&](const AllanCurve& curve) {
-      for (const double t : curve.tau_s) tau.take(t, true);
-      for (const double s : curve.sigma) sigma.take(s, true);
-    };
-    take(raw_allan_);
-    for (const AllanCurve& curve : allan_) take(curve);
-    if (tau.empty()) return;
-    tau_.low = tau.low;
-    tau_.high = tau.high;
-    sigma_.low = sigma.low / 1.5;
-    sigma_.high = sigma.high * 1.5;
+// Of the curve over another's, at the averaging times of both.
+AllanCurve over(const AllanCurve& curve, const AllanCurve& other) {
+  AllanCurve out;
+  for (std::size_t i = 0, j = 0; i < curve.tau_s.size(); ++i) {
+    while (j < other.tau_s.size() && other.tau_s[j] < curve.tau_s[i]) ++j;
+    if (j == other.tau_s.size() || other.tau_s[j] != curve.tau_s[i]) continue;
+    out.tau_s.push_back(curve.tau_s[i]);
+    out.sigma.push_back(curve.sigma[i] / other.sigma[j]);
   }
+  return out;
+}
 
-  void add_to(std::vector<report::PictureRow>& rows) const {
-    constexpr double kRow = 132.0, kNumbers = 38.0;
-    rows.push_back({kRow, {{raw_chart(), 2.0}, {allan_chart("raw", nullptr, false), 1.0}}});
-    for (std::size_t r = 0; r < rules_.size(); ++r) {
-      const bool last = r + 1 == rules_.size();
-      Chart rate(prefix_ + rules_[r], "Denoised rate over time.", time_.axis(last), rate_);
-      rate.line_in_time(Role::kAfter, "", outputs_[r].x, outputs_[r].y);
-      rows.push_back({last ? kRow + kNumbers : kRow,
-                      {{std::move(rate), 2.0}, {allan_chart(rules_[r], &allan_[r], last), 1.0}}});
-    }
-  }
-
- private:
-  [[nodiscard]] Chart raw_chart() const {
-    Chart chart(prefix_ + "raw, in a range of its own", "Raw rate over time.", time_.axis(false),
-                {"°/h", false, {}, {}});
-    chart.line_in_time(Role::kRaw, "", raw_.x, raw_.y);
+// The rows of one axis of the sensor: raw, the best rule, and what the others differ from that.
+void add_rows(std::vector<report::PictureRow>& rows, const CaptureView& capture, const Comparison& result,
+              const std::vector<std::string>& rules, std::size_t axis, std::size_t best) {
+  constexpr double kRow = 132.0, kNumbers = 38.0;
+  const std::string prefix = capture.axes[axis].empty() ? "" : "axis " + capture.axes[axis] + ": ";
+  const report::TimeAxis time(capture.told_time_s(0), capture.told_time_s(capture.size() - 1));
+  const SampleClock clock = sample_clock(capture.time_s);
+  const Samples& of_best = result.denoised[best][axis];
+  const AllanCurve raw_allan = allan(capture, capture.rate_radps[axis], clock),
+                   best_allan = allan(capture, of_best, clock);
+  const auto rate_chart = [&](const std::string& title, Role role, std::span<const double> rate_radps,
+                              const ChartAxis& range, bool last) {
+    Chart chart(prefix + title, "Rate over time.", time.axis(last), range);
+    const report::Thinned curve = drawn(capture, time, rate_radps);
+    chart.line_in_time(role, "", curve.x, curve.y);
     return chart;
-  }
-  // The raw rate's curve under each: how far the noise falls, and where it comes back.
-  [[nodiscard]] Chart allan_chart(const std::string& rule, const AllanCurve* curve, bool last) const {
-    ChartAxis tau = tau_;
+  };
+  const auto allan_chart = [&](const std::string& title, const AllanCurve* grey, const AllanCurve& curve,
+                               const ChartAxis& range, bool last) {
+    ChartAxis tau{last ? "averaging time τ (s)" : "", true, {}, {}};
     tau.numbered = last;
-    if (last) tau.label = "averaging time τ (s)";
-    Chart chart(rule + ", Allan deviation", "Allan deviation of the output and of the raw rate.", tau,
-                sigma_);
-    chart.line(Role::kRaw, "", raw_allan_.tau_s, raw_allan_.sigma);
-    if (curve != nullptr) chart.line(Role::kAfter, "", curve->tau_s, curve->sigma);
+    if (!raw_allan.tau_s.empty()) {
+      tau.low = raw_allan.tau_s.front();
+      tau.high = raw_allan.tau_s.back();
+    }
+    Chart chart(title, "Allan deviation over averaging time.", tau, range);
+    if (grey != nullptr) chart.line(Role::kRaw, "", grey->tau_s, grey->sigma);
+    chart.line(Role::kAfter, "", curve.tau_s, curve.sigma);
     return chart;
+  };
+  const ChartAxis own{"°/h", false, {}, {}}, sigma{"°/h", true, {}, {}};
+  rows.push_back(
+      {kRow,
+       {{rate_chart("raw", Role::kRaw, capture.rate_radps[axis], own, false), 2.0},
+        {allan_chart(rules[best] + " and raw (grey), Allan deviation", &raw_allan, best_allan, sigma, false),
+         1.0}}});
+  ChartAxis settled = own, apart{"°/h", false, {}, {}}, ratio{"ratio", false, {}, {}};
+  std::vector<Samples> differences(1, of_best);
+  keep_range(settled, differences);
+  differences.clear();
+  std::vector<AllanCurve> ratios;
+  report::Bounds bounds;
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    differences.push_back(result.denoised[r][axis]);
+    for (std::size_t i = 0; i < of_best.size(); ++i) differences[r][i] -= of_best[i];
+    ratios.push_back(over(allan(capture, result.denoised[r][axis], clock), best_allan));
+    for (const double each : ratios[r].sigma) bounds.take(each, true);
   }
-
-  const std::vector<std::string>& rules_;
-  std::string prefix_;
-  report::TimeAxis time_;
-  report::Thinned raw_;
-  std::vector<report::Thinned> outputs_;
-  AllanCurve raw_allan_;
-  std::vector<AllanCurve> allan_;
-  ChartAxis rate_{"°/h", false, {}, {}}, tau_{"", true, {}, {}}, sigma_{"°/h", true, {}, {}};
-};
+  keep_range(apart, differences);
+  if (!bounds.empty()) {
+    ratio.low = std::min(bounds.low / 1.05, 0.9);
+    ratio.high = std::max(bounds.high * 1.05, 1.1);
+  }
+  const AllanCurve one{best_allan.tau_s, std::vector<double>(best_allan.tau_s.size(), 1.0)};
+  rows.push_back({kRow,
+                  {{rate_chart(rules[best] + ", the best", Role::kAfter, of_best, settled, false), 2.0},
+                   {Chart("", "", own, own), 1.0}}});
+  for (std::size_t r = 0, drawn_rows = 1; r < rules.size(); ++r) {
+    if (r == best) continue;
+    const bool last = ++drawn_rows == rules.size();
+    rows.push_back(
+        {last ? kRow + kNumbers : kRow,
+         {{rate_chart(rules[r] + " less " + rules[best], Role::kBefore, differences[r], apart, last), 2.0},
+          {allan_chart(rules[r] + " over " + rules[best] + ", Allan deviation", &one, ratios[r], ratio, last),
+           1.0}}});
+  }
+}
 
 }  // namespace
 
 void draw_comparison(const std::string& path, const CaptureView& capture, const Comparison& result,
-                     const std::vector<std::string>& rules) {
+                     const std::vector<std::string>& rules, const std::vector<Verdict>& verdicts) {
   std::vector<report::PictureRow> rows;
-  for (std::size_t a = 0; a < capture.axes.size(); ++a) AxisRows(capture, result, rules, a).add_to(rows);
-  report::write_picture(path, report::picture_svg("The same record by each rule; grey: raw", rows, 1100.0));
+  std::string title;
+  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
+    add_rows(rows, capture, result, rules, a, verdicts[a].best);
+    title += (title.empty() ? "" : "; ") + (capture.axes[a].empty() ? "" : capture.axes[a] + ": ") +
+             (capture.axes.size() == 1 ? verdicts[a].text : "best is " + rules[verdicts[a].best]);
+  }
+  report::write_picture(path, report::picture_svg(title, rows, 1100.0));
 }
 
 }  // namespace ifog::tools

@@ -7,12 +7,14 @@
 
 #include "filters/compare/compare.h"
 #include "tools/ifog/captures/capture_view.h"
+#include "tools/ifog/compare/verdict.h"
 
 namespace ifog::tools {
 
-// For each axis a row a rule, on shared axes: the denoised rate over time, in the range that the rules keep
-// to once they have started, and its Allan deviation over that of the raw rate. Throws as write_picture does.
+// For each axis raw, the best rule, and a row each other: its rate less that of the best over time, on shared axes and in the
+// range that they keep to once they have started, and its Allan deviation over that of the best. The title is the verdict. Throws
+// as write_picture does.
 void draw_comparison(const std::string& path, const CaptureView& capture, const Comparison& result,
-                     const std::vector<std::string>& rules);
+                     const std::vector<std::string>& rules, const std::vector<Verdict>& verdicts);
 
 }  // namespace ifog::tools

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <cstdarg>
 #include <cstdio>
+#include <cstdlib>
 #include <limits>
 #include <stdexcept>
 #include <string_view>
@@ -79,11 +80,19 @@ void data_to_standard_output(const std::string& option) {
   people = stderr;
 }
 
-void redraw(std::size_t before, const std::vector<std::string>& lines) {
-  const bool terminal = isatty(fileno(people)) == 1;
+bool colours_wanted() {
+  const char *const no = std::getenv("NO_COLOR"), *const term = std::getenv("TERM");
+  return (no == nullptr || *no == '\0') && term != nullptr && std::string_view(term) != "dumb";
+}
+
+void redraw(std::size_t before, const std::vector<ColouredLine>& lines) {
+  const bool terminal = isatty(fileno(people)) == 1, coloured = terminal && colours_wanted();
   std::string text = terminal && before > 0 ? "\x1b[" + std::to_string(before) + "A" : "";
-  for (const std::string& line : lines)
-    text += printable(line, kLongestMessage) + (terminal ? "\x1b[K\n" : "\n");
+  for (const ColouredLine& line : lines) {
+    const std::string plain = printable(line.text, kLongestMessage);
+    text += coloured && !line.colour.empty() ? "\x1b[" + line.colour + "m" + plain + "\x1b[m" : plain;
+    text += terminal ? "\x1b[K\n" : "\n";
+  }
   put(text, people);
   finish_saying();
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/diagnose/diagnosis_text.h"
 #include <array>
-#include <cmath>
 #include <cstdio>
 
 #include "filters/effects/form.h"
@@ -43,16 +42,12 @@ std::string effect_lines(const FoundEffect& found, std::size_t number, bool over
   const Effect& effect = found.effect;
   std::string lines = text("  %zu. %s%s\n     %s\n", number, named(effect).c_str(),
                            effect.shown_only ? " (shown, not subtracted)" : "", effect.meaning.c_str());
-  for (const ModelParameter& parameter : effect.parameters) {
+  for (const ModelParameter& parameter : report::shown_parameters(found)) {
     std::string name = parameter.name;
     for (char& c : name) c = c == '_' ? ' ' : c;
     if (name.ends_with(" s")) name.resize(name.size() - 2);
     if (name.ends_with(" hz")) name.resize(name.size() - 3);
     lines += text("     %-18s %s\n", name.c_str(), value_of(parameter).c_str());
-  }
-  if (effect.form == "line") {
-    const double amplitude = std::hypot(effect.parameters[0].value, effect.parameters[1].value);
-    lines += text("     %-18s %.4g °/h\n", "amplitude", amplitude / kDegreePerHour);
   }
   if (!effect.table_x.empty()) lines += text("     a table of %zu knots\n", effect.table_x.size());
   lines += text("     %s %s of the %s variance; by chance: %s\n",

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <ctime>
 #include <deque>
 #include <exception>
 #include <filesystem>
@@ -118,6 +119,7 @@ class Night {
   std::string diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
                        const ModelInUse& in_use);
   void judge_last_adoption(const std::vector<RecordedFile>& files, const ModelInUse& in_use);
+  [[nodiscard]] std::string closing(const std::vector<RecordedFile>& files) const;
   [[nodiscard]] std::string recordings_name(const std::vector<RecordedFile>& files) const;
   void propose(Proposal proposal, const Model& model, const Recorded& recorded,
                const std::vector<AxisDiagnosis>& found, const std::string& name,
@@ -134,13 +136,14 @@ class Night {
 std::string Night::run() {
   if (sensor_.record.folder.empty()) return "nothing is recorded ([sensor.record])";
   std::vector<RecordedFile> files = recorded_files(sensor_);
+  const std::string written = closing(files);
   std::erase_if(files, [](const RecordedFile& file) { return file.open; });
   const std::optional<Bookmark> bookmark = read_bookmark(field_.state(), sensor_.name);
   // Numbers that start again are those of a new folder.
   const bool same_folder = bookmark && !files.empty() && files.back().number >= bookmark->until;
   if (same_folder)
     std::erase_if(files, [&](const RecordedFile& file) { return file.number <= bookmark->until; });
-  if (files.empty()) return "no recording has been closed since last time";
+  if (files.empty()) return "no recording has been closed since last time" + written;
   const std::uint64_t until = files.back().number;
   std::string said;
   try {
@@ -225,6 +228,25 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
   } catch (const std::exception& error) {
     warn("%s: the last adoption cannot be judged: %s\n", sensor_.name.c_str(), error.what());
   }
+}
+
+// Of the newest that is being written when it will be closed; "" without one.
+std::string Night::closing(const std::vector<RecordedFile>& files) const {
+  if (files.empty() || !files.back().open) return "";
+  const RecordedFile& last = files.back();
+  std::tm opened{};
+  std::array<char, 200> text{};
+  if (strptime(last.opened.c_str(), "%Y-%m-%dT%H:%M:%SZ", &opened) == nullptr) return "";
+  const std::time_t at = timegm(&opened) + static_cast<std::time_t>(sensor_.record.file_s);
+  std::tm closed{};
+  gmtime_r(&at, &closed);
+  std::array<char, 32> when{};
+  std::strftime(when.data(), when.size(), "%Y-%m-%dT%H:%M:%SZ", &closed);
+  std::snprintf(text.data(), text.size(),
+                "; the one that is being written, %.1f MB, closes at %.1f MB or at %s",
+                static_cast<double>(last.bytes) * 1e-6, static_cast<double>(sensor_.record.file_bytes) * 1e-6,
+                when.data());
+  return text.data() + std::string(at < std::time(nullptr) ? ", which is over: does ifogd run?" : "");
 }
 
 std::string Night::recordings_name(const std::vector<RecordedFile>& files) const {

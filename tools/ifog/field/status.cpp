@@ -36,6 +36,7 @@ using nlohmann::ordered_json;
 struct StatusArguments {
   FieldOptions field;
   std::string json;
+  bool csv = false;
   double wait_s = 2.5;  // a status comes every second
 };
 
@@ -203,6 +204,36 @@ ordered_json as_json(const std::string& name, const status_t* live, const Kept& 
   return out;
 }
 
+// For scripts: of the JSON what fits into a line, nothing where it is not known. Columns are added at the end only.
+std::string csv_line(const ordered_json* sensor) {
+  std::string out;
+  const auto add = [&](const std::string& name, const std::string& pointer) {
+    const ordered_json::json_pointer place(pointer);
+    std::string cell = sensor == nullptr ? name : "";
+    if (sensor != nullptr && sensor->contains(place)) {
+      const ordered_json& value = sensor->at(place);
+      if (value.is_string()) cell = printable(value.get<std::string>(), kLongestMessage);
+      if (value.is_number() || value.is_boolean()) cell = value.dump();
+    }
+    if (cell.find_first_of(",\"") != std::string::npos) {
+      for (std::size_t at = 0; (at = cell.find('"', at)) != std::string::npos; at += 2)
+        cell.insert(at, 1, '"');
+      cell = '"' + cell + '"';
+    }
+    out += (out.empty() ? "" : ",") + cell;
+  };
+  for (const char* const name : {"sensor", "heard", "state", "input_rate_hz", "output_rate_hz"})
+    add(name, std::string("/") + name);
+  add("samples_published", "/books/samples_published");
+  add("balanced", "/books/balanced");
+  for (const StatusCounter& loss : kStatusCounters)
+    if ((loss.use & kCounterListed) != 0) add(loss.name, std::string("/losses/") + loss.name);
+  for (const char* const name : {"model", "model_since", "model_file", "fault", "damaged"})
+    add(name, std::string("/") + name);
+  add("proposal", "/proposal/model");
+  return out;
+}
+
 // Names in the order of the configuration, then those besides.
 std::vector<std::string> names_of(const Field& field, const Statuses& statuses) {
   std::vector<std::string> out;
@@ -244,7 +275,9 @@ void run(const StatusArguments& arguments) {
   const Field field(arguments.field);
   const Running now = running(field, arguments.wait_s);
   const std::string where = "state folder " + field.state();
-  if (now.process != 0)
+  if (arguments.csv)
+    say("%s\n", csv_line(nullptr).c_str());
+  else if (now.process != 0)
     say("ifogd runs, process %d, %s\n", static_cast<int>(now.process), where.c_str());
   else
     say("ifogd does not run with %s; this is what the folder knows\n", where.c_str());
@@ -253,8 +286,11 @@ void run(const StatusArguments& arguments) {
     const Kept kept = kept_of(field, name);
     const auto found = now.statuses.find(name);
     const status_t* const live = found == now.statuses.end() ? nullptr : &found->second;
-    say_sensor(name, live, kept, field.command("adopt", name));
     sensors.push_back(as_json(name, live, kept));
+    if (arguments.csv)
+      say("%s\n", csv_line(&sensors.back()).c_str());
+    else
+      say_sensor(name, live, kept, field.command("adopt", name));
   }
   if (!arguments.json.empty())
     write_json(arguments.json,
@@ -276,6 +312,8 @@ void add_status(const Command& program) {
       .within(0.1, 3600.0)
       .shows_default()
       .type_name("SECONDS");
+  command.add_flag("-c,--csv", arguments->csv,
+                   "a line a sensor as CSV, for scripts, with the names of its columns first");
   command.add_option("--json", arguments->json, "write it as JSON, schema ifog.status/1");
   command.callback([arguments] { run(*arguments); });
 }

@@ -7,15 +7,23 @@
 #include <langinfo.h>
 
 #include <algorithm>
+#include <array>
 #include <clocale>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <cwchar>
 #include <stdexcept>
+#include <utility>
+
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
+
+constexpr std::array kColours{std::pair{Tone::good, static_cast<short>(COLOR_GREEN)},
+                              std::pair{Tone::warning, static_cast<short>(COLOR_YELLOW)},
+                              std::pair{Tone::bad, static_cast<short>(COLOR_RED)}};
 
 // As much of it as has room: what is longer would go on in the next line.
 std::string cut(const std::string& text, int columns) {
@@ -50,6 +58,11 @@ Screen::Screen() {
   keypad(stdscr, TRUE);
   nodelay(stdscr, TRUE);
   curs_set(0);
+  if (colours_wanted() && has_colors()) {
+    start_color();
+    use_default_colors();
+    for (const auto& [tone, colour] : kColours) init_pair(static_cast<short>(tone), colour, -1);
+  }
 }
 
 Screen::~Screen() {
@@ -105,15 +118,21 @@ void Screen::scroll(int by) {
                                                                std::max<std::ptrdiff_t>(0, last)));
 }
 
-void Screen::draw(const std::vector<std::string>& lines, const std::string& foot) {
+void Screen::draw(const std::vector<ShownLine>& lines, const std::string& foot) {
   const int rows = getmaxy(stdscr), columns = getmaxx(stdscr);
   lines_ = lines.size();
   const auto room = static_cast<std::size_t>(std::max(1, rows - 1));
   // Nothing is scrolled out of sight that would fit.
   first_ = std::min(first_, lines_ > room ? lines_ - room : 0);
   erase();
-  for (std::size_t row = 0; row < room && first_ + row < lines_; ++row)
-    mvaddnstr(static_cast<int>(row), 0, cut(lines[first_ + row], columns).c_str(), -1);
+  for (std::size_t row = 0; row < room && first_ + row < lines_; ++row) {
+    const ShownLine& line = lines[first_ + row];
+    // A pair that was not made is no colour.
+    const attr_t look = line.tone == Tone::figure ? A_BOLD : COLOR_PAIR(static_cast<int>(line.tone));
+    attron(look);
+    mvaddnstr(static_cast<int>(row), 0, cut(line.text, columns).c_str(), -1);
+    attroff(look);
+  }
   if (rows > 1) {
     attron(A_REVERSE);
     mvhline(rows - 1, 0, ' ', columns);

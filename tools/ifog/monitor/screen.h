@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/ifog/monitor/view_lines.h"
+
 namespace ifog::tools {
 
 class Screen {
@@ -37,7 +39,7 @@ class Screen {
 
   [[nodiscard]] std::size_t width() const;
   // Draws what fits, from the line that was scrolled to.
-  void draw(const std::vector<std::string>& lines, const std::string& foot);
+  void draw(const std::vector<ShownLine>& lines, const std::string& foot);
   void scroll(int by);
 
  private:

@@ -35,17 +35,21 @@ void SensorView::take(const rate_t& message) {
   for (std::size_t i = 0; i < kFlagNames.size(); ++i)
     if ((message.flags & kFlagNames[i].flag) != 0) ++flagged_[i];
   sums_.resize(static_cast<std::size_t>(message.axes));
+  history_.resize(sums_.size());
   for (std::size_t a = 0; a < sums_.size(); ++a) {
     Sums& sums = sums_[a];
     add(message.denoised[a], sums.count, sums.mean, sums.square);
     add(message.raw[a], sums.raw_count, sums.raw_mean, sums.raw_square);
+    sums.raw_low = std::fmin(sums.raw_low, message.raw[a]);  // a NaN is passed over
+    sums.raw_high = std::fmax(sums.raw_high, message.raw[a]);
     sums.angle = message.angle[a];
   }
 }
 
 void SensorView::take(status_t message) {
   status_ = std::move(message);
-  came_ = true;
+  came_ = status_came_ = true;
+  status_age_s_ = 0.0;
 }
 
 void SensorView::end_interval(double seconds) {
@@ -53,15 +57,16 @@ void SensorView::end_interval(double seconds) {
   judged_ = true;
   shown_ = shown_ || in_interval_ > 0 || status_;
   silent_s_ = std::exchange(came_, false) ? 0.0 : silent_s_ + seconds;
+  status_age_s_ = std::exchange(status_came_, false) ? 0.0 : status_age_s_ + seconds;
   flagged_before_ = std::exchange(flagged_, {});
   axes_.clear();
-  if (in_interval_ > 0) history_.resize(sums_.size());
-  for (std::size_t a = 0; in_interval_ > 0 && a < sums_.size(); ++a) {
+  for (std::size_t a = 0; a < sums_.size(); ++a) {
     const Sums sums = std::exchange(sums_[a], {});
-    axes_.push_back({sums.count > 0 ? sums.mean : std::numeric_limits<double>::quiet_NaN(),
-                     deviation(sums.count, sums.square), deviation(sums.raw_count, sums.raw_square),
-                     sums.angle});
-    history_[a].push_back(axes_.back().rate_radps);
+    const double rate_radps = sums.count > 0 ? sums.mean : std::numeric_limits<double>::quiet_NaN();
+    if (in_interval_ > 0)
+      axes_.push_back({rate_radps, deviation(sums.count, sums.square),
+                       deviation(sums.raw_count, sums.raw_square), sums.angle});
+    history_[a].push_back({sums.raw_low, sums.raw_high, rate_radps});
     if (history_[a].size() > kRemembered) history_[a].pop_front();
   }
   in_interval_ = 0;

@@ -7,6 +7,7 @@
 #include <deque>
 #include <ifog/rate_t.hpp>
 #include <ifog/status_t.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -24,8 +25,13 @@ struct AxisView {
 
 class SensorView {
  public:
-  // Intervals the spark line remembers.
+  // Two statuses have not come: a daemon that was killed says nothing of its end.
+  static constexpr double kStale_s = 2.5;
+  // Intervals that are remembered.
   static constexpr std::size_t kRemembered = 120;
+  struct Second {
+    double raw_low_radps, raw_high_radps, rate_radps;  // NaN: nothing came
+  };
 
   void take(const rate_t& message);
   void take(status_t message);
@@ -39,11 +45,18 @@ class SensorView {
   [[nodiscard]] bool shown() const { return shown_; }    // an interval with rates or a status has ended
   // The last message came so long ago, s, at the end of the interval.
   [[nodiscard]] double silent_s() const { return silent_s_; }
+  [[nodiscard]] bool silent() const { return silent_s_ > kStale_s; }
+  // Null: none came, or so long ago, s, that it says nothing of now.
+  [[nodiscard]] const status_t* live_status() const {
+    return status_ && status_age_s_ <= kStale_s ? &*status_ : nullptr;
+  }
+  [[nodiscard]] double status_age_s() const { return status_age_s_; }
   [[nodiscard]] bool two_publishers() const { return way_.two_publishers(); }
   [[nodiscard]] double message_rate_hz() const { return rate_hz_; }
   [[nodiscard]] const std::string& model() const { return model_; }
   [[nodiscard]] const std::vector<AxisView>& axes() const { return axes_; }  // none: nothing came
-  [[nodiscard]] const std::deque<double>& history(std::size_t axis) const { return history_[axis]; }
+  [[nodiscard]] std::size_t axis_count() const { return sums_.size(); }      // of the last message
+  [[nodiscard]] const std::deque<Second>& history(std::size_t axis) const { return history_[axis]; }
   [[nodiscard]] const std::optional<status_t>& status() const { return status_; }
 
   struct Count {
@@ -59,21 +72,23 @@ class SensorView {
   struct Sums {
     std::int64_t count = 0, raw_count = 0;
     double mean = 0.0, square = 0.0, raw_mean = 0.0, raw_square = 0.0, angle = 0.0;
+    double raw_low = std::numeric_limits<double>::quiet_NaN(), raw_high = raw_low;
   };
   [[nodiscard]] std::vector<Count> all_losses() const;
 
   std::int64_t messages_ = 0, in_interval_ = 0;
   bool came_ = false;  // anything, in the interval
-  double silent_s_ = 0.0;
+  double silent_s_ = 0.0, status_age_s_ = 0.0;
   bool judged_ = false, shown_ = false;
   double rate_hz_ = 0.0;
   LcmLoss way_;
   std::string model_;
   std::vector<Sums> sums_;
   std::vector<AxisView> axes_;
-  std::vector<std::deque<double>> history_;
+  std::vector<std::deque<Second>> history_;
   std::array<std::int64_t, kFlagNames.size()> flagged_{}, flagged_before_{};
   std::optional<status_t> status_;
+  bool status_came_ = false;  // in the interval
   std::vector<std::int64_t> forgotten_;
 };
 

@@ -19,7 +19,6 @@ namespace ifog::tools {
 namespace {
 
 constexpr std::size_t kLeastWidth = 40;
-constexpr double kStale_s = 2.5;  // two statuses have not come
 
 template <typename... Values>
 std::string text(const char* format, Values... values) {
@@ -79,31 +78,50 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
   if (style.width != 0 && columns_of(out) > style.width) out = rate + angle;
   constexpr std::size_t kMostSpark = 60, kLeastSpark = 4;
   if (style.width == 0) return out;
+  // How high the line is, in the rate's unit.
+  const auto scale = [&](const SparkLine& line) { return "  span " + number("", line.span); };
   const std::size_t taken = columns_of(out) + 2;
-  if (taken + kLeastSpark <= style.width)
-    out += "  " + spark_line(sensor.history(a), std::min(kMostSpark, style.width - taken));
-  return out;
+  if (taken + kLeastSpark > style.width) return out;
+  const std::size_t room = std::min(kMostSpark, style.width - taken);
+  std::vector<double> rates;
+  for (const SensorView::Second& each : sensor.history(a)) rates.push_back(each.rate_radps);
+  const SparkLine whole = spark_line(rates, room);
+  const std::size_t for_scale = columns_of(scale(whole));
+  if (!std::isfinite(whole.span) || taken + for_scale + kLeastSpark > style.width)
+    return out + "  " + whole.text;
+  const SparkLine line = spark_line(rates, std::min(room, style.width - taken - for_scale));
+  return out + "  " + line.text + scale(line);
 }
 
-std::string head_line(std::string_view name, const SensorView& sensor) {
+// By name and date where its file is here, else by its identity.
+std::string model_text(const std::string& identity, const KnownSensor* known) {
+  if (identity.empty()) return "";
+  if (known != nullptr && known->identity == identity) return "  model " + known->model;
+  return "  model " + printable(identity) +
+         (known != nullptr && !known->identity.empty() ? ", not what " + known->model + " holds" : "");
+}
+
+std::string head_line(std::string_view name, const SensorView& sensor, const KnownSensor* known) {
   std::string out = printable(name);
-  // A status comes each second: a daemon that was killed says nothing of its end.
-  if (sensor.silent_s() > kStale_s)
+  if (sensor.silent())
     out += text("  no message for %.0f s: has ifogd ended?", sensor.silent_s());
-  else if (sensor.status())
-    out += std::string("  ") + state_name(sensor.status()->state);
+  else if (sensor.live_status() != nullptr)
+    out += std::string("  ") + state_name(sensor.live_status()->state);
+  else if (sensor.status_age_s() > SensorView::kStale_s)
+    out += text("  no status for %.0f s", sensor.status_age_s());
   if (sensor.judged()) out += "  " + in_hertz(sensor.message_rate_hz());
   out += text("  %lld messages", static_cast<long long>(sensor.messages()));
-  if (!sensor.model().empty()) out += "  model " + printable(sensor.model());
-  return out;
+  return out + (sensor.silent() ? "" : model_text(sensor.model(), known));
 }
 
-// Environment channels by name; the age of one that is not fresh.
-std::vector<std::string> channels(const status_t& status) {
+// Environment channels by name; the age of one that is not fresh. One of the driver's that never came the sensor does not have.
+std::vector<std::string> channels(const status_t& status, const KnownSensor* known) {
   constexpr double kFresh_s = 2.0;
   std::vector<std::string> out;
   for (std::size_t i = 0; i < status.channel_name.size(); ++i) {
     const double age_s = status.channel_age_s[i];
+    if (!std::isfinite(age_s) && (known == nullptr || !known->channels.contains(status.channel_name[i])))
+      continue;
     std::string value = !std::isfinite(age_s) ? "not heard of" : text("%.6g", status.channel_value[i]);
     if (std::isfinite(age_s) && age_s > kFresh_s) value += text(" (%.0f s old)", age_s);
     out.push_back(printable(status.channel_name[i]) + " " + value);
@@ -112,13 +130,17 @@ std::vector<std::string> channels(const status_t& status) {
 }
 
 std::vector<std::string> health(const status_t& status) {
-  std::vector<std::string> out{text("latency p50 %.0f p99 %.0f max %.0f us", status.latency_p50_us,
-                                    status.latency_p99_us, status.latency_max_us),
-                               "clock " + clock_text(status.clock_offset_ppm)};
+  std::vector<std::string> out;
+  // A file's samples arrive at no time, and an axis that has had no value has no mean square.
+  if (status.latency_max_us > 0.0)
+    out.push_back(text("latency p50 %.0f p99 %.0f max %.0f us", status.latency_p50_us, status.latency_p99_us,
+                       status.latency_max_us));
+  out.push_back("clock " + clock_text(status.clock_offset_ppm));
   const std::size_t axes = std::min(status.nis_mean.size(), status.whiteness.size());
   for (std::size_t a = 0; a < axes; ++a)
-    out.push_back(std::string(axis_name(a, axes)) +
-                  text(" NIS %.2f whiteness %+.2f", status.nis_mean[a], status.whiteness[a]));
+    if (status.nis_mean[a] != 0.0)
+      out.push_back(std::string(axis_name(a, axes)) +
+                    text(" NIS %.2f whiteness %+.2f", status.nis_mean[a], status.whiteness[a]));
   return out;
 }
 
@@ -152,37 +174,55 @@ std::vector<std::string> wrapped(const std::vector<std::string>& parts, std::str
   return out;
 }
 
-std::vector<std::string> view_lines(std::string_view name, const SensorView& sensor, const LineStyle& style) {
+const char* tone_name(Tone tone) {
+  constexpr std::array kNames{"plain", "figure", "good", "warning", "bad"};
+  return kNames[static_cast<std::size_t>(tone)];
+}
+
+Tone tone_of(const SensorView& sensor) {
+  const status_t* const status = sensor.live_status();
+  if (sensor.silent() || sensor.two_publishers()) return Tone::bad;
+  if (status == nullptr) return sensor.judged() ? Tone::warning : Tone::plain;
+  if (status->state == status_t::STATE_RUNNING) return status->fault.empty() ? Tone::good : Tone::warning;
+  return status->state == status_t::STATE_FAILED ? Tone::bad : Tone::warning;
+}
+
+std::vector<ShownLine> view_lines(std::string_view name, const SensorView& sensor, const LineStyle& style,
+                                  const KnownSensor* known) {
   const std::size_t width = style.width == 0 ? 0 : std::max(style.width, kLeastWidth);
-  std::vector<std::string> out{head_line(name, sensor)};
-  const auto add = [&](const std::vector<std::string>& parts, std::string_view separator = "  ") {
-    for (std::string& line : wrapped(parts, separator, width)) out.push_back(std::move(line));
+  const status_t* const status = sensor.live_status();
+  std::vector<ShownLine> out{{head_line(name, sensor, known), tone_of(sensor)}};
+  const auto add = [&](const std::vector<std::string>& parts, Tone tone = Tone::plain,
+                       std::string_view separator = "  ") {
+    for (std::string& line : wrapped(parts, separator, width)) out.push_back({std::move(line), tone});
   };
   if (!sensor.judged())
-    out.push_back("  its first second is not over");
+    out.push_back({"  its first second is not over"});
   else if (sensor.axes().empty())
-    out.push_back("  no samples in the last second" +
-                  (sensor.status() && sensor.silent_s() <= kStale_s
-                       ? std::string(": ") + state_name(sensor.status()->state)
-                       : ""));
-  for (std::size_t a = 0; a < sensor.axes().size(); ++a) out.push_back(axis_line(sensor, a, style));
+    out.push_back({"  no samples in the last second" +
+                       (status != nullptr ? std::string(": ") + state_name(status->state) : ""),
+                   Tone::warning});
+  for (std::size_t a = 0; a < sensor.axes().size(); ++a)
+    out.push_back({axis_line(sensor, a, style), Tone::figure});
   // Each line says of when its counts are: a kind of fault may stand in both.
   add(counted("in the last second:", sensor.flags()));
   if (sensor.two_publishers())
-    add({"two publishers send on this channel: two daemons, or a log that is played?"});
-  if (sensor.silent_s() > kStale_s) return out;
+    add({"two publishers send on this channel: two daemons, or a log that is played?"}, Tone::bad);
+  if (sensor.silent()) return out;
   const auto losses = counted("so far:", sensor.losses());
-  add(losses.empty() ? std::vector<std::string>{"nothing lost"} : losses);
-  if (sensor.status()) {
-    const status_t& status = *sensor.status();
-    if (!status.fault.empty()) add({"fault: " + printable(status.fault)});
-    if (!status.notice.empty()) add({"noticed: " + printable(status.notice, kLongestMessage)});
-    if (style.details) {
-      add(health(status));
-      add(books_parts(status), " ");
-      add(channels(status));
-    }
-  }
+  // What is not told any more is not known to be nothing.
+  if (!losses.empty() || status != nullptr || sensor.status_age_s() <= SensorView::kStale_s)
+    add(losses.empty() ? std::vector<std::string>{"nothing lost"} : losses,
+        losses.empty() ? Tone::good : Tone::warning);
+  if (known != nullptr && !known->proposal.empty()) add({known->proposal}, Tone::warning);
+  if (known != nullptr && style.details) add({"driver " + known->driver});
+  if (status == nullptr) return out;
+  if (!status->fault.empty()) add({"fault: " + printable(status->fault)}, Tone::bad);
+  if (!status->notice.empty()) add({"noticed: " + printable(status->notice, kLongestMessage)}, Tone::warning);
+  if (!style.details) return out;
+  add(health(*status));
+  add(books_parts(*status), Tone::plain, " ");
+  add(channels(*status, known));
   return out;
 }
 

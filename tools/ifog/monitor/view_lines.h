@@ -2,6 +2,7 @@
 // A sensor as lines of text, for a screen of any width and for a file.
 #pragma once
 
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,8 +24,29 @@ struct LineStyle {
   RateUnit unit = RateUnit::automatic;
 };
 
-// Names from the network in them are as they came, but without control characters.
-std::vector<std::string> view_lines(std::string_view name, const SensorView& sensor, const LineStyle& style);
+// What this computer's own files say of a sensor that is heard: its messages carry neither driver nor transport, and of the model
+// an identity.
+struct KnownSensor {
+  std::string driver;           // "kvh1750, serial /dev/ttyUSB0"
+  std::string model, identity;  // "nose.toml of 2026-11-27 01:30", and that model's identity; "" without one
+  std::string proposal;         // that waits, in one line; "" for none
+  std::set<std::string> channels;  // configured besides those of its own frames
+};
+
+enum class Tone { plain, figure, good, warning, bad };  // figure: an axis's
+const char* tone_name(Tone tone);
+
+struct ShownLine {
+  std::string text;
+  Tone tone = Tone::plain;
+};
+
+// How the sensor does, in a word.
+Tone tone_of(const SensorView& sensor);
+
+// Names from the network in them are as they came, but without control characters. `known`: null for nothing.
+std::vector<ShownLine> view_lines(std::string_view name, const SensorView& sensor, const LineStyle& style,
+                                  const KnownSensor* known = nullptr);
 
 // Columns that a text takes on a terminal: bytes that begin a character.
 std::size_t columns_of(std::string_view text);

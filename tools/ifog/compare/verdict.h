@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which rule leaves the least, and how much more the others leave: against the reference where there is one, else at rest.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "filters/compare/compare.h"
+
+namespace ifog::tools {
+
+struct Verdict {
+  std::string figure;    // as in the JSON: "rmse_radps", "adev_radps 1", "std_radps"
+  std::size_t best = 0;  // in the order of the rules
+  double best_radps = 0.0, raw_radps = 0.0;
+  std::vector<double> above;  // by rule: its figure over the best's, less 1
+  std::string text;           // one line
+};
+
+Verdict verdict_of(const Comparison& result, int axis);
+
+}  // namespace ifog::tools

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a person sees of the monitor at a terminal, and its keys.
+#include <algorithm>
+#include <iterator>
+#include <utility>
+
+#include "drivers/ifog/quoted.h"
+#include "tools/ifog/monitor/monitor.h"
+
+namespace ifog::tools {
+
+// "": none.
+std::string Monitor::who_publishes() const {
+  std::string out;
+  for (const std::string& name : others_) out += (out.empty() ? "" : ", ") + printable(name);
+  return out;
+}
+
+// For what, and since when.
+std::vector<std::string> Monitor::waiting() const {
+  const std::string wanted =
+      options_.sensor.empty() ? "a sensor's messages (IFOG_*)" : in_quotes(options_.sensor);
+  return {"waiting for " + wanted + " on " + printable(options_.url) + ",",
+          std::to_string(static_cast<int>(seconds_since(last_heard_))) + " s: nothing heard"};
+}
+
+std::vector<ShownLine> Monitor::lines(const LineStyle& style) const {
+  constexpr double kSilent_s = 1.5;
+  std::vector<ShownLine> out;
+  for (const auto& [name, sensor] : look_.paused ? *look_.paused : sensors_) {
+    if (!look_.only.empty() && name != look_.only) continue;
+    if (!out.empty() && screen_) out.emplace_back();
+    std::vector<ShownLine> of_sensor = view_lines(name, sensor, style, known_.of(name));
+    std::move(of_sensor.begin(), of_sensor.end(), std::back_inserter(out));
+  }
+  if (refused_ > 0)
+    out.push_back({std::to_string(refused_) + " messages that are none of ours, or damaged", Tone::warning});
+  if (crowded_ > 0)
+    out.push_back({std::to_string(crowded_) + " messages of more sensors than " +
+                       std::to_string(kMostSensors) + ", which are shown",
+                   Tone::warning});
+  if (screen_ && !look_.paused && (sensors_.empty() || seconds_since(last_heard_) > kSilent_s)) {
+    std::vector<std::string> wait = wrapped(waiting(), " ", style.width);
+    std::vector<ShownLine> all;
+    for (std::string& line : wait) all.push_back({std::move(line), Tone::bad});
+    std::move(out.begin(), out.end(), std::back_inserter(all));
+    out = std::move(all);
+    if (const std::string others = who_publishes(); sensors_.empty() && !others.empty()) {
+      for (std::string& line : wrapped({"These publish:", others}, " ", style.width))
+        out.push_back({std::move(line)});
+    } else if (sensors_.empty()) {
+      for (std::string& line :
+           wrapped({"Is ifogd running, with this lcm_url? Is there a route for its multicast:",
+                    "ip route add 224.0.0.0/4 dev lo"},
+                   " ", style.width))
+        out.push_back({std::move(line)});
+    }
+  }
+  return out;
+}
+
+std::string Monitor::foot() const {
+  return std::string(look_.paused ? " PAUSED " : "") +
+         " q quit  space pause  d details  u unit  s sensor  r losses from now  ↑↓ scroll";
+}
+
+void Monitor::draw() {
+  look_.style.width = screen_->width();
+  screen_->draw(
+      look_.help
+          ? std::vector<ShownLine>{{"ifog monitor"},
+                                   {""},
+                                   {"  q, escape   quit"},
+                                   {"  space, p    pause: the figures stand still, nothing is lost"},
+                                   {"  d           details: latency, books, channels, NIS"},
+                                   {"  u           unit: as it suits, °/h, °/s, rad/s"},
+                                   {"  s, tab      one sensor after the other, then all"},
+                                   {"  r           count losses from now on"},
+                                   {"  ↑ ↓ j k     scroll, page up and down"},
+                                   {""},
+                                   {"  noise is the standard deviation within a second; the line at the"},
+                                   {"  right is the denoised rate, a second a column, and span its height."},
+                                   {"  Flags are counted in messages of the last second. Any key goes back."}}
+          : lines(look_.style),
+      foot());
+}
+
+bool Monitor::obey(Screen::Key key) {
+  if (std::exchange(look_.help, key == Screen::Key::help && !look_.help) && key != Screen::Key::quit)
+    return true;
+  switch (key) {
+    case Screen::Key::quit:
+      return false;
+    case Screen::Key::pause:
+      look_.paused = look_.paused ? std::nullopt : std::optional(sensors_);
+      break;
+    case Screen::Key::details:
+      look_.style.details = !look_.style.details;
+      break;
+    case Screen::Key::unit:
+      look_.style.unit = static_cast<RateUnit>((static_cast<int>(look_.style.unit) + 1) % 4);
+      break;
+    case Screen::Key::sensor: {
+      const auto next = look_.only.empty() ? sensors_.begin() : sensors_.upper_bound(look_.only);
+      look_.only = next == sensors_.end() ? "" : next->first;
+      break;
+    }
+    case Screen::Key::forget:
+      for (auto& [name, sensor] : sensors_) sensor.forget_losses();
+      refused_ = 0;
+      break;
+    case Screen::Key::up:
+      screen_->scroll(-1);
+      break;
+    case Screen::Key::down:
+      screen_->scroll(1);
+      break;
+    case Screen::Key::page_up:
+      screen_->scroll(-20);
+      break;
+    case Screen::Key::page_down:
+      screen_->scroll(20);
+      break;
+    case Screen::Key::none:
+    case Screen::Key::help:
+    case Screen::Key::resized:
+      break;
+  }
+  return true;
+}
+
+}  // namespace ifog::tools
