@@ -277,6 +277,18 @@ class Checks:
         rates = [float(row.split(",")[1]) for row in out.read_text().splitlines() if row[0].isdigit()]
         assert len(rates) == 200 and abs(rates[0] + math.radians(5)) < 1e-12 and not any(map(math.isnan, rates)), rates[:3]
 
+    def check_hourly_rates_are_asked_about(self):
+        """10.3 °/h of the Earth in a column of rad/s, and read as what it is."""
+        hourly = self.folder / "hourly.csv"
+        hourly.write_text("time_s,rate_radps\n" + "".join(f"{i / 100},{10.3 + 0.1 * math.sin(7919 * i)}\n" for i in range(3000)))
+        white = self.file("white.csv", ["time_s,rate_radps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x * RAD))])
+        typed = "--column rate_radps=rate_radps:deg/h"
+        for command in (["tune"], ["compare"], ["diagnose", "--quiet"]):
+            said = ran(*command, hourly).stderr
+            assert f"rate is 10.3 rad/s (590.1 °/s) all along: is it in °/h? then add {typed}" in said, f"{command}: {said}"
+            assert "all along" not in ran(*command, hourly, *typed.split()).stderr
+            assert "all along" not in ran(*command, white).stderr
+
     def check_files_of_others(self):
         if not CASES.is_dir():
             return

@@ -160,6 +160,22 @@ class Noise:
         assert re.search(r">walk\.csv: [QNBKR] = ", picture), picture[-2000:]
         assert 'class="word' not in picture
 
+    def check_a_figure_that_grows_stands_in_the_table(self):
+        """Slow noise that runs against an effect in the part that is fitted, whose figures the part kept back replaces."""
+        import random
+        path = self.folder / "slow.csv"
+        for seed in (7, 9, 15, 36):
+            throw, walk, rows = random.Random(seed), 0.0, []
+            for i in range(20000):
+                t, walk = i / 10, walk + throw.gauss(0, 6e-8)
+                channel = 25 + 5 * math.sin(2 * math.pi * t / 37) + math.sin(2 * math.pi * t / 900)
+                rows.append(f"{t:.1f},{1e-6 * (channel - 25) + walk * 8 + throw.gauss(0, 1e-6):.9e},{channel:.5f}\n")
+            path.write_text("time_s,rate_radps,temperature_degC\n" + "".join(rows))
+            found = self.json("diagnose", path, "--quiet", "--fit-to", "0.5")
+            assert found["effects"], "there is a model to be judged"
+            if found["after"]["rms_100s_radps"] < found["before"]["rms_100s_radps"]:
+                assert not any("100 s means grow" in remark for remark in found["remarks"]), found["remarks"]
+
 
 if __name__ == "__main__":
     sys.exit(main_of(Noise))

@@ -22,7 +22,9 @@ import sys
 import tempfile
 import time
 
-sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "command_line"))
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [os.path.join(HERE, "..", "command_line"), os.path.join(HERE, "..")]
+import private_network  # noqa: E402
 import schema  # noqa: E402
 
 import slow_gyro  # noqa: E402
@@ -53,27 +55,6 @@ form = "warm_up"
 parameter = [{name = "coefficient", value = 1e-6, std_error = 0.0, unit = "rad/s"},
              {name = "time_constant_s", value = %s, std_error = 0.0, unit = "s"}]
 """
-
-
-def skip(reason):
-    print("SKIPPED:", reason)
-    sys.exit(77)
-
-
-def private_network():
-    """This process again, in a network namespace where LCM may send."""
-    for tool in ("ip", "unshare"):
-        if shutil.which(tool) is None:
-            skip(f"{tool} is missing; tools/install-packages test brings it")
-    if os.environ.get("IFOG_FIELD_INSIDE") == "1":
-        if subprocess.run("ip link set lo up multicast on && ip route add 224.0.0.0/4 dev lo", shell=True).returncode:
-            skip("no multicast route on the loopback")
-        return
-    flags = "-n" if os.geteuid() == 0 else "-rn"
-    if subprocess.run(["unshare", flags, "true"], capture_output=True).returncode:
-        skip(f"no network namespace of one's own (unshare {flags}): LCM stays off the real network")
-    os.environ["IFOG_FIELD_INSIDE"] = "1"
-    os.execvp("unshare", ["unshare", flags, sys.executable, *sys.argv])
 
 
 class Field:
@@ -383,7 +364,7 @@ file_s = 3
 def main():
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
-    private_network()
+    private_network.enter()
     keep = len(sys.argv) == 3
     work = sys.argv[2] if keep else tempfile.mkdtemp()
     os.makedirs(work, exist_ok=True)

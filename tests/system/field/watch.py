@@ -45,7 +45,7 @@ def watched(field, day, verdict, code):
 def main():
     if len(sys.argv) not in (2, 3):
         sys.exit(__doc__)
-    run.private_network()
+    run.private_network.enter()
     keep = len(sys.argv) == 3
     work = sys.argv[2] if keep else tempfile.mkdtemp()
     os.makedirs(work, exist_ok=True)
