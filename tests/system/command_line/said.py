@@ -326,7 +326,7 @@ class Checks:
     def check_every_number_is_finite(self):
         """Of every command, by what it says of itself: an option whose value is a number takes nothing else."""
         numbers, words = {"NUMBER", "SECONDS", "S", "TIME"}, {"N", "INDEX"}
-        texts = {"FILE", "NAME", "FOLDER", "WHERE", "URL", "PATH", "C", "KEY=VALUE", "HEADER[:UNIT]", "NAME=HEADER[:UNIT]", "HEADER=VALUE", "WHAT"}
+        texts = {"FILE", "NAME", "FOLDER", "WHERE", "URL", "PATH", "C", "KEY=VALUE", "HEADER[:UNIT]", "NAME=HEADER[:UNIT]", "HEADER=VALUE", "WHAT", "[ADDRESS:]PORT"}
         tried = 0
         for command in json.loads(ifog("--describe"))["commands"]:
             for option in command["options"]:

@@ -192,6 +192,9 @@ def main():
                 figures()
                 again = subprocess.run(command, capture_output=True, text=True, check=False)
                 require(again.returncode == 1 and again.stderr.count("\n") == 1 and "Address already in use" in again.stderr, "a port in use: " + again.stderr.strip())
+                for bad in ("0", "70000", "http", "1.2.3.4:", "evil.example:80", "::1:80"):
+                    refused = subprocess.run([*command[:3], bad], capture_output=True, text=True, check=False)
+                    require(refused.returncode == 2 and "expected a port 1 ... 65535" in refused.stderr, f"--web {bad} is usage")
                 in_chromium(work, os.path.realpath(sys.argv[2]) if len(sys.argv) > 2 else work)
                 daemon.send_signal(signal.SIGSTOP)
                 seen = wait_for(lambda d: "no message for" in d["sensor"]["lines"][0][1], "a daemon that is held up is seen")["sensor"]
