@@ -169,7 +169,7 @@ def in_chromium(work, pictures):
         browse("", f"--screenshot={shot}", f"--blink-settings=preferredColorScheme={preferred}")
     require(shots[0].read_bytes() != shots[1].read_bytes(), "dark looks other than light")
     Stand.data = json.loads(ask("/data")[2])
-    Stand.data["sensors"] = [[FOREIGN, "good"]]
+    Stand.data["sensors"] = [[FOREIGN, "good", FOREIGN]]
     Stand.data["sensor"]["lines"].append(["bad", FOREIGN])
     Stand.data["sensor"]["axes"][0]["name"] = FOREIGN
     look(lambda s: s["images"] == 0 and s["text"].count(FOREIGN) == 3, "foreign names are text")
