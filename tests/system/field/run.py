@@ -27,6 +27,7 @@ sys.path[:0] = [os.path.join(HERE, "..", "command_line"), os.path.join(HERE, "..
 import private_network  # noqa: E402
 import schema  # noqa: E402
 
+import first_words  # noqa: E402
 import slow_gyro  # noqa: E402
 
 HZ = 10
@@ -154,8 +155,7 @@ file_s = 3
             time.sleep(0.2)
 
     def record_messages(self, name):
-        recorder = subprocess.Popen([os.path.join(self.build, "tests/system/lcm_record"), URL, "IFOG_NOSE", self.path(name)],
-                                    stdout=open(self.path("recorder"), "w"))
+        recorder = subprocess.Popen([os.path.join(self.build, "tests/system/lcm_record"), URL, "IFOG_NOSE", self.path(name)], stdout=open(self.path("recorder"), "w"))
         self.await_(lambda: "recording" in open(self.path("recorder")).read(), "the recorder of LCM")
         return recorder
 
@@ -169,18 +169,9 @@ file_s = 3
     def before_the_daemon(self):
         said, found = self.of("status")
         self.check("ifogd does not run" in said and not found["running"], "status without a daemon says so")
-        table = list(csv.DictReader(self.run("status", "-c", "--config", self.config).splitlines()))
-        self.check([(row["sensor"], row["heard"], row["state"], row["samples_published"]) for row in table] == [("nose", "false", "", "")],
-                   "as CSV likewise, and nothing of what it does not know")
         self.check("no proposal waits" in self.run("proposals", "--config", self.config), "no proposal to begin with")
         self.check("no recording has been closed" in self.run("night", "--config", self.config), "a night without recordings is one line")
-        os.makedirs(self.path("record/nose"))
-        half = self.path("record/nose/000001-20260131T130509Z.ifr.open")
-        with open(half, "wb") as file:
-            file.truncate(5_000_000)
-        self.check("closes at 16.0 MB or at 2026-01-31T13:05:12Z, which is over: does ifogd run?" in self.run("night", "--config", self.config),
-                   "and of one that is being written says when it will be closed")
-        os.remove(half)
+        first_words.before_the_daemon(self)
 
     def first_day(self):
         self.start()
@@ -193,15 +184,9 @@ file_s = 3
         there = sum(os.path.getsize(file) for file in glob.glob(folder + "/*.ifr"))
         self.await_(lambda: self.sensor()["recorded"]["written_bytes"] >= there, "the status to have what is written")
         sensor = self.sensor()
-        self.check(sensor["recordings"] == folder and sensor["recorded"]["written_bytes"] == there > 0 == sensor["recorded"]["lost"],
-                   "and what was recorded of it: all, and where")
+        self.check(sensor["recordings"] == folder and sensor["recorded"]["written_bytes"] == there > 0 == sensor["recorded"]["lost"], "what was recorded, and where")
         self.check(f", 0 lost; {there / 1e6:.1f} MB written in {folder}" in self.run("status", "--config", self.config), "and so in words")
-        _, found = self.of("status")
-        table = list(csv.DictReader(self.run("status", "-c", "--config", self.config).splitlines()))
-        one, row = found["sensors"][0], table[0]
-        self.check(len(table) == 1 and row["sensor"] == "nose" and row["heard"] == row["balanced"] == "true" and row["state"] == one["state"] and
-                   int(row["samples_published"]) == one["books"]["samples_published"] and all(int(row[name]) == n for name, n in one["losses"].items()) and
-                   row["model"] == row["proposal"] == "" and row["model_since"] == (one["model_since"] or ""), f"and as CSV, a line: {row}")
+        first_words.of_the_day(self, self.sensor())
         self.check("waits for more" in self.run("night", "--config", self.config, "--least-rest", "1e6"), "too little rest is one line")
 
     def first_night(self):

@@ -30,14 +30,25 @@ FOREIGN = "<img src=x onerror=alert(1)>"
 CONFIG = """[daemon]
 lock_memory = false
 plugin_folder = "{binaries}/plugins"
+state_folder = "{work}/state"
 [[sensor]]
 name = "nose"
+model = "{work}/coil.toml"
 driver = "capture"
 nominal_rate_hz = 100
 options = {{ columns = "rate_x_radps,rate_y_radps,rate_z_radps,temperature_degC" }}
 transport = {{ type = "file", path = "{work}/three.csv", bytes_per_second = 5800, pace = "recorded" }}
 filter = {{ process_noise = 1e-16, measurement_noise = 1e-14 }}
 """
+
+MODEL = """version = 1
+sensor = "nose"
+[source]
+date = "2026-11-26T01:30:59Z"
+"""
+NO_MODEL = {"identity": "", "sha256": ""}
+PROPOSAL = {"schema": "ifog.proposal/1", "sensor": "nose", "made": "2026-11-27T02:00:00Z", "why": "linear in temperature_degC", "against": NO_MODEL,
+            "model": NO_MODEL, "model_file": "a.toml", "report_file": "a.html", "gain": []}
 
 
 def require(holds, what):
@@ -78,7 +89,8 @@ def figures():
     near = lambda value, wanted, within: value is not None and abs(value - wanted) < within
     seen = wait_for(lambda d: len(d["sensor"]["axes"][2]["allan"]) > 3 and len(d["sensor"]["axes"][0]["seconds"]) > 3, "three axes")["sensor"]
     text = "\n".join(line for _, line in seen["lines"])
-    for part in ("running", "nothing lost", "driver capture, file /", "three.csv", "temperature_degC 25"):
+    for part in ("running", "nothing lost", "driver capture, file /", "three.csv", "temperature_degC 25", "model coil.toml of 2026-11-26 01:30",
+                 "proposal of 2026-11-27T02:00:00Z: linear in temperature_degC; adopt with: ifog adopt nose --config"):
         require(part in text, f"the page says {part!r}")
     for axis, (name, mean) in zip(seen["axes"], MEANS.items()):
         require(axis["name"] == name and near(axis["rate_radps"], mean, SWING) and near(axis["raw_noise_radps"], SWING, 0.03 * SWING)
@@ -169,7 +181,7 @@ def in_chromium(work, pictures):
         browse("", f"--screenshot={shot}", f"--blink-settings=preferredColorScheme={preferred}")
     require(shots[0].read_bytes() != shots[1].read_bytes(), "dark looks other than light")
     Stand.data = json.loads(ask("/data")[2])
-    Stand.data["sensors"] = [[FOREIGN, "good"]]
+    Stand.data["sensors"] = [[FOREIGN, "good", FOREIGN]]
     Stand.data["sensor"]["lines"].append(["bad", FOREIGN])
     Stand.data["sensor"]["axes"][0]["name"] = FOREIGN
     look(lambda s: s["images"] == 0 and s["text"].count(FOREIGN) == 3, "foreign names are text")
@@ -183,6 +195,9 @@ def main():
     binaries = os.path.realpath(sys.argv[1])
     with tempfile.TemporaryDirectory() as work:
         capture(f"{work}/three.csv")
+        os.mkdir(f"{work}/state")
+        pathlib.Path(work, "state/nose.proposal.json").write_text(json.dumps(PROPOSAL), encoding="utf-8")
+        pathlib.Path(work, "coil.toml").write_text(MODEL, encoding="utf-8")
         pathlib.Path(work, "ifogd.toml").write_text(CONFIG.format(binaries=binaries, work=work), encoding="utf-8")
         command = [f"{binaries}/tools/ifog/ifog", "monitor", "--web", str(PORT), "--config", f"{work}/ifogd.toml"]
         with open(f"{work}/log", "w", encoding="utf-8") as log, subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as monitor, \
@@ -192,6 +207,9 @@ def main():
                 figures()
                 again = subprocess.run(command, capture_output=True, text=True, check=False)
                 require(again.returncode == 1 and again.stderr.count("\n") == 1 and "Address already in use" in again.stderr, "a port in use: " + again.stderr.strip())
+                for bad in ("0", "70000", "http", "1.2.3.4:", "evil.example:80", "::1:80"):
+                    refused = subprocess.run([*command[:3], bad], capture_output=True, text=True, check=False)
+                    require(refused.returncode == 2 and "expected a port 1 ... 65535" in refused.stderr, f"--web {bad} is usage")
                 in_chromium(work, os.path.realpath(sys.argv[2]) if len(sys.argv) > 2 else work)
                 daemon.send_signal(signal.SIGSTOP)
                 seen = wait_for(lambda d: "no message for" in d["sensor"]["lines"][0][1], "a daemon that is held up is seen")["sensor"]

@@ -232,9 +232,11 @@ void add_monitor(const Command& program) {
                   "Instead of the figures a page for a browser, at this port of 127.0.0.1 or of another "
                   "address of this computer")
       .type_name("[ADDRESS:]PORT")
-      .check([](const std::string& text) {
-        return page_address(text) ? ""
-                                  : "expected a port 1 ... 65535, or ADDRESS:PORT with a numeric address";
+      .check([](const std::string& text) -> std::string {
+        return page_address(text)
+                   ? ""
+                   : "is " + in_quotes(text) +
+                         ", expected a port 1 ... 65535, or ADDRESS:PORT with a numeric address";
       });
   options->field.add_to(command);
   command.add_option("--lcm-url", options->url, "As in the daemon's configuration").type_name("URL");

@@ -64,7 +64,8 @@ std::string WebMonitor::data(const std::string& wanted) {
                    {"sensors", ordered_json::array()}};
   const auto asked = sensors_.find(wanted);
   const auto shown = asked != sensors_.end() ? asked : sensors_.begin();
-  for (const auto& [name, sensor] : sensors_) out["sensors"].push_back({name, tone_name(tone_of(sensor))});
+  for (const auto& [name, sensor] : sensors_)
+    out["sensors"].push_back({name, tone_name(tone_of(sensor)), printable(name)});
   if (shown != sensors_.end()) {
     out["chosen"] = shown->first;
     out["sensor"] = of_sensor(shown->first, shown->second, known_.of(shown->first));

@@ -130,8 +130,8 @@ function show() {
     stale ? `ifog monitor is delayed by ${Math.round(answer.age_s)} s` : answer.waiting;
   const sensor = answer.sensor;
   $('sensors').replaceChildren();
-  for (const [name, tone] of answer.sensors) {
-    const button = add($('sensors'), 'button', name, stale ? 'plain' : tone);
+  for (const [name, tone, shown] of answer.sensors) {
+    const button = add($('sensors'), 'button', shown, stale ? 'plain' : tone);
     button.setAttribute('aria-pressed', String(name === answer.chosen));
     button.onclick = () => { chosen = name; ask(); };
   }
