@@ -178,7 +178,8 @@ void draw_comparison(const std::string& path, const CaptureView& capture, const 
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     AxisRows(capture, result, rules, a, verdicts[a].best).add_to(rows);
     title += (title.empty() ? "" : "; ") + (capture.axes[a].empty() ? "" : capture.axes[a] + ": ") +
-             (capture.axes.size() == 1 ? verdicts[a].text : "best is " + rules[verdicts[a].best]);
+             (capture.axes.size() == 1 ? verdicts[a].text
+                                       : verdicts[a].text.substr(0, verdicts[a].text.find(':')));
   }
   report::write_picture(path, report::picture_svg(title, rows, 1100.0));
 }
