@@ -206,6 +206,17 @@ void print_axis(const Comparison& result, int axis, bool reference, const Verdic
   }
 }
 
+std::vector<Verdict> print_axes(const CaptureView& capture, const Comparison& result) {
+  std::vector<Verdict> verdicts;
+  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
+    if (!capture.axes[a].empty()) say("\naxis %s\n", capture.axes[a].c_str());
+    verdicts.push_back(verdict_of(result, static_cast<int>(a)));
+    print_axis(result, static_cast<int>(a), !capture.reference_rate_radps[a].empty(), verdicts.back());
+    say("%s\n", verdicts.back().text.c_str());
+  }
+  return verdicts;
+}
+
 void write_comparison(const Options& options, const CaptureView& capture, double period_s,
                       const Motion& motion, const Comparison& result, const FilterSettings& settings,
                       const std::vector<Verdict>& verdicts) {
@@ -254,11 +265,9 @@ void run(const Options& options) {
   in.period_s = sample_clock(capture.time_s).period_s;
   const Motion motion = motion_of(capture, in.period_s);
   if (motion.left_out) in.at_rest = motion.rest.at_rest;
-  bool reference = false;
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     in.rate.emplace_back(capture.rate_radps[a]);
     in.reference.emplace_back(capture.reference_rate_radps[a]);
-    reference = reference || !capture.reference_rate_radps[a].empty();
   }
   FilterSettings base;
   if (!options.model.empty()) base = read_model(options.model).filter.value_or(base);
@@ -285,13 +294,7 @@ void run(const Options& options) {
       "manoeuvres, and of their innovations lag-1: correlation, NIS: squares over their variance, median "
       "over\n"
       "that of a normal law; steps of 20 and 5 sigma in samples to 90 %%\n");
-  std::vector<Verdict> verdicts;
-  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    if (!capture.axes[a].empty()) say("\naxis %s\n", capture.axes[a].c_str());
-    verdicts.push_back(verdict_of(result, static_cast<int>(a)));
-    print_axis(result, static_cast<int>(a), reference && !in.reference[a].empty(), verdicts.back());
-    say("%s\n", verdicts.back().text.c_str());
-  }
+  const std::vector<Verdict> verdicts = print_axes(capture, result);
   if (!options.json_file.empty())
     write_comparison(options, capture, in.period_s, motion, result, s, verdicts);
   if (!options.plot_file.empty()) {

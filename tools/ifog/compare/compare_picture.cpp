@@ -45,23 +45,30 @@ report::Thinned drawn(const CaptureView& capture, const report::TimeAxis& axis,
   return report::thinned(time, rate);
 }
 
-// What the differences keep to once the filters have started, in °/h: the first twentieth and the outermost two
-// in a thousand values left out, with a margin. None: no number among them.
-void keep_range(ChartAxis& axis, const std::vector<Samples>& differences_radps) {
+// What a rate keeps to once its filter has started, in °/h: the first twentieth and the outermost two in a thousand values left
+// out. Empty: no number among them.
+report::Bounds settled(const Samples& rate_radps) {
   Samples values;
-  for (const Samples& difference : differences_radps)
-    for (std::size_t i = difference.size() / 20; i < difference.size(); ++i)
-      if (std::isfinite(difference[i])) values.push_back(difference[i] * (1.0 / kDegreePerHour));
-  if (values.empty()) return;
+  for (std::size_t i = rate_radps.size() / 20; i < rate_radps.size(); ++i)
+    if (std::isfinite(rate_radps[i])) values.push_back(rate_radps[i] * (1.0 / kDegreePerHour));
+  report::Bounds out;
+  if (values.empty()) return out;
   const std::size_t cut = values.size() / 1000;
-  const auto nth = [&](std::size_t n) {
+  for (const std::size_t n : {cut, values.size() - 1 - cut}) {
     std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(n), values.end());
-    return values[n];
-  };
-  const double low = nth(cut), high = nth(values.size() - 1 - cut);
-  const double margin = std::max(0.1 * (high - low), 1e-9);
-  axis.low = low - margin;
-  axis.high = high + margin;
+    out.take(values[n], false);
+  }
+  return out;
+}
+
+// With a margin.
+ChartAxis axis_of(const report::Bounds& bounds) {
+  ChartAxis axis{"°/h", false, {}, {}};
+  if (bounds.empty()) return axis;
+  const double margin = std::max(0.1 * (bounds.high - bounds.low), 1e-9);
+  axis.low = bounds.low - margin;
+  axis.high = bounds.high + margin;
+  return axis;
 }
 
 // Of the curve over another's, at the averaging times of both.
@@ -77,72 +84,90 @@ AllanCurve over(const AllanCurve& curve, const AllanCurve& other) {
 }
 
 // The rows of one axis of the sensor: raw, the best rule, and what the others differ from that.
-void add_rows(std::vector<report::PictureRow>& rows, const CaptureView& capture, const Comparison& result,
-              const std::vector<std::string>& rules, std::size_t axis, std::size_t best) {
-  constexpr double kRow = 132.0, kNumbers = 38.0;
-  const std::string prefix = capture.axes[axis].empty() ? "" : "axis " + capture.axes[axis] + ": ";
-  const report::TimeAxis time(capture.told_time_s(0), capture.told_time_s(capture.size() - 1));
-  const SampleClock clock = sample_clock(capture.time_s);
-  const Samples& of_best = result.denoised[best][axis];
-  const AllanCurve raw_allan = allan(capture, capture.rate_radps[axis], clock),
-                   best_allan = allan(capture, of_best, clock);
-  const auto rate_chart = [&](const std::string& title, Role role, std::span<const double> rate_radps,
-                              const ChartAxis& range, bool last) {
-    Chart chart(prefix + title, "Rate over time.", time.axis(last), range);
-    const report::Thinned curve = drawn(capture, time, rate_radps);
-    chart.line_in_time(role, "", curve.x, curve.y);
-    return chart;
+class AxisRows {
+ public:
+  AxisRows(const CaptureView& capture, const Comparison& result, const std::vector<std::string>& rules,
+           std::size_t axis, std::size_t best)
+      : prefix_(capture.axes[axis].empty() ? "" : "axis " + capture.axes[axis] + ": "),
+        best_(rules[best]),
+        time_(capture.told_time_s(0), capture.told_time_s(capture.size() - 1)) {
+    const SampleClock clock = sample_clock(capture.time_s);
+    const Samples& of_best = result.denoised[best][axis];
+    raw_ = {"raw", drawn(capture, time_, capture.rate_radps[axis]),
+            allan(capture, capture.rate_radps[axis], clock)};
+    of_best_ = {best_, drawn(capture, time_, of_best), allan(capture, of_best, clock)};
+    best_range_ = settled(of_best);
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      if (r == best) continue;
+      Samples difference = result.denoised[r][axis];
+      for (std::size_t i = 0; i < of_best.size(); ++i) difference[i] -= of_best[i];
+      others_.push_back({rules[r], drawn(capture, time_, difference),
+                         over(allan(capture, result.denoised[r][axis], clock), of_best_.allan)});
+      const report::Bounds range = settled(difference);
+      range_.take(range.low, false);
+      range_.take(range.high, false);
+      for (const double each : others_.back().allan.sigma) ratios_.take(each, true);
+    }
+  }
+
+  void add_to(std::vector<report::PictureRow>& rows) const {
+    constexpr double kRow = 132.0, kNumbers = 38.0;
+    const ChartAxis own{"°/h", false, {}, {}};
+    rows.push_back({kRow,
+                    {{rate_chart("raw", Role::kRaw, raw_, own, false), 2.0},
+                     {allan_chart(best_ + " and raw (grey), Allan deviation", raw_.allan, of_best_.allan,
+                                  {"°/h", true, {}, {}}, false),
+                      1.0}}});
+    rows.push_back(
+        {kRow,
+         {{rate_chart(best_ + ", the best", Role::kAfter, of_best_, axis_of(best_range_), false), 2.0},
+          {Chart("", "", own, own), 1.0}}});
+    ChartAxis ratio{"ratio", false, {}, {}};
+    ratio.low = ratios_.empty() ? 0.9 : std::min(ratios_.low / 1.05, 0.9);
+    ratio.high = ratios_.empty() ? 1.1 : std::max(ratios_.high * 1.05, 1.1);
+    const AllanCurve one{of_best_.allan.tau_s, std::vector<double>(of_best_.allan.tau_s.size(), 1.0)};
+    for (const Curves& other : others_) {
+      const bool last = &other == &others_.back();
+      rows.push_back(
+          {last ? kRow + kNumbers : kRow,
+           {{rate_chart(other.rule + " less " + best_, Role::kBefore, other, axis_of(range_), last), 2.0},
+            {allan_chart(other.rule + " over " + best_ + ", Allan deviation", one, other.allan, ratio, last),
+             1.0}}});
+    }
+  }
+
+ private:
+  struct Curves {
+    std::string rule;
+    report::Thinned rate;
+    AllanCurve allan;
   };
-  const auto allan_chart = [&](const std::string& title, const AllanCurve* grey, const AllanCurve& curve,
-                               const ChartAxis& range, bool last) {
+  [[nodiscard]] Chart rate_chart(const std::string& title, Role role, const Curves& curves,
+                                 const ChartAxis& range, bool last) const {
+    Chart chart(prefix_ + title, "Rate over time.", time_.axis(last), range);
+    chart.line_in_time(role, "", curves.rate.x, curves.rate.y);
+    return chart;
+  }
+  [[nodiscard]] Chart allan_chart(const std::string& title, const AllanCurve& grey, const AllanCurve& curve,
+                                  const ChartAxis& range, bool last) const {
     ChartAxis tau{last ? "averaging time τ (s)" : "", true, {}, {}};
     tau.numbered = last;
-    if (!raw_allan.tau_s.empty()) {
-      tau.low = raw_allan.tau_s.front();
-      tau.high = raw_allan.tau_s.back();
+    if (!raw_.allan.tau_s.empty()) {
+      tau.low = raw_.allan.tau_s.front();
+      tau.high = raw_.allan.tau_s.back();
     }
     Chart chart(title, "Allan deviation over averaging time.", tau, range);
-    if (grey != nullptr) chart.line(Role::kRaw, "", grey->tau_s, grey->sigma);
+    chart.line(Role::kRaw, "", grey.tau_s, grey.sigma);
     chart.line(Role::kAfter, "", curve.tau_s, curve.sigma);
     return chart;
-  };
-  const ChartAxis own{"°/h", false, {}, {}}, sigma{"°/h", true, {}, {}};
-  rows.push_back(
-      {kRow,
-       {{rate_chart("raw", Role::kRaw, capture.rate_radps[axis], own, false), 2.0},
-        {allan_chart(rules[best] + " and raw (grey), Allan deviation", &raw_allan, best_allan, sigma, false),
-         1.0}}});
-  ChartAxis settled = own, apart{"°/h", false, {}, {}}, ratio{"ratio", false, {}, {}};
-  std::vector<Samples> differences(1, of_best);
-  keep_range(settled, differences);
-  differences.clear();
-  std::vector<AllanCurve> ratios;
-  report::Bounds bounds;
-  for (std::size_t r = 0; r < rules.size(); ++r) {
-    differences.push_back(result.denoised[r][axis]);
-    for (std::size_t i = 0; i < of_best.size(); ++i) differences[r][i] -= of_best[i];
-    ratios.push_back(over(allan(capture, result.denoised[r][axis], clock), best_allan));
-    for (const double each : ratios[r].sigma) bounds.take(each, true);
   }
-  keep_range(apart, differences);
-  if (!bounds.empty()) {
-    ratio.low = std::min(bounds.low / 1.05, 0.9);
-    ratio.high = std::max(bounds.high * 1.05, 1.1);
-  }
-  const AllanCurve one{best_allan.tau_s, std::vector<double>(best_allan.tau_s.size(), 1.0)};
-  rows.push_back({kRow,
-                  {{rate_chart(rules[best] + ", the best", Role::kAfter, of_best, settled, false), 2.0},
-                   {Chart("", "", own, own), 1.0}}});
-  for (std::size_t r = 0, drawn_rows = 1; r < rules.size(); ++r) {
-    if (r == best) continue;
-    const bool last = ++drawn_rows == rules.size();
-    rows.push_back(
-        {last ? kRow + kNumbers : kRow,
-         {{rate_chart(rules[r] + " less " + rules[best], Role::kBefore, differences[r], apart, last), 2.0},
-          {allan_chart(rules[r] + " over " + rules[best] + ", Allan deviation", &one, ratios[r], ratio, last),
-           1.0}}});
-  }
-}
+
+  std::string prefix_, best_;
+  report::TimeAxis time_;
+  Curves raw_, of_best_;
+  std::vector<Curves> others_;  // less the best, and over it
+  report::Bounds best_range_, range_, ratios_;
+};
 
 }  // namespace
 
@@ -151,9 +176,10 @@ void draw_comparison(const std::string& path, const CaptureView& capture, const 
   std::vector<report::PictureRow> rows;
   std::string title;
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    add_rows(rows, capture, result, rules, a, verdicts[a].best);
+    AxisRows(capture, result, rules, a, verdicts[a].best).add_to(rows);
     title += (title.empty() ? "" : "; ") + (capture.axes[a].empty() ? "" : capture.axes[a] + ": ") +
-             (capture.axes.size() == 1 ? verdicts[a].text : "best is " + rules[verdicts[a].best]);
+             (capture.axes.size() == 1 ? verdicts[a].text
+                                       : verdicts[a].text.substr(0, verdicts[a].text.find(':')));
   }
   report::write_picture(path, report::picture_svg(title, rows, 1100.0));
 }

@@ -61,7 +61,8 @@ Verdict verdict_of(const Comparison& result, int axis) {
   }
   out.text = words("%s: %s %.4g °/h, raw %.4g", rows[out.best + 1]->rule.c_str(), figure.words,
                    out.best_radps / kDegreePerHour, out.raw_radps / kDegreePerHour);
-  out.text = (out.best_radps < out.raw_radps ? "best is " : "none is better than raw; best is ") + out.text;
+  out.text =
+      (out.best_radps < out.raw_radps ? "best is " : "none is better than raw, the best rule is ") + out.text;
   if (others == 0)
     out.text += words("; all rules within %.2g %% of it", 100.0 * most);
   else

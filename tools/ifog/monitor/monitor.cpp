@@ -38,6 +38,7 @@ namespace {
 
 std::vector<ColouredLine> coloured(const std::vector<ShownLine>& lines) {
   std::vector<ColouredLine> out;
+  out.reserve(lines.size());
   constexpr std::array kColours{"", "1", "32", "33", "31"};  // as Tone
   for (const ShownLine& line : lines)
     out.push_back({line.text, kColours[static_cast<std::size_t>(line.tone)]});

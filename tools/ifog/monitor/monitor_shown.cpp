@@ -42,6 +42,7 @@ std::vector<ShownLine> Monitor::lines(const LineStyle& style) const {
   if (screen_ && !look_.paused && (sensors_.empty() || seconds_since(last_heard_) > kSilent_s)) {
     std::vector<std::string> wait = wrapped(waiting(), " ", style.width);
     std::vector<ShownLine> all;
+    all.reserve(wait.size() + out.size());
     for (std::string& line : wait) all.push_back({std::move(line), Tone::bad});
     std::move(out.begin(), out.end(), std::back_inserter(all));
     out = std::move(all);

@@ -128,7 +128,8 @@ void Screen::draw(const std::vector<ShownLine>& lines, const std::string& foot) 
   for (std::size_t row = 0; row < room && first_ + row < lines_; ++row) {
     const ShownLine& line = lines[first_ + row];
     // A pair that was not made is no colour.
-    const attr_t look = line.tone == Tone::figure ? A_BOLD : COLOR_PAIR(static_cast<int>(line.tone));
+    const int look =
+        line.tone == Tone::figure ? static_cast<int>(A_BOLD) : COLOR_PAIR(static_cast<int>(line.tone));
     attron(look);
     mvaddnstr(static_cast<int>(row), 0, cut(line.text, columns).c_str(), -1);
     attroff(look);

@@ -32,7 +32,8 @@ ordered_json of_axis(const SensorView& sensor, std::size_t a) {
   if (const status_t* const status = sensor.live_status();
       status != nullptr && a < status->allan_rate_radps.size()) {
     const auto& allan = status->allan_rate_radps[a];
-    out["allan"] = std::vector(allan.begin(), allan.begin() + std::min(kMostOctaves, allan.size()));
+    out["allan"] = std::vector(
+        allan.begin(), allan.begin() + static_cast<std::ptrdiff_t>(std::min(kMostOctaves, allan.size())));
   }
   return out;
 }
