@@ -12,13 +12,10 @@
 #include "filters/diagnosis/checks/channel_delay.h"
 #include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/cleaning/prepared_records.h"
-#include "filters/diagnosis/cleaning/turned.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
-#include "filters/diagnosis/report/grown_figures.h"
 #include "filters/diagnosis/report/held_out_part.h"
-#include "filters/diagnosis/report/hidden_causes.h"
 #include "filters/diagnosis/report/left_out.h"
 #include "filters/diagnosis/report/noise.h"
 #include "filters/diagnosis/report/prediction.h"
@@ -27,7 +24,7 @@
 #include "filters/diagnosis/report/written_model.h"
 #include "filters/diagnosis/residual/dead_zone.h"
 #include "filters/diagnosis/residual/hysteresis.h"
-#include "filters/diagnosis/residual/record_lines.h"
+#include "filters/diagnosis/residual/lines.h"
 #include "filters/diagnosis/residual/unexplained.h"
 #include "filters/diagnosis/search/acceptance.h"
 #include "filters/diagnosis/search/earth_rate.h"
@@ -66,7 +63,7 @@ class Run {
     fit_jointly();
     while (const std::optional<std::size_t> harmful = what_makes_it_worse()) {
       say(harmful_in_words(result_.effects[*harmful].effect));
-      found_ = without_effect(data_, reconstructed_, std::move(found_), *harmful);
+      found_ = without_effect(reconstructed_, std::move(found_), *harmful);
       fit_jointly();
     }
     report_figures();
@@ -94,7 +91,7 @@ class Run {
     search.given = given;
     if (searched_) search.noise = found_.noise.shape;
     searched_ = true;
-    found_ = search_effects(data_, reconstructed_, search);
+    found_ = search_effects(reconstructed_, search);
     read_as_earth_rate(reconstructed_, earth_, found_);
     if (!options_.allow_proxies) doubt_proxies(reconstructed_, found_);
   }
@@ -121,7 +118,6 @@ class Run {
   void separate_lines() {
     if (!data_.grid.dwells)
       lines_ = coherent_lines(errors_, data_.grid, options_.significance * kOfLines, periodograms_);
-    leave_out_periodic(data_, lines_);
     take_out(lines_.fast, data_.grid.sample_s, errors_);
     while (!lines_.slow.empty()) {
       search(lines_.slow);
@@ -135,7 +131,8 @@ class Run {
 
   // A loop is no effect that the daemon corrects, but what it leaves is searched again without it.
   void separate_hysteresis() {
-    result_.hysteresis = find_hysteresis(reconstructed_, found_.fitted, found_.noise, options_.significance);
+    result_.hysteresis =
+        find_hysteresis(reconstructed_, candidates_of(found_.chosen), found_.noise, options_.significance);
     if (!result_.hysteresis) return;
     take_out(*result_.hysteresis, reconstructed_, data_.grid);
     reconstructed_.grid.error = data_.grid.error;
@@ -144,23 +141,25 @@ class Run {
   }
 
   void drop_what_is_not_proven() {
-    const std::vector<Effect> dropped = drop_what_does_not_hold(data_, reconstructed_, found_, errors_);
+    const std::vector<Effect> dropped = drop_steps_that_do_not_last(data_, reconstructed_, found_, errors_);
     if (!dropped.empty()) say(dropped_in_words(dropped));
   }
 
   void drop_what_a_capture_denies() {
-    while (const auto denied = denied_by_a_capture(reconstructed_, found_.fitted, found_.noise)) {
+    while (const auto denied =
+               denied_by_a_capture(reconstructed_, candidates_of(found_.chosen), found_.noise)) {
       std::vector<Effect> effects;
-      for (const std::size_t i : denied->effects) effects.push_back(effect_of(data_, found_.fitted[i]));
+      for (const std::size_t i : denied->effects)
+        effects.push_back(effect_of(data_, found_.chosen[i].candidate));
       say(denied_in_words(effects, *denied, records_));
       for (std::size_t k = denied->effects.size(); k-- > 0;)
-        found_ = without_effect(data_, reconstructed_, std::move(found_), denied->effects[k]);
+        found_ = without_effect(reconstructed_, std::move(found_), denied->effects[k]);
       subtract_found(data_, found_, errors_);
     }
   }
 
   void fit_jointly() {
-    joint_ = settle(data_, reconstructed_, found_);
+    joint_ = settle(reconstructed_, found_);
     subtract_found(data_, found_, errors_);
     report_effects();
     if (data_.reference >= 0)
@@ -195,9 +194,8 @@ class Run {
   // left out of the fit: index of the one to leave out, none when they make no error larger.
   std::optional<std::size_t> what_makes_it_worse() {
     if (const auto uncertain = least_proven()) return uncertain;
-    if (holds(reconstructed_, found_, errors_, &EvenError::written) &&
-        holds(reconstructed_, found_, errors_, &EvenError::held_out) &&
-        (!as_logged_ || holds(reconstructed_, found_, errors_, &EvenError::logged))) {
+    if (holds(errors_, &EvenError::written) && holds(errors_, &EvenError::held_out) &&
+        (!as_logged_ || holds(errors_, &EvenError::logged))) {
       write_before_and_after(errors_, data_.grid.sample_s, figures_, angles_, result_, data_.reference >= 0);
       if (!grows_over_many(result_, errors_)) return std::nullopt;
     }
@@ -232,7 +230,8 @@ class Run {
   }
 
   void report_rest() {
-    result_.channel_delays = delayed_channels(reconstructed_, found_.fitted, found_.noise.shape);
+    result_.channel_delays =
+        delayed_channels(reconstructed_, candidates_of(found_.chosen), found_.noise.shape);
     for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
     result_.unexplained =
         describe_rest(errors_, found_.noise, data_.grid, options_.significance, periodograms_);
@@ -244,10 +243,7 @@ class Run {
       say(grown_in_words(result_, samples_of(errors_)));
     if (as_logged_) say(faults_in_words(result_, errors_));
     say(no_ramp_because_);
-    if (result_.hysteresis)
-      describe_hysteresis(*result_.hysteresis, result_.unexplained);
-    else
-      describe_two_states(errors_, data_.grid, was_turned(records_), result_.unexplained);
+    if (result_.hysteresis) describe_hysteresis(*result_.hysteresis, result_.unexplained);
     balance_shares(parts_.size(), result_);
     say(slow_beside(errors_, data_.grid, result_.unexplained));
     say(judged_beside(found_.noise.shape.harmonics.size()));

@@ -42,7 +42,6 @@ struct Hysteresis {
 struct OtherExplanation {
   std::vector<Effect> effects;
   double weight = 0.0;  // likelihood beside that of the effects reported
-  std::optional<Hysteresis> hysteresis;
 };
 
 struct FoundEffect {
@@ -63,8 +62,7 @@ struct Unexplained {
   double fraction =
       0.0;  // of the variance of the error that is neither white noise nor harmonic nor explained
   double means_s = 1.0;  // length of the means whose variance that is
-  // "nothing", "slow", "line", "bursts", "changing_variance", "hysteresis", "two_states",
-  // "uncorrelated"
+  // "nothing", "slow", "line", "bursts", "changing_variance", "hysteresis", "uncorrelated"
   std::string kind;
   std::string hint;
   double frequency_hz = 0.0;    // "line"

@@ -2,14 +2,13 @@
 #include "filters/diagnosis/channels/derived_channels.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <numbers>
 #include <optional>
 #include <utility>
 
+#include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 #include "filters/series/samples_writer.h"
 
@@ -149,9 +148,7 @@ double median_of_finite(std::span<const double> values) {
   std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
                [](double v) { return std::isfinite(v); });
   if (finite.empty()) return std::nan("");
-  const auto middle = finite.begin() + static_cast<std::ptrdiff_t>(finite.size() / 2);
-  std::nth_element(finite.begin(), middle, finite.end());
-  return *middle;
+  return median(finite);
 }
 
 }  // namespace
@@ -187,10 +184,8 @@ double angle_period_by_reference(const std::string& channel, const Record& recor
 namespace {
 
 std::string outside_in_words(const std::string& channel, std::size_t samples, double first) {
-  std::array<char, 96> line{};
-  std::snprintf(line.data(), line.size(),
-                " is outside the turn in %zu sample(s), first %.6g: no angle, left out", samples, first);
-  return channel + line.data();
+  return channel +
+         printed(" is outside the turn in %zu sample(s), first %.6g: no angle, left out", samples, first);
 }
 
 }  // namespace

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/channels/motion.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {
@@ -62,17 +61,10 @@ double si_of(const std::string& channel) {
   return unit.starts_with("mm") ? 1e-3 : 1.0;
 }
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  std::array<char, 200> line{};
-  std::snprintf(line.data(), line.size(), format, values...);
-  return line.data();
-}
-
 std::string as_wave(double slope) {  // rad/s per m/s^2: omega = a / 2c
   const double speed = 0.5 / std::abs(slope);
   return speed > kSlowestWave && speed < kFastestWave
-             ? text(", as ω = a/2c of a surface wave of c = %.3g m/s", speed)
+             ? printed(", as ω = a/2c of a surface wave of c = %.3g m/s", speed)
              : "";
 }
 
@@ -80,12 +72,12 @@ std::string reading_of(Motion motion, bool change, double slope) {
   if (motion == Motion::kAcceleration && change) {
     const double of_tilt = std::abs(slope) * kStandardGravity;
     if (of_tilt > kLeastOfTilt && of_tilt < kMostOfTilt)
-      return text(", as gravity's share in a tilt does (%.2g of it)", of_tilt);
+      return printed(", as gravity's share in a tilt does (%.2g of it)", of_tilt);
   }
   if ((motion == Motion::kAcceleration && !change) || (motion == Motion::kVelocity && change))
     if (const std::string wave = as_wave(slope); !wave.empty()) return wave;
-  if (motion == Motion::kRate) return text(", %.3g of it", std::abs(slope));
-  if (motion == Motion::kAngle && change) return text(", %.3g of its change", std::abs(slope));
+  if (motion == Motion::kRate) return printed(", %.3g of it", std::abs(slope));
+  if (motion == Motion::kAngle && change) return printed(", %.3g of its change", std::abs(slope));
   return ", as the sway or the ride of what the sensor stands on";
 }
 
@@ -98,8 +90,8 @@ std::string rotation_in_words(const BlockData& data, std::size_t c, Motion motio
   const bool change = by_change.gain > by_value.gain;
   const Slope& best = change ? by_change : by_value;
   if (best.gain < kCertain || best.share < kOfRate) return "";
-  return text("%.0f %% of the changes of the rate go with the %s of ", 100.0 * best.share,
-              change ? "change" : "value") +
+  return printed("%.0f %% of the changes of the rate go with the %s of ", 100.0 * best.share,
+                 change ? "change" : "value") +
          name + reading_of(motion, change, best.value) + ": that is rotation and stays in the rate";
 }
 

@@ -2,12 +2,11 @@
 #include "filters/diagnosis/checks/channel_delay.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 
+#include "filters/diagnosis/record/words.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/noise_fit.h"
 
@@ -95,12 +94,11 @@ std::vector<ChannelDelay> delayed_channels(const BlockData& data, const std::vec
 }
 
 std::string delay_in_words(const ChannelDelay& delay) {
-  std::array<char, 160> by{};
-  std::snprintf(by.data(), by.size(),
-                " seems logged %.3g s %s (+-%.2g): its effects are sought and corrected as it was logged; "
-                "mend it in the logger",
-                std::abs(delay.delay_s), delay.delay_s < 0.0 ? "early" : "late", delay.std_error_s);
-  return delay.channel + by.data();
+  return delay.channel +
+         printed(
+             " seems logged %.3g s %s (+-%.2g): its effects are sought and corrected as it was logged; "
+             "mend it in the logger",
+             std::abs(delay.delay_s), delay.delay_s < 0.0 ? "early" : "late", delay.std_error_s);
 }
 
 }  // namespace ifog

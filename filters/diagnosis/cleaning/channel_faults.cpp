@@ -3,16 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "filters/allan/stretches.h"
 #include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/words.h"
+#include "filters/rest/glitches.h"
 #include "filters/series/series_view.h"
 #include "filters/threads/share_out.h"
-#include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
@@ -31,14 +32,6 @@ constexpr double kJump = 8.0;          // usual changes
 constexpr std::size_t kAlone = 20;     // times as long as any other stretch of one value
 constexpr double kPlaceholder = 30.0;  // interquartile ranges from the median
 constexpr std::size_t kFewValues = 5;
-constexpr std::size_t kShortest = 2;   // samples of the rate that a knock shakes, and comes back
-constexpr double kMostKnocks = 0.001;  // of the record: more are how this sensor is
-
-double quantile(std::vector<double> values, double p) {
-  const auto at = static_cast<std::ptrdiff_t>(p * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), values.begin() + at, values.end());
-  return values[static_cast<std::size_t>(at)];
-}
 
 // The first i in [from, to) with test(i); `to` if none is. Where it seldom is, without a branch.
 template <typename Test>
@@ -152,24 +145,17 @@ bool repeats(std::span<const double> values, const Run& run) {
   return run.to - run.from >= kFewest && std::all_of(first, last, [&](double v) { return v == *first; });
 }
 
-// Such a number far from all that is usual, however often the channel leaps of itself, as an angle does. But
-// zero may be a reading, of what is switched off, and what stands for long is a state.
-std::vector<Run> placeholders(std::span<const double> values, const Usual& usual) {
-  const double far = kFar * (usual.high - usual.low);
-  ReadingAhead ahead(values);
-  const auto is_far = [&](std::size_t i) {
-    return values[i] > usual.high + far || values[i] < usual.low - far;
-  };
-  std::vector<Run> found;
-  for (std::size_t from = 0; from < values.size();) {
-    from = first_where(ahead, from, values.size(), is_far);
-    std::size_t to = from;
-    while (to < values.size() && values[to] == values[from]) ++to;
-    if (repeats(values, {from, to}) && values[from] != 0.0) found.push_back({from, to});
-    from = std::max(to, from + 1);
-  }
-  if (kMostNone * static_cast<double>(values.size()) < static_cast<double>(samples_in(found))) found.clear();
-  return found;
+// Such a number, far from its neighbours, may stand for however long. But zero may be a reading, of what is
+// switched off.
+bool is_placeholder(std::span<const double> values, const Run& run, double far) {
+  const double beside = run.from > 0 ? values[run.from - 1] : values[std::min(run.to, values.size() - 1)];
+  return std::abs(values[run.from] - beside) > far && values[run.from] != 0.0 && repeats(values, run);
+}
+
+std::size_t end_of_one_value(std::span<const double> values, std::size_t from) {
+  std::size_t to = from;
+  while (to < values.size() && values[to] == values[from]) ++to;
+  return to;
 }
 
 // Jumps as the channel never makes, and back again. A record may begin or end away: there one way is seen.
@@ -179,7 +165,7 @@ std::vector<Run> excursions(const Readings& of, std::span<const double> values, 
   const auto elsewhere = [&](double value) { return value > usual.high + jump || value < usual.low - jump; };
   const std::size_t n = values.size();
   std::vector<Run> found;
-  std::size_t samples = 0, i = 0;
+  std::size_t samples = 0, none = 0, i = 0;
   while (i < n && elsewhere(values[i])) ++i;
   if (i == n || of.time_s[i] - of.time_s[0] > kLongestExcursion_s) return {};
   if (i > 0) found.push_back({0, i});
@@ -193,12 +179,19 @@ std::vector<Run> excursions(const Readings& of, std::span<const double> values, 
     auto back = return_to(of, values, i, values[i - 1], kBeside * away);
     const bool ends = of.time_s[n - 1] - of.time_s[i] <= kLongestExcursion_s;
     if (!back && ends && elsewhere(values[i])) back = n;
+    if (const std::size_t to = end_of_one_value(values, i);
+        !back && is_placeholder(values, {i, to}, kFar * span))
+      back = to;
     if (!back) continue;
     found.push_back({i, *back});
-    if (!repeats(values, {i, *back})) samples += *back - i;
+    (repeats(values, {i, *back}) ? none : samples) += *back - i;
     i = *back;
   }
-  if (static_cast<double>(samples) > kMostOfRecord * static_cast<double>(n)) return {};
+  const auto all = static_cast<double>(n);
+  // A channel that leaps so often does it by itself, and a number that stands so often is one of its states.
+  if (static_cast<double>(samples) > kMostOfRecord * all)
+    std::erase_if(found, [&](const Run& run) { return !is_placeholder(values, run, kFar * span); });
+  if (static_cast<double>(none) > kMostNone * all) found.clear();
   return found;
 }
 
@@ -216,11 +209,8 @@ std::vector<Stuck> stuck_stretches(std::span<const double> values, const Usual& 
   std::size_t second = 0;
   ReadingAhead ahead(values);
   for (std::size_t from = 0; from < values.size();) {
-    std::size_t to = from + 1;
-    for (; to < values.size(); ++to) {
-      ahead.at(to);
-      if (values[to] != values[from]) break;
-    }
+    ahead.at(from);
+    const std::size_t to = end_of_one_value(values, from);
     const std::size_t length = to - from;
     second = std::max(second, std::min(length, longest));
     longest = std::max(longest, length);
@@ -250,23 +240,11 @@ void interpolate(const Readings& of, const Run& run, Samples& values) {
   }
 }
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  char line[160];
-  std::snprintf(line, sizeof line, format, values...);
-  return line;
-}
-
 std::string excursions_in_words(std::span<const double> values, const std::vector<Run>& found) {
-  return text(
+  return printed(
       " leaps away and back %zu time(s), for %zu sample(s) in all, first to %.6g: taken for faults of "
-      "logging, interpolated",
+      "logging, interpolated for up to a minute",
       found.size(), samples_in(found), values[found.front().from]);
-}
-
-std::string placeholders_in_words(std::span<const double> values, const std::vector<Run>& found) {
-  return text(" says %.6g %zu time(s), for %zu sample(s) in all: no reading, interpolated for up to %g s",
-              values[found.front().from], found.size(), samples_in(found), kLongestExcursion_s);
 }
 
 struct RepairedChannel {
@@ -280,31 +258,26 @@ RepairedChannel repaired_channel(const Record& record, const RecordChannel& chan
   const Readings of(record, channel.values);
   const Usual usual = usual_of(of.values);
   if (!usual.varied) return repaired;
-  const std::vector<Run> none = placeholders(of.values, usual);
+  const std::vector<Run> away = excursions(of, of.values, usual);
   Samples values;  // none where they are as they were read
-  if (!none.empty()) values.assign(of.values.begin(), of.values.end());
-  for (const Run& run : none) interpolate(of, run, values);
-  const std::vector<Run> away =
-      excursions(of, none.empty() ? of.values : std::span<const double>(values), usual);
-  if (none.empty() && !away.empty()) values.assign(of.values.begin(), of.values.end());
+  if (!away.empty()) values.assign(of.values.begin(), of.values.end());
   for (const Run& run : away) interpolate(of, run, values);
-  const bool as_read = none.empty() && away.empty();
+  const bool as_read = away.empty();
   const std::vector<Stuck> stuck =
       usual.slow ? stuck_stretches(as_read ? of.values : values, usual) : std::vector<Stuck>{};
   if (as_read && stuck.empty()) return repaired;
   if (as_read) values.assign(of.values.begin(), of.values.end());
-  if (!none.empty())
-    repaired.remarks.push_back(channel.name + where + placeholders_in_words(of.values, none));
   if (!away.empty()) repaired.remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
   const auto told = [&](std::size_t i) { return told_time(record.origin.told(of.time_s[i])); };
   for (const auto& [run, leaps] : stuck) {
-    repaired.remarks.push_back(channel.name + where +
-                               text(" stands at %.6g from %s s to %s s and %s: taken for stuck, interpolated",
-                                    values[run.from], told(run.from).c_str(), told(run.to).c_str(),
-                                    leaps ? "then jumps" : "never else for a twentieth as long"));
+    repaired.remarks.push_back(
+        channel.name + where +
+        printed(" stands at %.6g from %s s to %s s and %s: taken for stuck, interpolated", values[run.from],
+                told(run.from).c_str(), told(run.to).c_str(),
+                leaps ? "then jumps" : "never else for a twentieth as long"));
     interpolate(of, {run.from + 1, run.to}, values);
   }
-  for (const Run& run : none)
+  for (const Run& run : away)
     if (of.time_s[run.to - 1] - of.time_s[run.from] > kLongestExcursion_s)
       for (std::size_t i = run.from; i < run.to; ++i) values[i] = std::nan("");
   if (of.rows.empty()) {
@@ -314,47 +287,6 @@ RepairedChannel repaired_channel(const Record& record, const RecordChannel& chan
   Samples& all = repaired.values.emplace(channel.values.begin(), channel.values.end());
   for (std::size_t i = 0; i < values.size(); ++i) all[of.rows[i]] = values[i];
   return repaired;
-}
-
-// A sample or two of the rate, less the reference, that leap away from both their neighbours by twenty spans
-// of all the others: a knock, or a fault of the logger. Nothing that an effect could be fitted to.
-std::optional<Samples> rate_without_knocks(const Record& record, const std::string& where,
-                                           std::vector<std::string>& remarks) {
-  const bool plain = record.reference_radps.empty();
-  const Samples less_reference = plain ? Samples() : error_of(record);
-  const Readings of(record, plain ? record.rate_radps : std::span<const double>(less_reference));
-  const Usual usual = usual_of(of.values);
-  const double far = kFar * (usual.high - usual.low);
-  if (!(far > 0.0)) return std::nullopt;
-  Samples rate;
-  std::size_t samples = 0;
-  double farthest = 0.0;
-  const auto is_away = [&](std::size_t i) {
-    return of.values[i] > usual.high + far || of.values[i] < usual.low - far;
-  };
-  ReadingAhead ahead(of.values);
-  for (std::size_t i = 0; i < of.values.size(); ++i) {
-    i = first_where(ahead, i, of.values.size(), is_away);
-    if (i == of.values.size()) break;
-    std::size_t to = i + 1;
-    while (to < of.values.size() && is_away(to)) ++to;
-    if (to - i <= kShortest) {
-      if (rate.empty()) rate.assign(record.rate_radps.begin(), record.rate_radps.end());
-      for (std::size_t k = i; k < to; ++k) {
-        rate[of.row(k)] = std::nan("");
-        farthest = std::max(farthest, std::abs(of.values[k]));
-      }
-      samples += to - i;
-    }
-    i = to;
-  }
-  if (samples == 0 ||
-      static_cast<double>(samples) > kMostKnocks * static_cast<double>(of.values.size()) + 1.0)
-    return std::nullopt;
-  remarks.push_back("the rate" + where +
-                    text(" leaps away and back in %zu sample(s), up to %.4g °/h: left out", samples,
-                         farthest / kDegreePerHour));
-  return rate;
 }
 
 // Which of them is meant.
@@ -388,9 +320,20 @@ RepairedRecords repair_channels(const std::vector<Record>& records, unsigned thr
 
 RepairedRecords leave_out_knocks(const std::vector<Record>& records) {
   RepairedRecords repaired{records, {}, {}};
-  for (std::size_t r = 0; r < records.size(); ++r)
-    if (auto rate = rate_without_knocks(records[r], of_several(records, r), repaired.remarks))
-      repaired.records[r].rate_radps = repaired.values.emplace_back(std::move(*rate));
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Record& record = records[r];
+    const bool plain = record.reference_radps.empty();
+    const Samples less_reference = plain ? Samples() : error_of(record);
+    const std::span<const double> error = plain ? record.rate_radps : std::span<const double>(less_reference);
+    const Glitches glitches = find_glitches(error, stretches({}, error, {}));
+    if (glitches.few.empty()) continue;
+    Samples& rate = repaired.values.emplace_back(record.rate_radps.begin(), record.rate_radps.end());
+    for (const Glitches::Leap& leap : glitches.few) rate[leap.sample] = std::nan("");
+    repaired.records[r].rate_radps = rate;
+    repaired.remarks.push_back(
+        "the rate" + of_several(records, r) + ": " +
+        in_words(glitches, [&](std::size_t i) { return record.origin.told(record.time_s[i]); }));
+  }
   return repaired;
 }
 

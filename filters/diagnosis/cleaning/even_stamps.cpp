@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/cleaning/even_stamps.h"
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 
 #include "filters/allan/row_times.h"
 #include "filters/diagnosis/record/record_clock.h"
+#include "filters/diagnosis/record/words.h"
 
 namespace ifog {
 namespace {
@@ -31,13 +30,11 @@ bool keeps_a_beat(std::span<const double> time_s, const SampleClock& clock) {
 }
 
 std::string in_words(const Record& record, const SampleClock& clock) {
-  std::array<char, 240> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      ": the time stamps are up to %.3g ms off an even clock of %.6g Hz, so samples were taken by that "
-      "clock, anew behind each hole",
-      1e3 * clock.worst_jitter_s, 1.0 / clock.period_s);
-  return record.name + text.data();
+  return record.name + printed(
+                           ": the time stamps are up to %.3g ms off an even clock of %.6g Hz, so samples "
+                           "were taken by that "
+                           "clock, anew behind each hole",
+                           1e3 * clock.worst_jitter_s, 1.0 / clock.period_s);
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 // rate's change over the delay: no error of the gyro, but where it turns the largest thing in the record.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -26,5 +28,13 @@ struct AlignedRecords {
 // was logged; a reference that does not move has nothing to tell it by. Left as they are: records without a
 // reference, with an uneven clock, and tables of dwells.
 AlignedRecords align_references(const std::vector<Record>& records);
+
+// A reference that jumps from one sample to the next, where it was moved by a part of a sample.
+// What lies between samples is known of what changes slowly against them; where a reference jumps, an
+// interpolation rings by a tenth of the jump, which in a turn is thousands of times the noise. Such samples
+// are made missing, by the reference's fourth difference against the noise of rate less reference and
+// against its second one (of what is smooth it is a small part of that), and how many is returned. None where
+// they would be a quarter of all: that is how the sensor was moved.
+std::size_t leave_out_jumps(Samples& reference, std::span<const double> rate);
 
 }  // namespace ifog

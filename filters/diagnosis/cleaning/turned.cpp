@@ -7,9 +7,11 @@
 #include <optional>
 #include <stdexcept>
 
+#include "filters/allan/stretches.h"
 #include "filters/diagnosis/record/known_columns.h"
 #include "filters/diagnosis/record/record_clock.h"
 #include "filters/rest/rest.h"
+#include "filters/rest/value_faults.h"
 
 namespace ifog {
 namespace {
@@ -23,20 +25,17 @@ std::optional<double> period_of(const Record& record) {
   }
 }
 
-}  // namespace
-
-bool was_turned(const std::vector<Record>& records) {
-  constexpr double kTurned_radps = 1e-4;
-  return std::any_of(records.begin(), records.end(), [](const Record& record) {
-    double least = std::numeric_limits<double>::infinity(), most = -least;
-    for (const double rate : record.reference_radps) {
-      if (!std::isfinite(rate)) continue;
-      least = std::min(least, rate);
-      most = std::max(most, rate);
-    }
-    return most - least > kTurned_radps;
-  });
+// As `allan` and `tune` say it: of a rate in another unit, or of a sensor that moved all along.
+void note_implausible(const Record& record, const Rest& rest, std::vector<std::string>& remarks) {
+  const SampleClock clock = clock_of(record);
+  const std::vector<Stretch> parts = common(stretches(record.time_s, record.rate_radps, clock), rest.at_rest);
+  for (const ValueFault& found : value_faults(record.rate_radps, parts, clock.period_s, [&](std::size_t i) {
+         return record.origin.told(record.time_s[i]);
+       }))
+    if (found.name == "moving" || found.name == "unit") remarks.push_back(record.name + ": " + found.text);
 }
+
+}  // namespace
 
 WithoutTurns without_turns(const std::vector<Record>& records) {
   WithoutTurns out;
@@ -55,6 +54,7 @@ WithoutTurns without_turns(const std::vector<Record>& records) {
       return known_or(record.known.get(), {"rest windows", axes[axis], period_s},
                       [&] { return rest_windows(axes[axis], period_s); });
     });
+    note_implausible(record, rest, out.remarks);
     if (rest.turned == 0) {
       out.records.back().at_rest = rest.at_rest;
       continue;

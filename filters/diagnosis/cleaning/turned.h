@@ -20,9 +20,6 @@ struct WithoutTurns {
   std::vector<std::string> remarks;
 };
 
-// By the reference, by more than the Earth's rate.
-[[nodiscard]] bool was_turned(const std::vector<Record>& records);
-
 // Throws std::invalid_argument with one line when a record was turned and less than half of it is at rest.
 WithoutTurns without_turns(const std::vector<Record>& records);
 

@@ -9,7 +9,7 @@
 #include <numeric>
 #include <unsupported/Eigen/FFT>
 
-#include "filters/diagnosis/ramp/harmonic_sums.h"
+#include "filters/diagnosis/record/words.h"
 
 namespace ifog {
 namespace {
@@ -22,11 +22,86 @@ constexpr std::size_t kMultiples = 8;  // a peak may be this harmonic
 constexpr std::size_t kScored = 16;    // harmonics
 constexpr double kStandsOut = 20.0;    // power over the noise around: once in 10^3 records by chance
 constexpr std::size_t kRefined = 3;    // candidates
-constexpr double kMostOfOne = 10.0;    // of a harmonic, in units of its cost: one loud line makes no comb
-constexpr double kStanding = 0.3;      // of a carrier; through twenty cycles and more it turns to 0.05
-constexpr std::size_t kFirst = 4;      // harmonics that begin the search for k
-constexpr double kSeen = 25.0;         // twice the log-likelihood of a harmonic that says something of k
-constexpr double kWorth = 4.0;         // of twice the log-likelihood, that two parameters cost on other data
+constexpr std::size_t kPieces = 512;
+constexpr double kMostOfOne = 10.0;  // of a harmonic, in units of its cost: one loud line makes no comb
+constexpr double kStanding = 0.3;    // of a carrier; through twenty cycles and more it turns to 0.05
+constexpr std::size_t kFirst = 4;    // harmonics that begin the search for k
+constexpr double kSeen = 25.0;       // twice the log-likelihood of a harmonic that says something of k
+constexpr double kWorth = 4.0;       // of twice the log-likelihood, that two parameters cost on other data
+
+using Complex = std::complex<double>;
+
+// What harmonics of an angle's error explain of a rate, for k cycles a radian close to one given: the rate is
+// summed against each harmonic over short pieces once, and another k costs the pieces only.
+class HarmonicSums {
+ public:
+  // angle: in place of the part's. A harmonic h of the angle's error is cos and sin of 2 pi h k angle, of the
+  // rate the differences of these over the step.
+  HarmonicSums(const UnbrokenPart& part, const std::vector<double>& angle_rad, double cycles_per_rad,
+               std::size_t harmonics);
+
+  [[nodiscard]] std::size_t harmonics() const { return norm_.size(); }
+  [[nodiscard]] std::size_t samples() const { return samples_; }
+  [[nodiscard]] double square() const { return square_; }  // of the error, (rad/s)^2
+  // Energy that cosine and sine of that harmonic, from 1, take out of the error; 0 of a
+  // stroboscopic one.
+  [[nodiscard]] double explained(std::size_t harmonic, double cycles_per_rad) const;
+  // Length of the mean of its carrier, at the k given: 1 where the angle only ever takes values that are
+  // whole cycles apart, as a sensor's does that counts pulses; near 0 where it turns through all of them.
+  [[nodiscard]] double standing(std::size_t harmonic) const;
+
+ private:
+  double cycles_per_rad_;
+  std::size_t samples_ = 0;
+  double square_ = 0.0;
+  std::vector<std::complex<double>> sums_;     // harmonic after harmonic
+  std::vector<double> middle_rad_;             // of each piece
+  std::vector<std::complex<double>> carrier_;  // mean
+  std::vector<double> norm_;                   // energy of a harmonic of one radian
+};
+
+HarmonicSums::HarmonicSums(const UnbrokenPart& part, const std::vector<double>& angle_rad,
+                           double cycles_per_rad, std::size_t harmonics)
+    : cycles_per_rad_(cycles_per_rad),
+      samples_(angle_rad.size()),
+      sums_(harmonics * kPieces),
+      middle_rad_(kPieces),
+      carrier_(harmonics),
+      norm_(harmonics) {
+  for (std::size_t p = 0; p < kPieces; ++p) {
+    const std::size_t from = 1 + p * (samples_ - 1) / kPieces;
+    const std::size_t to = 1 + (p + 1) * (samples_ - 1) / kPieces;
+    middle_rad_[p] = 0.5 * (angle_rad[from - 1] + angle_rad[to - 1]);
+    for (std::size_t i = from; i < to; ++i) {
+      const double error = part.error_radps[i];
+      square_ += error * error;
+      const Complex before = carrier_of(cycles_per_rad * angle_rad[i - 1]);
+      const Complex now = carrier_of(cycles_per_rad * angle_rad[i]);
+      Complex power_before = 1.0;
+      Complex power_now = 1.0;
+      for (std::size_t h = 0; h < harmonics; ++h) {
+        power_before *= before;
+        power_now *= now;
+        const Complex rate = (power_now - power_before) / part.sample_s;
+        sums_[h * kPieces + p] += error * std::conj(rate);
+        norm_[h] += std::norm(rate);
+        carrier_[h] += power_now / static_cast<double>(samples_);
+      }
+    }
+  }
+  for (std::size_t h = 0; h < harmonics; ++h)
+    if (part.stroboscopic(cycles_per_rad, h + 1)) norm_[h] = 0.0;
+}
+
+double HarmonicSums::standing(std::size_t harmonic) const { return std::abs(carrier_[harmonic - 1]); }
+
+double HarmonicSums::explained(std::size_t harmonic, double cycles_per_rad) const {
+  const double off = static_cast<double>(harmonic) * (cycles_per_rad - cycles_per_rad_);
+  Complex total = 0.0;
+  const Complex* const sums = sums_.data() + (harmonic - 1) * kPieces;
+  for (std::size_t p = 0; p < kPieces; ++p) total += sums[p] * carrier_of(-off * middle_rad_[p]);
+  return norm_[harmonic - 1] > 0.0 ? 2.0 * std::norm(total) / norm_[harmonic - 1] : 0.0;
+}
 
 // Power over its neighbours' for k = bin / length, by the angle; length is twice the angle turned.
 struct AngleSpectrum {
@@ -41,9 +116,7 @@ void divide_by_floor(std::vector<double>& power) {
   for (std::size_t from = 0; from < power.size(); from += kBlock) {
     window.assign(power.begin() + static_cast<std::ptrdiff_t>(from),
                   power.begin() + static_cast<std::ptrdiff_t>(std::min(from + kBlock, power.size())));
-    const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
-    std::nth_element(window.begin(), middle, window.end());
-    floor.push_back(std::max(*middle / std::numbers::ln2, 1e-300));
+    floor.push_back(std::max(median(window) / std::numbers::ln2, 1e-300));
   }
   for (std::size_t i = 0; i < power.size(); ++i) {
     const std::size_t block = i / kBlock;
@@ -99,6 +172,19 @@ double score_of(const std::vector<double>& power, double bin) {
   return best;
 }
 
+// Cycles a radian that the part can show: from a fundamental above the slow part that was taken out, with
+// twenty cycles or more, to one below half the sample rate. Empty (least > most) near zero rate.
+struct VisibleCycles {
+  double least = 0.0, most = 0.0;
+};
+
+VisibleCycles visible_cycles(const UnbrokenPart& part) {
+  const double turn = std::abs(part.mean_turn_rad());
+  if (!(turn > 0.0)) return {1.0, 0.0};
+  const double slowest = std::max(kLeastTurns / static_cast<double>(part.size()), 1.0 / kSlowSamples);
+  return {std::max(kLeastCycles, slowest / turn), std::min(kMostCycles, 0.45 / turn)};
+}
+
 // Bins of fundamentals, the most telling first.
 std::vector<double> fundamentals(const AngleSpectrum& spectrum, const VisibleCycles& visible) {
   const std::vector<double>& power = spectrum.power;
@@ -127,17 +213,15 @@ std::vector<double> fundamentals(const AngleSpectrum& spectrum, const VisibleCyc
   return bins;
 }
 
-// The same of harmonics that were fitted to the samples. plain: how many of them would stand out alone.
-double comb_score(const HarmonicSums& sums, double k, const RampComb& comb, std::size_t& plain) {
+// The same of harmonics that were fitted to the samples.
+double comb_score(const HarmonicSums& sums, double k, const RampComb& comb) {
   const double samples = static_cast<double>(sums.samples());
   const double cost = 2.0 * std::log(samples);
   const double left = sums.square() * samples / (samples + comb.ratio);
   double score = 0.0;
-  plain = 0;
   for (std::size_t h = 1; h <= std::min(comb.harmonics, sums.harmonics()); ++h) {
     const double gain = sums.explained(h, k) * samples / left;
     score += std::min(gain, kMostOfOne * cost) - cost;
-    plain += gain > 2.0 * kStandsOut;
   }
   return score;
 }
@@ -212,7 +296,7 @@ double refined(const HarmonicSums& sums, double k, double span) {
 
 // Of the harmonics of k, each at the fixed frequency nearby that suits it best.
 double gained_by_fixed(const UnbrokenPart& part, const RampComb& comb, double span) {
-  const HarmonicSums sums(part, evenly_turned(part), comb.cycles_per_rad, comb.harmonics);
+  const HarmonicSums sums(part, evenly_turned(part).angle_rad, comb.cycles_per_rad, comb.harmonics);
   double total = 0.0;
   for (std::size_t h = 1; h <= comb.harmonics; ++h) {
     const double bin = 1.0 / (static_cast<double>(h) * span);
@@ -231,9 +315,12 @@ bool counts_pulses(const HarmonicSums& sums) {
   return false;
 }
 
-std::optional<RampComb> best_comb(const UnbrokenPart& part, const std::vector<double>& angle) {
+}  // namespace
+
+std::optional<RampComb> find_ramp_comb(const UnbrokenPart& part) {
   const VisibleCycles visible = visible_cycles(part);
   if (part.size() == 0 || !(visible.least < visible.most)) return std::nullopt;
+  const std::vector<double>& angle = part.angle_rad;
   const double top = 0.5 / std::abs(part.mean_turn_rad());
   const AngleSpectrum spectrum = spectrum_over(angle, part.error_radps, top);
   const double span = 0.5 * spectrum.length;
@@ -246,7 +333,7 @@ std::optional<RampComb> best_comb(const UnbrokenPart& part, const std::vector<do
     const HarmonicSums few(part, angle, comb.cycles_per_rad, kScored);
     if (counts_pulses(few)) continue;
     count_harmonics(few, comb.cycles_per_rad, comb);
-    const double score = comb_score(few, comb.cycles_per_rad, comb, comb.plain);
+    const double score = comb_score(few, comb.cycles_per_rad, comb);
     if (comb.cycles_per_rad > visible.most || score <= best_score) continue;
     best_score = score;
     comb.tries = static_cast<double>(spectrum.power.size()) * kScored;
@@ -256,45 +343,10 @@ std::optional<RampComb> best_comb(const UnbrokenPart& part, const std::vector<do
   const HarmonicSums all(part, angle, best->cycles_per_rad, kMostHarmonics);
   best->cycles_per_rad = refined(all, best->cycles_per_rad, span);
   count_harmonics(all, best->cycles_per_rad, *best);
-  return best;
-}
-
-}  // namespace
-
-std::vector<double> evenly_turned(const UnbrokenPart& part) {
-  std::vector<double> even(part.size());
-  const double turn = part.mean_turn_rad();
-  for (std::size_t i = 0; i < even.size(); ++i)
-    even[i] = part.angle_rad.front() + turn * static_cast<double>(i);
-  return even;
-}
-
-VisibleCycles visible_cycles(const UnbrokenPart& part) {
-  const double turn = std::abs(part.mean_turn_rad());
-  if (!(turn > 0.0)) return {1.0, 0.0};
-  const auto samples = static_cast<double>(part.size());
-  const double slowest = std::max(kLeastTurns / samples, 1.0 / kSlowSamples);
-  return {std::max(kLeastCycles, slowest / turn), std::min(kMostCycles, 0.45 / turn)};
-}
-
-std::optional<RampComb> find_ramp_comb(const UnbrokenPart& part) {
-  std::optional<RampComb> comb = best_comb(part, part.angle_rad);
-  if (!comb) return comb;
-  const auto [low, high] = std::minmax_element(part.angle_rad.begin(), part.angle_rad.end());
-  const double square =
-      std::inner_product(part.error_radps.begin(), part.error_radps.end(), part.error_radps.begin(), 0.0);
   const double samples = static_cast<double>(part.size());
-  const double explained = comb->ratio * square / (samples + comb->ratio);
-  const double left = square - explained;
-  comb->over_fixed = (explained - gained_by_fixed(part, *comb, *high - *low)) * samples / left;
-  return comb;
-}
-
-std::optional<RampComb> find_fixed_comb(const UnbrokenPart& part) {
-  if (part.size() == 0) return std::nullopt;
-  std::optional<RampComb> comb = best_comb(part, evenly_turned(part));
-  if (comb && comb->plain == 0) comb.reset();
-  return comb;
+  const double explained = best->ratio * all.square() / (samples + best->ratio);
+  best->over_fixed = (explained - gained_by_fixed(part, *best, span)) * samples / (all.square() - explained);
+  return best;
 }
 
 }  // namespace ifog

@@ -7,7 +7,7 @@
 #include <complex>
 #include <numbers>
 
-#include "filters/diagnosis/ramp/carrier.h"
+#include "filters/diagnosis/ramp/ramp_comb.h"
 #include "filters/linear/symmetric.h"
 
 namespace ifog {

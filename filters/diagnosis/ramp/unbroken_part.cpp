@@ -45,6 +45,12 @@ bool UnbrokenPart::stroboscopic(double cycles_per_rad, std::size_t harmonic) con
   return turn > 0.5 && std::abs(turn - std::round(turn)) < kStroboscope;
 }
 
+UnbrokenPart evenly_turned(UnbrokenPart part) {
+  const double first = part.angle_rad.front(), turn = part.mean_turn_rad();
+  for (std::size_t i = 0; i < part.size(); ++i) part.angle_rad[i] = first + turn * static_cast<double>(i);
+  return part;
+}
+
 UnbrokenPart unbroken_part(const Record& record) {
   UnbrokenPart part;
   if (record.time_s.size() < kLeastSamples) return part;

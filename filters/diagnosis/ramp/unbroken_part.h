@@ -22,6 +22,9 @@ struct UnbrokenPart {
   [[nodiscard]] bool stroboscopic(double cycles_per_rad, std::size_t harmonic) const;
 };
 
+// The same samples, as if the rate had been its mean all along.
+UnbrokenPart evenly_turned(UnbrokenPart part);
+
 // The longest, and of it the first 131072 samples; empty when there are not 4096. The slow part is a mean of
 // all samples so far, at last of 512: as the correction online takes it out (see ramp_tracker.h).
 UnbrokenPart unbroken_part(const Record& record);

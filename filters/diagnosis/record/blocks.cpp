@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -14,6 +13,7 @@
 #include "filters/allan/stretches.h"
 #include "filters/diagnosis/record/record_clock.h"
 #include "filters/diagnosis/record/step_means.h"
+#include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 #include "filters/series/mapped_file.h"
 #include "filters/series/series_view.h"
@@ -29,12 +29,6 @@ constexpr std::size_t kLeastBlocks = 32;
 // Points of a rate table: a calibration by IEEE Std 952 has 11 or more.
 constexpr std::size_t kLeastDwells = 11;
 constexpr double kSlowest_s = 1.0;  // between samples of a time series beside a reference; dwells are slower
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 std::string too_few(std::size_t used) {
   return "a diagnosis needs at least 32 samples with a rate, and with a reference if there is one: " +
@@ -57,21 +51,17 @@ std::string too_few(const std::vector<Record>& records, const BlockGrid& grid) {
     }
   }
   if (samples < kLeastBlocks) return too_few(samples);
-  std::array<char, 320> text{};
   if (hole_s > grid.block_s)
-    std::snprintf(
-        text.data(), text.size(),
+    return printed(
         "%zu samples, but only %zu blocks of %.3g s have enough of them, as the longest hole is of %.6g s: "
         "expected at least %zu; each side of it by itself (--from, --to, or captures of their own) can be "
         "diagnosed",
         samples, grid.used(), grid.block_s, hole_s, kLeastBlocks);
-  else
-    std::snprintf(text.data(), text.size(),
-                  "%zu samples with a rate, and with a reference if there is one, but only %zu blocks of "
-                  "%.3g s have half "
-                  "of theirs: expected at least %zu; without the rows that lack one it can be diagnosed",
-                  samples, grid.used(), grid.block_s, kLeastBlocks);
-  return text.data();
+  return printed(
+      "%zu samples with a rate, and with a reference if there is one, but only %zu blocks of "
+      "%.3g s have half "
+      "of theirs: expected at least %zu; without the rows that lack one it can be diagnosed",
+      samples, grid.used(), grid.block_s, kLeastBlocks);
 }
 
 double median_period(const std::vector<Record>& records) {

@@ -314,7 +314,14 @@ void add_scales(const BlockData& data, std::vector<NaturalPair>& pairs) {
 
 std::vector<NaturalPair> natural_pairs(const BlockData& data) {
   std::vector<NaturalPair> pairs;
-  if (data.grid.dwells) return pairs;
+  if (data.grid.dwells) {
+    // What bends at both ends of a rate table.
+    if (data.reference >= 0) {
+      const auto reference = static_cast<std::size_t>(data.reference);
+      pairs.push_back({candidate_of(Form::kQuintic, reference), candidate_of(Form::kSeptic, reference)});
+    }
+    return pairs;
+  }
   for (std::size_t channel = 0; channel < data.channels.size(); ++channel) {
     const FineChannel& source = data.channels[channel];
     if (source.period > 0.0 && source.varies) {

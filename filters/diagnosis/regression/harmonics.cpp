@@ -9,6 +9,7 @@
 #include <optional>
 #include <unsupported/Eigen/FFT>
 
+#include "filters/diagnosis/record/words.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/noise_climb.h"
 #include "filters/linear/least_squares.h"
@@ -75,9 +76,7 @@ double floor_of(const Periodogram& spectrum, std::size_t first) {
     for (std::size_t i = k; i < k + kBins; ++i) sum += spectrum.power[i];
     means.push_back(sum / kBins);
   }
-  const auto middle = means.begin() + static_cast<std::ptrdiff_t>(means.size() / 2);
-  std::nth_element(means.begin(), middle, means.end());
-  return std::max(*middle, 1e-6);
+  return std::max(median(means), 1e-6);
 }
 
 // The stretch of the spectrum that stands highest above the floor for its width (Whittle's likelihood).

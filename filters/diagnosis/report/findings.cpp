@@ -10,7 +10,6 @@
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/report/separate.h"
 #include "filters/diagnosis/search/effective_tries.h"
-#include "filters/diagnosis/search/fit_to_readings.h"
 #include "filters/effects/curve_reach.h"
 #include "filters/effects/meaning.h"
 #include "filters/model_file/channel_names.h"
@@ -63,10 +62,9 @@ std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Cand
   return effects;
 }
 
-JointFit settle(const BlockData& data, const BlockData& reconstructed, SearchResult& found) {
-  JointFit joint = joint_fit(reconstructed, found.fitted, found.fitted_coefficients, found.noise);
+JointFit settle(const BlockData& reconstructed, SearchResult& found) {
+  JointFit joint = joint_fit(reconstructed, candidates_of(found.chosen), found.coefficients, found.noise);
   const Eigen::Index linear = found.coefficients.size();
-  for (std::size_t i = 0; i < found.chosen.size(); ++i) found.chosen[i].candidate = found.fitted[i];
   for (std::size_t j = 0; j < joint.searched.size(); ++j) {
     Candidate& candidate = found.chosen[joint.searched[j]].candidate;
     const double moved = joint.values[linear + static_cast<Eigen::Index>(j)];
@@ -77,7 +75,7 @@ JointFit settle(const BlockData& data, const BlockData& reconstructed, SearchRes
     else if (!candidate.is_transition())
       candidate.time_constant_s *= std::exp(near);
     else if (second)
-      candidate.centre += near * found.fitted[joint.searched[j]].half_width;
+      candidate.centre += near * candidate.half_width;
     else
       candidate.half_width *= std::exp(near);
   }
@@ -86,20 +84,6 @@ JointFit settle(const BlockData& data, const BlockData& reconstructed, SearchRes
     joint.values.head(linear) =
         joint_fit_at(reconstructed, candidates_of(found.chosen), found.noise).values.head(linear);
   found.coefficients = joint.values.head(linear);
-  found.covariance = joint.covariance.topLeftCorner(linear, linear);
-  const SearchResult own = found;
-  fit_to_readings(data, reconstructed, found);
-  const Eigen::VectorXd shift = found.coefficients - own.coefficients;
-  joint.values.head(linear) = found.coefficients;
-  joint.covariance.diagonal().head(linear) += shift.cwiseAbs2();
-  for (std::size_t j = 0; j < joint.searched.size(); ++j) {
-    const std::size_t i = joint.searched[j];
-    if (!(found.chosen[i].candidate.time_constant_s > 0.0)) continue;
-    const double moved =
-        std::log(found.chosen[i].candidate.time_constant_s / own.chosen[i].candidate.time_constant_s);
-    const Eigen::Index row = linear + static_cast<Eigen::Index>(j);
-    joint.covariance(row, row) += moved * moved;
-  }
   found.covariance = joint.covariance.topLeftCorner(linear, linear);
   return joint;
 }
@@ -189,40 +173,13 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
   }
 }
 
-// A scale factor that falls off towards full scale and hardly before is what a soft limit makes.
-void name_saturation(const BlockData& data, std::vector<FoundEffect>& effects) {
-  if (data.reference < 0) return;
-  const FineChannel& reference = data.channels[static_cast<std::size_t>(data.reference)];
-  const double full = std::max(std::abs(reference.low), std::abs(reference.high));
-  FoundEffect* bends = nullptr;
-  double at_full = 0.0;
-  double at_half = 0.0;
-  for (FoundEffect& found : effects) {
-    const Effect& effect = found.effect;
-    const int power = power_of(form_named(effect.form).value_or(Form::kProduct));
-    if (effect.channel != reference.name || power % 2 == 0) continue;
-    if (power > 1 && !bends) bends = &found;
-    at_full += parameter(effect, "coefficient") * std::pow(full, power);
-    at_half += parameter(effect, "coefficient") * std::pow(0.5 * full, power);
-  }
-  if (!bends || !(at_full < 0.0) || std::abs(at_half) > 0.25 * std::abs(at_full)) return;
-  std::array<char, 200> text{};
-  std::snprintf(
-      text.data(), text.size(),
-      "; the rate reads %.2g ppm too small at %.3g °/s and hardly at half of that, as a soft limit makes it "
-      "(saturation)",
-      -1e6 * at_full / full, full * 180.0 / std::numbers::pi);
-  bends->effect.meaning += text.data();
-}
-
 void add_alternatives(const BlockData& data, const BlockData& reconstructed, const SearchResult& found,
                       const std::string& axis, Findings& findings) {
   for (const Alternative& alternative : found.alternatives) {
-    std::vector<Candidate> instead = found.fitted;
+    std::vector<Candidate> instead = candidates_of(found.chosen);
     instead[alternative.of] = alternative.candidate;
     OtherExplanation other{fitted_effects(reconstructed, instead, found.noise.shape, axis),
-                           std::exp(-0.5 * std::max(0.0, alternative.loss)),
-                           {}};
+                           std::exp(-0.5 * std::max(0.0, alternative.loss))};
     Indistinguishable pair;
     pair.effects = {findings.effects[alternative.of].effect, other.effects[alternative.of]};
     pair.correlation = alternative.correlation;
@@ -230,7 +187,7 @@ void add_alternatives(const BlockData& data, const BlockData& reconstructed, con
         capture_that_separates(data, found.chosen[alternative.of].candidate, alternative.candidate);
     findings.pairs.push_back(std::move(pair));
     // What stands in for rotation says nothing of the error.
-    const bool shown = found.fitted[alternative.of].shown();
+    const bool shown = found.chosen[alternative.of].candidate.shown();
     if (alternative.loss < kNoRival && !shown) findings.others.push_back(std::move(other));
   }
 }
@@ -261,7 +218,6 @@ Findings findings_of(const BlockData& data, const BlockData& reconstructed, cons
   Findings findings;
   add_effects(data, found, joint, axis, findings);
   follow_known_curves(data, findings.effects);
-  name_saturation(data, findings.effects);
   add_alternatives(data, reconstructed, found, axis, findings);
   add_earth_rate(findings);
   return findings;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "filters/diagnosis/regression/uncertainty.h"
-#include "filters/diagnosis/residual/record_lines.h"
+#include "filters/diagnosis/residual/lines.h"
 #include "filters/diagnosis/search/search.h"
 
 namespace ifog {
@@ -38,8 +38,7 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
 
 std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects);
 
-// The joint fit of what the search chose, put into `found` and brought to the readings the daemon will have.
-// By how far that moves a coefficient or a time constant from the effect's own counts as an error of it.
-JointFit settle(const BlockData& data, const BlockData& reconstructed, SearchResult& found);
+// The joint fit of what the search chose, put into `found`.
+JointFit settle(const BlockData& reconstructed, SearchResult& found);
 
 }  // namespace ifog

@@ -6,7 +6,7 @@
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
-#include "filters/diagnosis/report/grown_figures.h"
+#include "filters/diagnosis/report/before_and_after.h"
 
 namespace ifog {
 

@@ -6,11 +6,12 @@
 #include <string>
 #include <vector>
 
+#include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/diagnosis.h"
 
 namespace ifog {
 
-// Effects that do not hold on held-out data or all along the record.
+// Steps that do not last.
 std::string dropped_in_words(const std::vector<Effect>& dropped);
 
 // One that the daemon's own run judged.
@@ -18,5 +19,13 @@ std::string harmful_in_words(const Effect& effect);
 
 // Resonances and lines that move, of the noise; empty without any.
 std::string judged_beside(std::size_t harmonics);
+
+// Effects of one channel that a capture denies.
+std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,
+                            const std::vector<Record>& records);
+
+// Beside much that stays unexplained a channel that was logged may only run along with the cause; empty where
+// little is, or no effect was traced to a channel. captures: diagnosed together.
+std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t captures);
 
 }  // namespace ifog

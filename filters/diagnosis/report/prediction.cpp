@@ -168,7 +168,6 @@ HeadingPrediction predicted(const Diagnosis& diagnosis, const BlockData& data, d
   double all = 1.0;
   for (const OtherExplanation& other : diagnosis.others) {
     others.push_back(effects_on(data, held, followed, ramp_s, other.effects));
-    if (other.hysteresis) add_loop(data, *other.hysteresis, others.back().going_on);
     all += other.weight;
   }
   const auto n = static_cast<Eigen::Index>(on.gradient.cols());

@@ -9,7 +9,7 @@
 
 #include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/residual/dead_zone.h"
-#include "filters/diagnosis/residual/record_lines.h"
+#include "filters/diagnosis/residual/lines.h"
 
 namespace ifog {
 

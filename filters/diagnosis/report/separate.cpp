@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/report/separate.h"
 
-#include <cstdio>
-
+#include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {
 namespace {
 
-std::string seconds(double value) {
-  std::string text(32, '\0');
-  text.resize(static_cast<std::size_t>(std::snprintf(text.data(), text.size(), "%.3g s", value)));
-  return text;
-}
+std::string seconds(double value) { return printed("%.3g s", value); }
 
 }  // namespace
 

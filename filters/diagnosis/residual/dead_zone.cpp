@@ -233,7 +233,7 @@ std::optional<DeadZone> zone_in(const BlockData& data, double significance) {
   const std::vector<double> widths = fit.widths();
   if (widths.empty()) return std::nullopt;
   const Projected coarse = fit.project(widths);
-  const double tries = independent_columns(coarse.zones);
+  const double tries = independent_columns(widths.size());
   const std::size_t at = best_of(fit.ratios(coarse));
   DeadZone zone;
   refine_width(fit, widths[at > 0 ? at - 1 : 0], widths[std::min(at + 1, widths.size() - 1)], zone);

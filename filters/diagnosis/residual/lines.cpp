@@ -11,6 +11,7 @@
 #include <numbers>
 #include <vector>
 
+#include "filters/diagnosis/record/words.h"
 #include "filters/diagnosis/residual/periodogram.h"
 #include "filters/series/mapped_file.h"
 
@@ -29,9 +30,7 @@ double noise_beside(std::span<const double> power, std::size_t k) {
     if (k > d) window.push_back(power[k - d]);
     if (k + d < power.size()) window.push_back(power[k + d]);
   }
-  const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
-  std::nth_element(window.begin(), middle, window.end());
-  return *middle / std::numbers::ln2;
+  return median(window) / std::numbers::ln2;
 }
 
 // Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. Several
@@ -259,6 +258,59 @@ Spectrum averaged_spectrum(const AskedSeries& error, double period_s, KnownPerio
     k = end;
   }
   return spectrum;
+}
+
+namespace {
+
+constexpr std::size_t kMostSlowLines = 6;  // in one fit; the strongest come first
+
+// Slow enough for block means to carry it; faster lines are fitted to the samples themselves.
+bool is_slow(double frequency_hz, const BlockGrid& grid) { return frequency_hz * grid.block_s < 0.4; }
+
+}  // namespace
+
+Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance,
+                     KnownPeriodograms& known) {
+  Lines found;
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    for (const SpectralLine& line :
+         find_lines(errors[r].after, errors[r].start_s, grid.sample_s, significance, known)) {
+      if (line.coherence < kCoherent) continue;
+      if (is_slow(line.frequency_hz, grid)) {
+        if (found.slow.size() >= kMostSlowLines) continue;
+        Candidate candidate;
+        candidate.form = Form::kLine;
+        candidate.record = r;
+        candidate.frequency_hz = line.frequency_hz;
+        found.slow.push_back(candidate);
+      } else {
+        found.fast.push_back({r, line});
+      }
+    }
+  }
+  return found;
+}
+
+void keep_proven(const SearchResult& found, std::size_t samples, double significance, Lines& lines) {
+  const double tries = 0.5 * static_cast<double>(samples);
+  std::vector<Candidate> kept;
+  for (std::size_t i = 0; i < lines.slow.size(); ++i) {
+    if (tries * std::exp(-0.5 * found.chosen[i].likelihood_ratio) < significance)
+      kept.push_back(lines.slow[i]);
+  }
+  lines.slow = std::move(kept);
+}
+
+void take_out(const std::vector<FastLine>& lines, double sample_s, std::vector<EvenError>& errors) {
+  for (const FastLine& fast : lines) {
+    EvenError& error = errors[fast.record];
+    Samples& rest = error.rest.own();
+    for (std::size_t i = 0; i < rest.size(); ++i) {
+      const double phase =
+          2.0 * M_PI * fast.line.frequency_hz * (error.start_s + static_cast<double>(i) * sample_s);
+      rest[i] -= fast.line.cosine * std::cos(phase) + fast.line.sine * std::sin(phase);
+    }
+  }
 }
 
 }  // namespace ifog

@@ -11,9 +11,12 @@
 #include <span>
 #include <vector>
 
+#include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/record/known_series.h"
+#include "filters/diagnosis/regression/candidates.h"
 #include "filters/diagnosis/residual/noise_floor.h"
 #include "filters/diagnosis/residual/periodogram.h"
+#include "filters/diagnosis/search/search.h"
 
 namespace ifog {
 
@@ -60,5 +63,28 @@ std::vector<SpectralLine> find_lines(const AskedSeries& error, double start_s, d
 Spectrum averaged_spectrum(std::span<const double> error, double period_s, std::size_t points = 600);
 Spectrum averaged_spectrum(const AskedSeries& error, double period_s, KnownPeriodograms& known,
                            std::size_t points = 600);
+
+// The coherent lines of the records' errors, slow ones as candidates for the fit of block means, fast ones as
+// they are.
+struct FastLine {
+  std::size_t record;
+  SpectralLine line;
+};
+
+struct Lines {
+  std::vector<Candidate> slow;
+  std::vector<FastLine> fast;
+};
+
+// Of what is left of each record's error.
+Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance,
+                     KnownPeriodograms& known);
+
+// Of the slow lines, which the search was given first, those that are still lines beside slow noise and
+// effects. samples: of all records.
+void keep_proven(const SearchResult& found, std::size_t samples, double significance, Lines& lines);
+
+// Fast lines out of both rests of the errors, for good.
+void take_out(const std::vector<FastLine>& lines, double sample_s, std::vector<EvenError>& errors);
 
 }  // namespace ifog

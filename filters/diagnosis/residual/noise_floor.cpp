@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "filters/diagnosis/record/words.h"
 #include "filters/series/series_view.h"
 
 namespace ifog {
@@ -24,10 +25,8 @@ NoiseFloor::NoiseFloor(std::span<const double> power) {
     const std::size_t stride = std::max<std::size_t>(1, (high - low) / 2000);
     window.clear();
     for (std::size_t i = low; i < high; i += stride) window.push_back(power[i]);
-    const auto middle = window.begin() + static_cast<std::ptrdiff_t>(window.size() / 2);
-    std::nth_element(window.begin(), middle, window.end());
     at_.push_back(k);
-    value_.push_back(*middle / std::numbers::ln2);
+    value_.push_back(median(window) / std::numbers::ln2);
   }
 }
 

@@ -2,9 +2,7 @@
 #include "filters/diagnosis/residual/unexplained.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <span>
 #include <utility>
@@ -12,7 +10,7 @@
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
-#include "filters/diagnosis/residual/two_states.h"
+#include "filters/diagnosis/record/words.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/meaning.h"
 #include "filters/series/series_view.h"
@@ -25,19 +23,9 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // Of those that are measured; 0 when none is.
-double median(std::vector<double> values) {
+double usual_of(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  std::array<char, 400> line{};
-  std::snprintf(line.data(), line.size(), format, values...);
-  return line.data();
+  return values.empty() ? 0.0 : median(std::move(values));
 }
 
 // Energy of differences within short pieces, so that slow changes of the rate do not count. NaN for a piece
@@ -76,7 +64,7 @@ std::size_t measured_of(std::span<const double> energy) {
 // By piece, over the median of its minute: where traffic comes and goes, a knock stands out of its own time.
 // A minute of which little was measured has no usual energy of its own. 0 where nothing was measured.
 std::vector<double> over_usual(const std::vector<double>& energy, double piece_s) {
-  const double of_all = median(energy);
+  const double of_all = usual_of(energy);
   const auto minute = std::max<std::size_t>(16, static_cast<std::size_t>(60.0 / piece_s));
   const std::size_t parts = std::max<std::size_t>(1, energy.size() / minute);
   std::vector<double> over;
@@ -84,7 +72,7 @@ std::vector<double> over_usual(const std::vector<double>& energy, double piece_s
     const std::size_t from = p * minute;
     const std::size_t to = p + 1 == parts ? energy.size() : from + minute;
     const std::span<const double> mine(energy.data() + from, to - from);
-    const double usual = measured_of(mine) >= 16 ? median({mine.begin(), mine.end()}) : of_all;
+    const double usual = measured_of(mine) >= 16 ? usual_of({mine.begin(), mine.end()}) : of_all;
     for (const double each : mine) over.push_back(usual > 0.0 && std::isfinite(each) ? each / usual : 0.0);
   }
   return over;
@@ -107,93 +95,25 @@ struct SlowRest {
   double share = 0.0;   // of their variance that neighbours do not see
 };
 
-// Means of 1, 4, 16 … samples, NaN of one that is missing, each level made of the sums of the one before,
-// while the samples go by once. use(level, mean).
-template <typename Use>
-class MeansByFour {
- public:
-  explicit MeansByFour(std::size_t samples, Use use) : use_(std::move(use)) {
-    for (std::size_t count = 1; samples / count >= 16; count *= 4) counts_.push_back(count);
-    sums_.resize(counts_.size());
-  }
-  [[nodiscard]] const std::vector<std::size_t>& counts() const { return counts_; }
-
-  // Fours of them but at the end, where what does not fill the last one of a level is left out.
-  void add(std::span<const double> samples) {
-    for (const double each : samples) use_(std::size_t{0}, each);
-    if (counts_.size() < 2) return;
-    for (std::size_t i = 0; i + 4 <= samples.size(); i += 4) pass_on(1, present(samples.subspan(i, 4)));
-  }
-
- private:
-  void pass_on(std::size_t level, Present sum) {
-    for (;; ++level) {
-      use_(level, sum.mean_of(counts_[level]));
-      if (level + 1 == counts_.size()) return;
-      Above& above = sums_[level + 1];
-      above.four.sum += sum.sum;
-      above.four.count += sum.count;
-      if (++above.filled < 4) return;
-      sum = above.four;
-      above = {};
-    }
-  }
-
-  struct Above {
-    Present four;
-    int filled = 0;
-  };
-  Use use_;
-  std::vector<std::size_t> counts_;  // samples a mean, by level
-  std::vector<Above> sums_;
-};
-
-template <typename Use>
-std::vector<std::size_t> each_mean_by_four(std::span<const double> left, Use use) {
-  static_assert(kSeriesPiece % 4 == 0);
-  MeansByFour<Use> means(left.size(), std::move(use));
-  for_each_piece(left, 0, left.size(), [&](std::span<const double> some, std::size_t) { means.add(some); });
-  return means.counts();
-}
-
-// How means of one length scatter, and how neighbours differ.
-struct Scatter {
-  double sum = 0.0, there = 0.0, mean = kNaN;
-  double variance = 0.0, steps = 0.0, pairs = 0.0;
-  double before = kNaN;
-};
-
 // Slow is what makes means scatter more than neighbouring means differ (von Neumann's ratio, whose standard
 // deviation for n means of white noise is 1 / sqrt n).
 SlowRest slow_rest(std::span<const double> left, double period_s) {
-  constexpr double kClear = 5.0;
-  constexpr std::size_t kMostLevels = 32;
-  std::array<Scatter, kMostLevels> scatters;
-  each_mean_by_four(left, [&](std::size_t level, double mean) {
-    if (!std::isfinite(mean)) return;
-    scatters[level].sum += mean;
-    scatters[level].there += 1.0;
-  });
-  for (Scatter& of : scatters) of.mean = of.sum / of.there;
-  const std::vector<std::size_t> counts = each_mean_by_four(left, [&](std::size_t level, double mean) {
-    Scatter& of = scatters[level];
-    const double step = mean - std::exchange(of.before, mean);
-    if (std::isfinite(mean)) of.variance += (mean - of.mean) * (mean - of.mean) / of.there;
-    if (!std::isfinite(step)) return;
-    of.steps += step * step;
-    of.pairs += 1.0;
-  });
+  constexpr double kFewest = 16.0;
   SlowRest found;
-  double most = kClear;
-  for (std::size_t level = 0; level < counts.size(); ++level) {
-    const Scatter& scatter = scatters[level];
-    const double n = scatter.pairs, all = scatter.variance;
-    if (scatter.there < 2.0 || n < 16.0 || !(scatter.steps > 0.0)) continue;
-    const double neighbours = 0.5 * scatter.steps / n;
+  double most = 5.0;
+  for (std::size_t count = 1; left.size() / count >= 16; count *= 4) {
+    const Samples means = means_over(left, count);
+    double steps = 0.0, n = 0.0, before = kNaN;
+    for (const double mean : means) {
+      const double step = mean - std::exchange(before, mean);
+      if (std::isfinite(step)) steps += step * step, n += 1.0;
+    }
+    if (n < kFewest || !(steps > 0.0)) continue;
+    const double neighbours = 0.5 * steps / n, all = variance_of(means);
     const double sigma = (all / neighbours - 1.0) * std::sqrt(n);
     if (sigma <= most) continue;
     most = sigma;
-    found = {static_cast<double>(counts[level]) * period_s, 1.0 - neighbours / all};
+    found = {static_cast<double>(count) * period_s, 1.0 - neighbours / all};
   }
   return found;
 }
@@ -201,7 +121,7 @@ SlowRest slow_rest(std::span<const double> left, double period_s) {
 void describe_peak(const SpectralLine& peak, Unexplained& found) {
   found.kind = "line";
   found.frequency_hz = peak.frequency_hz;
-  found.hint = text(
+  found.hint = printed(
       "a peak at %.4g Hz, %.2g Hz wide, that is no line of one frequency and phase: a resonance of the "
       "mounting, or a line that moves. Log an accelerometer on the mounting and the loop's own signals.",
       peak.frequency_hz, peak.width_hz);
@@ -225,7 +145,7 @@ bool describe_bursts(const std::vector<double>& energy, std::size_t piece, doubl
   }
   if (bursts == 0 || bursts * 10 >= measured) return false;
   found.kind = "bursts";
-  found.hint = text(
+  found.hint = printed(
       "%zu bursts, the first at %s s, the strongest at %s s: knocks, radio keying or supply dips. "
       "Log "
       "an accelerometer and the supply at the sensor's own rate.",
@@ -243,13 +163,13 @@ bool describe_changing_variance(const std::vector<double>& energy, Unexplained& 
     std::vector<double> measured(energy.begin() + static_cast<std::ptrdiff_t>(p * part),
                                  energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part));
     if (2 * measured_of(measured) < part || part == 0) continue;
-    const double typical = median(std::move(measured));
+    const double typical = usual_of(std::move(measured));
     least = std::min(least, typical);
     most = std::max(most, typical);
   }
   if (!(most > 2.0 * least)) return false;
   found.kind = "changing_variance";
-  found.hint = text(
+  found.hint = printed(
       "the noise of single samples changes by a factor of %.2g in the course of the record: vibration, "
       "light level or electronics. Log vibration, optical power and the supply.",
       std::sqrt(most / std::max(least, 1e-300)));
@@ -259,7 +179,7 @@ bool describe_changing_variance(const std::vector<double>& energy, Unexplained& 
 void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
   if (slow.over_s > 0.0) {
     found.kind = "slow";
-    found.hint = text(
+    found.hint = printed(
         "slow drift that follows none of the channels given: %.0f %% of what %.3g s means scatter. The "
         "sensor's "
         "own random walk or flicker, an effect of a form that is not known here (hysteresis), or an "
@@ -330,7 +250,7 @@ void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {
   found.kind = "hysteresis";
   found.frequency_hz = 0.0;
   found.times_s.clear();
-  found.hint = text(
+  found.hint = printed(
       "part of the bias depends on which way %s came: a loop %.3g %s wide and %.3g °/h high. No form of the "
       "model describes it and nothing of it is corrected. Let it run up and down between the same values, "
       "and look at the mounting of the coil and at its potting.",
@@ -338,33 +258,15 @@ void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {
       2.0 * loop.half_width * std::abs(loop.coefficient) / kDegreePerHour);
 }
 
-void describe_two_states(const std::vector<EvenError>& errors, const BlockGrid& grid, bool turned,
-                         Unexplained& found) {
-  if (grid.dwells || turned) return;
-  const auto two = find_two_states(longest_of(errors).after, grid.sample_s);
-  if (!two) return;
-  found.kind = "two_states";
-  found.frequency_hz = 0.0;
-  found.times_s.clear();
-  found.hint = text(
-      "the bias has two states, %.3g °/h apart: it jumped %zu times and stays %.3g s in the one and %.3g s "
-      "in the other (popcorn noise). Nothing of it is corrected, for nothing that was logged says which it "
-      "is in. A source that hops between modes, a contact or an amplifier does so: log the optical power, "
-      "the "
-      "source's current and the supply at the sensor's own rate.",
-      std::abs(two->difference) / kDegreePerHour, two->jumps, two->low_s, two->high_s);
-}
-
 std::string slow_beside(const std::vector<EvenError>& errors, const BlockGrid& grid,
                         const Unexplained& found) {
   constexpr double kMuch = 0.3;          // of what those means scatter
   constexpr double kUnexplained = 0.12;  // of the error: less is any sensor's own noise
-  if (grid.dwells || found.fraction < kUnexplained || found.kind == "slow" || found.kind == "hysteresis" ||
-      found.kind == "two_states")
+  if (grid.dwells || found.fraction < kUnexplained || found.kind == "slow" || found.kind == "hysteresis")
     return "";
   const SlowRest slow = slow_rest(longest_of(errors).after, grid.sample_s);
   if (slow.share < kMuch) return "";
-  return text(
+  return printed(
       "beside that a slow drift that follows none of the channels given: %.0f %% of what %.3g s means "
       "scatter, by the sensor's own noise or by a cause that was not logged",
       100.0 * slow.share, slow.over_s);

@@ -25,10 +25,6 @@ Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& 
 // A loop takes the description's place.
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found);
 
-// So does a bias that jumps between two levels, of the longest record.
-// turned: what comes and goes with the rotation looks like two states, and is none of the bias.
-void describe_two_states(const std::vector<EvenError>& errors, const BlockGrid& grid, bool turned,
-                         Unexplained& found);
 // What is slow in it, where something quicker took the description's place; "" where nothing is.
 std::string slow_beside(const std::vector<EvenError>& errors, const BlockGrid& grid,
                         const Unexplained& found);

@@ -2,10 +2,9 @@
 #include "filters/diagnosis/search/earth_rate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
 
@@ -125,8 +124,8 @@ void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, 
   for (const bool first : {true, false}) {
     Eigen::Index at = data.grid.constants();
     for (std::size_t i = 0; i < found.chosen.size(); ++i) {
-      Candidate& mine = found.fitted[i];
-      const double coefficient = found.fitted_coefficients[at];
+      Candidate& mine = found.chosen[i].candidate;
+      const double coefficient = found.coefficients[at];
       const double error = std::sqrt(std::max(0.0, found.covariance(at, at)));
       at += mine.width();
       if (first ? !is_earth_rate(data, options, mine, coefficient, error)
@@ -134,33 +133,22 @@ void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, 
         continue;
       line |= order_of(data, mine) == 1;
       mine.first_reading = reading;
-      found.chosen[i].candidate.first_reading = reading;
     }
   }
 }
-
-namespace {
-
-std::string in_figures(const char* format, double value) {
-  std::array<char, 96> text{};
-  std::snprintf(text.data(), text.size(), format, value);
-  return text.data();
-}
-
-}  // namespace
 
 std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& options,
                                 const SearchResult& found) {
   std::string words;
   Eigen::Index at = data.grid.constants();
-  for (const Candidate& each : found.fitted) {
-    const double coefficient = found.fitted_coefficients[at];
+  for (const Candidate& each : candidates_of(found.chosen)) {
+    const double coefficient = found.coefficients[at];
     at += each.width();
     if (!each.is_earth_rate() || order_of(data, each) != 1) continue;
     const std::string& name = data.channels[each.channel].name;
     const double scale = gravity_in(name) / kDegreePerHour;
-    words += (words.empty() ? "" : " and ") + in_figures("%.3g °/h per g of ", coefficient * scale) + name +
-             in_figures(" (at most %.3g)", largest_earth_rate(name, options) * scale);
+    words += (words.empty() ? "" : " and ") + printed("%.3g °/h per g of ", coefficient * scale) + name +
+             printed(" (at most %.3g)", largest_earth_rate(name, options) * scale);
   }
   if (words.empty()) return "";
   return words + " is what the Earth's rate makes in a gyro that is turned or tilts: that is rotation, " +

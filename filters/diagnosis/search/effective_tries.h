@@ -3,6 +3,9 @@
 // position of a step would ask for far more than chance can do, and effects that are there would be missed.
 #pragma once
 
+#include <algorithm>
+#include <cstddef>
+
 #include "filters/diagnosis/regression/whitening.h"
 
 namespace ifog {
@@ -17,9 +20,11 @@ inline constexpr double kProfiled = 5.0;
 // reach `ratio` (chi-square of that many degrees of freedom, 1 or 2).
 double tail(double ratio, int columns);
 
-// Of whitened columns with all else projected out, rows by candidates: so many independent ones would reach
-// the 98 % point of the largest score as often, found from 2000 drawn measurements of white noise.
-double independent_columns(const Columns& projected);
+// Neighbours among lags, powers and products of a channel correlate above 0.9: of so many columns a third is
+// new.
+inline double independent_columns(std::size_t columns) {
+  return std::max(1.0, 0.3 * static_cast<double>(columns));
+}
 
 // Of the positions of a step in the grid's records under this noise. A score passes the level u on its way
 // from one position to the next about u sqrt((1 - correlation) / pi) times as often as one position alone is

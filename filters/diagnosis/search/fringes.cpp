@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "filters/diagnosis/checks/proof.h"
+#include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/search/effective_tries.h"
 #include "filters/effects/meaning.h"
 #include "filters/linear/projection.h"

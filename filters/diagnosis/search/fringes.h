@@ -8,7 +8,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "filters/diagnosis/search/unfold.h"
+#include "filters/diagnosis/search/refine.h"
 
 namespace ifog {
 

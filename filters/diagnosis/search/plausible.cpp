@@ -3,9 +3,9 @@
 
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
+#include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
 
@@ -102,14 +102,14 @@ bool may_be_proxy(const BlockData& data, const Candidate& effect) {
 void doubt_proxies(const BlockData& data, SearchResult& found) {
   const Grade& grade = grade_of(data.grid, found.noise);
   Eigen::Index at = data.grid.constants();
-  for (std::size_t i = 0; i < found.fitted.size(); ++i) {
-    Candidate& mine = found.fitted[i];
-    const double coefficient = found.fitted_coefficients[at];
+  for (std::size_t i = 0; i < found.chosen.size(); ++i) {
+    Candidate& mine = found.chosen[i].candidate;
+    const double coefficient = found.coefficients[at];
     at += mine.width();
     if (!may_be_proxy(data, mine)) continue;
     const std::optional<Bound> bound = bound_of(grade, data.channels[mine.channel], mine.form);
     if (!bound || size_of(data, mine, coefficient) <= bound->most) continue;
-    mine.first_reading = found.chosen[i].candidate.first_reading = FirstReading::kProxyShown;
+    mine.first_reading = FirstReading::kProxyShown;
   }
 }
 
@@ -117,17 +117,16 @@ std::string proxies_in_words(const BlockData& data, const SearchResult& found) {
   const Grade& grade = grade_of(data.grid, found.noise);
   std::string words;
   Eigen::Index at = data.grid.constants();
-  for (const Candidate& each : found.fitted) {
-    const double coefficient = found.fitted_coefficients[at];
+  for (const Candidate& each : candidates_of(found.chosen)) {
+    const double coefficient = found.coefficients[at];
     at += each.width();
     if (each.first_reading != FirstReading::kProxyShown) continue;
     const FineChannel& channel = data.channels[each.channel];
     const Bound bound = bound_of(grade, channel, each.form).value_or(Bound{0.0, grade.name});
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(), " explains the bias by %.3g °/h per %s, %s has at most %.3g",
-                  size_of(data, each, coefficient) / kDegreePerHour, unit_of(channel.name).c_str(), bound.of,
-                  bound.most / kDegreePerHour);
-    words += (words.empty() ? "" : "; ") + channel.name + text.data();
+    words += (words.empty() ? "" : "; ") + channel.name +
+             printed(" explains the bias by %.3g °/h per %s, %s has at most %.3g",
+                     size_of(data, each, coefficient) / kDegreePerHour, unit_of(channel.name).c_str(),
+                     bound.of, bound.most / kDegreePerHour);
   }
   if (words.empty()) return words;
   return words +

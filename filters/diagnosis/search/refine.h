@@ -2,7 +2,10 @@
 // Searched time constants, and where a transition is, at their optimum.
 #pragma once
 
+#include <cstddef>
+
 #include "filters/diagnosis/regression/design.h"
+#include "filters/diagnosis/regression/noise_fit.h"
 
 namespace ifog {
 
@@ -19,5 +22,16 @@ void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Ca
 // Whether both levels of every transition lie within the channel's range, as far as one half width from its
 // middle. What only bends there is a polynomial's to describe, which goes on where a level would stop.
 bool levels_seen(const BlockData& data, const std::vector<Candidate>& model);
+
+// What one effect stands for that is more: a second time constant, a second layer that heat passes, or a
+// direction in the place of a product. Tried when the choice of one is made; each has to earn what it costs.
+struct FittedModel {
+  std::vector<Candidate> effects;
+  NoiseFit noise;  // with them
+};
+
+// A coil inside a housing follows the thermometer through two time constants, and a bias follows the power of
+// vibration as fast as it may. Effects from `first` on.
+void try_second_time_constants(const BlockData& data, std::size_t first, FittedModel& model);
 
 }  // namespace ifog

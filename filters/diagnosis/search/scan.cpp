@@ -4,14 +4,12 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/search.h"
 #include "filters/linear/projection.h"
 
 namespace ifog {
 namespace {
 
-constexpr std::size_t kPairsAmong = 40;
 constexpr double kDependent = 1e-7;  // of the squares: two columns this alike are one
 
 std::vector<NoiseShape> spread(const NoiseShape& shape, bool thorough) {
@@ -115,10 +113,6 @@ Scan::Projected Scan::project(const std::vector<Candidate>& base, const NoiseSha
   return projected;
 }
 
-double Scan::independent(const std::vector<Candidate>& base, const NoiseShape& shape) const {
-  return independent_columns(project(base, shape, columns_).columns);
-}
-
 std::vector<Scored> Scan::score(const std::vector<Candidate>& base, const NoiseFit& noise, bool thorough,
                                 const Candidate* compared, const NoiseShape* at, bool pairs) const {
   std::vector<Scored> scored(candidates_.size() + (pairs ? pairs_.size() : 0));
@@ -194,44 +188,6 @@ std::vector<Scored> Scan::steps(const std::vector<Candidate>& base, const NoiseF
     }
   }
   return found;
-}
-
-std::optional<std::pair<Candidate, Candidate>> Scan::best_pair(const std::vector<Candidate>& base,
-                                                               const NoiseFit& noise,
-                                                               const NoiseShape* at) const {
-  std::vector<Scored> scored = score(base, noise, false, nullptr, at);
-  std::sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) { return a.ratio > b.ratio; });
-  if (scored.size() < 2) return std::nullopt;
-  // A masked effect scores low alone, so the best of each shape is kept, not just the best.
-  std::vector<Candidate> kept;
-  for (const Scored& each : scored) {
-    const auto alike = [&](const Candidate& other) { return other.same_shape(each.candidate); };
-    if (std::any_of(kept.begin(), kept.end(), alike)) continue;
-    kept.push_back(each.candidate);
-    if (kept.size() == kPairsAmong) break;
-  }
-  Columns columns(columns_.rows(), static_cast<Eigen::Index>(kept.size()));
-  for (std::size_t i = 0; i < kept.size(); ++i)
-    columns.col(static_cast<Eigen::Index>(i)) = regressors(data_, kept[i]).col(0);
-  NoiseShape quieter = noise.shape;
-  quieter.walk *= 0.1;
-  const Projected p = project(base, at ? *at : quieter, columns);
-  const Eigen::MatrixXd gram = p.columns.transpose() * p.columns;
-  const Eigen::VectorXd xy = p.columns.transpose() * p.y;
-  double best = 0.0;
-  std::optional<std::pair<Candidate, Candidate>> pair;
-  for (Eigen::Index i = 0; i < gram.rows(); ++i) {
-    for (Eigen::Index j = i + 1; j < gram.rows(); ++j) {
-      const double det = gram(i, i) * gram(j, j) - gram(i, j) * gram(i, j);
-      if (det <= 1e-4 * gram(i, i) * gram(j, j)) continue;
-      const double gain =
-          (xy[i] * xy[i] * gram(j, j) - 2.0 * xy[i] * xy[j] * gram(i, j) + xy[j] * xy[j] * gram(i, i)) / det;
-      if (gain <= best) continue;
-      best = gain;
-      pair = {kept[static_cast<std::size_t>(i)], kept[static_cast<std::size_t>(j)]};
-    }
-  }
-  return pair;
 }
 
 }  // namespace ifog

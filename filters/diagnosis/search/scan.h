@@ -30,9 +30,6 @@ class Scan {
   // Further candidates; those of a shape that is there already are passed over.
   void add(const std::vector<Candidate>& more);
 
-  // So many independent tries the library amounts to, beside `base`; see effective_tries.h.
-  [[nodiscard]] double independent(const std::vector<Candidate>& base, const NoiseShape& shape) const;
-
   // thorough: the full spread of noise models; otherwise a few of them.
   // With `pairs` these follow the candidates, in their order.
   [[nodiscard]] std::vector<Scored> score(const std::vector<Candidate>& base, const NoiseFit& noise,
@@ -45,11 +42,6 @@ class Scan {
 
   // The most likely positions of a step of the rate, one a record at most.
   [[nodiscard]] std::vector<Scored> steps(const std::vector<Candidate>& base, const NoiseFit& noise) const;
-
-  // The two of the best few dozen that explain most together, at a noise with less walk than `noise` or at
-  // the one given.
-  [[nodiscard]] std::optional<std::pair<Candidate, Candidate>> best_pair(
-      const std::vector<Candidate>& base, const NoiseFit& noise, const NoiseShape* at = nullptr) const;
 
  private:
   void fill(std::size_t candidate);

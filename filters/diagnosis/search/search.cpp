@@ -6,14 +6,12 @@
 #include <optional>
 #include <utility>
 
-#include "filters/diagnosis/checks/proof.h"
+#include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/regression/harmonics.h"
 #include "filters/diagnosis/search/effective_tries.h"
-#include "filters/diagnosis/search/fit_to_readings.h"
 #include "filters/diagnosis/search/fringes.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
-#include "filters/diagnosis/search/unfold.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {
@@ -25,12 +23,7 @@ constexpr double kRise = 1.0;         // twice the log-likelihood that any chang
 constexpr double kLikeness = 6.0;     // loss below which another effect cannot be told from the chosen one
 constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision before the shape is refined
 constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
-constexpr double kCorrelated = 0.2;       // correlation of two coefficients
 constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
-
-bool is_event(const Candidate& candidate) {
-  return candidate.form == Form::kLine || candidate.form == Form::kStep;
-}
 
 bool has(const std::vector<Candidate>& model, const Candidate& wanted) {
   return std::any_of(model.begin(), model.end(),
@@ -80,7 +73,7 @@ class EffectSearch {
   // The chance of a false effect is shared out between channels and steps.
   void count_tries() {
     const double level = 20.0;  // near what will be asked for
-    const double independent = scan_.independent(model_, noise_.shape) + static_cast<double>(scan_.pairs());
+    const double independent = independent_columns(scan_.size()) + static_cast<double>(scan_.pairs());
     tries_of_channels_ = independent / (data_.grid.dwells ? 1.0 : kShareOfChannels);
     tries_of_steps_ = independent_steps(data_.grid, noise_.shape, level) / (1.0 - kShareOfChannels);
   }
@@ -194,7 +187,7 @@ class EffectSearch {
   void improve() {
     while (model_.size() < options_.most_effects + first_) {
       if (options_.progress) options_.progress(model_.size(), options_.most_effects + 1);
-      if (!add_one() && !add_pair() && !swap_pair()) break;
+      if (!add_one()) break;
       revise();
     }
   }
@@ -251,44 +244,6 @@ class EffectSearch {
     tries_of_channels_ += static_cast<double>(scan_.size() - before) / kShareOfChannels;
   }
 
-  // Two effects that hide each other, so that neither passes alone.
-  bool add_pair() {
-    const auto pair = scan_.best_pair(model_, noise_);
-    return pair && take_pair(model_, *pair);
-  }
-
-  bool take_pair(std::vector<Candidate> model, const std::pair<Candidate, Candidate>& pair) {
-    model.push_back(pair.first);
-    model.push_back(pair.second);
-    const std::size_t last = model.size() - 1;
-    const Trial once = refined(std::move(model), last, noise_.shape);
-    Trial trial = refined(once.model, last - 1, once.noise.shape);
-    return proven(trial) && take(std::move(trial));
-  }
-
-  // Two effects whose coefficients depend on each other can be two others together: a slow channel with a lag
-  // and its settling at the start are the channel and its derivative.
-  bool swap_pair() {
-    for (std::size_t i = first_; i < model_.size(); ++i)
-      for (std::size_t j = i + 1; j < model_.size(); ++j) {
-        if (is_event(model_[i]) || is_event(model_[j]) || !depend(i, j)) continue;
-        const std::vector<Candidate> rest = without(without(model_, j), i);
-        const NoiseFit noise = fit_noise(data_.grid, design(data_, rest), noise_.shape);
-        const auto pair = scan_.best_pair(rest, noise, &noise_.shape);
-        if (pair && !(has(model_, pair->first) && has(model_, pair->second)) && take_pair(rest, *pair))
-          return true;
-      }
-    return false;
-  }
-
-  [[nodiscard]] bool depend(std::size_t i, std::size_t j) const {
-    Eigen::MatrixXd covariance;
-    solve(data_.grid, noise_.shape, design(data_, model_), &covariance);
-    const Eigen::Index a = column_of(data_.grid, model_, i) - 1;
-    const Eigen::Index b = column_of(data_.grid, model_, j) - 1;
-    return std::abs(covariance(a, b)) > kCorrelated * std::sqrt(covariance(a, a) * covariance(b, b));
-  }
-
   // Effects chosen early were chosen without the later ones: each one's removal, replacement and shape.
   void revise() {
     for (std::size_t i = first_; i < model_.size() && model_.size() > first_ + 1;) {
@@ -309,8 +264,7 @@ class EffectSearch {
     std::optional<FittedModel> found =
         with_fringe(data_, first_, {model_, noise_}, {options_.significance, tries_of_channels_});
     if (!found) return false;
-    for (const NaturalPair& law : {NaturalPair{found->effects.end()[-2], found->effects.back()}})
-      laws_.push_back(law);
+    laws_.push_back({found->effects.end()[-2], found->effects.back()});
     return take({found->effects, found->noise, score(found->effects, found->noise)});
   }
 
@@ -368,13 +322,8 @@ std::vector<Candidate> candidates_of(const std::vector<Chosen>& chosen) {
   return candidates;
 }
 
-SearchResult search_effects(const BlockData& data, const BlockData& reconstructed,
-                            const SearchOptions& options) {
-  SearchResult result = EffectSearch(reconstructed, options).run();
-  result.fitted = candidates_of(result.chosen);
-  result.fitted_coefficients = result.coefficients;
-  fit_to_readings(data, reconstructed, result);
-  return result;
+SearchResult search_effects(const BlockData& data, const SearchOptions& options) {
+  return EffectSearch(data, options).run();
 }
 
 }  // namespace ifog

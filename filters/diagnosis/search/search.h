@@ -35,11 +35,7 @@ struct SearchResult {
   Eigen::VectorXd
       coefficients;  // nuisances (one constant a record) first, then the columns of each chosen effect
   Eigen::MatrixXd covariance;  // of those
-  // The same as the search fitted them to reconstructed channels; the ones above are brought to what was
-  // read.
-  std::vector<Candidate> fitted;
-  Eigen::VectorXd fitted_coefficients;
-  double tries = 1.0;  // independent ones of a channel's effect, over their share of the significance
+  double tries = 1.0;          // independent ones of a channel's effect, over their share of the significance
 };
 
 std::vector<Candidate> candidates_of(const std::vector<Chosen>& chosen);
@@ -52,8 +48,7 @@ struct SearchOptions {
   std::vector<Candidate> given;     // lines, found elsewhere; in the fit from the start
 };
 
-// data: channels as read; reconstructed: as with_reconstructed_channels() makes them of it.
-SearchResult search_effects(const BlockData& data, const BlockData& reconstructed,
-                            const SearchOptions& options);
+// data: channels as with_reconstructed_channels() makes them.
+SearchResult search_effects(const BlockData& data, const SearchOptions& options);
 
 }  // namespace ifog

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "filters/diagnosis/checks/cross_validation.h"
-#include "filters/diagnosis/checks/proof.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 
 namespace ifog {

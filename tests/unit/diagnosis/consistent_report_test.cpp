@@ -10,7 +10,6 @@
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/report/before_and_after.h"
-#include "filters/diagnosis/report/grown_figures.h"
 #include "tests/unit/diagnosis/gaussian_deviate.h"
 
 namespace ifog {

@@ -118,22 +118,6 @@ TEST(Diagnose, ALagOfTwoTimeConstants) {
   EXPECT_NEAR(sum, 210.0, 15.0);
 }
 
-// A temperature and its rate are together a lag that was never at rest before the record, which a lag and a
-// warm-up describe nearly as well; on the next record only the first two are right.
-TEST(Diagnose, ATemperatureAndItsRateAreNoLagThatWarmsUp) {
-  Sensor s = quiet(30);
-  for (std::size_t i = 0; i < s.rate.size(); ++i) {
-    const double t = 0.1 * static_cast<double>(i);
-    const double slope = 6.0 * 2.0 * M_PI / 900.0 * std::cos(2.0 * M_PI * t / 900.0) + 1.0 / 300.0;
-    s.rate[i] += 2e-7 * (s.temperature[i] - 25.0) - 2e-7 * 150.0 * slope;
-  }
-  const Diagnosis d = diagnose({s.record()}, {});
-  ASSERT_EQ(d.effects.size(), 2U);
-  std::vector<std::string> forms{d.effects[0].effect.form, d.effects[1].effect.form};
-  std::sort(forms.begin(), forms.end());
-  EXPECT_EQ(forms, (std::vector<std::string>{"linear", "rate"}));
-}
-
 // Hysteresis: said to be one, not corrected, and counted into the heading that is promised.
 TEST(Diagnose, NamesALoopAndLeavesItAlone) {
   Sensor s = quiet(31);

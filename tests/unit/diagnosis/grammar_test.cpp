@@ -383,18 +383,5 @@ TEST(Grammar, OnePassageMakesNoDeadZone) {
   EXPECT_EQ(effect_of(diagnosed(s.record()), "dead_zone", "reference_rate_radps"), nullptr);
 }
 
-TEST(Grammar, ASoftLimitIsCalledSaturation) {
-  Sensor s(36);
-  s.turn([](double t) { return 0.5 * std::sin(2.0 * M_PI * t / 50.0); });
-  for (std::size_t i = 0; i < s.time.size(); ++i)
-    s.rate[i] += 40.0 * std::tanh(s.reference[i] / 40.0) - s.reference[i];
-  const Diagnosis found = diagnosed(s.record());
-  const Effect* effect = effect_of(found, "cubic", "reference_rate_radps");
-  ASSERT_NE(effect, nullptr) << all_in_words(found);
-  // To first order w^3 / (3 limit^2) is missing: 52 ppm at full scale.
-  EXPECT_NE(effect->meaning.find("reads 52 ppm too small at 28.6 °/s"), std::string::npos) << effect->meaning;
-  EXPECT_NE(effect->meaning.find("saturation"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace ifog

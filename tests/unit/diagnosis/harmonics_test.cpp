@@ -9,7 +9,6 @@
 #include <complex>
 #include <numbers>
 
-#include "filters/diagnosis/checks/hausman_test.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/diagnosis/regression/design.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
@@ -106,30 +105,6 @@ TEST(Harmonics, WhatIsWhiteAtSlowFrequenciesIsTheVarianceOfALongMean) {
   NoiseShape angles = swaying({kSome.harmonics[0], kSome.harmonics[1]});
   EXPECT_NEAR(slow_white(angles), 1.0, 1e-12);
   EXPECT_NEAR(*noise_terms(kSome, 4.0, 0.25).N, std::sqrt(sum), 1e-6 * std::sqrt(sum));
-}
-
-// The variance of plain least squares by the dense covariance; two records, which share nothing.
-TEST(Harmonics, PlainFitScattersAsTheDenseCovarianceSays) {
-  const Eigen::Index n = 300;
-  const BlockGrid grid = grid_of({200, 100});
-  std::mt19937_64 random(6);
-  std::normal_distribution<double> normal;
-  Columns columns(n, 4);
-  columns.middleCols(1, 2) = constants(grid);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    columns(i, 0) = normal(random);
-    columns(i, 3) = std::sin(0.3 * static_cast<double>(i)) + normal(random);
-  }
-  Eigen::MatrixXd v = dense_covariance(kSome, n);
-  v.topRightCorner(200, 100).setZero();
-  v.bottomLeftCorner(100, 200).setZero();
-  const Eigen::MatrixXd x = columns.rightCols(3);
-  const Eigen::MatrixXd plain = (x.transpose() * x).inverse() * x.transpose();
-  const double expected =
-      (plain * columns.col(0))(2) / std::sqrt(0.7 * (plain * v * plain.transpose())(2, 2));
-  const NoiseFit noise{kSome, 0.0, 0.7};
-  EXPECT_NEAR(disagreement(grid, noise, columns, 2, Eigen::VectorXd::Zero(3), Eigen::MatrixXd::Zero(3, 3)),
-              std::abs(expected), 1e-9 * std::abs(expected));
 }
 
 // Rate of a structure whose angle is a damped oscillator's, as means over steps.

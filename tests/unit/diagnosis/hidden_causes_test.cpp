@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several captures compared coefficient by coefficient, and what is said beside much that stays unexplained.
-#include "filters/diagnosis/report/hidden_causes.h"
+#include "filters/diagnosis/report/left_out.h"
 
 #include <gtest/gtest.h>
 

@@ -2,6 +2,7 @@
 // What the rooms leave out or aside: in words, behind a channel, within a dead zone.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -102,6 +103,24 @@ TEST(Turned, WithAReferenceNothingIsLeftOutAndWithLittleRestNothingIsDiagnosed) 
   const WithoutTurns all = without_turns({turned.record()});
   EXPECT_EQ(all.records[0].rate_radps.data(), turned.rate.data());
   EXPECT_TRUE(all.remarks.empty());
+}
+
+// Another rate each second all along, as `allan` and `tune` tell it as well.
+TEST(Turned, WhatNeverRestsIsSaid) {
+  std::vector<double> time, rate;
+  for (std::uint32_t i = 0; i < 13000; ++i) {
+    time.push_back(0.01 * i);
+    rate.push_back(0.0175 * gaussian_deviate(i / 100, 0, 7, 11) + 0.005 * gaussian_deviate(i, 0, 8, 11));
+  }
+  Record record;
+  record.name = "moved.csv";
+  record.time_s = time;
+  record.rate_radps = rate;
+  const WithoutTurns rest = without_turns({record});
+  EXPECT_TRUE(std::any_of(rest.remarks.begin(), rest.remarks.end(), [](const std::string& remark) {
+    return remark.find("moved.csv: means of 1 s scatter by") == 0 &&
+           remark.find("it was never at rest, or the unit is wrong") != std::string::npos;
+  }));
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <random>
 
 #include "filters/diagnosis/diagnose.h"
-#include "filters/diagnosis/ramp/ramp_between_captures.h"
 #include "filters/effects/form.h"
 #include "filters/units/field_units.h"
 
@@ -143,31 +142,6 @@ TEST(RebuiltRamp, NoiseIsNone) {
     EXPECT_FALSE(found.fit.has_value());
     EXPECT_TRUE(found.remark.empty()) << found.remark;
   }
-}
-
-// Of two captures at different rates a ramp's lines follow the rate, a machine's stay where they are, and
-// with captures at one rate nothing tells.
-TEST(RebuiltRamp, TwoRatesTellARampFromAMachine) {
-  const Made first = made(40000, 5.4e-5, Comb::kFixed, 11);
-  const Made ramp = made(40000, 4.3e-5, Comb::kFixed, 12);
-  const UnbrokenPart part = unbroken_part(first.record());
-  const auto comb = find_fixed_comb(part);
-  ASSERT_TRUE(comb.has_value());
-  const RampBetween moved = follow_comb(part, *comb, unbroken_part(ramp.record()));
-  EXPECT_TRUE(moved.moves);
-  EXPECT_NEAR(moved.cycles_per_rad / kCycles, 1.0, 1e-3);
-  EXPECT_FALSE(follow_comb(part, *comb, unbroken_part(made(40000, 5.4e-5, Comb::kFixed, 13).record())).moves);
-  EXPECT_FALSE(follow_comb(part, *comb, unbroken_part(made(40000, 4.3e-5, Comb::kNone, 14).record())).moves);
-  // The machine's lines of the first capture in a second one of another rate: shifted in rate alone.
-  Made machine = made(40000, 5.4e-5, Comb::kFixed, 15);
-  for (double& rate : machine.rate) rate -= 1.1e-5;
-  EXPECT_FALSE(follow_comb(part, *comb, unbroken_part(machine.record())).moves);
-  const RebuiltRamp found = rebuild_ramp({first.record(), ramp.record()}, 0.01);
-  EXPECT_TRUE(found.fit.has_value() || found.remark.find("as the rates there are") != std::string::npos)
-      << found.remark;
-  const RebuiltRamp none = rebuild_ramp({first.record(), machine.record()}, 0.01);
-  EXPECT_FALSE(none.fit.has_value());
-  EXPECT_NE(none.remark.find("A capture at another rate would tell"), std::string::npos) << none.remark;
 }
 
 // Whole pulses of a fixed angle: steps that belong to the angle, and no ramp.

@@ -10,7 +10,6 @@
 #include <random>
 
 #include "filters/diagnosis/residual/lines.h"
-#include "filters/diagnosis/residual/record_lines.h"
 #include "filters/diagnosis/residual/unexplained.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 

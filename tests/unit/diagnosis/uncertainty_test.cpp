@@ -70,9 +70,7 @@ Fitted fitted(const Trial& trial) {
   found.noise = fit_noise(data.grid, columns);
   found.coefficients = solve(data.grid, found.noise.shape, columns, &found.covariance);
   Fitted fit;
-  found.fitted = {lagged};
-  found.fitted_coefficients = found.coefficients;
-  fit.joint = settle(data, data, found);
+  fit.joint = settle(data, found);
   Findings findings = findings_of(data, data, found, fit.joint, "");
   fit.diagnosis.effects = findings.effects;
   fit.diagnosis.covariance = covariance_of(findings.effects, fit.joint, 1, 1);
