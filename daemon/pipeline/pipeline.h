@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "daemon/pipeline/filter_stage.h"
 #include "daemon/pipeline/reader.h"
@@ -16,8 +17,8 @@
 namespace ifog {
 
 struct PipelinePlan {
-  std::string lcm_channel;  // of rate_t
-  std::string imu_channel;  // of imu_t; empty: none is sent
+  std::string lcm_channel;          // of rate_t
+  std::vector<PublishedType> also;  // what is sent of each sample besides rate_t
   SensorFacts facts;
   std::size_t ring_slots = 1024;
   ThreadPlan reader, filter;
