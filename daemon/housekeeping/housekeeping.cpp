@@ -154,6 +154,8 @@ void Housekeeping::drain_events(Sensor& sensor) {
     sensor.log->warn("{}", warning);
     sensor.report.count_warning();
   }
+  if (const std::string answers = sensor.parts.pipeline->take_transport_answers(); !answers.empty())
+    sensor.log->info("{}", answers);
   if (sensor.parts.recorder != nullptr) {
     bool good = false;
     if (const std::string message = sensor.parts.recorder->take_message(good); !message.empty())

@@ -163,6 +163,12 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
        "\"can0\"\n",
        "f.toml:9: sensor.name = 'nose_imu': expected one that does not end in _status or _imu, as other "
        "channels do"},
+      {"[[sensor]]\nname = \"b\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"serial\"\ndevice = "
+       "\"/dev/ttyS0\"\n"
+       "set_up = [\"=CONFIG,1\", \"DR\"]\n",
+       "f.toml:14: sensor.transport.set_up = ['DR']: expected \"=COMMAND\", \"?QUERY\" or \"TEXT -> ANSWER\" "
+       "of at most "
+       "1000 characters of ASCII"},
       {"[[sensor.publish]]\nchannel = \"A\"\n",
        "f.toml:8: sensor.publish.type: missing; expected the name of a type, \"bot_core.ins_t\""},
       {"[[sensor.publish]]\ntype = \"bot_core.ins\"\nchannel = \"A\"\n",
