@@ -12,12 +12,14 @@
 
 namespace ifog {
 
+// Message: a rate_t, or that with more.
+template <typename Message = rate_t>
 class InOrder {
  public:
-  // Hands on, in order, what may go: `sink(const rate_t&)`. A message whose predecessor is missing waits
+  // Hands on, in order, what may go: `sink(const Message&)`. A message whose predecessor is missing waits
   // until that has come, or kWindow behind it have. One that comes later still is handed on as it comes.
   template <typename Sink>
-  void take(rate_t message, Sink&& sink) {
+  void take(Message message, Sink&& sink) {
     const std::int64_t by = message.seq - last_;
     const bool restarted = started_ && by <= -kRestart;
     if (restarted) flush(sink);
@@ -39,7 +41,7 @@ class InOrder {
   static constexpr std::size_t kWindow = 16;     // messages: more than a network exchanges
   static constexpr std::int64_t kRestart = 256;  // numbers back: the daemon counts from its start again
 
-  [[nodiscard]] bool follows(const rate_t& message) const {
+  [[nodiscard]] bool follows(const Message& message) const {
     return message.seq - last_ <= std::max<std::int64_t>(1, message.merged) ||
            (message.flags & rate_t::FLAG_GAP) != 0;
   }
@@ -49,7 +51,7 @@ class InOrder {
     hand_on(node.mapped(), sink);
   }
   template <typename Sink>
-  void hand_on(const rate_t& message, Sink&& sink) {
+  void hand_on(const Message& message, Sink&& sink) {
     const bool late = started_ && message.seq <= last_ && message.seq > last_ - kRestart;
     if (!late) last_ = message.seq;
     started_ = true;
@@ -57,7 +59,7 @@ class InOrder {
     while (!held_.empty() && follows(held_.begin()->second)) release(sink);
   }
 
-  std::map<std::int64_t, rate_t> held_;
+  std::map<std::int64_t, Message> held_;
   std::int64_t last_ = 0;
   bool started_ = false;
 };

@@ -38,7 +38,8 @@ void note_lines(const toml::table& table, const std::string& path, KeyLines& out
     const toml::array* const array = node.as_array();
     for (std::size_t i = 0; array != nullptr && i < array->size(); ++i)
       if (const toml::table* const inner = array->get(i)->as_table()) {
-        const std::string name = here + "." + inner->at_path("name").value_or(std::string());
+        const std::string name =
+            here + "." + inner->at_path("name").value_or(inner->at_path("channel").value_or(std::string()));
         out.emplace(name, inner->source().begin.line);
         note_lines(*inner, name + ".", out);
       }
@@ -138,6 +139,8 @@ SensorConfig read_sensor(const toml::table& table, ReadingContext& context) {
     out.realtime = read_realtime(*realtime, "sensor.realtime", context);
   if (const toml::table* const record = in.table("record"))
     out.record = read_record(*record, "sensor.record", context);
+  for (const toml::table* const publish : in.tables("publish"))
+    out.publish.push_back(read_publish(*publish, "sensor.publish", context));
   std::set<std::string> names;
   for (const toml::table* const channel : in.tables("channel")) {
     out.channels.push_back(read_channel(*channel, "sensor.channel", context));
@@ -210,6 +213,7 @@ std::string SensorConfig::restart_for(const SensorConfig& other) const {
                     {"range_radps", range_radps == other.range_radps},
                     {"minimum, maximum or max_step", limits == other.limits},
                     {"imu", imu == other.imu},
+                    {"publish", publish == other.publish},
                     {"powered_with_computer", powered_with_computer == other.powered_with_computer},
                     {"realtime", realtime == other.realtime},
                     {"record", record == other.record},
@@ -274,6 +278,12 @@ Config parse(const std::string& text, const std::string& path, bool recorded) {
       if (const std::string channel = read.lcm_channel() + std::string(ending);
           !channels.insert(channel).second && taken.empty())
         taken = channel;
+    for (const PublishedType& publish : read.publish)
+      if (!publish.channel.empty() && !channels.insert(publish.channel).second)
+        context.errors.push_back(path + ":" +
+                                 std::to_string(read.line_of("publish." + publish.channel + ".channel")) +
+                                 ": sensor.publish.channel = " + in_quotes(publish.channel) +
+                                 ": something else is published on it already, expected another channel");
     if (!read.name.empty() && channel_name(read.lcm_channel()).content != ChannelContent::rate)
       TableReader(*sensor, "sensor", path, context.errors)
           .complain("name", " = " + in_quotes(read.name) +

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "daemon/config/published_type.h"
 #include "drivers/transport/serial_port.h"
 #include "drivers/transport/tcp.h"
 #include "drivers/transport/udp.h"
@@ -86,12 +87,13 @@ using KeyLines = std::map<std::string, std::uint32_t, std::less<>>;
 struct SensorConfig {
   std::string name;  // letters, digits, _ and -; LCM channel IFOG_<NAME in capitals>
   std::string driver;
-  std::string model;             // path, "" for none
-  bool model_adopted = false;    // it is in the state folder
-  double nominal_rate_hz = 0.0;  // 0: what the driver says
-  double range_radps = 0.0;      // full scale of every axis; 0: what the driver says
-  Limits limits;                 // of every axis's rate, rad/s
-  bool imu = false;              // ifog.imu_t at sample rate, too
+  std::string model;                   // path, "" for none
+  bool model_adopted = false;          // it is in the state folder
+  double nominal_rate_hz = 0.0;        // 0: what the driver says
+  double range_radps = 0.0;            // full scale of every axis; 0: what the driver says
+  Limits limits;                       // of every axis's rate, rad/s
+  bool imu = false;                    // ifog.imu_t at sample rate, too
+  std::vector<PublishedType> publish;  // other types on channels of the user's choosing
   double start_up_s = 4.0;
   bool powered_with_computer = false;  // switched on with it: time since power-up is time since boot
   TransportConfig transport;

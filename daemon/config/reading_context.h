@@ -40,6 +40,7 @@ struct ReadingContext {
 
 // `where`: the table's key path. Complaints go into the context.
 TransportConfig read_transport(const toml::table& table, const std::string& where, ReadingContext& context);
+PublishedType read_publish(const toml::table& table, const std::string& where, ReadingContext& context);
 ChannelConfig read_channel(const toml::table& table, const std::string& where, ReadingContext& context);
 // minimum, maximum and max_step of values that are within ±most.
 Limits read_limits(TableReader& in, double most, const ReadingContext& context);

@@ -178,6 +178,22 @@ std::optional<std::vector<int>> TableReader::integers(std::string_view key, int 
   return std::nullopt;
 }
 
+std::optional<std::vector<std::string>> TableReader::texts(std::string_view key) {
+  const toml::node* const node = find(key);
+  if (node == nullptr) return std::nullopt;
+  std::vector<std::string> out;
+  const auto* const array = node->as_array();
+  bool good = array != nullptr;
+  if (good)
+    for (const toml::node& element : *array) {
+      good = good && element.is_string();
+      if (good) out.push_back(element.as_string()->get());
+    }
+  if (good) return out;
+  wrong(key, *node, "a list of texts");
+  return std::nullopt;
+}
+
 const toml::table* TableReader::table(std::string_view key) {
   const toml::node* const node = find(key);
   if (node == nullptr) return nullptr;

@@ -36,6 +36,7 @@ class TableReader {
   // One row of the table of filter settings, into `choice` where the key is there.
   void filter_setting(const FilterSetting& setting, FilterChoice& choice);
   std::optional<std::vector<int>> integers(std::string_view key, int least, int most);
+  std::optional<std::vector<std::string>> texts(std::string_view key);
   // As text() and integer(), and an error when it is not there.
   std::string required_text(std::string_view key, const char* expected);
   std::optional<std::int64_t> required_integer(std::string_view key, std::int64_t least, std::int64_t most);

@@ -2,6 +2,8 @@
 #include "daemon/config/reading_context.h"
 
 #include "daemon/config/table_reader.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/transport/set_up_dialogue.h"
 
 namespace ifog {
 namespace {
@@ -17,6 +19,10 @@ SerialSettings read_serial(TableReader& in) {
                                     : SerialSettings::Parity::none;
   take(in.integer("stop_bits", 1, 2), out.stop_bits);
   take(in.integer("baud_base", 1, 100'000'000), out.baud_base);
+  take(in.texts("set_up"), out.set_up);
+  for (const std::string& line : out.set_up)
+    if (const std::string expected = SetUpDialogue::complaint(line); !expected.empty())
+      in.complain("set_up", " = [" + in_quotes(line) + "]: " + expected);
   return out;
 }
 

@@ -131,14 +131,21 @@ void Housekeeping::start_all() {
     const Transport& transport = sensor->parts.pipeline->reader().transport();
     sensor->log->info("{} {} at {} Hz, publishing on {}", sensor->open ? "reading" : "trying again to open",
                       transport.name(), plan.facts.nominal_rate_hz, plan.lcm_channel);
-    if (claims_.emplace_back(config_.lcm_url, plan.lcm_channel).taken())
-      sensor->log->warn(
-          "another daemon publishes on {} of this lcm_url: subscribers receive both as one sensor; expected "
-          "a "
-          "name or lcm_channel of its own for each",
-          plan.lcm_channel);
+    claim(*sensor, plan.lcm_channel);
+    for (const PublishedType& also : sensor->config.publish) {
+      sensor->log->info("publishing {} on {}", also.type, also.channel);
+      claim(*sensor, also.channel);
+    }
   }
   sources_->start();
+}
+
+void Housekeeping::claim(const Sensor& sensor, const std::string& channel) {
+  if (claims_.emplace_back(config_.lcm_url, channel).taken())
+    sensor.log->warn(
+        "another daemon publishes on {} of this lcm_url: subscribers receive both as one sensor; expected "
+        "a name or a channel of its own for each",
+        channel);
 }
 
 void Housekeeping::drain_events(Sensor& sensor) {
@@ -147,6 +154,8 @@ void Housekeeping::drain_events(Sensor& sensor) {
     sensor.log->warn("{}", warning);
     sensor.report.count_warning();
   }
+  if (const std::string answers = sensor.parts.pipeline->take_transport_answers(); !answers.empty())
+    sensor.log->info("{}", answers);
   if (sensor.parts.recorder != nullptr) {
     bool good = false;
     if (const std::string message = sensor.parts.recorder->take_message(good); !message.empty())

@@ -67,6 +67,8 @@ class Housekeeping {
   void mark_as_running();
   bool open_all();
   void start_all();
+  // Says so where another process has the channel.
+  void claim(const Sensor& sensor, const std::string& channel);
   void drain_events(Sensor& sensor);
   void report_second(Sensor& sensor, double interval_s);
   // Counts the seconds that a thread does not come round.

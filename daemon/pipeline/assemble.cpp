@@ -68,7 +68,9 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
   PipelinePlan plan;
   if (out.recorder != nullptr) plan.tape = &out.recorder->tape();
   plan.lcm_channel = sensor.lcm_channel();
-  if (sensor.imu) plan.imu_channel = sensor.lcm_channel() + std::string(kImuEnding);
+  if (sensor.imu)
+    plan.also.push_back({std::string(kImuType), sensor.lcm_channel() + std::string(kImuEnding)});
+  plan.also.insert(plan.also.end(), sensor.publish.begin(), sensor.publish.end());
   plan.facts = settings.facts;
   plan.ring_slots = static_cast<std::size_t>(sensor.realtime.ring_slots);
   plan.reader = {sensor.name + ":read", sensor.realtime.reader_priority, sensor.realtime.reader_cpus};

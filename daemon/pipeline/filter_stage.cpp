@@ -22,13 +22,13 @@ void relax() noexcept {
 }  // namespace
 
 FilterStage::FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
-                         std::string imu_channel, std::unique_ptr<Publisher> publisher, IncrementQueue& queue,
-                         const SharedBooks& reader_books, EventQueue& events, bool measure_latency)
+                         const std::vector<PublishedType>& also, std::unique_ptr<Publisher> publisher,
+                         IncrementQueue& queue, const SharedBooks& reader_books, EventQueue& events,
+                         bool measure_latency)
     : facts_(facts),
       chain_(std::move(parts)),
       encoder_(facts.axes),
       channel_(std::move(channel)),
-      imu_channel_(std::move(imu_channel)),
       publisher_(std::move(publisher)),
       queue_(queue),
       reader_books_(reader_books),
@@ -36,7 +36,8 @@ FilterStage::FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& f
       measure_latency_(measure_latency),
       noise_known_(chain_.parts().noise_known()) {
   encoder_.use(chain_.parts());
-  if (!imu_channel_.empty()) imu_encoder_.emplace(facts.temperature_channel);
+  for (const PublishedType& each : also)
+    also_.push_back({each.channel, make_inertial_encoder(each.type, facts)});
 }
 
 bool FilterStage::step() noexcept {
@@ -89,10 +90,12 @@ void FilterStage::process(const Increment& in) noexcept {
   const ChainParts& parts = chain_.parts();
   const bool sent = publisher_->publish(channel_.c_str(), encoder_.encode(in, out_, parts));
   if (measure_latency_ && in.arrival_ns != 0) current_.latency.add(arrival_clock_ns() - in.arrival_ns);
-  if (imu_encoder_) {
-    const bool imu_sent = publisher_->publish(imu_channel_.c_str(), imu_encoder_->encode(in, out_));
-    imu_encoder_->sent(imu_sent);
-    if (!imu_sent) counters_.imu_failures.add(1);
+  for (Also& each : also_) {
+    const auto message = each.encoder->encode(in, out_);
+    if (message.empty()) continue;
+    const bool also_sent = publisher_->publish(each.channel.c_str(), message);
+    each.encoder->sent(also_sent);
+    if (!also_sent) counters_.imu_failures.add(1);
   }
   counters_.device_samples.add(in.samples);
   counters_.merged.add(in.samples - 1);

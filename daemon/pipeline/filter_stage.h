@@ -12,6 +12,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "daemon/health/books.h"
 #include "daemon/health/latency.h"
@@ -20,7 +21,7 @@
 #include "daemon/pipeline/increment_queue.h"
 #include "daemon/pipeline/parts_exchange.h"
 #include "daemon/pipeline/processor_share.h"
-#include "daemon/publish/imu_encoder.h"
+#include "daemon/publish/inertial_encoder.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/publish/rate_encoder.h"
 #include "drivers/transport/counter.h"
@@ -63,10 +64,11 @@ struct FilterCounters {
 class FilterStage {
  public:
   // measure_latency: false where arrival times are not of today (a log read at its own pace).
-  // imu_channel: of imu_t, empty: none is sent.
+  // also: what is sent of each sample besides rate_t.
   FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
-              std::string imu_channel, std::unique_ptr<Publisher> publisher, IncrementQueue& queue,
-              const SharedBooks& reader_books, EventQueue& events, bool measure_latency);
+              const std::vector<PublishedType>& also, std::unique_ptr<Publisher> publisher,
+              IncrementQueue& queue, const SharedBooks& reader_books, EventQueue& events,
+              bool measure_latency);
 
   // Until the queue is closed and empty. spin: never sleeps, for a machine with a processor to spare.
   void run(bool spin) noexcept;
@@ -101,8 +103,12 @@ class FilterStage {
   SensorFacts facts_;
   SignalChain chain_;
   RateEncoder encoder_;
-  std::optional<ImuEncoder> imu_encoder_;
-  std::string channel_, imu_channel_;
+  std::string channel_;
+  struct Also {
+    std::string channel;
+    std::unique_ptr<InertialEncoder> encoder;
+  };
+  std::vector<Also> also_;
   std::unique_ptr<Publisher> publisher_;
   IncrementQueue& queue_;
   const SharedBooks& reader_books_;

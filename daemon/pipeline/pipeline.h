@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "daemon/pipeline/filter_stage.h"
 #include "daemon/pipeline/reader.h"
@@ -16,8 +17,8 @@
 namespace ifog {
 
 struct PipelinePlan {
-  std::string lcm_channel;  // of rate_t
-  std::string imu_channel;  // of imu_t; empty: none is sent
+  std::string lcm_channel;          // of rate_t
+  std::vector<PublishedType> also;  // what is sent of each sample besides rate_t
   SensorFacts facts;
   std::size_t ring_slots = 1024;
   ThreadPlan reader, filter;
@@ -56,6 +57,8 @@ class Pipeline {
   [[nodiscard]] const char* starved();
   // What the transport could not get and does without, once; "" for nothing new.
   std::string take_transport_warning() { return reader_.transport().take_warning(); }
+  // How the device has answered to its set-up, likewise.
+  std::string take_transport_answers() { return reader_.transport().take_answers(); }
   // Next event of either thread.
   bool take_event(Event& out) noexcept { return reader_events_.take(out) || filter_events_.take(out); }
   [[nodiscard]] std::uint64_t events_lost() const noexcept {

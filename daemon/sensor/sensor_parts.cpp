@@ -182,13 +182,14 @@ ChainSettings sensor_chain_settings(const SensorConfig& sensor, const ifog_descr
     out.channels.push_back(channel.name);
     out.channel_max_age_s.push_back(channel.max_age_s);
   }
-  if (sensor.imu) {
+  if (sensor.imu || !sensor.publish.empty()) {
     const auto& known = out.facts.acceleration_channel;
     if (out.facts.axes != kMaxAxes || std::any_of(known.begin(), known.end(), [](int c) { return c < 0; }))
       throw KeyError(
-          "imu",
-          "imu = true: expected a driver that gives rates and accel_x_mps2, accel_y_mps2, accel_z_mps2 of "
-          "three axes, \"" +
+          sensor.imu ? "imu" : "publish",
+          std::string(sensor.imu ? "imu = true" : "sensor.publish") +
+              ": expected a driver that gives rates and accel_x_mps2, accel_y_mps2, accel_z_mps2 of "
+              "three axes, \"" +
               printable(sensor.driver) + "\" as configured does not");
   }
   if (sensor.range_radps > 0.0) out.facts.full_scale_radps.fill(sensor.range_radps);

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/transport/serial.h"
+#include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
+#include "drivers/transport/set_up_dialogue.h"
 
 #include <poll.h>
 #include <termios.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -18,6 +22,9 @@ constexpr std::int64_t kSendLimit_ns = 1'000'000'000;
 // Once the device is gone its driver tells no more, so what the line has counted by then is as old as this at
 // most.
 constexpr std::int64_t kErrorPeriod_ns = 100'000'000;
+constexpr std::int64_t kAnswerLimit_ns = 500'000'000;
+// The slowest rate of a KVH 1750 is 1 Hz.
+constexpr std::int64_t kSilentLimit_ns = 1'200'000'000;
 
 // A read waits for the first byte and brings what is there. False: it cannot be had, the line is to be
 // polled.
@@ -41,30 +48,85 @@ class SerialTransport final : public Transport {
     pollfd port{port_ ? port_->fd() : -1, POLLIN, 0};
     return ::poll(&port, 1, 0) > 0;
   }
-  void send_opening();
+  void send(std::span<const std::uint8_t> rest);
+  bool set_up(std::int64_t until_ns);
+  [[noreturn]] void refuse_answer();
   void count_losses() noexcept override;
 
   SerialSettings settings_;
   SerialOpener open_port_;
   std::unique_ptr<SerialPort> port_;
+  std::optional<SetUpDialogue> dialogue_;  // while it is under way
+  std::int64_t answer_by_ns_ = 0;          // CLOCK_MONOTONIC; 0: the line is still to be sent
+  std::int64_t heard_ns_ = 0;              // likewise, the last byte
+  bool tried_ = false;
   LineErrors errors_;
   bool errors_known_ = false, blocks_ = false;
   std::int64_t next_errors_ns_ = 0;
   std::array<std::uint8_t, 16384> buffer_{};
 };
 
-bool SerialTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
-  port_.reset();
-  port_ = open_port_(settings_, warning);
-  send_opening();
+bool SerialTransport::connect(std::string& warning, std::int64_t until_ns) {
+  if (!dialogue_) {
+    port_.reset();
+    port_ = open_port_(settings_, warning);
+    dialogue_.emplace(settings_.set_up);
+    answer_by_ns_ = 0;
+  }
+  if (!set_up(until_ns)) {
+    tried_ = true;
+    return false;
+  }
+  dialogue_.reset();
+  send(opening());
+  heard_ns_ = monotonic_ns();
   blocks_ = wait_for_bytes(port_->fd()) && let_block(port_->fd());
   errors_known_ = port_->errors(errors_);
   next_errors_ns_ = arrival_clock_ns() + kErrorPeriod_ns;
   return true;
 }
 
-void SerialTransport::send_opening() {
-  std::span<const std::uint8_t> rest = opening();
+// One line at a time. False: not done by then, or stopped; the next call goes on.
+bool SerialTransport::set_up(std::int64_t until_ns) {
+  while (!dialogue_->done()) {
+    if (answer_by_ns_ == 0) {
+      const std::string line = dialogue_->line() + "\r\n";
+      send({reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
+      answer_by_ns_ = monotonic_ns() + kAnswerLimit_ns;
+    }
+    short happened = 0;
+    const Wake wake = wait(port_->fd(), POLLIN, std::min(until_ns, answer_by_ns_), happened);
+    if (wake == Wake::stopped) return false;
+    const ssize_t n = wake == Wake::ready ? ::read(port_->fd(), buffer_.data(), buffer_.size()) : 0;
+    const std::span<const std::uint8_t> bytes(buffer_);
+    if (n > 0 && dialogue_->take(bytes.first(static_cast<std::size_t>(n)))) {
+      answer_by_ns_ = 0;
+      continue;
+    }
+    if (!dialogue_->refusal().empty() || monotonic_ns() >= answer_by_ns_ || (wake == Wake::ready && n <= 0))
+      refuse_answer();
+    if (monotonic_ns() >= until_ns) return false;
+  }
+  tried_ = true;
+  if (!dialogue_->answers().empty()) keep_answers(name() + ": set up, it answered " + dialogue_->answers());
+  return true;
+}
+
+void SerialTransport::refuse_answer() {
+  const bool differs = !dialogue_->refusal().empty();
+  const OpenError error(
+      name(),
+      differs ? "answered " + in_quotes(dialogue_->refusal()) + " to " + in_quotes(dialogue_->line())
+              : "no answer to " + in_quotes(dialogue_->line()),
+      differs ? EPROTO : ETIMEDOUT, in_quotes(dialogue_->expected()));
+  port_.reset();
+  dialogue_.reset();
+  // What open() throws is told by its caller.
+  if (std::exchange(tried_, true)) keep_warning(error.what());
+  throw error;
+}
+
+void SerialTransport::send(std::span<const std::uint8_t> rest) {
   const std::int64_t limit = monotonic_ns() + kSendLimit_ns;
   while (!rest.empty()) {
     const ssize_t n = write(port_->fd(), rest.data(), rest.size());
@@ -80,6 +142,7 @@ void SerialTransport::send_opening() {
       error = ETIMEDOUT;
     }
     port_.reset();
+    dialogue_.reset();
     throw OpenError(name(), "cannot send the opening bytes", error, "a device that takes them");
   }
 }
@@ -92,6 +155,15 @@ Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
   if (delivery.read_ns >= next_errors_ns_) {
     next_errors_ns_ = delivery.read_ns + kErrorPeriod_ns;
     count_losses();
+  }
+  if (!settings_.set_up.empty()) {
+    const std::int64_t now_ns = monotonic_ns();
+    if (got.n > 0) heard_ns_ = now_ns;
+    if (now_ns - heard_ns_ > kSilentLimit_ns) {
+      port_.reset();
+      lost(ETIMEDOUT);
+      return {};
+    }
   }
   if (got.wake != Wake::ready) return {};
   if (got.n > 0) {

@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <vector>
 
 namespace ifog {
 
@@ -20,6 +21,8 @@ struct SerialSettings {
   // The UART's clock / 16 where the driver has it wrong, as setserial's baud_base: a speed above it is
   // otherwise not reached. 0: leave it. Needs CAP_SYS_ADMIN.
   std::uint32_t baud_base = 0;
+  // Lines that set the device up, each answered, see SetUpDialogue; none: nothing is sent.
+  std::vector<std::string> set_up{};
 
   bool operator==(const SerialSettings&) const = default;
 };

@@ -74,6 +74,16 @@ std::string Transport::take_warning() {
   return std::exchange(new_warning_, false) ? warning_ : std::string();
 }
 
+void Transport::keep_answers(const std::string& answers) {
+  const std::lock_guard lock(warning_mutex_);
+  answers_ = answers;
+}
+
+std::string Transport::take_answers() {
+  const std::lock_guard lock(warning_mutex_);
+  return std::exchange(answers_, {});
+}
+
 Delivery Transport::read(std::chrono::nanoseconds timeout) noexcept {
   const std::int64_t entered_ns = arrival_clock_ns();
   const std::int64_t until = monotonic_ns() + timeout.count();

@@ -122,6 +122,8 @@ class Transport {
   // What opening the device, for the first time or again, could not get and can do without. Each text once,
   // however often the device is opened again with the same; "" when there is nothing new.
   [[nodiscard]] std::string take_warning();
+  // How the device has answered to its set-up, once each time; "" for nothing new.
+  [[nodiscard]] std::string take_answers();
 
  protected:
   // Opens the device, again if need be, and sends opening(). False: the other end has not answered when
@@ -178,6 +180,8 @@ class Transport {
   [[nodiscard]] std::span<const std::uint8_t> opening() const { return opening_; }
   // For take_warning().
   void keep_warning(std::string&& warning);
+  // For take_answers().
+  void keep_answers(const std::string& answers);
   // The device went away: connect() will be tried again.
   void lost(int reason) noexcept;
   // It is open but nobody is at its other end until the next delivery.
@@ -204,7 +208,7 @@ class Transport {
   std::string name_;
   std::vector<std::uint8_t> opening_;
   std::mutex warning_mutex_;  // taken when a device opens, never while it is read
-  std::string warning_;
+  std::string warning_, answers_;
   bool new_warning_ = false;
   Backoff backoff_;
   std::int64_t connected_ns_ = 0;  // since when, of CLOCK_MONOTONIC

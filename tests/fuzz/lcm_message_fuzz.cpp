@@ -40,6 +40,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const bool hashed = (data[0] & 1U) != 0;
   attempt<ifog::channel_t>(data + 1, size - 1, hashed);
   attempt<ifog::imu_t>(data + 1, size - 1, hashed);
+  attempt<ifog::inertial_t>(data + 1, size - 1, hashed);
+  attempt<bot_core::ins_t>(data + 1, size - 1, hashed);
+  attempt<bot_core::kvh_raw_imu_batch_t>(data + 1, size - 1, hashed);
+  attempt<senlcm::kvh_dsp3000_t>(data + 1, size - 1, hashed);
   attempt<ifog::rate_t>(data + 1, size - 1, hashed);
   attempt<ifog::status_t>(data + 1, size - 1, hashed);
   return 0;

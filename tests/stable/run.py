@@ -16,7 +16,7 @@ import tempfile
 IFOG, IFOGD, MESSAGES, SOURCE = sys.argv[1:]
 HERE = pathlib.Path(__file__).resolve().parent
 # The hash of each LCM type: programs elsewhere decode by it. Another hash is another message, and nobody hears it.
-FINGERPRINTS = {"rate_t": 0x03EB16B05E9D75D5, "status_t": 0x581F79C7F656635F, "imu_t": 0x85AA223FBF2C3588,
+FINGERPRINTS = {"rate_t": 0x03EB16B05E9D75D5, "status_t": 0x581F79C7F656635F, "imu_t": 0x85AA223FBF2C3588, "inertial_t": 0xA56D6923F5FE98A2,
                 "channel_t": 0x0324F6FFDF9266FD}
 
 

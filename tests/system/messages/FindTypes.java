@@ -8,7 +8,7 @@ import java.util.jar.JarFile;
 public class FindTypes {
   public static void main(String[] arguments) throws Exception {
     lcm.spy.LCMTypeDatabase types = new lcm.spy.LCMTypeDatabase();
-    Set<String> wanted = new HashSet<>(Set.of("ifog.rate_t", "ifog.status_t", "ifog.imu_t", "ifog.channel_t"));
+    Set<String> wanted = new HashSet<>(Set.of("ifog.rate_t", "ifog.status_t", "ifog.imu_t", "ifog.inertial_t", "ifog.channel_t"));
     for (String path : System.getProperty("java.class.path").split(File.pathSeparator)) {
       if (!path.contains("ifogd-msgs")) continue;
       for (String entry : new JarFile(path).stream().map(Object::toString).filter(name -> name.endsWith(".class")).toList()) {

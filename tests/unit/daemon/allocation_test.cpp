@@ -54,7 +54,11 @@ TEST(Allocation, NoneBetweenTheFirstAndTheLastSample) {
   PipelinePlan plan;
   plan.tape = &tape;
   plan.lcm_channel = "IFOG_TEST";
-  plan.imu_channel = "IFOG_TEST_IMU";
+  plan.also = {{std::string(kImuType), "IFOG_TEST_IMU"},
+               {std::string(kInertialType), "B"},
+               {std::string(kInsType), "C"},
+               {std::string(kMicrostrainType), "D"},
+               {std::string(kKvhBatchType), "E"}};
   plan.facts = sensor_facts(driver.description(), 1000.0, 0);
   plan.reader.name = "read";
   plan.filter.name = "filter";

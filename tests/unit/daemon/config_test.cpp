@@ -163,6 +163,27 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
        "\"can0\"\n",
        "f.toml:9: sensor.name = 'nose_imu': expected one that does not end in _status or _imu, as other "
        "channels do"},
+      {"[[sensor]]\nname = \"b\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"serial\"\ndevice = "
+       "\"/dev/ttyS0\"\n"
+       "set_up = [\"=CONFIG,1\", \"DR\"]\n",
+       "f.toml:14: sensor.transport.set_up = ['DR']: expected \"=COMMAND\", \"?QUERY\" or \"TEXT -> ANSWER\" "
+       "of at most "
+       "1000 characters of ASCII"},
+      {"[[sensor.publish]]\nchannel = \"A\"\n",
+       "f.toml:8: sensor.publish.type: missing; expected the name of a type, \"bot_core.ins_t\""},
+      {"[[sensor.publish]]\ntype = \"bot_core.ins\"\nchannel = \"A\"\n",
+       "f.toml:9: sensor.publish.type = 'bot_core.ins': expected \"bot_core.ins_t\" | \"microstrain.ins_t\" "
+       "| "
+       "\"bot_core.kvh_raw_imu_batch_t\" | \"ifog.inertial_t\" | \"ifog.imu_t\", did you mean "
+       "'bot_core.ins_t'?"},
+      {"[[sensor.publish]]\ntype = \"bot_core.ins_t\"\nchannel = \"IFOG_A\"\n",
+       "f.toml:10: sensor.publish.channel = 'IFOG_A': expected a name that does not begin with IFOG_, which "
+       "is for "
+       "the daemon's own"},
+      {"[[sensor.publish]]\ntype = \"bot_core.ins_t\"\nchannel = \"A\"\n[[sensor.publish]]\ntype = "
+       "\"microstrain.ins_t\"\nchannel = \"A\"\n",
+       "f.toml:10: sensor.publish.channel = 'A': something else is published on it already, expected another "
+       "channel"},
       {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nminimum = 5.0\nmaximum = 5.0\n",
        "f.toml:12: sensor.channel.maximum: not above minimum; expected minimum < maximum"},
       {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nmax_step = -1.0\n",
@@ -228,7 +249,8 @@ TEST(Config, GathersAllErrors) {
       "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
       "f.toml:3: sensor.modle: unknown key, did you mean 'model'? Known here: channel, driver, filter, imu, "
       "max_step, maximum, "
-      "minimum, model, name, nominal_rate_hz, options, powered_with_computer, range_radps, realtime, record, "
+      "minimum, model, name, nominal_rate_hz, options, powered_with_computer, publish, range_radps, "
+      "realtime, record, "
       "transport");
 }
 

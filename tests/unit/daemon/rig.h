@@ -125,7 +125,7 @@ struct Rig {
     DriverInstance driver = make_driver("kvh1750", {});
     PipelinePlan plan;
     plan.lcm_channel = "IFOG_TEST";
-    plan.imu_channel = "IFOG_TEST_IMU";
+    plan.also = {{std::string(kImuType), "IFOG_TEST_IMU"}};
     plan.facts = sensor_facts(driver.description(), 1000.0, 0);
     plan.ring_slots = slots;
     plan.direct = direct;

@@ -138,7 +138,7 @@ TEST_F(LcmLog, SeveralSensorsMustBeChosenFrom) {
 
 TEST_F(LcmLog, RefusesWhatIsNoLogOrHasNoRates) {
   add("HULL", channel_t{});
-  EXPECT_EQ(refusal(), path_ + ": has no channel IFOG_<NAME>");
+  EXPECT_EQ(refusal(), path_ + ": has no channel IFOG_<NAME>, and none with rates of another program's type");
   fs::remove(path_);
   EXPECT_EQ(refusal("IFOG_NOSE"), path_ + ": cannot open: No such file or directory");
 }

@@ -19,87 +19,16 @@
 #include <thread>
 
 #include "tests/unit/transport/forever.h"
+#include "tests/unit/transport/terminal.h"
 
 namespace {
 
 using namespace std::chrono_literals;
+using ifog::Gyro;
 using ifog::kForever;
 using ifog::SerialSettings;
+using ifog::Terminal;
 using ifog::TransportState;
-
-class Terminal final : public ifog::SerialPort {
- public:
-  Terminal(const std::string& path, const ifog::LineErrors& errors)
-      : errors_(errors), fd_(open(path.c_str(), O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
-    if (fd_ < 0) throw ifog::OpenError(path, "cannot open", errno, "a terminal");
-    termios raw{};
-    tcgetattr(fd_, &raw);
-    cfmakeraw(&raw);
-    raw.c_cc[VMIN] = 0;  // as libserialport sets it: a read without bytes is 0, not EAGAIN
-    tcsetattr(fd_, TCSANOW, &raw);
-  }
-  ~Terminal() override { close(fd_); }
-  Terminal(const Terminal&) = delete;
-  Terminal& operator=(const Terminal&) = delete;
-  [[nodiscard]] int fd() const override { return fd_; }
-  // A pseudo terminal counts none; these are a UART's.
-  bool errors(ifog::LineErrors& out) const noexcept override {
-    out = errors_;
-    return true;
-  }
-
- private:
-  const ifog::LineErrors& errors_;
-  int fd_;
-};
-
-// The gyro's end of a line that can be pulled out and put back.
-class Gyro {
- public:
-  Gyro() { plug(); }
-  ~Gyro() { pull(); }
-  Gyro(const Gyro&) = delete;
-  Gyro& operator=(const Gyro&) = delete;
-  void plug() {
-    fd_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-    ASSERT_GE(fd_, 0);
-    ASSERT_EQ(grantpt(fd_), 0);
-    ASSERT_EQ(unlockpt(fd_), 0);
-    path_ = ptsname(fd_);
-    there_ = true;
-  }
-  void pull() {
-    there_ = false;
-    if (fd_ >= 0) close(fd_);
-    fd_ = -1;
-  }
-  void send(const std::string& text) const {
-    ASSERT_EQ(write(fd_, text.data(), text.size()), static_cast<ssize_t>(text.size()));
-  }
-  std::string receive(std::size_t n) const {
-    std::string text(n, '\0');
-    std::size_t have = 0;
-    while (have < n) {
-      const ssize_t got = read(fd_, text.data() + have, n - have);
-      if (got <= 0) break;
-      have += static_cast<std::size_t>(got);
-    }
-    return text.substr(0, have);
-  }
-  ifog::SerialOpener opener() {
-    return [this](const SerialSettings&, std::string& warning) -> std::unique_ptr<ifog::SerialPort> {
-      if (!there_) throw ifog::OpenError("gyro", "cannot open", ENOENT, "a serial device");
-      warning = "no low latency";
-      return std::make_unique<Terminal>(path_, errors);
-    };
-  }
-  ifog::LineErrors errors;
-
- private:
-  int fd_ = -1;
-  std::atomic<bool> there_{false};
-  std::string path_;
-};
 
 SerialSettings settings() { return {.device = "gyro", .baud = 921600}; }
 

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
@@ -30,6 +29,9 @@
 #include "tools/ifog/captures/lcm_channels.h"
 #include "tools/ifog/captures/lcm_events.h"
 #include "tools/ifog/captures/lcm_loss.h"
+#include "tools/ifog/captures/peer_reader.h"
+#include "tools/ifog/captures/peer_types.h"
+#include "tools/ifog/captures/sensor_seconds.h"
 #include "tools/ifog/captures/status_beside.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
@@ -84,12 +86,15 @@ class NamedLog {
   std::optional<UnnamedFile> unpacked_;
 };
 
-// "": there is none.
+// The first with rates of ours, or else with those of another program's type; "": there is none.
 std::string first_channel(const NamedLog& source) {
   LcmEvents log(source.name());
-  while (const LcmEvents::Event* event = log.next())
+  std::string peer;
+  while (const LcmEvents::Event* event = log.next()) {
     if (carries_rates(event->channel)) return event->channel;
-  return "";
+    if (peer.empty() && peer_type(event->data) != nullptr) peer = event->channel;
+  }
+  return peer;
 }
 
 // A log, and the channel of it that carries the rates: the one that was asked for, or else the first, which
@@ -98,12 +103,21 @@ struct ChosenLog {
   ChosenLog(InputFile& file, const std::string& channel)
       : path(file.path()), source(file), asked_for(!channel.empty()) {
     rates = asked_for ? channel : first_channel(source);
-    if (rates.empty()) throw std::runtime_error(path + ": has no channel IFOG_<NAME>");
+    if (rates.empty())
+      throw std::runtime_error(path +
+                               ": has no channel IFOG_<NAME>, and none with rates of another program's type");
+    LcmEvents log(source.name());
+    while (const LcmEvents::Event* event = log.next()) {
+      if (event->channel != rates) continue;
+      if (const PeerType* const type = peer_type(event->data)) peer.emplace(*type);
+      return;
+    }
   }
   std::string path;
   NamedLog source;
   bool asked_for;
   std::string rates;
+  std::optional<PeerReader> peer;  // its messages are no ifog.rate_t
 };
 
 // The message carries no names; three axes are x, y, z.
@@ -114,58 +128,20 @@ std::vector<std::string> axis_names(std::size_t axes) {
   return names;
 }
 
-// The sensor's own clock where it has one, from the first message on. One that jumps back while the fitted
-// time goes on has begun anew, or was set, and goes on by that. Where that was set, or does not go on either,
-// it is by the message's own step.
-class SensorSeconds {
- public:
-  // Later than the one before, or -1: neither clock goes on.
-  double of(const rate_t& message) {
-    const std::int64_t fitted_ns = message.utime * 1000;
-    std::int64_t now_ns = (message.sensor_time_ns != -1 ? message.sensor_time_ns : fitted_ns) + shift_ns_;
-    const bool sensor = message.sensor_time_ns != -1, set = (message.flags & rate_t::FLAG_CLOCK_STEP) != 0;
-    const std::int32_t own =
-        sensor ? std::int32_t{rate_t::FLAG_SENSOR_CLOCK_SET} : std::int32_t{rate_t::FLAG_CLOCK_STEP};
-    const bool own_set = (message.flags & own) != 0;
-    if (started_ && (now_ns <= last_ns_ || own_set)) {
-      const bool goes_on = !set && fitted_ns > last_fitted_ns_;
-      const std::int64_t step_ns = goes_on ? fitted_ns - last_fitted_ns_ : step_of(message);
-      if (step_ns <= 0) return -1.0;
-      const std::int64_t back_ns = last_ns_ + step_ns - now_ns;
-      shift_ns_ += back_ns;
-      now_ns += back_ns;
-    }
-    if (!std::exchange(started_, true)) start_ns_ = now_ns;
-    last_ns_ = now_ns;
-    last_fitted_ns_ = fitted_ns;
-    last_seq_ = message.seq;
-    return static_cast<double>(now_ns - start_ns_) / 1e9;
-  }
-
- private:
-  // 0: it has none.
-  [[nodiscard]] std::int64_t step_of(const rate_t& message) const {
-    const bool known = message.seq > last_seq_ && message.dt > 0.0 && message.dt < 1e9;
-    return known ? std::llround(message.dt * 1e9) : 0;
-  }
-  bool started_ = false;
-  std::int64_t start_ns_ = 0, last_ns_ = 0, last_fitted_ns_ = 0, last_seq_ = 0, shift_ns_ = 0;
-};
-
-using RateSink = std::function<void(const rate_t&, double)>;
+using RateSink = std::function<void(const MeasuredRate&, double)>;
 using OtherSink = std::function<void(const std::string&, std::span<const std::uint8_t>)>;
 
 // Hands each message of the channel to `sink` with its time in s from the first, later than the one before,
 // and those of all others to `others`, which may be empty. What is not later is left out, and said.
-void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSink& others) {
+void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& others) {
   const std::string &path = chosen.path, &wanted = chosen.rates;
   LcmEvents log(chosen.source.name());
   std::size_t number = 0, axes = 0, left_out = 0;
   SensorSeconds seconds;
-  InOrder order;
+  InOrder<MeasuredRate> order;
   LcmLoss way;
   bool two_publishers = false;
-  const auto hand_on = [&](const rate_t& message) {
+  const auto hand_on = [&](const MeasuredRate& message) {
     const double time_s = seconds.of(message);
     if (time_s < 0.0)
       ++left_out;
@@ -183,16 +159,22 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
     const auto refuse = [&](const std::string& why) {
       throw std::runtime_error(path + ": message " + std::to_string(number) + " on " + wanted + " " + why);
     };
-    rate_t message;
-    if (!decode_message(event->data.data(), event->data.size(), message))
-      refuse("is no ifog.rate_t of this version");
-    const bool first = axes == 0;
-    if (first) axes = message.raw.size();
-    if (axes == 0 || axes > 3) refuse("has " + std::to_string(axes) + " axes, expected 1 to 3");
-    if (message.raw.size() != axes) refuse("has another number of axes");
-    way.take(message);
-    two_publishers = two_publishers || way.two_publishers();
-    order.take(std::move(message), hand_on);
+    const auto take = [&](MeasuredRate&& message) {
+      if (axes == 0) axes = message.raw.size();
+      if (axes == 0 || axes > 3) refuse("has " + std::to_string(axes) + " axes, expected 1 to 3");
+      if (message.raw.size() != axes) refuse("has another number of axes");
+      way.take(message);
+      two_publishers = two_publishers || way.two_publishers();
+      order.take(std::move(message), hand_on);
+    };
+    if (chosen.peer) {
+      if (!chosen.peer->take(event->data, take))
+        refuse("is no " + std::string(chosen.peer->type().name) + " that can be");
+      continue;
+    }
+    MeasuredRate message;
+    if (!decode_message<rate_t>(event->data, message)) refuse("is no ifog.rate_t of this version");
+    take(std::move(message));
   }
   order.flush(hand_on);
   if (two_publishers)
@@ -202,6 +184,9 @@ void for_each_rate(const ChosenLog& chosen, const RateSink& sink, const OtherSin
         "mixed\n",
         path.c_str(), printable(wanted).c_str());
   if (axes == 0) throw std::runtime_error(path + ": has no message on channel " + wanted);
+  if (chosen.peer && way.lost() > 0)
+    warn("%s: %lld samples on %s are missing by their counts (the sensor, its driver or LCM lost them)\n",
+         path.c_str(), static_cast<long long>(way.lost()), printable(wanted).c_str());
   if (left_out > 0)
     warn(
         "%s: %zu messages on %s came twice or after one that follows, and are dropped (two recorders wrote "
@@ -224,7 +209,7 @@ struct FirstLook {
 
 // The first look at a log: which columns its channels make. Throws std::runtime_error with one line where
 // nobody said which of several channels with rates it is.
-FirstLook look_through(const ChosenLog& chosen) {
+FirstLook look_through(ChosenLog& chosen) {
   LcmChannelNames names(chosen.rates);
   std::set<std::string> with_rates;
   StatusBeside beside;
@@ -234,10 +219,14 @@ FirstLook look_through(const ChosenLog& chosen) {
     progress.at(log.at());
     if (event->channel == chosen.rates) {
       names.end_row();
-      beside.rate(event->timestamp_us);
+      if (chosen.peer)
+        chosen.peer->look_at(event->data);
+      else
+        beside.rate(event->timestamp_us);
       continue;
     }
-    if (!chosen.asked_for && carries_rates(event->channel)) with_rates.insert(event->channel);
+    const bool others_rates = chosen.peer ? peer_type(event->data) != nullptr : carries_rates(event->channel);
+    if (!chosen.asked_for && others_rates) with_rates.insert(event->channel);
     if (event->channel == chosen.rates + std::string(kStatusEnding)) beside.status();
     names.take(event->channel, event->data);
   }
@@ -251,18 +240,24 @@ FirstLook look_through(const ChosenLog& chosen) {
 // Rates and channels on their way to a sink, some thousand rows at a time.
 class LcmRows {
  public:
-  LcmRows(LcmChannelRows channels, RowSink& sink)
-      : channels_(std::move(channels)), names_(channels_.names()), sink_(sink), values_(names_.size()) {}
+  // beside: the names of MeasuredRate::beside.
+  LcmRows(LcmChannelRows channels, std::vector<std::string> beside, RowSink& sink)
+      : channels_(std::move(channels)),
+        names_(channels_.names()),
+        beside_(std::move(beside)),
+        sink_(sink),
+        values_(names_.size()) {}
 
   void take(const std::string& channel, std::span<const std::uint8_t> message) {
     channels_.take(channel, message);
   }
-  void add(const rate_t& message, double time_s) {
+  void add(const MeasuredRate& message, double time_s) {
     if (rows_.columns.empty()) begin(message.raw.size());
     rows_.time_s.push_back(time_s);
     channels_.end_row(values_);
     auto column = rows_.columns.begin();
     for (const double rate : message.raw) (column++)->push_back(rate);
+    for (const double value : message.beside) (column++)->push_back(value);
     for (const double value : values_) (column++)->push_back(value);
     if (rows_.size() == kRows) hand_on();
   }
@@ -276,6 +271,7 @@ class LcmRows {
     std::vector<std::string> names;
     for (const std::string& axis : axis_names(axes))
       names.push_back(axis.empty() ? "rate_radps" : "rate_" + axis + "_radps");
+    names.insert(names.end(), beside_.begin(), beside_.end());
     names.insert(names.end(), names_.begin(), names_.end());
     rows_.columns.resize(names.size());
     sink_.begin(names);
@@ -289,7 +285,7 @@ class LcmRows {
   }
 
   LcmChannelRows channels_;
-  std::vector<std::string> names_;
+  std::vector<std::string> names_, beside_;
   RowSink& sink_;
   std::vector<double> values_;
   RowBlock rows_;
@@ -312,15 +308,17 @@ bool recorded_messages(const InputFile& file) {
 }
 
 void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
-  const ChosenLog chosen(file, channel);
-  const FirstLook look = look_through(chosen);
+  ChosenLog chosen(file, channel);
+  FirstLook look = look_through(chosen);
   if (look.beside.missing())
     warn("%s: %s\n", chosen.path.c_str(), look.beside.complaint(chosen.rates).c_str());
-  LcmRows rows({chosen.rates, look.of_status}, sink);
+  const std::vector<std::string> beside = chosen.peer ? chosen.peer->beside() : std::vector<std::string>();
+  for (const std::string& name : beside) look.of_status.erase(name);
+  LcmRows rows({chosen.rates, look.of_status}, beside, sink);
   bool told = false;
   for_each_rate(
       chosen,
-      [&](const rate_t& message, double time_s) {
+      [&](const MeasuredRate& message, double time_s) {
         if (!std::exchange(told, true)) tell_start(chosen.path, message);
         rows.add(message, time_s);
       },
@@ -347,7 +345,11 @@ Table read_published(InputFile& file, const std::string& channel) {
            {message.raw[i], message.compensated[i], message.denoised[i], message.variance[i]})
         (column++)->values.push_back(value);
   };
-  const ChosenLog chosen(file, channel);
+  ChosenLog chosen(file, channel);
+  if (chosen.peer)
+    throw std::runtime_error(chosen.path + ": " + printable(chosen.rates) + " carries " +
+                             std::string(chosen.peer->type().name) +
+                             ", expected --channel with one that carries ifog.rate_t");
   if (!chosen.asked_for) (void)look_through(chosen);
   for_each_rate(chosen, take, {});
   return table;

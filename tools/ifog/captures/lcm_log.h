@@ -11,7 +11,7 @@
 
 namespace ifog::tools {
 
-// `channel` empty: the log's only IFOG_… channel with rates. Time is the sensor's own clock where it has one,
+// `channel` empty: the log's only IFOG_… channel with rates, or else its only one of a type of peer_types.h. Time is the sensor's own clock where it has one,
 // else the fitted time, counted from the first message. Environment channels are those of the sensor's status
 // and of ifog.channel_t, see lcm_channels.h. Throws std::runtime_error with one line: no log, no such channel
 // (those there are named), several where none was chosen, a message that is no rate_t, time that does not go

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/captures/peer_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace ifog::tools {
+namespace {
+
+constexpr std::size_t kMostSteps = 1'000'000;  // enough for a mean to 1e-6
+// A count that goes back by so many is of a sensor that was switched on again, and no datagram that is late.
+constexpr std::int64_t kRestart = 1000;
+
+}  // namespace
+
+std::vector<std::string> PeerReader::beside() const {
+  std::vector<std::string> out;
+  if (type_->specific_force) out = {"accel_x_mps2", "accel_y_mps2", "accel_z_mps2"};
+  if (type_->temperature) out.emplace_back("temperature_degC");
+  return out;
+}
+
+// Whole rollovers that nothing came of are in the time.
+std::int64_t PeerReader::unwrapped(const PeerSample& sample) const {
+  if (type_->count == PeerType::Count::none) return last_ ? last_->count + 1 : 0;
+  if (type_->modulus == 0 || !last_) return sample.count;
+  const std::int64_t modulus = type_->modulus, late = 16;  // messages that a network exchanges
+  std::int64_t ahead = ((sample.count - last_->count) % modulus + modulus) % modulus;
+  if (ahead > modulus - late) return last_->count + ahead - modulus;
+  if (period_s_ && *period_s_ > 0.0) {
+    const double periods = static_cast<double>(sample.utime - last_->utime) * 1e-6 / *period_s_;
+    const double rollovers =
+        std::round((periods - static_cast<double>(ahead)) / static_cast<double>(modulus));
+    if (rollovers > 0.0 && rollovers < 1e9) ahead += static_cast<std::int64_t>(rollovers) * modulus;
+  }
+  return last_->count + ahead;
+}
+
+bool PeerReader::again(const PeerSample& sample) {
+  if (type_->count != PeerType::Count::repeats || !last_) return false;
+  return sample.count <= last_->count && sample.count > last_->count - kRestart;
+}
+
+void PeerReader::look_at(std::span<const std::uint8_t> message) {
+  samples_.clear();
+  if (!type_->unpack(message, samples_)) return;
+  for (const PeerSample& sample : samples_) {
+    if (again(sample)) continue;
+    const std::int64_t count = unwrapped(sample);
+    if (last_ && count > last_->count) {
+      const double step_us = static_cast<double>(sample.utime) - static_cast<double>(last_->utime);
+      if (step_us > 0.0 && steps_us_.size() < kMostSteps)
+        steps_us_.push_back(step_us / static_cast<double>(count - last_->count));
+      advance_us_ += step_us;
+      device_advance_us_ +=
+          (static_cast<double>(sample.device_ns) - static_cast<double>(last_->device_ns)) * 1e-3;
+    }
+    last_ = {count, sample.utime, sample.device_ns};
+  }
+}
+
+// All the time over the periods in it, by the median step: stamps that jitter take nothing from the mean, and
+// a message that was lost is a period.
+double PeerReader::period_s() {
+  if (period_s_) return *period_s_;
+  period_s_ = 0.0;
+  if (steps_us_.empty()) return 0.0;
+  const auto middle = steps_us_.begin() + static_cast<std::ptrdiff_t>(steps_us_.size() / 2);
+  std::nth_element(steps_us_.begin(), middle, steps_us_.end());
+  const double median_us = *middle;
+  double sum_us = 0.0, periods = 0.0;
+  for (const double step_us : steps_us_) {
+    sum_us += step_us;
+    periods += std::round(step_us / median_us);
+  }
+  steps_us_ = {};
+  period_s_ = sum_us / periods * 1e-6;
+  return *period_s_;
+}
+
+bool PeerReader::take(std::span<const std::uint8_t> message,
+                      const std::function<void(MeasuredRate&&)>& sink) {
+  if (!std::exchange(second_look_, true)) {
+    (void)period_s();
+    last_.reset();
+  }
+  samples_.clear();
+  if (!type_->unpack(message, samples_)) return false;
+  constexpr double kSameClock = 0.01;  // part by which a sensor's clock may be off
+  const bool clock = std::abs(device_advance_us_ - advance_us_) < kSameClock * advance_us_;
+  for (const PeerSample& sample : samples_) {
+    if (again(sample)) continue;
+    const std::int64_t count = unwrapped(sample);
+    last_ = {count, sample.utime, sample.device_ns};
+    MeasuredRate out;
+    static_cast<rate_t&>(out) = rate_t();
+    out.utime = sample.utime;
+    out.seq = count;
+    out.sensor_time_ns = clock ? sample.device_ns : -1;
+    out.dt = 0.0;
+    out.flags = sample.flags;
+    out.merged = sample.merged;
+    out.axes = static_cast<std::int8_t>(type_->axes);
+    out.raw.assign(sample.value.begin(), sample.value.begin() + static_cast<std::ptrdiff_t>(type_->axes));
+    if (sample.kind == PeerSample::Kind::angle) out.raw[0] -= std::exchange(angle_, sample.value[0]);
+    if (sample.kind != PeerSample::Kind::rate)
+      for (double& value : out.raw) value = period_s() > 0.0 ? value / period_s() : PeerSample::kUnknown;
+    if (type_->specific_force)
+      out.beside.assign(sample.specific_force_mps2.begin(), sample.specific_force_mps2.end());
+    if (type_->temperature) out.beside.push_back(sample.temperature_degC);
+    sink(std::move(out));
+  }
+  return true;
+}
+
+}  // namespace ifog::tools
