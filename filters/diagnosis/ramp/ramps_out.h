@@ -20,7 +20,7 @@ struct WithoutRamps {
 // A counter that wraps is no environment: as a function of its value or slope it would take rotation away. So
 // it may explain the rate as a ramp's angle or not at all, and goes from the channels either way. Where none
 // does explain it, a ramp that was not logged is looked for: its phase would follow the angle turned
-// (rebuilt_ramp.h).
+// (rebuild_ramp() below).
 WithoutRamps take_out_ramps(const std::vector<Record>& records, double significance);
 
 // A feedback ramp that was not logged: its k found by the comb it leaves in the rate, its table fitted over
