@@ -10,10 +10,22 @@
 
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/diagnosis/cleaning/channel_faults.h"
-#include "filters/diagnosis/cleaning/even_stamps.h"
+#include "filters/diagnosis/record.h"
 #include "filters/diagnosis/record/fitted_part.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
+
+// Records whose time stamps scatter, by the even clock that their samples were taken by: on their stamps they
+// would fall on the same step of a grid twice and on the next one not at all.
+struct TimedRecords {
+  std::vector<Record> records;
+  std::vector<Samples> times;        // owned, for the records
+  std::vector<std::string> remarks;  // a sentence for each record whose stamps were not taken
+};
+
+// The dwells of a rate table, and steps that are uneven in themselves, stay as they are stamped.
+TimedRecords with_even_stamps(const std::vector<Record>& records);
 
 class PreparedChannels {
  public:

@@ -2,6 +2,7 @@
 // Records without what their closed loops' feedback ramps make of them, logged or rebuilt.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,19 @@ struct WithoutRamps {
 // A counter that wraps is no environment: as a function of its value or slope it would take rotation away. So
 // it may explain the rate as a ramp's angle or not at all, and goes from the channels either way. Where none
 // does explain it, a ramp that was not logged is looked for: its phase would follow the angle turned
-// (rebuilt_ramp.h).
+// (rebuild_ramp() below).
 WithoutRamps take_out_ramps(const std::vector<Record>& records, double significance);
+
+// A feedback ramp that was not logged: its k found by the comb it leaves in the rate, its table fitted over
+// the angle that the sensor has measured, its correction made by the code that runs online.
+struct RebuiltRamp {
+  std::optional<RampFit> fit;  // effect "rebuilt_ramp"
+  std::string remark;          // what keeps it from being found, where there is something to say
+};
+
+// Nothing is found, and a reason given if there may be one: where the harmonics would do as well at fixed
+// frequencies, where the table does not predict the parts held out of its fit, where by chance a comb would
+// do as well more often than `significance`.
+RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance);
 
 }  // namespace ifog

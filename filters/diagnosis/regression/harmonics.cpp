@@ -11,7 +11,7 @@
 
 #include "filters/diagnosis/record/words.h"
 #include "filters/diagnosis/regression/design.h"
-#include "filters/diagnosis/regression/noise_climb.h"
+#include "filters/diagnosis/regression/noise_fit.h"
 #include "filters/linear/least_squares.h"
 
 namespace ifog {

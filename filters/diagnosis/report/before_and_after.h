@@ -8,6 +8,7 @@
 
 #include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/record/fitted_part.h"
 #include "filters/diagnosis/record/known_angles.h"
 #include "filters/diagnosis/record/known_series.h"
 
@@ -40,5 +41,11 @@ std::string grown_in_words(const Diagnosis& diagnosis, double samples);
 // One sentence where the channels as they were logged, with their faults, leave more than the repaired ones
 // the effects were fitted to; empty where they do not. errors: `written` and `logged` are filled.
 std::string faults_in_words(const Diagnosis& diagnosis, const std::vector<EvenError>& errors);
+
+// Before and after on the part of the records that was kept out of the fit: the model's effects subtracted
+// causally, by the code the daemon runs.
+// Replaces before and after of the diagnosis, which was made of the fitted share of the records. The
+// compensator runs over the whole of each record, so that its lags are settled where the judged part begins.
+void judge(const std::vector<Record>& records, const TimeShare& fitted, Diagnosis& diagnosis);
 
 }  // namespace ifog

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "filters/diagnosis/regression/candidates.h"
 #include "filters/diagnosis/regression/uncertainty.h"
 #include "filters/diagnosis/residual/lines.h"
 #include "filters/diagnosis/search/search.h"
@@ -40,5 +41,8 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
 
 // The joint fit of what the search chose, put into `found`.
 JointFit settle(const BlockData& reconstructed, SearchResult& found);
+
+// Which capture would tell two effects apart that this one cannot.
+std::string capture_that_separates(const BlockData& data, const Candidate& one, const Candidate& other);
 
 }  // namespace ifog

@@ -8,6 +8,7 @@
 
 #include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/record/blocks.h"
 
 namespace ifog {
 
@@ -27,5 +28,11 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
 // Beside much that stays unexplained a channel that was logged may only run along with the cause; empty where
 // little is, or no effect was traced to a channel. captures: diagnosed together.
 std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t captures);
+
+// Columns that a diagnosis cannot use, so that nobody takes their silence for a finding.
+// One sentence naming the channels that are not in every record, have no value, or never change; empty when
+// all are of use. `ramps`: channels that an effect has been made of already, and that are in no block.
+std::string unused_channels(const std::vector<Record>& records, const BlockData& data,
+                            const std::vector<std::string>& ramps);
 
 }  // namespace ifog

@@ -8,7 +8,7 @@
 
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/noise_fit.h"
-#include "filters/diagnosis/search/effective_tries.h"
+#include "filters/diagnosis/search/scan.h"
 #include "filters/linear/projection.h"
 
 namespace ifog {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "filters/diagnosis/search/effective_tries.h"
+#include "filters/diagnosis/search/scan.h"
 
 namespace ifog {
 namespace {

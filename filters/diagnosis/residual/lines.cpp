@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/residual/lines.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <boost/math/tools/minima.hpp>
@@ -33,58 +32,34 @@ double noise_beside(std::span<const double> power, std::size_t k) {
   return median(window) / std::numbers::ln2;
 }
 
-// Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. Several
-// frequencies at once, so that the error is read once; each by a table of its first turns, which a carrier
-// turns on from one table's length to the next.
-constexpr int kAtOnce = 8;
-constexpr std::size_t kTable = 64;
-using Several = Eigen::Array<double, kAtOnce, 1>;
-using Sums = std::array<std::vector<Complex>, kAtOnce>;
-
-struct Waves {
-  Several re, im;
-  [[nodiscard]] Waves times(const Waves& other) const {
-    return {re * other.re - im * other.im, re * other.im + im * other.re};
-  }
-};
-
-// of: cycles a sample; after so many samples.
-Waves waves_at(const Several& of, double samples) {
-  Waves at;
-  for (int f = 0; f < kAtOnce; ++f) {
-    const double cycles = of[f] * samples;
-    const Complex wave = std::polar(1.0, -2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
-    at.re[f] = wave.real();
-    at.im[f] = wave.imag();
-  }
-  return at;
+Complex wave_at(double cycles) {
+  return std::polar(1.0, -2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
 }
 
-// of: cycles a sample.
-Sums demodulate(std::span<const double> error, double mean, const Several& of, std::size_t pieces) {
-  Sums sums;
-  for (std::vector<Complex>& each : sums) each.assign(pieces, Complex(0.0, 0.0));
-  std::array<Waves, kTable> table;
-  for (std::size_t k = 0; k < kTable; ++k) table[k] = waves_at(of, static_cast<double>(k));
-  const Waves on = waves_at(of, static_cast<double>(kTable));
+// Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. By a table of
+// the first turns, which a carrier turns on from one table's length to the next. of: cycles a sample.
+std::vector<Complex> demodulate(std::span<const double> error, double mean, double of, std::size_t pieces) {
+  constexpr std::size_t kTable = 64;
+  std::array<double, kTable> cosine{}, sine{};
+  for (std::size_t k = 0; k < kTable; ++k) {
+    const Complex wave = wave_at(of * static_cast<double>(k));
+    cosine[k] = wave.real();
+    sine[k] = wave.imag();
+  }
+  std::vector<Complex> sums(pieces);
   for (std::size_t p = 0; p < pieces; ++p) {
-    const std::size_t from = p * error.size() / pieces;
-    const std::size_t to = (p + 1) * error.size() / pieces;
+    const std::size_t from = p * error.size() / pieces, to = (p + 1) * error.size() / pieces;
     expect_reading(error.data() + from, (to - from) * sizeof(double));
-    Waves carrier = waves_at(of, static_cast<double>(from)), sum{Several::Zero(), Several::Zero()};
-    for (std::size_t begin = from; begin < to; begin += kTable, carrier = carrier.times(on)) {
+    for (std::size_t begin = from; begin < to; begin += kTable) {
       const std::span<const double> some = error.subspan(begin, std::min(kTable, to - begin));
-      Waves near{Several::Zero(), Several::Zero()};
+      double real = 0.0, imaginary = 0.0;
       for (std::size_t k = 0; k < some.size(); ++k) {
-        if (!std::isfinite(some[k])) continue;
-        near.re += (some[k] - mean) * table[k].re;
-        near.im += (some[k] - mean) * table[k].im;
+        const double value = std::isfinite(some[k]) ? some[k] - mean : 0.0;
+        real += value * cosine[k];
+        imaginary += value * sine[k];
       }
-      near = near.times(carrier);
-      sum.re += near.re;
-      sum.im += near.im;
+      sums[p] += Complex(real, imaginary) * wave_at(of * static_cast<double>(begin));
     }
-    for (int f = 0; f < kAtOnce; ++f) sums[static_cast<std::size_t>(f)][p] = {sum.re[f], sum.im[f]};
   }
   return sums;
 }
@@ -141,8 +116,7 @@ SpectralLine refine(const Search& in, std::size_t bin, const std::vector<Complex
     together += quarter;
   }
   line.coherence = separate > 0.0 ? std::norm(together) / (separate * separate) : 0.0;
-  const std::vector<Complex> whole =
-      demodulate(error, mean, Several::Constant(line.frequency_hz * period_s), 1).front();
+  const std::vector<Complex> whole = demodulate(error, mean, line.frequency_hz * period_s, 1);
   const Complex amplitude =
       2.0 / n * whole[0] * std::polar(1.0, -2.0 * std::numbers::pi * line.frequency_hz * start_s);
   line.cosine = amplitude.real();
@@ -163,19 +137,10 @@ const KnownPeriodogram& periodogram_of(const AskedSeries& error, KnownPeriodogra
   });
 }
 
-// At the frequency of peaks[i]; of those behind it some are looked at together with it.
-const std::vector<Complex>& pieces_of(const Search& in, const std::vector<std::size_t>& peaks, std::size_t i,
-                                      const KnownPeriodogram& known) {
-  if (const auto found = known.pieces.find(peaks[i]); found != known.pieces.end()) return found->second;
-  std::vector<std::size_t> bins;
-  for (std::size_t j = i; j < peaks.size() && bins.size() < kAtOnce; ++j)
-    if (!known.pieces.contains(peaks[j])) bins.push_back(peaks[j]);
-  Several of;
-  for (int f = 0; f < kAtOnce; ++f)
-    of[f] = in.cycles(bins[std::min(static_cast<std::size_t>(f), bins.size() - 1)]);
-  Sums sums = demodulate(in.error, in.mean, of, in.pieces());
-  for (std::size_t f = 0; f < bins.size(); ++f) known.pieces[bins[f]] = std::move(sums[f]);
-  return known.pieces[peaks[i]];
+const std::vector<Complex>& pieces_of(const Search& in, std::size_t peak, const KnownPeriodogram& known) {
+  const auto [at, added] = known.pieces.try_emplace(peak);
+  if (added) at->second = demodulate(in.error, in.mean, in.cycles(peak), in.pieces());
+  return at->second;
 }
 
 // peaks: strongest first.
@@ -218,7 +183,7 @@ std::vector<SpectralLine> find_lines(const AskedSeries& asked, double start_s, d
   for (std::size_t i = 0; i < apart.size() && lines.size() < most; ++i) {
     const std::size_t k = apart[i];
     SpectralLine line =
-        refine(in, k, pieces_of(in, apart, i, looked_at), std::max(floor[k], noise_beside(power, k)));
+        refine(in, k, pieces_of(in, k, looked_at), std::max(floor[k], noise_beside(power, k)));
     if (line.p_value > significance) continue;
     std::size_t first = k;
     std::size_t last = k;

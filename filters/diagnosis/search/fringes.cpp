@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "filters/diagnosis/checks/cross_validation.h"
-#include "filters/diagnosis/search/effective_tries.h"
+#include "filters/diagnosis/search/scan.h"
 #include "filters/effects/meaning.h"
 #include "filters/linear/projection.h"
 #include "filters/model_file/channel_names.h"

@@ -8,7 +8,6 @@
 
 #include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/regression/harmonics.h"
-#include "filters/diagnosis/search/effective_tries.h"
 #include "filters/diagnosis/search/fringes.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"

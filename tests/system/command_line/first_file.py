@@ -234,6 +234,8 @@ class Checks:
         path = self.file("flying.csv", ["time_s,rate_radps", *rows])
         said = ran("tune", path, "--state", "random-walk")
         assert said.returncode == 0 and "it was never at rest, or the unit is wrong" in said.stdout, said.stdout + said.stderr
+        found = ran("diagnose", path)
+        assert found.returncode == 0 and "it was never at rest, or the unit is wrong" in found.stdout + found.stderr, found
         quiet = ran("tune", self.file("resting.csv", ["time_s,rate_radps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x * RAD))]), "--state", "random-walk")
         assert "never at rest" not in quiet.stdout, quiet.stdout
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A feedback ramp that was not logged, found in the rate. The oracle is the formula that made the rate.
-#include "filters/diagnosis/ramp/rebuilt_ramp.h"
+#include "filters/diagnosis/ramp/ramps_out.h"
 
 #include <gtest/gtest.h>
 

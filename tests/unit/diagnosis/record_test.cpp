@@ -9,15 +9,10 @@
 #include <string>
 #include <type_traits>
 
-#include "filters/diagnosis/channels/unused_channels.h"
-#include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/cleaning/prepared_channels.h"
 #include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/record/blocks.h"
-#include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/figures.h"
-#include "filters/diagnosis/record/fitted_part.h"
-#include "filters/diagnosis/record/record_clock.h"
 
 namespace ifog {
 namespace {
@@ -130,116 +125,6 @@ TEST(Blocks, CentreEveryRecordOnItsOwn) {
   EXPECT_LT((values - expected).norm(), 1e-12);
 }
 
-TEST(EvenGrid, PutsSamplesWhereTheirTimeIs) {
-  const std::vector<double> time = {1.0, 2.02, 2.98, 6.0};
-  const std::vector<double> rate = {1.0, 2.0, 3.0, 4.0};
-  Record record;
-  record.time_s = time;
-  record.rate_radps = rate;
-  const Samples even = on_even_grid(record, 1.0, rate);
-  ASSERT_EQ(even.size(), 6U);
-  EXPECT_EQ(even[0], 1.0);
-  EXPECT_EQ(even[1], 2.0);
-  EXPECT_EQ(even[2], 3.0);
-  EXPECT_TRUE(std::isnan(even[3]));
-  EXPECT_TRUE(std::isnan(even[4]));
-  EXPECT_EQ(even[5], 4.0);
-  EXPECT_DOUBLE_EQ(variance_of(even), 1.25);  // of 1, 2, 3, 4
-  const std::vector<double> far = {1.0, 2.0, 3.0, 4000.0};
-  record.time_s = far;
-  EXPECT_THROW((void)on_even_grid(record, 1.0, rate), std::invalid_argument);
-}
-
-TEST(EvenGrid, WhatIsOnItsStepsIsNotCopied) {
-  Arrays arrays(1000);
-  Samples room;
-  const std::span<const double> even = even_samples(arrays.record(), 0.125, arrays.rate, room);
-  EXPECT_EQ(even.data(), arrays.rate.data());
-  EXPECT_TRUE(room.empty());
-  arrays.time[500] += 0.1;  // nearer to the next step, which then has two
-  const std::span<const double> moved = even_samples(arrays.record(), 0.125, arrays.rate, room);
-  EXPECT_EQ(moved.data(), room.data());
-  ASSERT_EQ(room.size(), 1000U);
-  EXPECT_EQ(room[499], 499.0);
-  EXPECT_TRUE(std::isnan(room[500]));
-  EXPECT_EQ(room[501], 501.0);
-}
-
-TEST(RecordClock, IsThatOfTheTimesItWasLookedAt) {
-  const Arrays arrays(1000);
-  Record record = arrays.record();
-  look_at_clock(record);
-  ASSERT_TRUE(record.clock);
-  EXPECT_EQ(clock_of(record).period_s, 0.125);
-  EXPECT_EQ(usual_step_of(record), 0.125);
-  std::vector<double> slower;
-  for (const double t : arrays.time) slower.push_back(2.0 * t);
-  record.time_s = slower;
-  EXPECT_EQ(clock_of(record).period_s, 0.25);
-  EXPECT_EQ(usual_step_of(record), 0.25);
-}
-
-TEST(EvenError, IsRateLessReferenceLessTheRamps) {
-  const std::vector<double> time = {0.0, 1.0, 2.0};
-  const std::vector<double> rate = {5.0, 6.0, 7.0};
-  const std::vector<double> reference = {1.0, 1.0, 2.0};
-  const std::vector<double> less = {4.5, 6.0, 6.5};
-  Record record;
-  record.time_s = time;
-  record.rate_radps = rate;
-  record.reference_radps = reference;
-  WithoutRamps without;
-  without.records = {record};
-  without.records[0].rate_radps = less;
-  without.ramps.resize(1);
-  without.ramps[0].held_out = {{0.25, 0.0, 0.75}};
-  const std::vector<EvenError> errors = even_errors({record}, without, 1.0);
-  ASSERT_EQ(errors.size(), 1U);
-  EXPECT_EQ(errors[0].before.values(), (std::vector<double>{4.0, 5.0, 5.0}));
-  EXPECT_EQ(errors[0].rest.values(), (std::vector<double>{3.5, 5.0, 4.5}));
-  EXPECT_EQ(errors[0].rest_held_out.values(), (std::vector<double>{3.75, 5.0, 4.25}));
-}
-
-TEST(EvenError, ARateThatNeverChangesIsRefused) {
-  Arrays arrays(50);
-  EXPECT_NO_THROW(refuse_constant({arrays.record()}));
-  arrays.rate.assign(50, 0.1);
-  EXPECT_THROW(refuse_constant({arrays.record()}), std::invalid_argument);
-}
-
-TEST(FittedPart, IsAShareOfTheTime) {
-  const Arrays arrays(101);  // 0 … 12.5 s
-  const Record record = arrays.record();
-  const SampleRange samples = samples_in(record, {0.25, 0.75});
-  EXPECT_EQ(samples.from, 25U);
-  EXPECT_EQ(samples.to, 75U);
-  const std::vector<Record> parts = fitted_parts({record}, {0.25, 0.75});
-  EXPECT_EQ(parts[0].time_s.front(), arrays.time[25]);
-  EXPECT_EQ(parts[0].channels[0].values.back(), arrays.temperature[74]);
-  EXPECT_EQ(samples_in(record, {0.5, 1.0}).to, 101U);
-  EXPECT_TRUE(TimeShare{}.whole());
-}
-
-TEST(CompensatedError, IsTheRateLessTheEffectLessTheReference) {
-  Arrays arrays(40);
-  const std::vector<double> reference(40, 2.0);
-  Record record = arrays.record();
-  record.reference_radps = reference;
-  Effect effect;
-  effect.form = "linear";
-  effect.channel = "temperature_degC";
-  effect.reference = 25.0;
-  effect.parameters = {{"coefficient", 3.0, 0.0, "rad/s/K"}};
-  Model model;
-  model.effects = {effect};
-  const Samples left = compensated_error(record, model);
-  for (std::size_t i = 0; i < 40; ++i)
-    EXPECT_NEAR(left[i], arrays.rate[i] - 3.0 * (arrays.temperature[i] - 25.0) - 2.0, 1e-9);
-  // Of a channel the record does not have nothing is known, and nothing is subtracted.
-  model.effects[0].channel = "supply_V";
-  EXPECT_NEAR(compensated_error(record, model)[39], arrays.rate[39] - 2.0, 1e-12);
-}
-
 TEST(Figures, OfSeriesWithAnAnswerByHand) {
   std::vector<double> error(2000);
   for (std::size_t i = 0; i < error.size(); ++i) error[i] = i % 2 ? 1.0 : -1.0;
@@ -268,26 +153,6 @@ TEST(Figures, AGapDoesNotLowerTheAllanDeviation) {
   for (std::size_t i = 0; i < error.size(); ++i) error[i] = i / 1000 % 3 == 1 ? kNan : normal(random);
   const auto figures = error_figures(error, 0.1);
   EXPECT_NEAR(figures.at("adev_1s_radps"), std::sqrt(0.1), 0.02 * std::sqrt(0.1));
-}
-
-TEST(UnusedChannels, SaysWhichAndWhy) {
-  const Arrays arrays(200);
-  const std::vector<double> missing(200, kNan);
-  const std::vector<double> constant(200, 12.0);
-  Record one = arrays.record();
-  one.channels.push_back({"supply_V", constant});
-  one.channels.push_back({"magnetic_x_uT", missing});
-  Record other = one;
-  one.channels.push_back({"accel_x_mps2", arrays.temperature});
-  const BlockData data = cut_to_blocks({one, other});
-  EXPECT_EQ(unused_channels({one, other}, data, {}),
-            "channels that say nothing here and were left out: accel_x_mps2 (not in every capture); "
-            "magnetic_x_uT (without a value); supply_V (never changing)");
-  // A ramp is taken out of the records before they are cut, and is of use.
-  EXPECT_EQ(unused_channels({one, other}, data, {"accel_x_mps2"}),
-            "channels that say nothing here and were left out: "
-            "magnetic_x_uT (without a value); supply_V (never changing)");
-  EXPECT_EQ(unused_channels({arrays.record()}, cut_to_blocks({arrays.record()}), {}), "");
 }
 
 static_assert(!std::is_copy_constructible_v<PreparedRecords> &&

@@ -8,7 +8,6 @@
 #include <functional>
 #include <random>
 
-#include "filters/diagnosis/cleaning/fractional_shift.h"
 #include "filters/diagnosis/diagnose.h"
 
 namespace ifog {

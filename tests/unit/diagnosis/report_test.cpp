@@ -8,11 +8,7 @@
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/report/before_and_after.h"
 #include "filters/diagnosis/report/findings.h"
-#include "filters/diagnosis/report/held_out_part.h"
 #include "filters/diagnosis/report/prediction.h"
-#include "filters/diagnosis/report/sample_effects.h"
-#include "filters/diagnosis/report/separate.h"
-#include "filters/diagnosis/report/series.h"
 #include "filters/diagnosis/report/written_model.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 
@@ -26,24 +22,6 @@ Effect linear_in_temperature(double coefficient) {
   effect.reference = 25.0;
   effect.parameters = {{"coefficient", coefficient, 0.1, "rad/s/K"}};
   return effect;
-}
-
-TEST(Separate, NamesTheCaptureThatWouldTell) {
-  BlockData data = white_with_temperature(300, 1);
-  data.channels.push_back(data.channels[0]);
-  data.channels[1].name = "supply_V";
-  Candidate supply = candidate_of(Form::kLinear);
-  supply.channel = 1;
-  Candidate ramp;
-  ramp.form = Form::kRateRamp;
-  EXPECT_EQ(
-      capture_that_separates(data, candidate_of(Form::kLinear), ramp),
-      "a capture in which temperature_degC goes up and comes down again, so that it does not run with the "
-      "time");
-  EXPECT_EQ(capture_that_separates(data, candidate_of(Form::kLinear), supply),
-            "a capture in which temperature_degC changes while supply_V stays");
-  EXPECT_EQ(capture_that_separates(data, candidate_of(Form::kLinear), candidate_of(Form::kQuadratic)),
-            "a capture over a wider range of temperature_degC, on both sides of 25 degC");
 }
 
 // A correction that is known exactly: what is judged is the part that was not fitted, before and after.
@@ -151,37 +129,6 @@ TEST(WrittenModel, TheEffectThatHarmsIsTheOneWithoutWhichLeastIsLeft) {
   EXPECT_EQ(most_harmful_effect({record}, diagnosis, 1, 1.0, errors), std::nullopt);
 }
 
-TEST(SampleEffects, AreRampsThenLinesWithTheirShareOfTheVariance) {
-  std::vector<EvenError> errors(1);
-  for (int i = 0; i < 1000; ++i) errors[0].before.own().push_back(i % 2 ? 1.0 : -1.0);
-  RampFit ramp;
-  ramp.effect.form = "lookup";
-  ramp.ratio = 50.0;
-  ramp.correction = {std::vector<double>(1000)};
-  for (std::size_t i = 0; i < 1000; ++i) ramp.correction[0][i] = i % 2 ? 0.5 : -0.5;
-  SpectralLine line;
-  line.frequency_hz = 4.0;
-  line.cosine = 0.6;
-  line.ratio = 40.0;
-  FoundZone zone;
-  zone.zone.half_width = 0.2;
-  zone.zone.coefficient = -1.0;
-  zone.channel = "reference_rate_radps";
-  zone.rates = {std::vector<double>(1000)};
-  for (std::size_t i = 0; i < 1000; ++i) zone.rates[0][i] = i % 4 == 0 ? 0.1 : i % 4 == 1 ? -0.1 : 0.5;
-  const std::vector<FoundEffect> found = sample_effects({ramp}, zone, {{0, line}}, errors, "z");
-  ASSERT_EQ(found.size(), 3U);
-  EXPECT_EQ(found[0].effect.form, "lookup");
-  EXPECT_NEAR(found[0].variance_explained, 0.25, 1e-12);
-  EXPECT_EQ(found[1].effect.form, "dead_zone");
-  EXPECT_NEAR(found[1].variance_explained, 0.005, 1e-12);  // half of the samples, 0.1^2
-  EXPECT_EQ(found[1].effect.parameters[0].unit, "rad/s/(rad/s)");
-  EXPECT_EQ(found[2].effect.form, "line");
-  EXPECT_NEAR(found[2].variance_explained, 0.18, 1e-12);  // a^2 / 2
-  EXPECT_EQ(found[2].likelihood_ratio, 80.0);
-  for (const FoundEffect& each : found) EXPECT_EQ(each.effect.axis, "z");
-}
-
 // Two effects: the covariance of the joint fit, a time constant's by its logarithm; a line stands alone.
 TEST(Findings, CovarianceIsThatOfTheParametersAsTheyAreWritten) {
   FoundEffect lagged;
@@ -208,41 +155,6 @@ TEST(Findings, CovarianceIsThatOfTheParametersAsTheyAreWritten) {
   const std::vector<ChannelRange> ranges = ranges_of(data, {lagged, line});
   ASSERT_EQ(ranges.size(), 1U);
   EXPECT_EQ(ranges[0].low, data.channels[0].low);
-}
-
-TEST(Series, HasAPointABlockAndTheDeviationsOfTheError) {
-  const BlockData data = white_with_temperature(400, 5);
-  EvenError error;
-  for (int i = 0; i < 400; ++i) error.before.own().push_back(i % 2 ? 1.0 : -1.0);
-  error.written = std::vector<double>(400, 0.5);
-  KnownPeriodograms known;
-  KnownAngles angles;
-  const DiagnosisSeries series = series_of(data, {error}, {}, {}, {}, known, angles);
-  ASSERT_EQ(series.time_s.size(), 400U);
-  EXPECT_EQ(series.before_radps[7], 1.0);
-  EXPECT_EQ(series.after_radps[7], 0.5);
-  EXPECT_EQ(series.tau_s[0], 1.0);
-  EXPECT_NEAR(series.before_adev_radps[0], std::sqrt(2.0), 1e-9);
-  EXPECT_NEAR(series.after_adev_radps[0], 0.0, 1e-12);
-}
-
-// Captures whose clocks count from 1970 or from their own start: one behind the other, in the time of the
-// first.
-TEST(Series, RecordsFollowEachOtherWhateverTheirClocksCountFrom) {
-  for (const double start : {0.0, 1.7e9, -2e6}) {
-    BlockData data = white_with_temperature(400, 5);
-    data.grid.records = {{0, 250}, {250, 400}};
-    for (std::size_t b = 0; b < 400; ++b)
-      data.grid.time_s[b] = (b < 250 ? start : 3.0 * start - 50000.0) + static_cast<double>(b) + 0.5;
-    EvenError first, second;
-    first.before = first.written = std::vector<double>(250, 1.0);
-    second.before = second.written = std::vector<double>(150, 1.0);
-    KnownPeriodograms known;
-    KnownAngles angles;
-    const DiagnosisSeries series = series_of(data, {first, second}, {}, {}, {}, known, angles);
-    ASSERT_EQ(series.time_s.size(), 400U);
-    for (std::size_t b = 0; b < 400; ++b) EXPECT_EQ(series.time_s[b], start + static_cast<double>(b) + 0.5);
-  }
 }
 
 // A constant that is off by sigma: after the alignment nothing of it is left; a slope that goes on is.

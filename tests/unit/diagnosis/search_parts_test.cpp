@@ -7,8 +7,6 @@
 #include <random>
 
 #include "filters/diagnosis/channels/reconstruct.h"
-#include "filters/diagnosis/search/effective_tries.h"
-#include "filters/diagnosis/search/search.h"
 
 namespace ifog {
 namespace {
@@ -17,15 +15,6 @@ double rms_difference(const std::vector<double>& a, const std::vector<double>& b
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);
   return std::sqrt(sum / static_cast<double>(a.size()));
-}
-
-BlockGrid even_grid(std::size_t n) {
-  BlockGrid grid;
-  grid.block_s = grid.fine_s = grid.sample_s = 1.0;
-  grid.records = {{0, n}};
-  grid.valid.assign(n, 1);
-  for (std::size_t i = 0; i < n; ++i) grid.time_s.push_back(static_cast<double>(i));
-  return grid;
 }
 
 TEST(Reconstruct, ATemperatureReadInWholeDegreesIsKnownToATenth) {
@@ -103,19 +92,6 @@ TEST(Reconstruct, ReadingNoiseAloneIsStandingStill) {
     moving += stands_still(read) ? 0 : 1;
   }
   EXPECT_EQ(moving, 0);
-}
-
-// In white noise a step a block later is nearly the same step, in a walk it is another.
-TEST(Tries, OfStepsDependOnTheNoise) {
-  const BlockGrid grid = even_grid(2000);
-  EXPECT_LT(independent_steps(grid, {}, 20.0), 300.0);
-  EXPECT_GT(independent_steps(grid, {1e3, 0.0, 0.0, 0.0}, 20.0), 1900.0);
-}
-
-TEST(Tries, TailsAreTheTablesOfChiSquare) {
-  EXPECT_NEAR(tail(3.841459, 1), 0.05, 1e-6);
-  EXPECT_NEAR(tail(10.827566, 1), 0.001, 1e-8);
-  EXPECT_NEAR(tail(5.991465, 2), 0.05, 1e-6);
 }
 
 }  // namespace
