@@ -54,7 +54,7 @@ bool kvh1750(Bytes bytes, std::vector<PeerSample>& out) {
   if (!decode_message(bytes, message) || message.sequence < 0) return false;
   PeerSample sample;
   sample.utime = message.utime;
-  sample.count = message.sequence;
+  sample.count = static_cast<std::uint8_t>(message.sequence);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto status = static_cast<unsigned>(static_cast<std::uint8_t>(message.status));
     if ((status >> i & 1U) != 0) sample.value[i] = message.angular[i];
