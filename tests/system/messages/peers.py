@@ -278,6 +278,11 @@ def foreign(build, modules):
     write_log("two.lcm", lines + imus)
     code, said = ran(build, "convert", "two.lcm", "two.csv")
     check(code == 1 and "expected --channel with one of IMU, KVH" in said, "two channels must be chosen from: " + said.strip())
+    wrong = modules["bot_core"].ins_t()
+    for wrong.utime, wrong.device_time, good in ((2**63 - 1, 0, False), (-2**63, 0, False), (EPOCH_us, -2**63, True)):
+        write_log("time.lcm", [("INS", EPOCH_us, wrong.encode())])
+        code, said = ran(build, "convert", "time.lcm", "time.csv")
+        check((code == 0) if good else "is no bot_core.ins_t that can be" in said, f"a time of {wrong.utime} µs: " + said.strip())
     again = []
     for row in range(800):  # the sensor is switched on again at the 300th
         batch, count = modules["bot_core"].kvh_raw_imu_batch_t(), row if row < 300 else row - 300

@@ -13,10 +13,10 @@ constexpr std::size_t kMostSteps = 1'000'000;  // enough for a mean to 1e-6
 // A count that goes back by so many is of a sensor that was switched on again, and no packet of a batch that
 // is late.
 constexpr std::int64_t kRestart = 64;
-// Numbers from outside, within what their differences have room for, as ns, too.
+// What differences of numbers from outside have room for, as ns, too.
 constexpr std::int64_t kMostNumber = std::numeric_limits<std::int64_t>::max() / 2;
 
-std::int64_t held(std::int64_t number, std::int64_t most) { return std::clamp(number, -most, most); }
+bool can_be(std::int64_t number, std::int64_t most) { return number < most && number > -most; }
 
 }  // namespace
 
@@ -51,12 +51,10 @@ bool PeerReader::again(const PeerSample& sample) {
 bool PeerReader::unpack(std::span<const std::uint8_t> message) {
   samples_.clear();
   if (!type_->unpack(message, samples_)) return false;
-  for (PeerSample& sample : samples_) {
-    sample.utime = held(sample.utime, kMostNumber / 1000);
-    sample.count = held(sample.count, kMostNumber);
-    sample.device_ns = held(sample.device_ns, kMostNumber);
-  }
-  return true;
+  return std::all_of(samples_.begin(), samples_.end(), [](const PeerSample& sample) {
+    return can_be(sample.utime, kMostNumber / 1000) && can_be(sample.count, kMostNumber) &&
+           can_be(sample.device_ns, kMostNumber);
+  });
 }
 
 void PeerReader::look_at(std::span<const std::uint8_t> message) {
