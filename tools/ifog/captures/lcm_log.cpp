@@ -151,7 +151,6 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   SensorSeconds seconds;
   InOrder<MeasuredRate> order;
   LcmLoss way;
-  bool two_publishers = false;
   const auto hand_on = [&](const MeasuredRate& message) {
     const double time_s = seconds.of(message);
     if (time_s < 0.0)
@@ -175,7 +174,6 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
       if (axes == 0 || axes > 3) refuse("has " + std::to_string(axes) + " axes, expected 1 to 3");
       if (message.raw.size() != axes) refuse("has another number of axes");
       way.take(message);
-      two_publishers = two_publishers || way.two_publishers();
       order.take(std::move(message), hand_on);
     };
     if (chosen.peer) {
@@ -188,7 +186,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
     take(std::move(message));
   }
   order.flush(hand_on);
-  if (two_publishers)
+  if (way.had_two_publishers())
     warn(
         "%s: two publishers sent on %s (two daemons, or a log that was played beside one): their messages "
         "are "
