@@ -3,15 +3,15 @@
 
 #include <algorithm>
 #include <bot_core/ins_t.hpp>
+#include <bot_core/kvh_raw_imu_batch_t.hpp>
+#include <cmath>
 #include <cstddef>
 #include <ifog/imu_t.hpp>
 #include <ifog/inertial_t.hpp>
 #include <limits>
 #include <microstrain/ins_t.hpp>
 
-#include "daemon/publish/kvh_batch_encoder.h"
 #include "daemon/publish/message_flags.h"
-#include "daemon/publish/whole_sample.h"
 
 namespace ifog {
 namespace {
@@ -78,6 +78,26 @@ class IncrementEncoder final : public InertialEncoder {
   bool waits_ = false;  // message_ holds what was not sent
 };
 
+// Rates and specific force of a sample that has all of them, for messages that have no place for a flag.
+struct WholeSample {
+  Axes rate_radps{}, specific_force_mps2{};  // means over the sample
+};
+
+// False: one of them is not known. Specific force that comes less often than rates is that of the last frame
+// that had it.
+bool whole_sample(const Increment& in, const ChainOutput& out, const SensorFacts& facts,
+                  WholeSample& sample) noexcept {
+  for (std::size_t i = 0; i < kMaxAxes; ++i) {
+    if (!(in.covered_s[i] > 0.0) || facts.acceleration_channel[i] < 0) return false;
+    sample.rate_radps[i] = out.delta_theta_rad[i] / in.covered_s[i];
+    sample.specific_force_mps2[i] = in.moved_s[i] > 0.0
+                                        ? in.delta_v_mps[i] / in.moved_s[i]
+                                        : in.channel[static_cast<std::size_t>(facts.acceleration_channel[i])];
+    if (!std::isfinite(sample.rate_radps[i]) || !std::isfinite(sample.specific_force_mps2[i])) return false;
+  }
+  return true;
+}
+
 // bot_core.ins_t and microstrain.ins_t. What a gyro does not know stays 0, as with their own publishers.
 template <typename Message>
 class InsEncoder final : public InertialEncoder {
@@ -102,6 +122,51 @@ class InsEncoder final : public InertialEncoder {
   Message message_;
   SensorFacts facts_;
   Buffer<Message> buffer_;
+};
+
+// bot_core.kvh_raw_imu_batch_t, one a sample: a packet is in fifteen datagrams, and lost where all of them are.
+class KvhBatchEncoder final : public InertialEncoder {
+ public:
+  explicit KvhBatchEncoder(const SensorFacts& facts) : facts_(facts), message_(full()), buffer_(message_) {
+    message_.raw_imu.clear();  // keeps its memory
+  }
+
+  // Samples that were merged become as many packets again, of the same angle each: a reader divides by the
+  // period of one. More than a batch holds share its packets, so that no angle is lost.
+  std::span<const std::uint8_t> encode(const Increment& in, const ChainOutput& out) noexcept override {
+    WholeSample sample;
+    if (!whole_sample(in, out, facts_, sample)) return {};
+    const std::size_t fresh = std::min<std::size_t>(std::max<std::uint32_t>(in.samples, 1), kPackets);
+    auto& packets = message_.raw_imu;
+    packets.resize(std::min(packets.size() + fresh, kPackets));
+    std::move_backward(packets.begin(), packets.end() - static_cast<std::ptrdiff_t>(fresh), packets.end());
+    const double covered_s = *std::max_element(in.covered_s.begin(), in.covered_s.end());
+    const double step_us = covered_s * 1e6 / static_cast<double>(fresh);
+    message_.utime = in.utime_ns / 1000;
+    for (std::size_t age = 0; age < fresh; ++age) {
+      bot_core::kvh_raw_imu_t& packet = packets[age];
+      packet.utime = message_.utime - std::llround(step_us * static_cast<double>(age));
+      packet.packet_count = static_cast<std::int64_t>(in.sequence) - static_cast<std::int64_t>(age);
+      for (std::size_t i = 0; i < kMaxAxes; ++i) {
+        packet.delta_rotation[i] = out.delta_theta_rad[i] / static_cast<double>(fresh);
+        packet.linear_acceleration[i] = sample.specific_force_mps2[i];
+      }
+    }
+    message_.num_packets = static_cast<std::int32_t>(packets.size());
+    return buffer_.encode(message_);
+  }
+
+ private:
+  static constexpr std::size_t kPackets = 15;  // as the Atlas robot's driver sends
+  static bot_core::kvh_raw_imu_batch_t full() {
+    bot_core::kvh_raw_imu_batch_t out;
+    out.num_packets = static_cast<std::int32_t>(kPackets);
+    out.raw_imu.resize(kPackets);
+    return out;
+  }
+  SensorFacts facts_;
+  bot_core::kvh_raw_imu_batch_t message_;
+  Buffer<bot_core::kvh_raw_imu_batch_t> buffer_;
 };
 
 }  // namespace

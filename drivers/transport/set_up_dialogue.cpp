@@ -39,7 +39,7 @@ std::string SetUpDialogue::complaint(std::string_view line) {
   const bool known = line.size() > 1 && (line.front() == '=' || line.front() == '?');
   if (printable && line.size() <= kMostCharacters && (told || (known && arrow == std::string_view::npos)))
     return "";
-  return R"(expected "=COMMAND", "?QUERY" or "TEXT -> ANSWER" of at most 1000 characters of ASCII)";
+  return R"(expected "=COMMAND", "?QUERY" or "WORDS -> ANSWER" of at most 1000 characters of ASCII)";
 }
 
 bool SetUpDialogue::take(std::span<const std::uint8_t> bytes) {

@@ -16,7 +16,7 @@ namespace ifog {
 
 class SetUpDialogue {
  public:
-  // A line is "=COMMAND", "?QUERY" whatever its answer, or "TEXT -> ANSWER".
+  // A line is "=COMMAND", "?QUERY" whatever its answer, or "WORDS -> ANSWER".
   explicit SetUpDialogue(const std::vector<std::string>& lines);
   // What is wrong with such a line, "expected …"; "": nothing.
   static std::string complaint(std::string_view line);

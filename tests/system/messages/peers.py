@@ -278,6 +278,23 @@ def foreign(build, modules):
     write_log("two.lcm", lines + imus)
     code, said = ran(build, "convert", "two.lcm", "two.csv")
     check(code == 1 and "expected --channel with one of IMU, KVH" in said, "two channels must be chosen from: " + said.strip())
+    wrong = modules["bot_core"].ins_t()
+    for wrong.utime, wrong.device_time, good in ((2**63 - 1, 0, False), (-2**63, 0, False), (EPOCH_us, -2**63, True)):
+        write_log("time.lcm", [("INS", EPOCH_us, wrong.encode())])
+        code, said = ran(build, "convert", "time.lcm", "time.csv")
+        check((code == 0) if good else "is no bot_core.ins_t that can be" in said, f"a time of {wrong.utime} µs: " + said.strip())
+    again = []
+    for row in range(800):  # the sensor is switched on again at the 300th
+        batch, count = modules["bot_core"].kvh_raw_imu_batch_t(), row if row < 300 else row - 300
+        for age in range(min(15, count + 1)):
+            packet = modules["bot_core"].kvh_raw_imu_t()
+            packet.utime, packet.packet_count = EPOCH_us + (row - age) * 2000, count - age
+            packet.delta_rotation, packet.linear_acceleration = [rate / RATE_HZ for rate in rates(row - age)], forces(row - age)
+            batch.raw_imu.append(packet)
+        batch.utime, batch.num_packets = EPOCH_us + row * 2000, len(batch.raw_imu)
+        again.append(("BATCH", batch.utime, batch.encode()))
+    write_log("again.lcm", again)
+    judge_capture("a sensor that was switched on again", capture(build, "again.lcm"), 800, COLUMNS, 1e-9)
     batch = modules["bot_core"].kvh_raw_imu_batch_t().encode()
     for name, data in [("senlcm.IMU_t", imus[0][2][:-8])] + [("bot_core.kvh_raw_imu_batch_t", batch[:16] + struct.pack(">i", n)) for n in (-1, 1, 2**31 - 1)]:
         write_log("cut.lcm", [("IMU", EPOCH_us, data)])

@@ -166,7 +166,8 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
       {"[[sensor]]\nname = \"b\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"serial\"\ndevice = "
        "\"/dev/ttyS0\"\n"
        "set_up = [\"=CONFIG,1\", \"DR\"]\n",
-       "f.toml:14: sensor.transport.set_up = ['DR']: expected \"=COMMAND\", \"?QUERY\" or \"TEXT -> ANSWER\" "
+       "f.toml:14: sensor.transport.set_up = ['DR']: expected \"=COMMAND\", \"?QUERY\" or \"WORDS -> "
+       "ANSWER\" "
        "of at most "
        "1000 characters of ASCII"},
       {"[[sensor.publish]]\nchannel = \"A\"\n",

@@ -131,6 +131,17 @@ std::vector<std::string> axis_names(std::size_t axes) {
 using RateSink = std::function<void(const MeasuredRate&, double)>;
 using OtherSink = std::function<void(const std::string&, std::span<const std::uint8_t>)>;
 
+// What of a log that was read to its end is in no message.
+void tell_damage(const std::string& path, const LcmEvents& log) {
+  if (log.places() > 0)
+    warn(
+        "%s: %zu bytes in %zu place(s) are no messages and are dropped, the first from byte %zu on (is the "
+        "file damaged?)\n",
+        path.c_str(), log.damaged(), log.places(), log.first_place());
+  if (const std::size_t left = log.size() - log.at(); left > 0)
+    warn("%s: its last %zu bytes are no whole message (is the file cut off?)\n", path.c_str(), left);
+}
+
 // Hands each message of the channel to `sink` with its time in s from the first, later than the one before,
 // and those of all others to `others`, which may be empty. What is not later is left out, and said.
 void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& others) {
@@ -140,7 +151,6 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   SensorSeconds seconds;
   InOrder<MeasuredRate> order;
   LcmLoss way;
-  bool two_publishers = false;
   const auto hand_on = [&](const MeasuredRate& message) {
     const double time_s = seconds.of(message);
     if (time_s < 0.0)
@@ -164,7 +174,6 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
       if (axes == 0 || axes > 3) refuse("has " + std::to_string(axes) + " axes, expected 1 to 3");
       if (message.raw.size() != axes) refuse("has another number of axes");
       way.take(message);
-      two_publishers = two_publishers || way.two_publishers();
       order.take(std::move(message), hand_on);
     };
     if (chosen.peer) {
@@ -177,7 +186,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
     take(std::move(message));
   }
   order.flush(hand_on);
-  if (two_publishers)
+  if (way.had_two_publishers())
     warn(
         "%s: two publishers sent on %s (two daemons, or a log that was played beside one): their messages "
         "are "
@@ -193,13 +202,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
         "at "
         "once, or a clock was set back)\n",
         path.c_str(), left_out, printable(wanted).c_str());
-  if (log.places() > 0)
-    warn(
-        "%s: %zu bytes in %zu place(s) are no messages and are dropped, the first from byte %zu on (is the "
-        "file damaged?)\n",
-        path.c_str(), log.damaged(), log.places(), log.first_place());
-  if (const std::size_t left = log.size() - log.at(); left > 0)
-    warn("%s: its last %zu bytes are no whole message (is the file cut off?)\n", path.c_str(), left);
+  tell_damage(path, log);
 }
 
 struct FirstLook {

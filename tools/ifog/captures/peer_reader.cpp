@@ -3,14 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace ifog::tools {
 namespace {
 
 constexpr std::size_t kMostSteps = 1'000'000;  // enough for a mean to 1e-6
-// A count that goes back by so many is of a sensor that was switched on again, and no datagram that is late.
-constexpr std::int64_t kRestart = 1000;
+// A count that goes back by so many is of a sensor that was switched on again, and no packet of a batch that
+// is late.
+constexpr std::int64_t kRestart = 64;
+// What differences of numbers from outside have room for, as ns, too.
+constexpr std::int64_t kMostNumber = std::numeric_limits<std::int64_t>::max() / 2;
+
+bool can_be(std::int64_t number, std::int64_t most) { return number < most && number > -most; }
 
 }  // namespace
 
@@ -42,9 +48,17 @@ bool PeerReader::again(const PeerSample& sample) {
   return sample.count <= last_->count && sample.count > last_->count - kRestart;
 }
 
-void PeerReader::look_at(std::span<const std::uint8_t> message) {
+bool PeerReader::unpack(std::span<const std::uint8_t> message) {
   samples_.clear();
-  if (!type_->unpack(message, samples_)) return;
+  if (!type_->unpack(message, samples_)) return false;
+  return std::all_of(samples_.begin(), samples_.end(), [](const PeerSample& sample) {
+    return can_be(sample.utime, kMostNumber / 1000) && can_be(sample.count, kMostNumber) &&
+           can_be(sample.device_ns, kMostNumber);
+  });
+}
+
+void PeerReader::look_at(std::span<const std::uint8_t> message) {
+  if (!unpack(message)) return;
   for (const PeerSample& sample : samples_) {
     if (again(sample)) continue;
     const std::int64_t count = unwrapped(sample);
@@ -85,8 +99,7 @@ bool PeerReader::take(std::span<const std::uint8_t> message,
     (void)period_s();
     last_.reset();
   }
-  samples_.clear();
-  if (!type_->unpack(message, samples_)) return false;
+  if (!unpack(message)) return false;
   constexpr double kSameClock = 0.01;  // part by which a sensor's clock may be off
   const bool clock = std::abs(device_advance_us_ - advance_us_) < kSameClock * advance_us_;
   for (const PeerSample& sample : samples_) {

@@ -38,6 +38,7 @@ class PeerReader {
   struct Place {
     std::int64_t count, utime, device_ns;
   };
+  bool unpack(std::span<const std::uint8_t> message);  // into samples_
   [[nodiscard]] std::int64_t unwrapped(const PeerSample& sample) const;
   bool again(const PeerSample& sample);
   [[nodiscard]] double period_s();

@@ -14,7 +14,9 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr double kStandardGravity = 9.80665;  // m/s² per g
-constexpr std::int64_t kKvhModulus = 128;     // KVH 1750 technical manual: the sequence number is 0 to 127
+// Some publishers leave the device's clock as it happens to be: what is beyond is none.
+constexpr std::int64_t kMostTime_us = 4'000'000'000'000'000;
+constexpr std::int64_t kKvhModulus = 128;  // KVH 1750 technical manual: the sequence number is 0 to 127
 
 template <typename Message>
 bool ins(Bytes bytes, std::vector<PeerSample>& out) {
@@ -24,10 +26,11 @@ bool ins(Bytes bytes, std::vector<PeerSample>& out) {
   sample.utime = message.utime;
   std::copy_n(message.gyro, 3, sample.value.begin());
   if constexpr (std::is_same_v<Message, microstrain::ins_t>) {
-    constexpr double kMost_s = 9e9;  // in 64 bits of ns
-    if (std::abs(message.device_time) < kMost_s) sample.device_ns = std::llround(message.device_time * 1e9);
-  } else if (std::abs(message.device_time) < std::numeric_limits<std::int64_t>::max() / 1000) {
-    sample.device_ns = message.device_time * 1000;
+    if (std::abs(message.device_time) < 1e-6 * static_cast<double>(kMostTime_us))
+      sample.device_ns = std::llround(message.device_time * 1e9);
+  } else if (const std::int64_t device_us = message.device_time;
+             device_us < kMostTime_us && device_us > -kMostTime_us) {
+    sample.device_ns = device_us * 1000;
   }
   std::copy_n(message.accel, 3, sample.specific_force_mps2.begin());
   out.push_back(sample);
@@ -54,7 +57,7 @@ bool kvh1750(Bytes bytes, std::vector<PeerSample>& out) {
   if (!decode_message(bytes, message) || message.sequence < 0) return false;
   PeerSample sample;
   sample.utime = message.utime;
-  sample.count = message.sequence;
+  sample.count = static_cast<std::uint8_t>(message.sequence);
   for (std::size_t i = 0; i < 3; ++i) {
     const auto status = static_cast<unsigned>(static_cast<std::uint8_t>(message.status));
     if ((status >> i & 1U) != 0) sample.value[i] = message.angular[i];
