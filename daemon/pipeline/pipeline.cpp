@@ -13,8 +13,8 @@ Pipeline::Pipeline(PipelinePlan plan, std::unique_ptr<Transport> transport, Driv
     : plan_(std::move(plan)),
       queue_(plan_.ring_slots,
              transport->holds_back() ? IncrementQueue::WhenFull::wait : IncrementQueue::WhenFull::merge),
-      filter_(std::move(parts), plan_.facts, plan_.lcm_channel, plan_.also, std::move(publisher),
-              queue_, reader_books_, filter_events_, !transport->holds_back()),
+      filter_(std::move(parts), plan_.facts, plan_.lcm_channel, plan_.also, std::move(publisher), queue_,
+              reader_books_, filter_events_, !transport->holds_back()),
       hand_over_(queue_, filter_, plan_.facts.nominal_rate_hz, plan_.direct && !plan_.spin),
       reader_(std::move(transport), std::move(driver), plan_.facts, std::move(outside), queue_, hand_over_,
               filter_.exchange(), reader_books_, reader_events_, plan_.tape, plan_.processors.get()) {}
