@@ -58,6 +58,11 @@ class Gyro {
     ASSERT_EQ(grantpt(fd_), 0);
     ASSERT_EQ(unlockpt(fd_), 0);
     path_ = ptsname(fd_);
+    // What is sent before the other end is opened would come back as an echo.
+    termios raw{};
+    ASSERT_EQ(tcgetattr(fd_, &raw), 0);
+    cfmakeraw(&raw);
+    ASSERT_EQ(tcsetattr(fd_, TCSANOW, &raw), 0);
     there_ = true;
   }
   void pull() {
