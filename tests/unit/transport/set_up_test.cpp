@@ -15,7 +15,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-const std::string kFrame("\xFE\x81\xFF\x55 frame \r\x01\x02 DR", 19);
+using namespace std::string_literals;
+const std::string kFrame = "\xFE\x81\xFF\x55 frame \r\x01\x02 DR"s;
 
 // Streams frames of bytes, but between "=CONFIG,1" and "=CONFIG,0", and answers what it is asked there.
 class Imu {
