@@ -48,4 +48,4 @@ before_2() {
   unset DISPLAY
   java() { timeout 60 "$(type -P java)" "$@" >"$work/spy" 2>&1 || true; }
 }
-after_2() { grep -q 'Found 4 LCM types' "$work/spy"; }
+after_2() { grep -q 'Found 5 LCM types' "$work/spy"; }
