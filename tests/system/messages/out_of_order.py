@@ -22,7 +22,7 @@ import private_network  # noqa: E402
 
 GROUP, PORT = "239.255.76.67", 7667
 DBC = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../drivers/dbc/examples/ifogd_gyro.dbc"))
-URL = f"udpm://{GROUP}:{PORT}?ttl=0"
+URL = f"udpm://{GROUP}:{PORT}?ttl=0&recv_buf_size=4000000"
 ROWS, SWAPS = 6000, 300
 SYNC = 0xEDA1DA01
 CONFIG = f"""[daemon]
