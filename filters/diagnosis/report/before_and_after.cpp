@@ -130,7 +130,7 @@ std::string grown_in_words(const Diagnosis& diagnosis, double samples) {
   if (sentence.empty()) return "";
   return sentence +
          (by_chance
-              ? ": slow noise that happened to run against the effects was hidden by them"
+              ? ": within chance for so few means"
               : ": that is no chance, the model does harm there; take another capture before it is used");
 }
 

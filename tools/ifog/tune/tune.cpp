@@ -120,9 +120,7 @@ void print(const Tuning& tuning) {
       say("  %-30s %12.5g   %-9s %-18s%s\n", f.name.c_str(), f.value, "unknown", f.unit.c_str(),
           in_field_units(f).c_str());
   }
-  if (chosen.walk_is_bound)
-    say("  the record shows no random walk: process_noise is the quickest that it might hide, a bound of one "
-        "sigma\n");
+  if (chosen.walk_is_bound) say("  no random walk is detectable: process_noise is its 1 sigma upper limit\n");
 }
 
 // One line a figure: measured, published with the chosen model, and with the random walk alone.
