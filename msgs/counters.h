@@ -22,7 +22,7 @@ struct StatusCounter {
   const char* loss = "";  // what the monitor calls it among the losses; "": it is none
 };
 
-// In the message's order. What the recorder loses it says itself, once, and stale channels are told by name.
+// In the message's order. What the recorder loses it says itself, once, and stale channels are logged by name.
 inline constexpr std::array kStatusCounters{
     StatusCounter{"samples_decoded", &status_t::samples_decoded},
     StatusCounter{"samples_in", &status_t::samples_in},

@@ -86,7 +86,7 @@ bool SerialTransport::connect(std::string& warning, std::int64_t until_ns) {
   return true;
 }
 
-// One line at a time. False: not done by then, or stopped; the next call goes on.
+// One line at a time. False: not done by then, or stopped; the next call continues.
 bool SerialTransport::set_up(std::int64_t until_ns) {
   while (!dialogue_->done()) {
     if (answer_by_ns_ == 0) {
@@ -121,7 +121,7 @@ void SerialTransport::refuse_answer() {
       differs ? EPROTO : ETIMEDOUT, in_quotes(dialogue_->expected()));
   port_.reset();
   dialogue_.reset();
-  // What open() throws is told by its caller.
+  // What open() throws is logged by its caller.
   if (std::exchange(tried_, true)) keep_warning(error.what());
   throw error;
 }

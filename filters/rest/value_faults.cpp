@@ -151,8 +151,10 @@ void find_implausible(const std::vector<double>& values, double period_s, std::v
   const double mean = sum / static_cast<double>(values.size());
   if (std::abs(mean) > kMostBias_radps)
     found.push_back(
-        {"unit", "the mean at rest is " + six(mean / kDegree) +
-                     " °/s, more than the bias of any gyro: is it at rest, and is the unit right?"});
+        {"unit",
+         "the mean at rest is " + six(mean / kDegree) +
+             " °/s, more than the bias of any gyro: is it at rest, and is the unit right (°/h: --column "
+             "rate_radps=rate_radps:deg/h)?"});
   const auto second = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / period_s)));
   double before = 0.0, squares = 0.0;
   std::size_t count = 0;

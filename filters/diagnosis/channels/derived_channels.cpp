@@ -185,7 +185,7 @@ namespace {
 
 std::string outside_in_words(const std::string& channel, std::size_t samples, double first) {
   return channel +
-         printed(" is outside the turn in %zu sample(s), first %.6g: no angle, left out", samples, first);
+         printed(" is outside the turn in %zu sample(s), first %.6g: no angle, dropped", samples, first);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ std::string named(const Effect& effect) {
 std::string dropped_in_words(const std::vector<Effect>& dropped) {
   std::string names;
   for (const Effect& effect : dropped) names += (names.empty() ? "" : ", ") + named(effect);
-  return "the innovations suggest " + names + ", but a step does not last: left out";
+  return "the innovations suggest " + names + ", but a step does not last: dropped";
 }
 
 std::string harmful_in_words(const Effect& effect) {
@@ -46,7 +46,7 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
                          denied.share_error) +
                      records[denied.record].name
                : ": nothing of it is seen in " + records[denied.record].name + ", where as much moved";
-  return words + ", so that is no effect of this channel but of something that ran beside it, left out";
+  return words + ", so that is no effect of this channel but of something that ran with it, dropped";
 }
 
 std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t captures) {
@@ -55,7 +55,7 @@ std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t ca
       std::none_of(diagnosis.effects.begin(), diagnosis.effects.end(), traced))
     return "";
   const std::string share = printed(
-      "beside what was traced %.0f %% of the error is unexplained: what was not logged may be the cause of "
+      "besides what was traced %.0f %% of the error is unexplained: what was not logged may be the cause of "
       "both, and a channel named here only run along with it",
       100.0 * diagnosis.unexplained.fraction);
   return share + (captures < 2 ? ". Take a second capture in which the channels run otherwise, and give both"
@@ -103,7 +103,7 @@ std::string unused_channels(const std::vector<Record>& records, const BlockData&
         std::pair{&constant, "never changing"}}) {
     if (!names->empty()) sentence += (sentence.empty() ? "" : "; ") + *names + " (" + why + ")";
   }
-  return sentence.empty() ? sentence : "channels that say nothing here and were left out: " + sentence;
+  return sentence.empty() ? sentence : "channels that say nothing here and were dropped: " + sentence;
 }
 
 }  // namespace ifog

@@ -13,7 +13,7 @@ namespace ifog {
 // `after` and `held_out` of the errors as the chosen effects leave them.
 void subtract_found(const BlockData& data, const SearchResult& found, std::vector<EvenError>& errors);
 
-// Without effect `at`, everything else fitted anew.
+// Without effect `at`, everything else fitted again.
 SearchResult without_effect(const BlockData& reconstructed, SearchResult found, std::size_t at);
 
 // Whether the effects do not make the error larger: what is quick, and what a heading is made of, where

@@ -64,7 +64,7 @@ class Scan {
 
 // How many independent tries a search over correlated candidates amounts to. Counting every column and every
 // position of a step would ask for far more than chance can do, and effects that are there would be missed.
-// The noise is fitted anew under each candidate, from a record that holds few of its longest swings: chance
+// The noise is fitted again under each candidate, from a record that holds few of its longest swings: chance
 // then exceeds a likelihood ratio more often than with known noise. Of some 1500 simulated sensors without
 // effects 0.7 % had one found at a level of 1 % with a factor of 3, so that a tenth of all samples of a
 // thousand would have had more than 1 %.

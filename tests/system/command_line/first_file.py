@@ -160,7 +160,7 @@ class Checks:
         assert "more than one column may be the rate" in said, said
 
     def check_several_sensors_in_one_table(self):
-        """As public repositories hold them: accelerations in front of nameless rates, a quaternion beside its w, two sensors' rows in one table."""
+        """As public repositories hold them: accelerations in front of nameless rates, a quaternion with its w, two sensors' rows in one table."""
         shape = self.rows(lambda i, x, y, z: (672705976809250 + 5_000_000 * i, -0.12 + 1e-3 * (i % 7), 0.19 + 1e-3 * (i % 5), 9.699 - 1e-3 * (i % 3), x * RAD, y * RAD, z * RAD))
         self.reads("nameless.csv", shape)
         _, said = typed(self.folder / "nameless.csv")
@@ -278,18 +278,6 @@ class Checks:
         assert done.returncode == 0 and text.count("100 values are beyond the range that their description states, and kept: Rate is -5, stated [0, 100]") == 1, text
         rates = [float(row.split(",")[1]) for row in out.read_text().splitlines() if row[0].isdigit()]
         assert len(rates) == 200 and abs(rates[0] + math.radians(5)) < 1e-12 and not any(map(math.isnan, rates)), rates[:3]
-
-    def check_hourly_rates_are_asked_about(self):
-        """10.3 °/h of the Earth in a column of rad/s, and read as what it is."""
-        hourly = self.folder / "hourly.csv"
-        hourly.write_text("time_s,rate_radps\n" + "".join(f"{i / 100},{10.3 + 0.1 * math.sin(7919 * i)}\n" for i in range(3000)))
-        white = self.file("white.csv", ["time_s,rate_radps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x * RAD))])
-        typed = "--column rate_radps=rate_radps:deg/h"
-        for command in (["tune"], ["compare"], ["diagnose", "--quiet"]):
-            said = ran(*command, hourly).stderr
-            assert f"rate is 10.3 rad/s (590.1 °/s) all along: is it in °/h? then add {typed}" in said, f"{command}: {said}"
-            assert "all along" not in ran(*command, hourly, *typed.split()).stderr
-            assert "all along" not in ran(*command, white).stderr
 
     def check_files_of_others(self):
         if not CASES.is_dir():

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `status -c` says beside the JSON of the same sensor, and a night when no recording is closed yet."""
+"""What `status -c` says next to the JSON of the same sensor, and a night when no recording is closed yet."""
 import csv
 import os
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""LCM promises no order: what a real daemon published is logged, and heard again with neighbours that changed places, and beside a
+"""LCM promises no order: what a real daemon published is logged, and heard again with neighbours that changed places, and next to a
 second publisher. Readers of the log and of the network lose nothing of the first and say the second. Oracle: the log as it was.
 
 usage: out_of_order.py BUILD
@@ -19,12 +19,12 @@ import time
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import private_network  # noqa: E402
+from lcm_log import read_log, write_log  # noqa: E402
 
 GROUP, PORT = "239.255.76.67", 7667
 DBC = os.path.abspath(os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../../drivers/dbc/examples/ifogd_gyro.dbc"))
 URL = f"udpm://{GROUP}:{PORT}?ttl=0&recv_buf_size=4000000"
 ROWS, SWAPS = 6000, 300
-SYNC = 0xEDA1DA01
 CONFIG = f"""[daemon]
 lock_memory = false
 lcm_url = "{URL}"
@@ -45,25 +45,9 @@ speed = 40
 """
 
 
-def events_of(path):
-    """(channel, data, microseconds) of a log of lcm-logger."""
-    with open(path, "rb") as file:
-        content = file.read()
-    at, events = 0, []
-    while at < len(content):
-        sync, _, utime, channel, data = struct.unpack_from(">IqqII", content, at)
-        assert sync == SYNC, at
-        at += 28
-        events.append((content[at:at + channel], content[at + channel:at + channel + data], utime))
-        at += channel + data
-    return events
-
-
-def log_of(path, events):
-    """Numbered anew and stamped in the order in which they come."""
-    with open(path, "wb") as file:
-        for number, ((channel, data, _), utime) in enumerate(zip(events, sorted(event[2] for event in events))):
-            file.write(struct.pack(">IqqII", SYNC, number, utime, len(channel), len(data)) + channel + data)
+def in_order(events):
+    """Stamped in the order in which they come."""
+    return [(channel, utime, data) for (channel, _, data), utime in zip(events, sorted(event[1] for event in events))]
 
 
 class Books:
@@ -93,7 +77,7 @@ class Books:
         subprocess.run([self.ifogd, "--config", "ifogd.toml"], stdin=subprocess.DEVNULL, stderr=subprocess.DEVNULL, timeout=120, check=True)
         recorder.terminate()
         assert recorder.wait(20) == 0
-        events = events_of(name)
+        events = read_log(name)
         assert len(events) == ROWS, len(events)
         return events
 
@@ -110,8 +94,8 @@ class Books:
                                     stderr=subprocess.STDOUT, text=True)
         time.sleep(1)
         out = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
-        for number, (channel, data, _) in enumerate(events):
-            out.sendto(struct.pack(">II", 0x4C433032, number) + channel + b"\0" + data, (GROUP, PORT))
+        for number, (channel, _, data) in enumerate(events):
+            out.sendto(struct.pack(">II", 0x4C433032, number) + channel.encode() + b"\0" + data, (GROUP, PORT))
             time.sleep(0.0005)
         time.sleep(1)
         recorder.send_signal(signal.SIGINT)
@@ -134,7 +118,7 @@ def main():
     os.chdir(work)
     try:
         events = books.logged("nose.lcm", 1)
-        log_of("swapped.lcm", swapped(events))
+        write_log("swapped.lcm", in_order(swapped(events)))
         (code, said, rows), (other_code, other_said, other_rows) = books.converted("nose.lcm"), books.converted("swapped.lcm")
         books.check(code == other_code == 0 and rows == other_rows and len(rows) == ROWS + 1, f"convert: {len(other_rows) - 1} of {ROWS} samples, the same as in order")
         books.check("lost" not in other_said and "missing" not in other_said, "convert: nothing is said to be lost: " + other_said.strip().replace("\n", " | "))
@@ -145,7 +129,7 @@ def main():
         books.check([row.split(",")[1] for row in kept[1:]] == [row.split(",")[1] for row in rows[1:]], f"record: {len(kept) - 1} rates, the same as in order")
         again = books.logged("again.lcm", 2)
         both = [event for pair in zip(events, again[1000:] + again[:1000]) for event in pair]
-        log_of("both.lcm", both)
+        write_log("both.lcm", in_order(both))
         _, said, _ = books.converted("both.lcm")
         books.check("two publishers sent on IFOG_NOSE" in said, "convert: two publishers are named: " + said.strip().replace("\n", " | ")[:300])
         said = books.recorded(both)

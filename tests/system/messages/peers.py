@@ -20,9 +20,9 @@ import time
 HERE = os.path.dirname(os.path.abspath(__file__))
 sys.path.insert(0, os.path.join(HERE, ".."))
 import private_network  # noqa: E402
+from lcm_log import read_log, write_log  # noqa: E402
 
 URL = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4000000"
-SYNC = 0xEDA1DA01
 ROWS, RATE_HZ, EPOCH_us, G = 3000, 500, 1_700_000_000_000_000, 9.80665
 INS = "double gyro[3]; double mag[3]; double accel[3]; double quat[4]; double pressure; double rel_alt;"
 # ipab-slmc/lcm_catkin bot_core_lcmtypes, openhumanoids/microstrain, USYD-RowBot/acfr-lcm lcmdefs/senlcm: the members, nothing else.
@@ -104,24 +104,6 @@ def types_of(texts, folder):
     for loaded in [name for name in sys.modules if name.split(".")[0] in modules]:
         del sys.modules[loaded]
     return modules, hashes
-
-
-def write_log(path, events):
-    with open(path, "wb") as file:
-        for number, (channel, utime, data) in enumerate(events):
-            file.write(struct.pack(">IqqII", SYNC, number, utime, len(channel), len(data)) + channel.encode() + data)
-
-
-def read_log(path):
-    with open(path, "rb") as file:
-        content = file.read()
-    at, events = 0, []
-    while at < len(content):
-        _, _, utime, channel, data = struct.unpack_from(">IqqII", content, at)
-        at += 28
-        events.append((content[at:at + channel].decode(), utime, content[at + channel:at + channel + data]))
-        at += channel + data
-    return events
 
 
 def ran(build, *words):

@@ -212,7 +212,7 @@ def main():
                     require(refused.returncode == 2 and "expected a port 1 ... 65535" in refused.stderr, f"--web {bad} is usage")
                 in_chromium(work, os.path.realpath(sys.argv[2]) if len(sys.argv) > 2 else work)
                 daemon.send_signal(signal.SIGSTOP)
-                seen = wait_for(lambda d: "no message for" in d["sensor"]["lines"][0][1], "a daemon that is held up is seen")["sensor"]
+                seen = wait_for(lambda d: "no message for" in d["sensor"]["lines"][0][1], "a daemon that is delayed is seen")["sensor"]
                 require(not re.search("running|nothing lost", json.dumps(seen["lines"])) and not any("rate_radps" in axis or axis["allan"] for axis in seen["axes"]),
                         "and nothing of it is shown as of now")
                 daemon.send_signal(signal.SIGCONT)

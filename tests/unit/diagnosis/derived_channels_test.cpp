@@ -116,7 +116,7 @@ TEST(DerivedChannels, AGlitchOfTheLoggerIsNoAngle) {
   for (const std::size_t i : {699, 702, 3001, 4999}) EXPECT_NEAR(angle.values[i], c.angle[i], 1e-9) << i;
   ASSERT_EQ(derived.remarks.size(), 1U);
   EXPECT_EQ(derived.remarks[0],
-            "table_rad is outside the turn in 3 sample(s), first 1e+06: no angle, left out");
+            "table_rad is outside the turn in 3 sample(s), first 1e+06: no angle, dropped");
   for (std::size_t i = 3500; i < 3600; ++i) inside[i] = -127.0;
   EXPECT_DOUBLE_EQ(angle_period("table_rad", inside), kTurn) << "an error code for ten seconds";
 }

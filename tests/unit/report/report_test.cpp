@@ -61,7 +61,7 @@ TEST(ReportText, ALineHasAmplitudeAndPhase) {
   EXPECT_NEAR(shown[1].std_error, 5.12, 0.01);
 }
 
-// Fitted terms are drawn as guides beside data of which some is dashed.
+// Fitted terms are drawn as guides next to data of which some is dashed.
 TEST(ReportChart, GuidesAreNeitherDashedNorAsStrongAsData) {
   const std::string style = page_style();
   const std::size_t at = style.find(".chart .guide{");

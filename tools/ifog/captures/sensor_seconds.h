@@ -10,7 +10,7 @@
 namespace ifog::tools {
 
 // The sensor's own clock where it has one, from the first message on. One that jumps back while the fitted
-// time goes on has begun anew, or was set, and goes on by that. Where that was set, or does not go on either,
+// time goes on has restarted, or was set, and continues by that. Where that was set, or does not go on either,
 // it is by the message's own step.
 class SensorSeconds {
  public:

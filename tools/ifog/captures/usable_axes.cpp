@@ -10,7 +10,6 @@
 #include "drivers/capture/column_names.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/series/series_view.h"
-#include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/console/say.h"
 
@@ -52,23 +51,6 @@ void tell_stuck(const std::string& name, const std::string& axis, std::span<cons
        rate_of(axis).c_str(), value, rate.size());
 }
 
-// A rate that nothing disturbs and that no gyro has for a bias is, as a rule, a number of °/h in a column of rad/s.
-void tell_unit(const std::string& name, const std::string& axis, std::span<const double> rate) {
-  constexpr double kMostBias_radps = 5.0 * kDegree, kMostHourly = 30.0, kSteady = 0.05;
-  double count = 0.0, sum = 0.0, squares = 0.0;
-  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> some, std::size_t) {
-    for (const double value : some)
-      if (!std::isnan(value)) count += 1.0, sum += value, squares += value * value;
-  });
-  const double mean = sum / count, spread = std::sqrt(std::max(0.0, squares / count - mean * mean));
-  if (!(std::abs(mean) > kMostBias_radps && std::abs(mean) < kMostHourly &&
-        spread < kSteady * std::abs(mean)))
-    return;
-  const std::string column = rate_of(axis) + "_radps";
-  warn("%s: %s is %.4g rad/s (%.4g °/s) all along: is it in °/h? then add --column %s=%s:deg/h\n",
-       name.c_str(), rate_of(axis).c_str(), mean, mean / kDegree, column.c_str(), column.c_str());
-}
-
 // What is unusable in one capture.
 std::vector<std::string> unusable(const CaptureView& capture, const std::string& name) {
   std::vector<std::string> missing, stuck;
@@ -91,8 +73,6 @@ std::vector<std::string> unusable(const CaptureView& capture, const std::string&
       tell_stuck(name, axis, capture.rate_radps[a]);
     else
       tell_missing(name, axis, capture, capture.rate_radps[a]);
-    if (!is_in(missing, axis) && !is_in(stuck, axis) && capture.reference_rate_radps[a].empty())
-      tell_unit(name, axis, capture.rate_radps[a]);
   }
   missing.insert(missing.end(), stuck.begin(), stuck.end());
   return missing;

@@ -40,7 +40,7 @@ void SensorView::take(const rate_t& message) {
     Sums& sums = sums_[a];
     add(message.denoised[a], sums.count, sums.mean, sums.square);
     add(message.raw[a], sums.raw_count, sums.raw_mean, sums.raw_square);
-    sums.raw_low = std::fmin(sums.raw_low, message.raw[a]);  // a NaN is passed over
+    sums.raw_low = std::fmin(sums.raw_low, message.raw[a]);  // a NaN is ignored
     sums.raw_high = std::fmax(sums.raw_high, message.raw[a]);
     sums.angle = message.angle[a];
   }

@@ -210,7 +210,7 @@ std::vector<ShownLine> view_lines(std::string_view name, const SensorView& senso
     add({"two publishers send on this channel: two daemons, or a log that is played?"}, Tone::bad);
   if (sensor.silent()) return out;
   const auto losses = counted("so far:", sensor.losses());
-  // What is not told any more is not known to be nothing.
+  // What is no longer received is not known to be nothing.
   if (!losses.empty() || status != nullptr || sensor.status_age_s() <= SensorView::kStale_s)
     add(losses.empty() ? std::vector<std::string>{"nothing lost"} : losses,
         losses.empty() ? Tone::good : Tone::warning);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Asks once a second, draws, and shows nothing as of now that is not. Whatever it is told is text: names come from the network.
+// Asks once a second, draws, and shows nothing as of now that is not. Whatever it receives is text: names come from the network.
 'use strict';
 const DEGREE = Math.PI / 180, HOURLY = DEGREE / 3600, STALE_S = 3;
 let chosen = '', answer = null, answered = -Infinity;
