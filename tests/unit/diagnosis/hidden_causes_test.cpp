@@ -104,7 +104,7 @@ TEST(Diagnose, AChannelThatFollowedTheCauseInOneCaptureIsNotSubtracted) {
   for (double& temperature : alone.temperature) temperature += 8.0;
   const Diagnosis found = diagnose({record_of(followed, "first"), record_of(alone, "second")}, {});
   for (const FoundEffect& each : found.effects) EXPECT_NE(each.effect.channel, "temperature_degC");
-  EXPECT_TRUE(said(found, "is no effect of this channel but of something that ran beside it"));
+  EXPECT_TRUE(said(found, "is no effect of this channel but of something that ran with it"));
 }
 
 TEST(HiddenCauses, DeniedEffectsAreNamedWithTheCaptureThatDeniesThem) {
