@@ -84,7 +84,7 @@ std::vector<std::string> contradictions(const Diagnosis& diagnosis, const std::v
     found.emplace_back("the model leaves more than was promised");
   for (const FoundEffect& each : diagnosis.effects)
     for (const std::string& remark : diagnosis.remarks)
-      if (const auto at = remark.find("were left out: ");
+      if (const auto at = remark.find("were dropped: ");
           !each.effect.channel.empty() && at != std::string::npos)
         if (remark.find(each.effect.channel + " (", at) != std::string::npos)
           found.push_back(each.effect.channel + " is left out and used");
