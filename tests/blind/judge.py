@@ -163,7 +163,7 @@ def contradictions(report, fit_before, fit_after):
         out.append(f"promised {promised:.3g} rad/s, the model leaves {fit_after:.3g}")
     used = {c for _, channels, _ in claims_of(report) for c in channels}
     for remark in report.get("remarks", []):
-        if "dropped" in remark and any(re.search(rf"\b{c}\b", remark.split("dropped")[1]) for c in used):
+        if "were dropped: " in remark and any(re.search(rf"\b{c}\b", remark.split("were dropped: ")[1]) for c in used):
             out.append("a channel left out and used: " + remark[:80])
     return out
 
