@@ -39,8 +39,8 @@ std::size_t leave_out_jumps(Samples& reference, std::span<const double> rate);
 
 // A series on an even grid, moved by a part of a step.
 // values at k + steps for every k, by a sinc under a Hann window of 24 steps: white noise stays as white and
-// as loud as it was, so that no shift is preferred for being smooth. Beside holes linear; NaN where there is
-// nothing to interpolate between.
+// as loud as it was, so that no shift is preferred for being smooth. Linear next to holes; NaN where there
+// is nothing to interpolate between.
 Samples shifted(std::span<const double> values, double steps);
 
 }  // namespace ifog

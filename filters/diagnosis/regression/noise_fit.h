@@ -33,7 +33,7 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseSha
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns);
 
 // The way up the likelihood of the noise's parameters.
-// From `shape` to the top beside it: walk and flicker where they are not zero, and down to zero; a
+// Climbs from `shape` to the nearest top: walk and flicker where they are not zero, and down to zero; a
 // Gauss-Markov process of its own where there is one; the harmonics when `with_harmonics`, of which those
 // that are an angle stay one.
 NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, double precision,

@@ -25,8 +25,8 @@ std::string judged_beside(std::size_t harmonics);
 std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,
                             const std::vector<Record>& records);
 
-// Beside much that stays unexplained a channel that was logged may only run along with the cause; empty where
-// little is, or no effect was traced to a channel. captures: diagnosed together.
+// Says that a channel that was logged may only run along with the cause, where much stays unexplained. Empty
+// where little does, or no effect was traced to a channel. captures: diagnosed together.
 std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t captures);
 
 // Columns that a diagnosis cannot use, so that nobody takes their silence for a finding.

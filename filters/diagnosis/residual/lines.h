@@ -80,8 +80,8 @@ struct Lines {
 Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance,
                      KnownPeriodograms& known);
 
-// Of the slow lines, which the search was given first, those that are still lines beside slow noise and
-// effects. samples: of all records.
+// Keeps the slow lines, which the search was given first, that are still lines once the slow noise and the
+// effects are known. samples: of all records.
 void keep_proven(const SearchResult& found, std::size_t samples, double significance, Lines& lines);
 
 // Fast lines out of both rests of the errors, for good.

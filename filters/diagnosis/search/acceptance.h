@@ -23,8 +23,8 @@ bool holds(const std::vector<EvenError>& errors, SharedSamples EvenError::*after
 // Index of the least certain effect that is corrected online; none when there is no such effect.
 std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen);
 
-// Takes out of `found` every step that does not persist beside the effects that came after it. `errors`
-// follow. The effects dropped, in that order.
+// Takes out of `found` every step that does not persist once the effects found after it are known. `errors`
+// follow. Returns the effects dropped, in that order.
 std::vector<Effect> drop_steps_that_do_not_last(const BlockData& data, const BlockData& reconstructed,
                                                 SearchResult& found, std::vector<EvenError>& errors);
 
