@@ -149,12 +149,15 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
     while (const std::size_t n = file.read(bytes.data(), bytes.size()))
       driver.decode_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), n}, 0, take);
   }
-  // What the driver still waited for will never come.
+  finish_recording(driver, counts);
+  return counts;
+}
+
+void finish_recording(DriverInstance& driver, RecordingCounts& counts) {
   const std::uint64_t before = driver.counters().bytes_skipped;
   driver.reset();
   counts.bytes_at_end = driver.counters().bytes_skipped - before;
   counts.driver = driver.counters();
-  return counts;
 }
 
 std::vector<std::string> losses(const RecordingCounts& counts) {

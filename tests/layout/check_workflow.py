@@ -14,7 +14,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 def main():
     script = (ROOT / "tools/test").read_text()
     known = re.search(r"^stages=\((.*?)\)", script, re.M).group(1).split()
-    whole = re.search(r"^all=\((.*?)\)", script, re.M).group(1).split()
+    whole = re.search(r"= all \]; then\n  chosen=\((.*?)\)", script, re.M).group(1).split()
     workflow = (ROOT / ".github/workflows/test.yml").read_text()
     run = re.search(r"stages: \[(.*?)\]", workflow).group(1).replace(",", " ").split()
     wrong = [f"'{stage}' is no stage of tools/test" for stage in run if stage not in known]

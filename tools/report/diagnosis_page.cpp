@@ -12,7 +12,6 @@
 #include "filters/units/field_units.h"
 #include "tools/report/account.h"
 #include "tools/report/diagnosis_pictures.h"
-#include "tools/report/interaction.h"
 #include "tools/report/section.h"
 #include "tools/report/style.h"
 #include "tools/report/text.h"

@@ -10,7 +10,6 @@
 #include "drivers/ifog/quoted.h"
 #include "tools/report/account.h"
 #include "tools/report/chart.h"
-#include "tools/report/interaction.h"
 #include "tools/report/section.h"
 #include "tools/report/style.h"
 #include "tools/report/text.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of a chart for the script of a page, see interaction.cpp.
+// Numbers of a chart for the script of a page, see page.js.
 #pragma once
 
 #include <span>

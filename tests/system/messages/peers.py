@@ -34,6 +34,8 @@ PUBLIC = {
     "senlcm.kvh1750_t": "int64_t utime; double angular[3]; double linear[3]; double temperature; int8_t status; int8_t sequence;",
     "senlcm.kvh_dsp3000_t": "int64_t utime; int8_t mode; double data;",
     "senlcm.IMU_t": "int64_t utime; double angRate[3]; double accel[3]; double deltaAngle[3]; double deltaVelocity[3];",
+    "senlcm.raw_t": "int64_t utime; int32_t length; byte data[length];",
+    "senlcm.raw_ascii_t": "int64_t utime; string msg;",
 }
 # JuliaRobotics/BotCoreLCMTypes.jl (test/runtests.jl) holds its own to these, as the bytes of the hash read backwards.
 JULIA = {"bot_core.ins_t": 4613985382350956424, "bot_core.kvh_raw_imu_t": 2860203241911737633, "bot_core.kvh_raw_imu_batch_t": 8667107086997737736}
@@ -287,6 +289,47 @@ def foreign(build, modules):
         check(code == 1 and f"is no {name} that can be" in said, "bytes that are none are refused: " + said.strip())
 
 
+def raw_bytes(build, modules):
+    """What a device sent, published by another program in pieces that end anywhere, through a driver of ours."""
+    with open("sent.kvh", "rb") as file:
+        sent = file.read()
+    dice, pieces, at = random.Random(3), [], 0
+    while at < len(sent):
+        piece = modules["senlcm"].raw_t()
+        piece.data = sent[at:at + dice.randrange(1, 90)]
+        piece.length, piece.utime = len(piece.data), EPOCH_us + at // 40 * 1_000_000 // RATE_HZ
+        pieces.append(("KVH_RAW", piece.utime, piece.encode()))
+        at += piece.length
+    lines = []
+    for row in range(ROWS):
+        line = modules["senlcm"].raw_ascii_t()
+        line.utime, line.msg = EPOCH_us + row * 10_000, f" {math.degrees(rates(row)[0]):.6f}  1" + ("\r\n" if row < ROWS // 2 else "")
+        lines.append(("DSP", line.utime, line.encode()))
+    write_log("raw.lcm", pieces)
+    write_log("lines.lcm", lines)
+    write_log("both.lcm", pieces + lines)
+    driver = ["--driver", "kvh1750", "--option", "format=b", "--option", f"rate_hz={RATE_HZ}"]
+    judge_capture("senlcm.raw_t through kvh1750", capture(build, "raw.lcm", *driver), ROWS, COLUMNS + ["temperature_degC"], 1e-6)
+    judge_capture("one channel of two", capture(build, "both.lcm", "--channel", "KVH_RAW", *driver), ROWS, COLUMNS + ["temperature_degC"], 1e-6)
+    code, said, header, rows = capture(build, "lines.lcm", "--driver", "dsp3000", "--option", "output=rate", "--option", "rate_hz=100")
+    # The first line may be the end of one that was cut off: the driver waits for the next.
+    check(code == 0 and header == ["time_s", "rate_radps"] and len(rows) == ROWS - 1 and all(near([row[1]], [rates(n + 1)[0]], 1e-5) for n, row in enumerate(rows)),
+          f"senlcm.raw_ascii_t through dsp3000, with and without ends of lines: {len(rows)} rates {said.strip()}")
+    check(len(rows) == ROWS - 1 and abs(rows[-1][0] - (ROWS - 2) / 100) < 0.02, "their times are those of their arrival")
+    with open("sent.bin", "wb") as file:
+        file.write(sent)
+    for source in ("raw.lcm", "sent.bin"):
+        code, said = ran(build, "denoise", source, "--output", source + ".denoised.csv", *driver)
+        check(code == 0, f"denoise takes {source}: " + said.strip().split("\n")[-1])
+    with open("raw.lcm.denoised.csv") as log, open("sent.bin.denoised.csv") as plain:
+        check(log.read() == plain.read(), "denoise makes of the log what it makes of the bytes")
+    for words, log, expected in ((driver, "both.lcm", "expected --channel with one of DSP, KVH_RAW"), ([], "raw.lcm", "has bytes of a device on KVH_RAW, expected --driver NAME"),
+                                 (driver, "imu.lcm", "no channel carries bytes of a device"),
+                                 ([*driver, "--channel", "IMU"], "imu.lcm", "message 1 on IMU is no senlcm.raw_t")):
+        code, said = ran(build, "convert", log, "no.csv", *words)
+        check(code == 1 and expected in said, said.strip())
+
+
 def main():
     if len(sys.argv) != 2:
         sys.exit(__doc__)
@@ -307,6 +350,7 @@ def main():
         published(build)
         logged(build)
         foreign(build, modules)
+        raw_bytes(build, modules)
     finally:
         os.chdir("/")
         shutil.rmtree(work, ignore_errors=True)

@@ -18,6 +18,8 @@
 #include "tools/ifog/captures/driver_of_run.h"
 #include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/captures/logged_bytes.h"
+#include "tools/ifog/captures/named_log.h"
 #include "tools/ifog/captures/rate_rows.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/console/command.h"
@@ -164,7 +166,10 @@ void CaptureInput::will_read(const std::string& argument, const std::string& pat
 
 RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& instance,
                                               const std::function<void(const ifog_sample&)>& sink) const {
-  const RecordingCounts counts = decode_recording(file, instance, instance.takes_can() ? channel : "", sink);
+  const RecordingCounts counts =
+      kind(file) == FileKind::lcm_log
+          ? decode_logged_bytes(file, instance, channel, sink)
+          : decode_recording(file, instance, instance.takes_can() ? channel : "", sink);
   if (counts.samples != 0) return counts;
   std::string why;
   for (const std::string& loss : losses(counts)) why += (why.empty() ? "" : "; ") + loss;
@@ -257,11 +262,16 @@ void CaptureInput::keep_rates(LongTable& table, const std::string& path) {
   tell({table.notices.begin() + static_cast<std::ptrdiff_t>(told), table.notices.end()}, {});
 }
 
+// As messages: with a driver a log holds bytes of a device instead.
+bool CaptureInput::holds_rates(const InputFile& file, FileKind found) const {
+  return found == FileKind::lcm_log ? !has_driver() : found == FileKind::flight && recorded_messages(file);
+}
+
 RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
   const FileKind found = readable(file);
   const ReadingProgress progress(file);
   if (found == FileKind::capture) return column_rows(file, sink);
-  if (found == FileKind::lcm_log || (found == FileKind::flight && recorded_messages(file))) {
+  if (holds_rates(file, found)) {
     read_lcm_log(file, channel, sink);
     return {};
   }
@@ -281,8 +291,7 @@ RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
 
 LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& wanted) const {
   const FileKind found = kind(file);
-  const bool whole = found == FileKind::capture || found == FileKind::lcm_log ||
-                     (found == FileKind::flight && recorded_messages(file));
+  const bool whole = found == FileKind::capture || holds_rates(file, found);
   LongTable table;
   table.outlined = outlined;
   LongTableSink sink(table, wanted);

@@ -96,6 +96,7 @@ struct CaptureInput {
  private:
   RowNotes column_rows(InputFile& file, RowSink& sink) const;
   [[nodiscard]] FileKind readable(const InputFile& file) const;
+  [[nodiscard]] bool holds_rates(const InputFile& file, FileKind found) const;
   void build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
              const std::function<void()>& added) const;
   static void keep_rates(LongTable& table, const std::string& path);

@@ -2,14 +2,11 @@
 #include "tools/ifog/captures/lcm_log.h"
 
 #include <ifog/decode.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <filesystem>
 #include <functional>
-#include <lcm/lcm-cpp.hpp>
 #include <map>
 #include <optional>
 #include <set>
@@ -18,17 +15,16 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/recording.h"
 #include "drivers/capture/time_stamps.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/unnamed_file.h"
 #include "drivers/transport/utc_now.h"
 #include "msgs/channel_name.h"
 #include "msgs/in_order.h"
-#include "tools/ifog/captures/flight_input.h"
 #include "tools/ifog/captures/lcm_channels.h"
 #include "tools/ifog/captures/lcm_events.h"
 #include "tools/ifog/captures/lcm_loss.h"
+#include "tools/ifog/captures/logged_bytes.h"
+#include "tools/ifog/captures/named_log.h"
 #include "tools/ifog/captures/peer_reader.h"
 #include "tools/ifog/captures/peer_types.h"
 #include "tools/ifog/captures/sensor_seconds.h"
@@ -43,58 +39,21 @@ bool carries_rates(const std::string& channel) {
   return channel_name(channel).content == ChannelContent::rate;
 }
 
-// A log is read several times, by its name. One that comes packed, through a pipe or as a flight
-// recording is kept in a file without one, under a name that only this process knows.
-class NamedLog {
- public:
-  explicit NamedLog(InputFile& file) : name_(file.path()) {
-    const bool recorded = recorded_messages(file);
-    if (file.reopens() && !recorded) return;
-    unpacked_.emplace();
-    name_ = "/proc/self/fd/" + std::to_string(unpacked_->descriptor());
-    recorded ? unpack_messages(file) : unpack(file);
-  }
-
-  [[nodiscard]] const std::string& name() const { return name_; }
-
- private:
-  void unpack(InputFile& file) const {
-    std::vector<char> block(1U << 20U);
-    while (const std::size_t n = file.read(block.data(), block.size()))
-      for (std::size_t done = 0; done < n;) {
-        const ssize_t wrote = ::write(unpacked_->descriptor(), block.data() + done, n - done);
-        if (wrote < 0 && errno != EINTR) UnnamedFile::fail("cannot write");
-        done += static_cast<std::size_t>(std::max<ssize_t>(wrote, 0));
-      }
-  }
-  void unpack_messages(InputFile& file) const {
-    FlightInput flight(file);
-    lcm::LogFile log(name_, "w");
-    flight.for_each_entry([&](const FlightEntry& entry) {
-      if (entry.head.kind != FlightKind::message || entry.head.index > entry.payload.size()) return;
-      std::vector<std::uint8_t> data(entry.payload.begin() + entry.head.index, entry.payload.end());
-      lcm::LogEvent event{};
-      event.timestamp = entry.head.time_ns / 1000;
-      event.channel.assign(reinterpret_cast<const char*>(entry.payload.data()), entry.head.index);
-      event.datalen = static_cast<int>(data.size());
-      event.data = data.data();
-      if (log.writeEvent(&event) != 0) UnnamedFile::fail("cannot write");
-    });
-  }
-
-  std::string name_;
-  std::optional<UnnamedFile> unpacked_;
-};
-
-// The first with rates of ours, or else with those of another program's type; "": there is none.
-std::string first_channel(const NamedLog& source) {
+// The first with rates of ours, or else with those of another program's type.
+std::string first_channel(const NamedLog& source, const std::string& path) {
   LcmEvents log(source.name());
-  std::string peer;
+  std::string peer, bytes;
   while (const LcmEvents::Event* event = log.next()) {
     if (carries_rates(event->channel)) return event->channel;
     if (peer.empty() && peer_type(event->data) != nullptr) peer = event->channel;
+    if (bytes.empty() && carries_bytes(event->data)) bytes = event->channel;
   }
-  return peer;
+  if (!peer.empty()) return peer;
+  if (bytes.empty())
+    throw std::runtime_error(path +
+                             ": has no channel IFOG_<NAME>, and none with rates of another program's type");
+  throw std::runtime_error(path + ": has bytes of a device on " + printable(bytes) +
+                           ", expected --driver NAME to decode them with");
 }
 
 // A log, and the channel of it that carries the rates: the one that was asked for, or else the first, which
@@ -102,10 +61,7 @@ std::string first_channel(const NamedLog& source) {
 struct ChosenLog {
   ChosenLog(InputFile& file, const std::string& channel)
       : path(file.path()), source(file), asked_for(!channel.empty()) {
-    rates = asked_for ? channel : first_channel(source);
-    if (rates.empty())
-      throw std::runtime_error(path +
-                               ": has no channel IFOG_<NAME>, and none with rates of another program's type");
+    rates = asked_for ? channel : first_channel(source, path);
     LcmEvents log(source.name());
     while (const LcmEvents::Event* event = log.next()) {
       if (event->channel != rates) continue;
@@ -303,12 +259,6 @@ void tell_start(const std::string& path, const rate_t& first) {
 }
 
 }  // namespace
-
-bool recorded_messages(const InputFile& file) {
-  // The header's keys come in the order of drivers/flight/format.md, and no value has a line's end in it.
-  return file_kind(file) == FileKind::flight &&
-         file.head().find("\ncarries=messages\n") != std::string_view::npos;
-}
 
 void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
   ChosenLog chosen(file, channel);

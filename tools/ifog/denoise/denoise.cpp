@@ -26,8 +26,8 @@
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/flight_input.h"
-#include "tools/ifog/captures/lcm_log.h"
 #include "tools/ifog/captures/model_axes.h"
+#include "tools/ifog/captures/named_log.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/captures/usable_axes.h"
@@ -276,7 +276,8 @@ void run(DenoiseOptions options) {
     DriverInstance driver =
         flight->make_driver(options.input.driver_name(), options.input.settings(), folders);
     result = denoise_flight(*flight, driver, settings, !options.config.empty(), sink);
-  } else if (kind == FileKind::bytes || kind == FileKind::candump) {
+  } else if (kind == FileKind::bytes || kind == FileKind::candump ||
+             (kind == FileKind::lcm_log && options.input.has_driver())) {
     if (!options.input.has_driver()) {
       const std::string foreign = foreign_container(capture.head());
       throw std::runtime_error(

@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/report/interaction.h"
-
-namespace ifog::report {
-namespace {
-
+// What a page does under the pointer: values at a place, a closer look at a stretch. It works on every chart that
+// carries data-plot (Chart::svg); nothing is fetched, and without it the page shows the same pictures.
+//
 // data-plot: {frame: [left, right, top, bottom] px, x, y: {log, low, high, label, names},
 // series: [{style, name, kind, x, y, high}]}: float32, base64; x may be the index of a series that has the
 // same. One for a telephone has data-frame and takes the rest from the chart before it. The dash of a number
 // is the true minus, as everywhere in the page.
-constexpr const char* kScript = R"js(
 (() => {
 const floats = t => new Float32Array(Uint8Array.from(atob(t), c => c.charCodeAt(0)).buffer);
 const text = (v, digits = 5) => String(Number(v.toPrecision(digits))).replace('-', '\u2212');
@@ -184,10 +181,3 @@ for (const chart of document.querySelectorAll('svg[data-plot],svg[data-frame]'))
   draw();
 }
 })();
-)js";
-
-}  // namespace
-
-std::string page_script() { return kScript; }
-
-}  // namespace ifog::report
