@@ -4,45 +4,24 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <random>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "drivers/host/driver_instance.h"
 #include "drivers/plugins/framing/crc32_mpeg2.h"
-#include "drivers/plugins/kvh1750/frame.h"
 #include "drivers/plugins/kvh1750/frame_finder.h"
+#include "tests/unit/drivers/damaged_stream.h"
 #include "tests/unit/drivers/hex_bytes.h"
+#include "tests/unit/drivers/long_division.h"
 
 namespace {
 
 using ifog::framing::crc32_mpeg2;
-using ifog::kvh::Frame;
 
 std::span<const std::uint8_t> bytes_of(std::string_view text) {
   return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-// Long division, one bit at a time, as the definition reads: no table, nothing shared with the code under
-// test.
-std::uint32_t long_division(std::span<const std::uint8_t> bytes) {
-  std::uint32_t remainder = 0xFFFFFFFFU;
-  for (const std::uint8_t byte : bytes)
-    for (int bit = 7; bit >= 0; --bit) {
-      const bool in = ((byte >> bit) & 1) != 0;
-      const bool out = (remainder >> 31U) != 0;
-      remainder <<= 1U;
-      if (in != out) remainder ^= 0x04C11DB7U;
-    }
-  return remainder;
-}
-
-void append_crc(std::vector<std::uint8_t>& frame) {
-  const std::uint32_t crc = long_division(frame);
-  for (int shift = 24; shift >= 0; shift -= 8) frame.push_back(static_cast<std::uint8_t>(crc >> shift));
 }
 
 TEST(Crc32Mpeg2, HasTheCatalogueCheckValue) { EXPECT_EQ(crc32_mpeg2(bytes_of("123456789")), 0x0376E6E7U); }
@@ -51,7 +30,7 @@ TEST(Crc32Mpeg2, EqualsLongDivision) {
   std::vector<std::uint8_t> bytes;
   for (unsigned i = 0; i < 300; ++i) {
     bytes.push_back(static_cast<std::uint8_t>(i * 37 + i / 7));
-    ASSERT_EQ(crc32_mpeg2(bytes), long_division(bytes)) << i;
+    ASSERT_EQ(crc32_mpeg2(bytes), ifog::long_division(bytes)) << i;
   }
 }
 
@@ -152,7 +131,7 @@ TEST(Kvh1750, AnInvalidStatusBitInvalidatesItsAxisOnly) {
   std::vector<std::uint8_t> frame = hex(kFrameA);
   frame.resize(32);
   frame[28] = 0x25;  // gyro x and z, accelerometer y
-  append_crc(frame);
+  ifog::append_crc32(frame);
   const std::vector<ifog_sample> samples = decode(driver, frame);
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_EQ(samples[0].valid_axes, 0b101U);
@@ -176,7 +155,7 @@ TEST(Kvh1750, TheStampIsPassedOnAsSentWithWhereItGoesRound) {
       std::vector<std::uint8_t> frame = hex(kFrameB);
       frame.resize(36);
       for (unsigned i = 0; i < 4; ++i) frame[28 + i] = static_cast<std::uint8_t>(stamp_us >> (24U - 8U * i));
-      append_crc(frame);
+      ifog::append_crc32(frame);
       const ifog_sample sample = decode(driver, frame, 1).at(0);
       EXPECT_EQ(sample.device_time_ns, std::int64_t{stamp_us} * 1000);
       EXPECT_EQ(sample.device_wrap_ns, wrap_ns);
@@ -187,177 +166,35 @@ TEST(Kvh1750, TheStampIsPassedOnAsSentWithWhereItGoesRound) {
 // ------------------------------------------------------------------------------------------------------------------
 // Every intact frame is recovered from a damaged stream.
 
-struct Placed {
-  std::size_t end;  // offset behind its last byte
-  std::vector<std::uint8_t> bytes;
-};
-
-class DamagedStream {
- public:
-  explicit DamagedStream(std::uint32_t seed) : random_(seed) {}
-
-  std::vector<std::uint8_t> bytes;
-  std::vector<Placed> intact;
-
-  void build(int segments) {
-    for (int i = 0; i < segments; ++i) {
-      switch (below(8)) {
-        case 0:
-          flip();
-          break;
-        case 1:
-          insert();
-          break;
-        case 2:
-          erase();
-          break;
-        case 3:
-          cut();
-          break;
-        case 4:
-          noise();
-          break;
-        case 5:
-          overlaid();
-          break;
-        default:
-          good();
-          break;
-      }
-    }
-    good();
-  }
-
- private:
-  std::size_t below(std::size_t n) { return random_() % n; }
-  std::uint8_t byte() { return static_cast<std::uint8_t>(below(256)); }
-
-  std::vector<std::uint8_t> frame() {
-    const auto last = static_cast<std::uint8_t>(0x55 + below(3));
-    const std::size_t covered = last == 0x55 ? 32 : last == 0x56 ? 36 : 34;
-    std::vector<std::uint8_t> f{0xFE, 0x81, 0xFF, last};
-    while (f.size() < covered) {
+TEST(Kvh1750, EveryIntactFrameComesOutOfADamagedStream) {
+  ifog::Frames frames;
+  frames.header = [](ifog::Random& random) {
+    return ifog::Bytes{0xFE, 0x81, 0xFF, static_cast<std::uint8_t>(0x55 + random() % 3)};
+  };
+  frames.frame = [&](ifog::Random& random) {
+    ifog::Bytes out = frames.header(random);
+    const std::size_t covered = out[3] == 0x55 ? 32 : out[3] == 0x56 ? 36 : 34;
+    while (out.size() < covered) {
       // One payload in four holds a header.
-      if (f.size() + 4 <= covered && below(32) == 0)
-        f.insert(f.end(), {0xFE, 0x81, 0xFF, static_cast<std::uint8_t>(0x55 + below(3))});
-      else
-        f.push_back(byte());
-    }
-    append_crc(f);
-    return f;
-  }
-
-  void put(const std::vector<std::uint8_t>& f) { bytes.insert(bytes.end(), f.begin(), f.end()); }
-  void good() {
-    const std::vector<std::uint8_t> f = frame();
-    put(f);
-    intact.push_back({bytes.size(), f});
-  }
-  void flip() {
-    std::vector<std::uint8_t> f = frame();
-    for (std::size_t n = 1 + below(3); n > 0; --n)
-      f[below(f.size())] ^= static_cast<std::uint8_t>(1 + below(255));
-    put(f);
-  }
-  void insert() {
-    std::vector<std::uint8_t> f = frame();
-    for (std::size_t n = 1 + below(5); n > 0; --n)
-      f.insert(f.begin() + static_cast<std::ptrdiff_t>(1 + below(f.size() - 1)), byte());
-    put(f);
-  }
-  void erase() {
-    std::vector<std::uint8_t> f = frame();
-    for (std::size_t n = 1 + below(5); n > 0; --n)
-      f.erase(f.begin() + static_cast<std::ptrdiff_t>(below(f.size())));
-    put(f);
-  }
-  void cut() {
-    std::vector<std::uint8_t> f = frame();
-    f.resize(below(f.size()));
-    put(f);
-  }
-  void noise() {
-    for (std::size_t n = below(60); n > 0; --n) {
-      if (below(10) == 0) put({0xFE, 0x81, 0xFF, static_cast<std::uint8_t>(0x55 + below(3))});
-      bytes.push_back(byte());
-    }
-  }
-  // A frame whose tail is overwritten by the beginning of an intact one.
-  void overlaid() {
-    cut();
-    good();
-  }
-
-  std::mt19937 random_;
-};
-
-// What is there, by trying every position; damage can by chance leave a frame whole, so this may hold more
-// than what was put in undamaged.
-std::vector<Placed> present_in(const std::vector<std::uint8_t>& stream) {
-  std::vector<Placed> present;
-  for (std::size_t at = 0; at + 36 <= stream.size();) {
-    const std::uint8_t* p = stream.data() + at;
-    const std::size_t length = p[3] == 0x55 ? 36 : p[3] == 0x56 ? 40 : p[3] == 0x57 ? 38 : 0;
-    if (p[0] == 0xFE && p[1] == 0x81 && p[2] == 0xFF && length != 0 && at + length <= stream.size()) {
-      std::vector<std::uint8_t> body(p, p + length - 4);
-      append_crc(body);
-      if (std::equal(body.begin(), body.end(), p)) {
-        present.push_back({at + length, body});
-        at += length;
-        continue;
+      if (out.size() + 4 <= covered && random() % 32 == 0) {
+        const ifog::Bytes header = frames.header(random);
+        out.insert(out.end(), header.begin(), header.end());
+      } else {
+        out.push_back(static_cast<std::uint8_t>(random() % 256));
       }
     }
-    ++at;
-  }
-  return present;
-}
-
-TEST(Kvh1750, EveryIntactFrameComesOutOfADamagedStreamWithItsLastByte) {
-  for (std::uint32_t seed = 1; seed <= 300; ++seed) {
-    DamagedStream stream(seed);
-    stream.build(60);
-
-    const std::vector<Placed> present = present_in(stream.bytes);
-    ifog::kvh::FrameFinder finder;
-    std::vector<Placed> found;
-    std::size_t good_bytes = 0;
-    for (std::size_t i = 0; i < stream.bytes.size(); ++i)
-      finder.feed({&stream.bytes[i], 1}, [&](std::span<const std::uint8_t> seen) {
-        const Frame frame = ifog::kvh::unpack_found(seen);
-        std::array<std::uint8_t, ifog::kvh::kLongestFrame> packed{};
-        const std::size_t length = pack(frame, packed);
-        good_bytes += length;
-        found.push_back({i + 1, {packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(length)}});
-      });
-
-    ASSERT_EQ(found.size(), present.size()) << "seed " << seed;
-    for (std::size_t i = 0; i < found.size(); ++i) {
-      ASSERT_EQ(found[i].end, present[i].end) << "seed " << seed << " frame " << i;
-      ASSERT_EQ(found[i].bytes, present[i].bytes) << "seed " << seed << " frame " << i;
-    }
-    std::size_t at = 0;
-    for (const Placed& frame : stream.intact) {
-      while (at < found.size() && found[at].end != frame.end) ++at;
-      ASSERT_LT(at, found.size()) << "seed " << seed << ": the frame ending at byte " << frame.end
-                                  << " is missing";
-      ASSERT_EQ(found[at].bytes, frame.bytes);
-    }
-    EXPECT_EQ(good_bytes + finder.counters().bytes_skipped + finder.waiting(), stream.bytes.size());
-    EXPECT_EQ(finder.counters().intact, found.size());
-
-    // The same in portions of any size, larger than the buffer too.
-    ifog::kvh::FrameFinder portions;
-    std::mt19937 random(seed);
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < stream.bytes.size();) {
-      const std::size_t n =
-          std::min<std::size_t>(1 + random() % (seed % 2 == 0 ? 50 : 9000), stream.bytes.size() - i);
-      portions.feed({&stream.bytes[i], n}, [&](std::span<const std::uint8_t>) { ++count; });
-      i += n;
-    }
-    EXPECT_EQ(count, found.size()) << "seed " << seed;
-    EXPECT_EQ(portions.counters().bytes_skipped, finder.counters().bytes_skipped);
-  }
+    ifog::append_crc32(out);
+    return out;
+  };
+  frames.length = [](std::span<const std::uint8_t> b) -> std::size_t {
+    if (b.size() < 36 || b[0] != 0xFE || b[1] != 0x81 || b[2] != 0xFF) return 0;
+    const std::size_t length = b[3] == 0x55 ? 36 : b[3] == 0x56 ? 40 : b[3] == 0x57 ? 38 : 0;
+    if (length == 0 || b.size() < length) return 0;
+    ifog::Bytes again(b.begin(), b.begin() + static_cast<std::ptrdiff_t>(length) - 4);
+    ifog::append_crc32(again);
+    return std::equal(again.begin(), again.end(), b.begin()) ? length : 0;
+  };
+  every_intact_frame_comes_out(frames, 300, [] { return ifog::kvh::FrameFinder(); });
 }
 
 // ------------------------------------------------------------------------------------------------------------------

@@ -15,6 +15,7 @@
 #include "drivers/plugins/stim300/datagram.h"
 #include "tests/unit/drivers/damaged_stream.h"
 #include "tests/unit/drivers/hex_bytes.h"
+#include "tests/unit/drivers/long_division.h"
 
 namespace ifog {
 namespace {
@@ -41,23 +42,8 @@ std::vector<ifog_sample> decode(DriverInstance& driver, const Bytes& bytes) {
   return samples;
 }
 
-// As the datasheet's section 5.5.7 reads: long division over the bytes and the dummy bytes.
-std::uint32_t long_division(Bytes bytes) {
-  while (bytes.size() % 4 != 0) bytes.push_back(0);
-  std::uint32_t remainder = 0xFFFFFFFFU;
-  for (const std::uint8_t byte : bytes)
-    for (int bit = 7; bit >= 0; --bit) {
-      const bool in = ((byte >> bit) & 1) != 0, out = (remainder >> 31U) != 0;
-      remainder <<= 1U;
-      if (in != out) remainder ^= 0x04C11DB7U;
-    }
-  return remainder;
-}
-
-void append_crc(Bytes& bytes) {
-  const std::uint32_t crc = long_division(bytes);
-  for (int shift = 24; shift >= 0; shift -= 8) bytes.push_back(static_cast<std::uint8_t>(crc >> shift));
-}
+// Section 5.5.7 of the datasheet: the CRC is of the bytes and of the dummy bytes behind them.
+void append_crc(Bytes& bytes) { append_crc32(bytes, 4); }
 
 TEST(Stim300, ADatagramPackedByHand) {
   DriverInstance driver = make_driver("stim300", {{"rate_hz", "1000"}});
