@@ -56,7 +56,7 @@ class Entrance {
       refuse(fault);
     return good_;
   }
-  // What came is no value.
+  // The reading is no value.
   void refuse(const ChannelFault& fault) { wanted_.table->refuse(wanted_.index, fault); }
   // Counted where something came that is no number; a file that is not there, or empty, has brought nothing.
   void miss(const ChannelFault& fault) {
@@ -285,7 +285,7 @@ void ChannelSources::start() {
     try {
       bus.transport->open({});
     } catch (const std::exception&) {
-      // read() goes on trying; until then the channel is stale, which is flagged.
+      // read() keeps trying; until then the channel is stale, which is flagged.
     }
     impl_->threads.emplace_back([group = &bus] { group->listen(); });
   }

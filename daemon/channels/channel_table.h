@@ -25,7 +25,7 @@ class ChannelTable {
     entry.time_ns.store(time_ns, std::memory_order_release);
     entry.fault.store({}, std::memory_order_relaxed);
   }
-  // What came is no value, or one that cannot be: the one before stays, and grows old.
+  // The reading is no value, or an impossible one: the last value is held and ages.
   void refuse(int channel, ChannelFault fault) noexcept {
     miss(channel, fault);
     refused_.fetch_add(1, std::memory_order_relaxed);

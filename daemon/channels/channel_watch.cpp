@@ -16,7 +16,7 @@
 namespace ifog {
 namespace {
 
-// A file that has been wrong for so long is told, whatever age is allowed; before a channel's first value
+// A file that has been wrong for so long is reported, whatever age is allowed; before a channel's first value
 // sooner, as a name may be mistyped.
 constexpr double kLasting_s = 10.0, kFirst_s = 2.0;
 
@@ -93,7 +93,7 @@ std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const
     const bool gone = never ? seen.faulty_s >= kFirst_s
                             : channel.source == ChannelConfig::Source::file && seen.faulty_s >= kLasting_s &&
                                   age_s > kLasting_s;
-    // What was told of a channel without a value stands until one comes.
+    // What was reported of a channel without a value stands until one arrives.
     const bool missing = old || awaited || gone || (never && seen.told);
     if (missing == seen.told) continue;
     seen.told = missing;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which channels of a sensor are without a new value, told once by name when it begins and once when it is
+// Which channels of a sensor are without a new value, reported once by name when it begins and once when it is
 // over. Housekeeping's, once a second.
 #pragma once
 

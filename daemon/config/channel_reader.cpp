@@ -16,7 +16,7 @@
 namespace ifog {
 namespace {
 
-// Channels become columns of captures, beside the time and the rates: a name that is one of those would stand
+// Channels become columns of captures, next to the time and the rates: a name that is one of those would stand
 // there twice, and what reads captures and models knows a channel's quantity by its unit.
 void check_name(TableReader& in, const std::string& name, const ReadingContext& context) {
   std::string axis;

@@ -88,7 +88,7 @@ RecordConfig read_record(const toml::table& table, const std::string& where, Rea
   take(in.number("file_s", {1.0, 1e6}), out.file_s);
   take(in.integer("buffer_bytes", 262'144, 1'000'000'000), out.buffer_bytes);
   // With fewer than four files, removing the oldest would remove most of what there is. A number that is
-  // wrong by itself was told.
+  // wrong by itself has been reported.
   if (context.errors.size() == told && out.bytes / 4 < out.file_bytes)
     in.complain(in.has("bytes") ? "bytes" : "file_bytes",
                 ": bytes = " + std::to_string(out.bytes) + " with file_bytes = " +

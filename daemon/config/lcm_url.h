@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether LCM can use a URL. LCM itself prints its own manual where it cannot, and goes on with what it takes
+// Whether LCM can use a URL. LCM itself prints its own manual where it cannot, and continues with what it takes
 // for a default where it does not understand an option.
 #pragma once
 

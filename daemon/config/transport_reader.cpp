@@ -26,7 +26,7 @@ SerialSettings read_serial(TableReader& in) {
   return out;
 }
 
-// What concerns more keys than one is found by the transport itself; a key that is wrong by itself was told.
+// What concerns more keys than one is found by the transport itself; a single wrong key has been reported before.
 void check_network(TableReader& in, const std::string& complaint, std::size_t told,
                    const ReadingContext& context) {
   if (complaint.empty() || context.errors.size() != told) return;

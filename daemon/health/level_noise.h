@@ -6,7 +6,7 @@
 // The state is one Gauss-Markov process a decade of time, from one block to 10 000, of equal variance, whose
 // sum has a spectrum of 1/f between (M. S. Keshner, Proc. IEEE 70, 1982), and a walk, whose start is
 // anybody's guess. A Kalman filter for each pair of a table of ratios to the white noise (level_filters.h);
-// the likelihood chooses, for as long as the sensor rests: what is learned in an hour is a guess beside what
+// the likelihood chooses, for as long as the sensor rests: what is learned in an hour is a guess compared with what
 // days show.
 #pragma once
 

@@ -39,7 +39,7 @@ struct RestSums {
     last_[a] = innovation_radps;
     last_known_[a] = true;
   }
-  // What comes next is no neighbour of what came.
+  // The next value is no neighbour of the last one.
   void break_off(std::size_t a) noexcept { last_known_[a] = false; }
 
  private:

@@ -100,7 +100,7 @@ void SensorWatch::take_block(Axis& axis, const RestSums::Axis& sums) {
   axis.skipped += std::max(1.0, std::round((resting + moved) / block_samples_));
   axis.at_block = sums;
   if (resting < kMostlyAtRest * (resting + moved) || !(pairs > 0.0) || !(square > 0.0)) return;
-  // A louder mean goes further by itself, which is no step.
+  // A noisier mean strays further by itself, which is no step.
   if (test_noise(axis, square, correlation, pairs)) return;
   test_level(axis, mean);
   axis.skipped = 0.0;

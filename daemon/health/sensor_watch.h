@@ -17,7 +17,7 @@
 // the last cannot be wrong. See sequential_tests.h and step_test.h.
 //
 // A sensor that is turned rests at another rate afterwards, as the Earth turns: the level then restarts.
-// One that is turned so slowly that it passes for rest is told as a step.
+// A sensor that turns so slowly that it passes for rest is reported as a step.
 #pragma once
 
 #include <cstddef>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether a level has stepped, by what a step leaves in the innovations of the filter that follows the level:
 // they are off by the step, and from block to block by less, as the filter takes its gain of it. Windows of
-// some lengths are looked at that end at the newest block, each weighted by that response, which is the
+// several lengths that end at the newest block are tested, each weighted by that response, which is the
 // likelihood ratio of a step at its beginning.
 //
 // Each length has its share of the false alarms, the longest nine tenths: it decides what is found within ten
@@ -20,7 +20,7 @@
 
 namespace ifog {
 
-// How often a block, on average, |z| is exceeded anew; s: 1 less the correlation of neighbours, in (0, 1]. z
+// How often a block, on average, a new excess of |z| begins; s: 1 less the correlation of neighbours, in (0, 1]. z
 // > 1.
 [[nodiscard]] double exceeded_per_block(double z, double s);
 
@@ -39,7 +39,7 @@ class StepTest {
   // The least share of false alarms that something since restart() would have been one of: 1 or less is an
   // alarm.
   [[nodiscard]] double nearest() const noexcept { return nearest_; }
-  // What begins now has nothing to do with what came; what sums vary by stays known.
+  // What begins now has nothing to do with what was before; the variance of sums stays known.
   void restart() noexcept;
   // Nor does what sums vary by.
   void forget() noexcept;

@@ -332,7 +332,7 @@ int Housekeeping::run() {
       log_->info("stopping on {}", signal == SIGTERM ? "SIGTERM" : "SIGINT");
       break;
     }
-    // Within the tick, which goes on to its status and its sign of life; the first at once, a flood of them
+    // Within the tick, which continues to its status and its sign of life; the first at once, a flood of them
     // as one a second.
     reload_asked = mark_.serve() || reload_asked;
     if (reload_asked && monotonic_ns() - reloaded_ns >= kReloadEvery_ns) {

@@ -35,7 +35,7 @@ int priority(spdlog::level::level_enum level) {
   }
 }
 
-// spdlog's own systemd sink carries no fields beside its own; `journalctl IFOG_SENSOR=x` needs one.
+// spdlog's own systemd sink carries no fields besides its own; `journalctl IFOG_SENSOR=x` needs one.
 class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {

@@ -51,7 +51,7 @@ Housekeeping::Renewed Housekeeping::renew(Sensor& sensor, const SensorConfig& fr
   ChainSettings settings =
       sensor_chain_settings(out.config, sensor.parts.pipeline->reader().driver().description(), model);
   out.choice = chain_choice(out.config, model.get());
-  // What is as it was goes on: its filter has learned the noise and found the rate.
+  // A sensor that is configured as before continues: its filter has learned the noise and found the rate.
   if (out.choice == sensor.parts.choice) return out;
   settings.learned = sensor.snapshot.learned ? sensor.snapshot.learned : sensor.parts.noise.recalled();
   settings.powered_ns = powered_ns(out.config);

@@ -87,7 +87,7 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
   return status_t::STATE_RUNNING;
 }
 
-// As the reader has it now, whether the filter answers or not. What came again is none.
+// As the reader has it now, whether the filter answers or not. A repeated frame is no sample.
 void StatusReport::look_for_samples(const ReaderCounters& reader) {
   const std::uint64_t taken = reader.samples.value(), decoded = taken + reader.repeated.value();
   const bool came = std::exchange(decoded_, decoded) != decoded;

@@ -7,7 +7,7 @@
 namespace ifog {
 namespace {
 
-// Between two looks for room, by a producer that is allowed to wait: short beside a ring of increments.
+// Between two looks for room, by a producer that is allowed to wait: short compared with a ring of increments.
 constexpr auto kPause = std::chrono::microseconds(50);
 
 }  // namespace

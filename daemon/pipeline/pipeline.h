@@ -37,7 +37,7 @@ class Pipeline {
   ~Pipeline();  // stops
 
   // Sends the driver's opening bytes. Throws std::runtime_error as Transport::open; start() may follow all
-  // the same: the reader goes on trying.
+  // the same: the reader keeps trying.
   void open();
   // Starts both threads; returns what of their real-time settings could not be had, "" for nothing. Throws
   // std::system_error when the system has no thread left; nothing runs then.

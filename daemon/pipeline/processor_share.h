@@ -69,7 +69,7 @@ class ProcessorShare {
       started_ = true;
       used_ns_ = used;
     }
-    // No longer than others may ask for: of a thread that was held up since, now_ns is some time ago.
+    // No longer than others may ask for: where the thread was delayed since, now_ns is some time ago.
     if (shared_ != nullptr && takes_much_)
       rest = std::max(rest, std::min(shared_->quiet_until_ns() - now_ns, SharedProcessors::kWindow_ns));
     if (ends) begin_ns_ = now_ns + rest;

@@ -193,7 +193,7 @@ void Reader::run() noexcept {
   while (turn(queue_.has_waiting() ? kImpatientTurn : kTurn)) {
   }
   transport_->close_books();
-  // The bytes of a frame that never came to its end count as passed over.
+  // The bytes of a frame that never ended count as skipped.
   const std::uint64_t skipped = driver_.counters().bytes_skipped;
   driver_.reset();
   if (!transport_->stopped()) counters_.bytes_at_end.set(driver_.counters().bytes_skipped - skipped);

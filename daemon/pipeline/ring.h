@@ -5,7 +5,7 @@
 // queues that hand values over copy it twice. Each side keeps a copy of the other's index on its own cache
 // line and looks at the shared one only when the copy says full or empty, so that the cores exchange the
 // slots and the line of the index that moved, and not both indices at every slot. tests/bench/ring measures
-// it beside Boost.Lockfree and moodycamel's ReaderWriterQueue.
+// it with Boost.Lockfree and moodycamel's ReaderWriterQueue.
 //
 // Full means full: claim() returns null and the caller decides (see IncrementQueue, which merges).
 #pragma once

@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kHead = sizeof(FlightEntryHead);
 constexpr std::size_t kFrameHead = 6;  // u32 id, u8 flags, u8 length
-// Beside FlightFlag, on the tape only.
+// In addition to FlightFlag, on the tape only.
 constexpr std::uint8_t kBeginsDelivery = 128;
-// A recorder that was last seen at work so long ago is held up by its disk.
+// A recorder that has not worked for so long is blocked by its disk.
 constexpr std::int64_t kAtWork_ns = 1'000'000'000;
 
 std::size_t bytes_of(const Delivery& delivery) noexcept {

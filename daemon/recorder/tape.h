@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From the reader thread to the recorder thread: entries of a flight recording in a bounded queue of bytes
 // that is allocated once. The reader only copies; where there is no room the delivery is not recorded, which
-// is counted here and told in the recording itself.
+// is counted here and stated in the recording itself.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ class Tape {
   static constexpr std::size_t kLeastBytes = 1U << 18U;
   explicit Tape(std::size_t bytes);
 
-  // Reader thread; allocates nothing, waits for nothing. `read_ns` is when it was read, for what came at no
+  // Reader thread; allocates nothing, waits for nothing. `read_ns` is when it was read, for what arrived at no
   // known time; `channels` and `wall_shift_ns` are what it was decoded with, `merged` the samples of the run
   // that have gone into others up to and with it (IncrementQueue::merged()): recorded where they have
   // changed.

@@ -7,7 +7,7 @@
 //
 // Real files hold slips, most of them in parts that nobody reads. So a line that cannot be read is a warning
 // and takes along only what stands on it; a signal that such a line makes doubtful stays in the list, marked,
-// and whoever picks it is told the line.
+// and whoever picks it gets the line.
 #pragma once
 
 #include <cstddef>

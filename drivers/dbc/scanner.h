@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Words, numbers, strings and signs of a DBC file, with the line each stands on. `//` to the end of the line
-// is passed over like blanks.
+// is skipped like blanks.
 #pragma once
 
 #include <cstddef>

@@ -83,7 +83,7 @@ std::string FlightArchive::complaint() const {
 }
 
 void FlightArchive::set_header(FlightHeader header) {
-  // The checksums of the file in work go on with its own until it ends.
+  // The file in work keeps its own chain of checksums until it ends.
   next_header_ = std::move(header);
 }
 

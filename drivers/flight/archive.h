@@ -33,7 +33,7 @@ struct ArchiveLimits {
   std::int64_t flush_ns = 500'000'000;
 };
 
-// What came and will be in no recording.
+// What was received and will be in no recording.
 struct FlightLoss {
   std::uint64_t deliveries = 0, bytes = 0;
 

@@ -93,7 +93,7 @@ void FlightReader::finish_file(bool another_run) {
 
 FlightReader::Item FlightReader::begin_file() {
   FlightHeader fresh = parse_header(content_);
-  // The next file of the same run goes on in the middle of a frame.
+  // The next file of the same run continues in the middle of a frame.
   const bool goes_on =
       in_file_ && closed_ && whole_ && fresh.run == header_.run && fresh.number == header_.number + 1;
   const bool first = !in_file_;
@@ -119,7 +119,7 @@ FlightReader::Item FlightReader::begin_file() {
   return Item::hole;
 }
 
-// A data block becomes entries, an end is held against what came.
+// A data block becomes entries, an end is compared with what was read.
 void FlightReader::take_block() {
   drop(block_.size());
   if (block_.type == BlockType::data) {

@@ -43,7 +43,7 @@ struct FlightHeader {
   bool operator==(const FlightHeader&) const = default;
 };
 
-// The payload of a header block, and back. Unknown keys are passed over: a later version may say more.
+// The payload of a header block, and back. Unknown keys are ignored: a later version may say more.
 std::vector<std::uint8_t> header_payload(const FlightHeader& header);
 // Throws std::runtime_error with what is wrong with it, without the file's name: another version of the
 // format, a line that is none.

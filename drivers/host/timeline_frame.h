@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a driver's sample its place in time is told by.
+// The part of a driver's sample that determines its time.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Two devices on one line or bus: each counts for itself, so the sequence runs to and fro between two counts
-// that each go on by one. Neither can be chosen.
+// that each grow by one. Neither can be chosen.
 #pragma once
 
 #include <algorithm>

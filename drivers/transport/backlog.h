@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether the time of reading is a time of arrival.
 //
-// A process that was held up (stopped, starved, asleep with its machine) finds all that came meanwhile at
+// A process that was delayed (stopped, starved, asleep with its machine) finds all that arrived meanwhile at
 // once. Taking the time of reading for the time of arrival would make a silence of what was only read late,
 // and lost samples of those still to come. So from a read that was left or entered late until all that had
 // piled up is through, arrival times are not known.

@@ -129,7 +129,7 @@ int CanTransport::receive_batch(int flags) noexcept {
   return n;
 }
 
-// Beside a frame the kernel says what it had no room for until then; after the last one it must be asked.
+// With a frame the kernel says what it had no room for until then; after the last one it must be asked.
 void CanTransport::count_losses() noexcept {
   std::array<std::uint32_t, SK_MEMINFO_VARS> info{};
   socklen_t size = sizeof info;

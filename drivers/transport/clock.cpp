@@ -10,7 +10,7 @@
 namespace ifog {
 namespace {
 
-// Two clocks read one after the other differ by as long as the thread was held up in between.
+// Two clocks read one after the other differ by as long as the thread was delayed in between.
 constexpr std::int64_t kSame_ns = 50'000;
 constexpr int kTries = 5;
 
@@ -25,9 +25,9 @@ constexpr std::int64_t kSlews = 8;
 constexpr std::int64_t kShortestSleep_ns = 1'000'000;
 constexpr std::int64_t kLook_ns = 1'000'000'000;
 
-// Time that the machine has slept since it was switched on: looked at where CLOCK_BOOTTIME has run ahead of
+// Time that the machine has slept since it was switched on: read where CLOCK_BOOTTIME has run ahead of
 // the crystal by more than slewing can make of the time between. Both ends of the interval are known to be
-// right, however long the thread was held up between two readings.
+// right, however long the thread was delayed between two readings.
 class TimeAsleep {
  public:
   std::int64_t at(std::int64_t raw_ns) noexcept {
@@ -66,7 +66,7 @@ std::int64_t unslewed_ns() noexcept {
   return raw_ns + asleep.at(raw_ns);
 }
 
-// Wall clock less the unslewed one, of a few tries the one that was held up least, and how far off it may be.
+// Wall clock less the unslewed one, of a few tries the one with the least delay, and how far off it may be.
 struct WallLess {
   std::int64_t ns, doubt_ns;
 };

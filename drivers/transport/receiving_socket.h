@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a socket that receives is asked for (room, arrival times, a count of what was dropped), and what the
-// kernel then says beside each packet. For CAN, UDP and TCP alike.
+// kernel then says with each packet. For CAN, UDP and TCP alike.
 #pragma once
 
 #include <sys/socket.h>
@@ -32,10 +32,10 @@ ReceiveControl receive_control(const msghdr& message) noexcept;
 // Room for what waits to be read, as the kernel counts it. What net.core.rmem_max forbids needs
 // CAP_NET_ADMIN; less than `wanted` is added to `warning`. `name` is the device's, for that.
 void ask_for_room(int fd, std::size_t wanted, const std::string& name, std::string& warning);
-// The kernel's time of arrival beside each packet (SO_TIMESTAMPING, software; else SO_TIMESTAMPNS); none is
+// The kernel's time of arrival with each packet (SO_TIMESTAMPING, software; else SO_TIMESTAMPNS); none is
 // added to `warning`.
 void ask_for_times(int fd, const std::string& name, std::string& warning);
-// Beside each packet, how many before it found no room (SO_RXQ_OVFL).
+// With each packet, how many before it found no room (SO_RXQ_OVFL).
 void ask_for_drops(int fd) noexcept;
 
 }  // namespace ifog

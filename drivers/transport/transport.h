@@ -89,7 +89,7 @@ class Transport {
   Transport& operator=(const Transport&) = delete;
 
   // `opening` is sent each time the device opens. Throws OpenError. The transport is then `gone`: whoever
-  // wants to wait for a device that is not there yet goes on to read().
+  // wants to wait for a device that is absent continues with read().
   void open(std::span<const std::uint8_t> opening);
 
   // Waits until something arrives, `timeout` has passed or stop() is called, and returns what is there, empty
@@ -142,7 +142,7 @@ class Transport {
   // answer.
   Wake wait(int fd, short events, std::int64_t until_ns, short& happened) noexcept;
 
-  // What came of a system call that reads.
+  // The outcome of a system call that reads.
   struct Received {
     Wake wake = Wake::ready;
     ssize_t n = 0;       // what it returned
@@ -151,7 +151,7 @@ class Transport {
   };
   // Reads `fd` once by `call(bool may_wait)` when something is there: until `until_ns`, and until stop(). A
   // descriptor that blocks costs a single system call, for the waiting and the reading: `call` then waits
-  // where it is told that it may, and is interrupted by the thread's alarm. Another one is polled first.
+  // where it may, and is interrupted by the thread's alarm. Another one is polled first.
   template <typename Call>
   Received receive_by(int fd, bool blocks, std::int64_t until_ns, Call&& call) noexcept {
     Received got;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the measured Allan deviation itself allows of a noise term. Terms are found in the spectrum, of which
-// bands may be left out; the variance of a term is made of all of them. A term that by itself is more than
-// the variance that was measured is not there, however well it describes the bands that were looked at.
+// bands may be dropped; the variance of a term is made of all of them. A term that by itself is more than
+// the variance that was measured is not there, however well it describes the bands that were used.
 #pragma once
 
 #include <vector>

@@ -79,7 +79,7 @@ double second_difference(const Streams& x, std::size_t i, std::size_t from) {
   return (x[from + 2][i] - x[from + 1][i]) - (x[from + 1][i] - x[from][i]);
 }
 
-// The sum starts anew in every block, so that rounding cannot pile up along the record. x needs n + 3m − 1
+// The sum starts again in every block, so that rounding cannot pile up along the record. x needs n + 3m − 1
 // angles.
 double modified_block(const double* x, std::size_t m, std::size_t n) {
   const Streams at{x, x + m, x + 2 * m, x + 3 * m};

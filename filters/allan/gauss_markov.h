@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rate random walk that returns: exponentially correlated (first-order Gauss-Markov) noise, IEEE Std 952
 // annex C. At times short against its correlation time it is a random walk of the same K; its deviation is
-// highest at 1.89 correlation times and falls beyond as white noise's does, where the walk's would go on
+// highest at 1.89 correlation times and falls beyond as white noise's does, where the walk's would continue
 // rising.
 //
 // Found by the likelihood of noise_likelihood.h with the walk's column exchanged for its own: against all

@@ -328,7 +328,7 @@ Fitted fit_terms(const AngleSum& sum, const NoiseSpectrum& measured, double peri
     if (refuted.none()) return fit;
     if (!first) first = Fitted{fit.record, fit.allowed, found.variances};
     if (refuted == fit.allowed) {
-      // Nothing is left to describe it by: what came nearest says how far estimates scatter.
+      // Nothing is left to describe it by: the nearest description says how far estimates scatter.
       found.variances = first->variances;
       return *first;
     }

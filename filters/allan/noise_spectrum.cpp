@@ -95,7 +95,7 @@ class Segment {
       for (auto& s : spectrum) s = std::norm(s);
       fft_.inv(correlation, spectrum);
       for (int level = 0; level < kLevels; ++level) {
-        // Above the lowest, low frequencies only are looked at.
+        // Above the lowest, only low frequencies are used.
         if (level > 0 && static_cast<double>(k) > kTopOfLevel * static_cast<double>(size_)) break;
         const std::span<const TermVariances> covariance = level_covariance(level);
         TermVariances& expected = expected_[static_cast<std::size_t>(level)][k];

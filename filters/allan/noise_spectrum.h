@@ -10,7 +10,7 @@
 //     that is exact, so that what happens once in a record counts for once.
 //
 // Unlike a difference variance a bin is narrow: a line or a resonance spoils a few bins, which are seen to
-// stand out from their neighbours and left out.
+// stand out from their neighbours, and dropped.
 #pragma once
 
 #include <Eigen/Dense>
@@ -57,7 +57,7 @@ inline constexpr std::size_t kShortestStretch = 64;  // samples; shorter ones sa
 [[nodiscard]] NoiseSpectrum noise_spectrum(const AngleSum& sum);
 
 // Marks bins that stand out of their neighbours on both sides by more than chance does once in a million, and
-// those beside them, as not used; fills `lines`.
+// those next to them, as not used; fills `lines`.
 void leave_out_lines(NoiseSpectrum& spectrum);
 
 }  // namespace ifog

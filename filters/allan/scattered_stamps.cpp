@@ -16,7 +16,7 @@ constexpr double kHalf = 0.5;         // of a period
 // A tracker of second order, critically damped: settled within a hundred samples, and with an error of a
 // twenty-fifth of a period by stamps that are off by up to half of one.
 constexpr double kPhaseGain = 1.0 / 32.0, kRateGain = kPhaseGain * kPhaseGain / 4.0;
-// Behind a silence of so many periods the device may have begun anew, at any phase.
+// Behind a silence of so many periods the device may have restarted, at any phase.
 constexpr std::size_t kSilence = 8;
 constexpr double kMostLost = 1e15;
 

@@ -23,7 +23,7 @@ struct SampleClock {
   std::size_t gaps = 0;         // steps over which samples are missing
   std::size_t missing = 0;      // so many
   double scatter = 0.0;  // deviation of a stamp, in periods, by the steps' median distance from period_s
-  // The stamps are off by more than steps of an even clock are told by: when a sample was taken its number
+  // The stamps are off by more than distinguishes steps of an even clock: when a sample was taken its number
   // says better.
   [[nodiscard]] bool scatters() const { return scatter >= 0.1; }
   std::size_t first_gap = 0;  // index of the sample before the first gap; meaningful when gaps > 0

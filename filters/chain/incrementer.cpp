@@ -173,7 +173,7 @@ bool Incrementer::wall_was_set(const Reading& reading) const noexcept {
   return by_ns > kLeast_ns + since_ns / kSlews;
 }
 
-// Whether the line of labels is to begin anew at this arrival: nothing comes before it was taken, and what
+// Whether the line of labels is to restart at this arrival: nothing arrives before it was taken, and what
 // stays late is not delayed any more. A single stamp that is early or late moves no label.
 bool Incrementer::apart(double late_s, std::int64_t arrival_ns) noexcept {
   const double usual_s = std::max(kApart_s, kScatters * clock_.spread_s());

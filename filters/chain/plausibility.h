@@ -75,7 +75,7 @@ class PlausibleRate {
 };
 
 // An angle since power-up, turned into what was turned since the last good one. An angle that cannot have
-// been reached from there is passed over, so that a single bad one costs nothing. When the next one continues
+// been reached from there is dropped, so that a single bad one costs nothing. When the next one continues
 // it, the device has a new origin: the turn between the two origins is unknown, and is in nobody's sum.
 class PlausibleAngle {
  public:
@@ -113,7 +113,7 @@ class PlausibleAngle {
     suspect_since_s_ = 0.0;
     return verdict;
   }
-  // The device started anew: its angle counts from another origin.
+  // The device restarted: its angle counts from another origin.
   void forget() noexcept { known_ = suspected_ = false; }
   // Samples are missing before the next one.
   void miss() noexcept { missed_ = true; }

@@ -78,7 +78,7 @@ enum IncrementFlags : std::uint32_t {
   kBeyondStated = 64,    // a value is beyond the range that the format's description states; it is kept
 };
 
-// The angle turned over one step, and what came with it.
+// The angle turned over one step, and what was measured with it.
 struct Increment {
   std::int64_t utime_ns = 0;         // fitted time of the sample, time of day, ns since the epoch
   std::int64_t arrival_ns = 0;       // as in Reading

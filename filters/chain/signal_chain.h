@@ -4,7 +4,7 @@
 // bits in both.
 //
 // What a model file or a setting can change is in ChainParts, built outside the hot path and swapped in
-// between two samples; the angle lives in SignalChain and goes on exactly.
+// between two samples; the angle lives in SignalChain and continues exactly.
 #pragma once
 
 #include <array>
@@ -91,12 +91,12 @@ class ChainParts {
   [[nodiscard]] const FilterSettings& filter() const { return filter_; }
   // Each axis's own noises over filter()'s; where the driving one is unknown, as its noise.
   [[nodiscard]] const AxisShares& shares() const { return shares_; }
-  // Nobody told the driving noise: it is learned.
+  // The driving noise is not configured: it is learned.
   [[nodiscard]] bool learns_walk() const { return learns_process_noise_; }
   [[nodiscard]] bool noise_known() const { return estimator_ != nullptr; }
   // Effects of the model that cannot be corrected here, in words.
   [[nodiscard]] std::vector<std::string> left_out() const;
-  // What is worth keeping for the next start; nothing where the noise is told, or not known yet.
+  // What is worth keeping for the next start; nothing where the noise is configured, or not known yet.
   [[nodiscard]] std::optional<LearnedNoise> learned() const noexcept;
   // Null during start-up.
   [[nodiscard]] const EstimatorHealth* health() const { return estimator_ ? &estimator_->health() : nullptr; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single figures of a comparison, each a function of plain series. NaN entries are passed over.
+// Single figures of a comparison, each a function of plain series. NaN entries are ignored.
 #pragma once
 
 #include <optional>

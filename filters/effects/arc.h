@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An angle of which the fit saw a part of the circle: what repeats with it goes on within that arc, whatever
+// An angle of which the fit saw a part of the circle: what repeats with it is extrapolated within that arc, whatever
 // the wraps, and is held at its nearer end elsewhere, for the rest of the circle was a guess.
 #pragma once
 

@@ -55,7 +55,7 @@ class Compensator {
  public:
   // `axes` as in the capture: "x", "y", "z", or one "". An effect without an axis applies to every axis.
   // since_power_up_s: of the sensor at the first sample. A sensor that has long been warm has no warm-up
-  // left, and nothing in its samples tells in time, so without it a warm_up is left out. Throws
+  // left, and its samples do not tell in time, so without it a warm_up is dropped. Throws
   // std::invalid_argument naming the effect and what is wrong with it.
   Compensator(const Model& model, const std::vector<std::string>& axes,
               double stale_after_s = std::numeric_limits<double>::infinity(),
@@ -73,7 +73,7 @@ class Compensator {
   void step(const CompensatorInput& in, CompensatorOutput& out) noexcept;
   void restart() noexcept;
 
-  // After a reload: channels and the shapes that both models share go on where the previous compensator is,
+  // After a reload: channels and the shapes that both models share continue where the previous compensator is,
   // so that a new model makes no transient of its own.
   void take_over(const Compensator& previous) noexcept;
 

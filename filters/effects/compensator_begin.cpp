@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a compensator is made of a model, begins, begins anew, and goes on with what one before it has held.
+// How a compensator is made of a model, begins, restarts, and continues with the state of the one before it.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -191,7 +191,7 @@ void Compensator::add_factor(Term& term, ShapeSettings settings, const std::stri
       factor.turn = turn_of(channel, factor.shape.settings().period);
   }
   term.of_rate |= rate;
-  // What goes on in time, or judges each reading of a difference, is worked out at each step.
+  // What depends on time, or judges each reading of a difference, is computed at each step.
   if (!rate) {
     const bool of_value = factor.channel != kNone && factor.less == kNone && !factor.shape.has_state();
     term.needs |= of_value ? set_of(factor.channel) : kAlways;

@@ -19,7 +19,7 @@
 //   rate_ramp     t
 //   warm_up       exp(-t/tau)
 //   rebuilt_ramp  a closed loop's feedback ramp, its phase rebuilt from the angle turned; see ramp_tracker.h
-//   bias          1, known where a reference rate stood beside
+//   bias          1, known where there was a reference rate
 // earth_rate is the Earth's rate turning into a tilting gyro's axis; on one heading it is linear in
 // acceleration. gauss_markov, outliers, noise_change, quantisation say what the noise is; there is nothing to
 // subtract.
@@ -74,7 +74,7 @@ std::string_view name_of(Form form);
 [[nodiscard]] bool is_of_time(Form form);       // a function of time alone that is subtracted
 
 // False for what happened once in a record, or has a phase that the next record does not share: it is
-// reported and removed from that record, and left out online. So is a dead zone: what the sensor did not see
+// reported and removed from that record, and not applied online. So is a dead zone: what the sensor did not see
 // nobody can give back. A warm-up's origin is power-up, so it is corrected where that is known. Of a ramp in
 // time the slope carries over, and where it began is a part of the bias.
 [[nodiscard]] bool carries_over(Form form);

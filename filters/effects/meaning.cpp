@@ -235,7 +235,7 @@ Motion motion_of(std::string_view channel) {
   if (kind == ChannelKind::kAcceleration || in({"_mg", "_ug"})) return Motion::kAcceleration;
   if (kind != ChannelKind::kOther) return Motion::kNone;
   if (in({"_radps", "_degps", "_dps"})) return Motion::kRate;
-  // Machines beside a gyro at rest turn as well, and air and water go past.
+  // Machines near a gyro at rest turn as well, and air and water go past.
   if (in({"_rpm"}))
     return any({"motor", "wheel", "drive", "axle", "shaft", "servo", "gimbal", "mount", "winch"})
                ? Motion::kRate

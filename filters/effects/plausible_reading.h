@@ -49,7 +49,7 @@ class PlausibleReading {
   [[nodiscard]] bool leaps(double value, double outside, double span) const noexcept {
     if (outside > kFar * span) return true;
     if (!seen_) return false;
-    // Within a span of it a correction goes on.
+    // Within a span of it a correction is extrapolated.
     return moves_ >= kMoves && outside > span && largest_ <= kSlow * span &&
            std::abs(value - last_) > std::max(kLeap * span, kLeapOfMoves * largest_);
   }

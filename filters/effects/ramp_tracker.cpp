@@ -151,7 +151,7 @@ void RampTracker::build_tables() {
     }
   }
   wide_.set(exact, kSteps / kCells);
-  // Eight phases to the shortest wave of the table: closer ones cannot be told apart, and 64 of them span
+  // Eight phases to the shortest wave of the table: closer ones cannot be distinguished, and 64 of them span
   // four of its waves to either side.
   const std::size_t apart = std::bit_floor(kSteps / (8 * std::max<std::size_t>(parts.size() / 2, 1)));
   near_by_.set(exact, std::clamp<std::size_t>(apart, 1, kSteps / kNear));

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a model goes on outside the range it was fitted on.
+// How far a model is extrapolated outside the range it was fitted on.
 //
 // Holding a well-known linear effect at the edge leaves the whole of what the channel does beyond it, so
-// polynomial forms go on: linear as they are, higher ones by their tangent (curve_reach.h), for as much again
+// polynomial forms are extrapolated: linear as they are, higher ones by their tangent (curve_reach.h), for as much again
 // as the range is wide. Beyond that, and for what is only known where it was looked up, the value is held.
 // What goes with the sensor's motion fades instead: what was fitted while it stood says nothing of a ride.
 #pragma once
@@ -29,7 +29,7 @@ struct Reach {
   Reach reach;
   reach.edge = std::clamp(value, range.low, range.high);
   reach.span = range.high - range.low;
-  // A channel that did not move in the fit has taught nothing to go on with, and one without a range has no
+  // A channel that did not move in the fit has taught nothing to extrapolate, and one without a range has no
   // edge.
   const double more = std::isfinite(reach.span) ? reach.span : 0.0;
   reach.value = std::clamp(value, reach.edge - more, reach.edge + more);

@@ -28,7 +28,7 @@ struct ShapeSettings {
   double period = 0.0;                   // lookup (0: not periodic), cosine, sine
   double half_width = 0.0;               // dead_zone, transition; of a power above one its curve_reach
   bool angle = false;
-  // cosine, sine: of no angle, as a fringe of a temperature. A law that goes on, as a polynomial does.
+  // cosine, sine: of no angle, as a fringe of a temperature. A law without a period continues as a polynomial does.
   bool fringe = false;
   double elapsed_s = 0.0;  // warm_up: since power-up at the first sample
 };
@@ -78,7 +78,7 @@ class Shape {
   [[nodiscard]] const ShapeSettings& settings() const noexcept { return settings_; }
   // A step leaves something for the next: of the channel's past, or of time.
   [[nodiscard]] bool has_state() const noexcept { return has_state_; }
-  // The same shape of another compensator goes on where that one is. False when it is not the same shape.
+  // The same shape of another compensator continues where that one is. False when it is not the same shape.
   bool take_over(const Shape& previous) noexcept;
 
  private:

@@ -12,7 +12,7 @@ using Values = ParameterRule::Values;
 constexpr ParameterRule kCoefficient{"coefficient", true, Values::kAny};
 // 0: not smoothed.
 constexpr ParameterRule kBandwidth{"bandwidth_s", true, Values::kNotNegative};
-// How far a power is followed beyond its range before its tangent goes on (filters/effects/curve_reach.h).
+// How far a power is followed beyond its range before its tangent takes over (filters/effects/curve_reach.h).
 constexpr ParameterRule kCurve{"curve_reach", false, Values::kNotNegative};
 constexpr ParameterRule kRmsOfTable{"angle_rms", false, Values::kNotNegative};
 

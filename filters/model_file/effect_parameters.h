@@ -28,7 +28,7 @@ const FormRules* rules_of_form(std::string_view form);
 
 // Whether an effect of this form is of a channel, without which nothing can be subtracted.
 [[nodiscard]] bool is_of_channel(std::string_view form);
-// Which a product can be with, beside its own channel.
+// What a product can be with, besides its own channel.
 const std::vector<std::string_view>& forms_of_product();
 
 // Parameters of an effect; a product has its second form's besides its coefficient.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model beside the axes of the sensor, or the capture, that it is to correct.
+// A model compared with the axes of the sensor, or the capture, that it is to correct.
 #pragma once
 
 #include <optional>

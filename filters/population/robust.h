@@ -15,7 +15,7 @@ struct RobustSpread {
   double sigma = 0.0;  // 1.4826 times the median distance from it: a normal distribution's deviation
 };
 
-// NaNs are passed over. Nothing finite: zeros.
+// NaNs are ignored. Nothing finite: zeros.
 RobustSpread robust_spread(std::span<const double> values);
 
 // Distance from the median over what a member's distance may be: the population's sigma, and where its own

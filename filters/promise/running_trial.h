@@ -23,7 +23,7 @@ class RunningTrial {
   explicit RunningTrial(std::size_t axes) : means_(axes) {}
 
   // One sample: rates by axis as measured and as corrected, rad/s; NaN: missing. A time before the first is
-  // left out.
+  // dropped.
   void add(double time_s, std::span<const double> before_radps, std::span<const double> after_radps);
   // Nothing where the correction does not move, the sensor turned, or rested for fewer than 100 of the
   // stretches: a rotation that goes along with what is corrected would be taken for it.

@@ -5,7 +5,7 @@
 // Control 2, 1982, section 10.8).
 //
 // They do not fade besides. At rest a neighbour in the bank loses about a quarter of its gain a sample in
-// log-likelihood, and a memory that is short beside its lag cannot tell it from the right one: forgetting in
+// log-likelihood, and a memory that is short compared with its lag cannot tell it from the right one: forgetting in
 // 50 samples took noise for motion at Q/R = 3e-7, with 2.6 times the RMSE of the right filter against 1.01
 // without. After a change the bound limits what there is to catch up, as in Page's test.
 #include <algorithm>

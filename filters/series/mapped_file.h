@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files without a name that are looked at as memory. What of them is in memory is the kernel's to take away
+// Files without a name that are mapped into memory. What of them is in memory is the kernel's to take away
 // again; so that it also counts little where nobody else wants it, a thread gives pages back when more than
 // kMostResident of the files are in the program's memory at once. They stay in the kernel's cache while
 // there is room in it, and are read again from the file where not.
@@ -30,7 +30,7 @@ void unmap_new_file(void* at, std::size_t bytes) noexcept;
 void write_new_file(void* to, const void* from, std::size_t bytes);
 // Likewise, `from` being in such memory.
 void read_new_file(void* to, const void* from, std::size_t bytes);
-// The first bytes of a file that is there, to read. The file may be closed afterwards. Throws likewise.
+// The first bytes of an existing file, to read. The file may be closed afterwards. Throws likewise.
 [[nodiscard]] const void* map_file(const UnnamedFile& file, std::size_t bytes);
 // What that gave.
 void unmap_file(const void* at, std::size_t bytes) noexcept;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers in order that are looked at in pieces, wherever they are: in memory, or in a file because there are
+// Numbers in order that are read in pieces, wherever they are: in memory, or in a file because there are
 // more of them than memory is for. What is written against it gives the same figures for both.
 #pragma once
 
@@ -41,7 +41,7 @@ class SeriesView {
   std::size_t size_ = 0;
 };
 
-// How many are looked at together: they stay in the second-level cache.
+// How many are read together: they stay in the second-level cache.
 inline constexpr std::size_t kSeriesPiece = std::size_t{1} << 14U;
 
 // use(piece, index of its first) for all of [begin, end) in order.

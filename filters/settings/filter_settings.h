@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sensor's filter is told: state model, noise, adaptation rule. Read from [sensor.filter] of the
+// What a sensor's filter is given: state model, noise, adaptation rule. Read from [sensor.filter] of the
 // daemon's configuration, from [filter] of a model file and from the command line by one table,
 // filter_table.h, which also says what each of these may be.
 #pragma once
@@ -23,7 +23,7 @@ struct FilterSettings {
   std::vector<double> state_parameters;
 
   int window = 50;  // N of IRWE, IAE, RAE
-  // What is louder than the known noise: "motion", which is followed, or "noise", which is smoothed.
+  // What exceeds the known noise: "motion", which is followed, or "noise", which is smoothed.
   std::string wideband = "motion";
   std::string weights = "kept";   // "kept" | "fresh" | "uniform"
   int draws = 1;                  // B: average of this many weight draws

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one table of what a filter can be told: [sensor.filter] of the daemon's configuration, [filter] of a
+// The one table of what a filter can be given: [sensor.filter] of the daemon's configuration, [filter] of a
 // model file and the options of the command line are read by it, and the estimator holds its settings to it,
 // so that no two of them can differ. To add a setting: a member of FilterSettings and of FilterChoice, and a
 // row here.

@@ -39,7 +39,7 @@ class StateModel {
   // h: what the sensor measures, without its white noise, is h'x.
   [[nodiscard]] virtual Eigen::VectorXd measurement() const = 0;
   // The part of h that is the sensor's rate, level and manoeuvre, and is published. In a sum the terms that
-  // carry the level; what stands beside them (a colour, a line, tuned at rest) is noise: the filter has to
+  // carry the level; the other states (a colour, a line, tuned at rest) are noise: the filter has to
   // know it, nobody wants to see it.
   [[nodiscard]] virtual Eigen::VectorXd rate() const { return measurement(); }
   // The direction in which the state moves when the rate changes by one; h'level = 1. Used to follow a

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A state model whose noise and parameters are open: the map between what an optimiser moves freely and what
-// a filter is told.
+// a filter is given.
 //
 // Every candidate has a random walk for the level. A gyro's bias is not zero, and a stationary model alone
 // would pull the denoised rate towards zero; where the level does not wander its driving noise goes to the
@@ -22,7 +22,7 @@ namespace ifog {
 class Candidate {
  public:
   // "random-walk", then any of gauss-markov, ar(p), arma(p,q) with q < p, and harmonic, added with " + ". An
-  // ARMA(p,q) with q >= p plus white measurement noise is an ARMA(p,q) again, so its R could not be told from
+  // ARMA(p,q) with q >= p plus white measurement noise is an ARMA(p,q) again, so its R could not be distinguished from
   // the data. Throws std::invalid_argument for another name and for more states than a filter has.
   Candidate(std::string state, double period_s);
 
@@ -39,7 +39,7 @@ class Candidate {
   [[nodiscard]] const std::vector<std::size_t>& line_variances() const { return line_variances_; }
   // A start that the spectrum allows, drawn at random.
   [[nodiscard]] std::vector<double> draw(const Spectrum& spectrum, std::mt19937_64& random) const;
-  // Expected density at each of the spectrum's bins, lines left out as they are there.
+  // Expected density at each of the spectrum's bins, without the lines, as in the spectrum.
   void density(std::span<const double> theta, const Spectrum& spectrum, std::span<double> out) const;
   // Settings for data in rad/s whose scale (one unit of the normalised data) is `scale`.
   [[nodiscard]] FilterSettings settings(std::span<const double> theta, double scale) const;

@@ -35,7 +35,7 @@ std::vector<double> tapered_power(const std::vector<std::vector<double>>& axes) 
   return power;
 }
 
-// The bin that stands highest above the noise beside it.
+// The bin that stands highest above the noise next to it.
 std::size_t highest(const std::vector<double>& power) {
   std::size_t best = std::min(kSlow, power.size() - 1);
   double most = -1.0;

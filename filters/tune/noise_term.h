@@ -13,7 +13,7 @@
 
 namespace ifog {
 
-// What a filter is told, with the name and unit of each figure.
+// A term of the noise that a filter is given, with the name and unit of each figure.
 struct CandidateFigure {
   std::string name, unit;
   double value = 0.0;

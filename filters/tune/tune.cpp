@@ -22,7 +22,7 @@ namespace {
 
 // Starts drawn for a model, by parameter beyond the level's two.
 constexpr std::size_t kDraws = 30;
-// Optima of the spectrum that are looked at in the likelihood of the record, and those of them followed: the
+// Optima of the spectrum whose likelihood is computed on of the record, and those of them followed: the
 // two disagree by a few units, and one that is further behind than this will not win.
 constexpr std::size_t kLooked = 8;
 constexpr std::size_t kFollowed = 3;
@@ -187,7 +187,7 @@ Fitted fit_model(const Candidate& candidate, const Data& data, const Spectrum& s
   TunedModel model;
   model.parameters = candidate.size();
   const auto count = static_cast<double>(data.samples);
-  // Back to the density of the data in rad/s, so that likelihoods can be set beside those of other programs.
+  // Back to the density of the data in rad/s, so that likelihoods can be compared with those of other programs.
   model.log_likelihood = -found.cost - data.log_scales;
   model.bic = model.parameters * std::log(count) - 2.0 * model.log_likelihood;
   std::vector<bool> known;

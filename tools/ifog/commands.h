@@ -11,7 +11,7 @@ namespace ifog::tools {
 void add_allan(const Command& program);
 void add_simulate(const Command& program);
 
-// What a command throws after it has told the user why: exit code 1, no further message.
+// What a command throws after it has said why: exit code 1, no further message.
 struct Failed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

@@ -41,7 +41,7 @@ class LcmRecorder {
         listener_(options.url, [this](const lcm_recv_buf_t& message,
                                       const std::string& channel) { take(message, channel); }),
         messages_(make_flight_folder(options.folder), limits(options), header(options)) {
-    // Before anything is listened to: what came meanwhile would be another recorder's.
+    // Before listening: messages that arrive until then would be another recorder's.
     messages_.open(arrival_clock_ns(), realtime_ns());
     listener_.listen_to_sensor(options.sensor);
     for (const std::string& channel : options.channels) listener_.listen_to(channel);

@@ -58,7 +58,7 @@ std::string words(const char* style, double x, double y, const char* anchor, con
          "\" text-anchor=\"" + anchor + "\">" + escaped(text) + "</text>\n";
 }
 
-// Their texts beside each other along x, none over another or beyond the edge: fewer where they are long.
+// Their texts next to each other along x, none over another or beyond the edge: fewer where they are long.
 std::vector<Tick> side_by_side(const Scale& scale, double edge) {
   constexpr double kApart = 10.0;
   for (int wanted = 7;; --wanted) {

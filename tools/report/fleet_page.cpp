@@ -133,7 +133,7 @@ FieldUnit unit_of(const PopulationParameter& each) {
 
 std::string parameter_label(const PopulationParameter& each) { return each.name + on_axis(each.axis); }
 
-// What is spread by its logarithm is told as itself, its spread as a share of it.
+// A figure whose logarithm spreads is shown as itself, its spread as a share of it.
 std::string parameter_row(const PopulationParameter& each) {
   const FieldUnit unit = unit_of(each);
   const auto told = [&](double middle, double sigma) -> std::string {

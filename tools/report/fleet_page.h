@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page of a type of gyro: its effects, how its parameters are spread, which gyros stand out. One HTML
-// file in the style of the diagnosis' page; the gyros' own pages lie beside it in gyros/SERIAL/report.html.
+// file in the style of the diagnosis' page; the gyros' own pages lie next to it in gyros/SERIAL/report.html.
 #pragma once
 
 #include <string>

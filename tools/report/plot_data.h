@@ -17,7 +17,7 @@ Thinned thinned(std::span<const double> x, std::span<const double> y);
 // As float32, little-endian, in base64: seven digits are more than a screen shows.
 std::string packed(std::span<const double> values);
 
-// A point that is no number in the middle of each hole: where the time goes on by more than ten of its
+// A point that is no number in the middle of each hole: where the time advances by more than ten of its
 // steps. As many y as times.
 void open_at_holes(std::vector<double>& time, std::vector<double>& y);
 

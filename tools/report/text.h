@@ -16,7 +16,7 @@ std::string escaped(std::string_view text);
 // `digits` significant digits, no exponent where it reads well without: "0.0108", "440", "3.1 × 10⁻⁷".
 std::string number(double value, int digits = 3);
 
-// "1.20 × 10⁶": so many decimals beside a power of ten that is given; without it where that is 0.
+// "1.20 × 10⁶": so many decimals, and a power of ten that is given; without it where that is 0.
 std::string at_power(double value, int decimals, int power);
 
 // value ± its standard error, both to the error's second digit: "−79.20 ± 0.15".

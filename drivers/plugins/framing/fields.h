@@ -103,7 +103,7 @@ class Stamp {
   // A stamp whose tick has so many nanoseconds.
   explicit constexpr Stamp(std::int64_t tick_ns) : tick_ns_(tick_ns) {}
   [[nodiscard]] constexpr std::int64_t time_ns(std::int64_t ticks) const noexcept { return ticks * tick_ns_; }
-  // The inverse: the stamp a device sends at this time, where that goes round after `modulus` ticks. Times
+  // The inverse: the stamp a device sends at this time, which rolls over after `modulus` ticks. Times
   // before the origin stay in order.
   [[nodiscard]] std::uint32_t stamp_at(std::int64_t time_ns, std::int64_t modulus) const noexcept {
     const std::int64_t ticks = time_ns / tick_ns_ - (time_ns % tick_ns_ < 0 ? 1 : 0);

@@ -2,7 +2,7 @@
 // Finds the intact frames in a byte stream, whatever is between, before or inside them.
 //
 // At each position that holds a header the frame's bytes are awaited and its checksum is tried. A frame that
-// fails is passed over by ONE byte, not by its length: so a frame whose header lies inside a damaged one is
+// fails is skipped by ONE byte, not by its length: so a frame whose header lies inside a damaged one is
 // found. While a frame is not yet whole the positions behind its header are tried too: a header that damage
 // or chance has made, and that announces bytes which never come, holds back nothing. So an intact frame comes
 // out with its own last byte, never later. The price is that a whole frame, checksum and all, inside another
@@ -70,7 +70,7 @@ class FrameFinder {
     forget();
   }
 
-  // As the host wants them. `unused`: of the intact frames, those the driver was told not to take.
+  // As the host wants them. `unused`: of the intact frames, those that the driver was configured to ignore.
   void copy_to(ifog_driver_counters& out, std::uint64_t unused = 0) const noexcept {
     out = {};
     out.frames_good = counters_.intact - unused;
@@ -103,7 +103,7 @@ class FrameFinder {
     return n;
   }
 
-  // The next intact frame; without one, what can begin none any more is passed over.
+  // The next intact frame; without one, bytes that can begin none any more are skipped.
   std::optional<Place> next() noexcept {
     std::size_t keep = end_;  // the first position that may yet begin a frame
     for (std::size_t at = begin_; at < end_; ++at) {

@@ -5,7 +5,7 @@
 //
 //   identifier, then of what it announces in this order:
 //   gyro, accelerometer, inclinometer: three int24 and a status byte each
-//   temperatures of each of these that is there: three int16 and a status byte each
+//   temperatures of each of these that is present: three int16 and a status byte each
 //   PPS or AUX: an int24 and a status byte
 //   then counter (uint8), latency in µs (uint16), CRC (uint32), and CR LF where the device is set so
 //

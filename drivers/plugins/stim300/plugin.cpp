@@ -233,7 +233,7 @@ class Driver {
     for (unsigned axis = 0; axis < 3; ++axis) {
       const bool valid = (sample.valid_axes & 1U << axis) != 0;
       gyro[axis] = valid ? sample.value[axis] : std::nan("");
-      // An angle goes on where its counts wrap.
+      // An angle continues where its counts wrap.
       if (set_up_.kind == IFOG_ANGLE) gyro[axis] = wrapped(gyro[axis]);
     }
     out.gyro = triad_of(gyro.data(), set_up_.gyro_scale(), 24, "gyro value");

@@ -2,7 +2,7 @@
 // A driver to copy. It is built and tested with everything else, so what stands here works.
 //
 // To make yours, in a folder of its own, out of this tree:
-//   1. Copy this file to NAME.cpp and, beside it, write this CMakeLists.txt:
+//   1. Copy this file to NAME.cpp and, next to it, write this CMakeLists.txt:
 //        cmake_minimum_required(VERSION 3.25)
 //        project(my_gyro LANGUAGES CXX)
 //        find_package(ifogd REQUIRED)

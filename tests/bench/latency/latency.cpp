@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From a frame's last byte to the end of its LCM send, and processor time a sample: the daemon's pipeline
-// beside a bare loop that reads the same FIFO and calls lcm_publish on a message of the same size, without
+// compared with a bare loop that reads the same FIFO and calls lcm_publish on a message of the same size, without
 // ring, plugin or filter. With --record a third time, with the flight recorder on, and a fourth, without it
 // again: what this machine makes of two that are the same. Interleaved rounds in one process. Run it by
 // tests/bench/latency/run, in a network namespace of its own.
@@ -258,7 +258,7 @@ void print(const char* name, const std::vector<double>& l, double cpu_us, std::s
               percentile(l, 0.999), l.empty() ? 0.0 : l.back(), cpu_us, lost);
 }
 
-// Round by round, each beside the one of the same round: median and quartiles.
+// Round by round, each compared with the one of the same round: median and quartiles.
 void print_rounds(const char* what, const std::vector<double>& of, const std::vector<double>& by) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < of.size(); ++i) ratios.push_back(of[i] / by[i]);

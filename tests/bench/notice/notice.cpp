@@ -3,9 +3,9 @@
 // sample rate. One line a case; results.md has them.
 //
 // usage: notice_bench blocks MONTHS SEED [WORD]  months of each kind of noise, in blocks of ten seconds
-//        notice_bench steps SENSORS SEED [WORD]  steps of the bias and louder noise, after three days at
+//        notice_bench steps SENSORS SEED [WORD]  steps of the bias and more noise, after three days at
 //        rest,
-//                                                in twenty ways that each goes on in
+//                                                in twenty continuations of each, in
 //        notice_bench limits BLOCKS SEED [WORD]  what nobody, or nobody of some knowledge, can beat
 //        notice_bench chain DAYS SEED            a gyro at 200 Hz through signal chain and watch
 // WORD: only kinds of noise whose name has it.
@@ -58,7 +58,7 @@ class Blocks {
     samples_ += static_cast<std::uint64_t>(n);
     watch.take(sums_, samples_, 0);
   }
-  // From here on it goes on otherwise.
+  // From here on it continues otherwise.
   void go_on_as(unsigned seed) { random_.seed(seed); }
 
  private:

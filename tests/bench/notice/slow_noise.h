@@ -25,7 +25,7 @@ class SlowNoise {
   struct Markov {
     double keep, drive, value;
   };
-  // What it is made of, beside the walk.
+  // What it is made of, besides the walk.
   [[nodiscard]] const std::vector<Markov>& processes() const { return processes_; }
 
  private:

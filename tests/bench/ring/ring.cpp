@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Throughput of the daemon's ring beside Boost.Lockfree's spsc_queue and moodycamel's ReaderWriterQueue:
+// Throughput of the daemon's ring compared with Boost.Lockfree's spsc_queue and moodycamel's ReaderWriterQueue:
 // increments from one thread to another, interleaved runs, medians.  usage: ring_bench [MILLIONS [RUNS]]
 #include <readerwriterqueue/readerwriterqueue.h>
 #include <algorithm>

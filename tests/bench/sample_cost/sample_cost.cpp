@@ -130,7 +130,7 @@ double clock_cost_ns() {
   return median(std::move(taken));
 }
 
-// The parts of one sensor, fed by a FIFO that it writes itself, and a bare reader and sender beside them.
+// The parts of one sensor, fed by a FIFO that it writes itself, and a bare reader and sender.
 class Sensor {
  public:
   Sensor(const std::string& path, const std::vector<std::uint8_t>& bytes)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `tune` is for, judged by what only a simulation knows: the level. A record is tuned on, another of the
 // same gyro denoised with each model that was fitted, with the one that was chosen and with none; the error
-// against the true level, over that of a Kalman filter told the truth. Usage:
+// against the true level, over that of a Kalman filter given the truth. Usage:
 // tune_truth_bench [SEEDS [SAMPLES [FIRST [KIND]]]], 3 seeds of 60000 samples at 100 Hz.
 #include <algorithm>
 #include <cmath>
@@ -99,7 +99,7 @@ double best_error(const Kind& kind, const Record& record) {
   const double r = kSigma * kSigma;
   if (kind.flicker <= 0.0)
     return rmse(kalman(record.rate, kind.walk * r, r, kind.phi, kind.colour * kind.colour * r), record.level);
-  // No finite filter is told flicker: the best walk of all for this very record.
+  // No finite filter is given flicker: the best walk of all for this very record.
   double least = 1e300;
   for (double ln = -9.0; ln <= -1.0; ln += 0.25)
     least = std::min(least, rmse(kalman(record.rate, std::pow(10.0, ln) * r, r, 0.0, 0.0), record.level));
@@ -128,7 +128,7 @@ double error_of(const ifog::FilterSettings& settings, const Record& record, doub
   return rmse(published, record.level);
 }
 
-// Of the chain that is told nothing, as denoise without a model.
+// Of the chain without any setting, as denoise without a model.
 double error_of_none(const Record& record) {
   ifog::ChainSettings settings;
   settings.facts.nominal_rate_hz = 1.0 / kPeriod;

@@ -124,7 +124,7 @@ Recordings recordings(const std::string& folder) {
   return out;
 }
 
-// A piece of one source's noise beside borrowed channels.
+// A piece of one source's noise with borrowed channels.
 ifog::Capture piece(const Source& source, const Recordings& from, Draw& draw) {
   const std::size_t samples = std::min<std::size_t>(source.rate.size(), 5000);
   const auto start =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores the diagnosis on sensors whose effects it is not told of. Without arguments: 1000 sensors with
+// Scores the diagnosis on sensors whose effects it does not know. Without arguments: 1000 sensors with
 // effects of 12 to 80 sigma and 1000 without any. Every sensor can be made again from its seed.
 #include <CLI/CLI.hpp>
 #include <algorithm>

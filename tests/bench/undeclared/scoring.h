@@ -4,7 +4,7 @@
 // A true effect is found *exactly* when form and channel (and the partner of a product) are named as hidden.
 // It is found *equivalently* when other names were given, but their waveforms reproduce the hidden ones so
 // well that what is left would be visible below 3 sigma in the captures diagnosed: with the true noise known,
-// nobody could have told them apart. Both count as right; they are reported apart. Every found effect that is
+// nobody could have distinguished them. Both count as right; they are reported separately. Every found effect that is
 // neither is extra; an equivalent explanation must also be free of parts that it could do without. A parabola
 // is claimed with the straight line that places its turning point: within 3 sigma of where the hidden one is
 // that is the hidden law's own term, counted as completed.
@@ -68,7 +68,7 @@ struct Score {
 
 Score score(const Sensor& sensor, const Diagnose& diagnose);
 
-// Means of consecutive blocks of `seconds`; the incomplete last one is left out.
+// Means of consecutive blocks of `seconds`; the incomplete last one is dropped.
 std::vector<double> block_means(const std::vector<double>& x, double dt_s, double seconds);
 
 std::string name_of(const Effect& effect);

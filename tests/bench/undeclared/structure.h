@@ -10,7 +10,7 @@
 namespace ifog::undeclared {
 
 // "tower": sways at 0.54 Hz, a resonance of Q 20 to 40 excited by white noise, 10 to 50 times the sensor's
-// white noise in means of a second; "machine": beside that a line that wanders slowly over a tenth of its
+// white noise in means of a second; "machine": also a line that wanders slowly over a tenth of its
 // frequency. The effects' visibility is what it was: they are slower, and a fit that knows the motion's
 // spectrum loses next to nothing.
 const std::vector<std::string>& structures();

@@ -28,7 +28,7 @@ struct Totals {
 
 Totals total(const std::vector<Score>& scores);
 
-// Tables: by kind; by size when sizes differ; parameters' coverage by name; the totals beside their targets.
+// Tables: by kind; by size when sizes differ; parameters' coverage by name; the totals with their targets.
 void print(std::ostream& out, const std::vector<Score>& scores);
 
 // One line a wrong sensor, enough to make it again.

@@ -94,7 +94,7 @@ TEST(FlightRuns, WhatEveryDriverCountedIsCounted) {
   EXPECT_EQ(counts.driver.bytes_framed, 2U * kSamples * 36U);
 }
 
-// Files of one run go on without a break, in the middle of a frame, too.
+// Files of one run continue without a break, in the middle of a frame, too.
 TEST(FlightRuns, FilesOfOneRunAreOneRecord) {
   // By the counter, however late the first frame of a file came.
   InputFile file("files.ifr", run_of(kRadians, 7, 1'000'000'000, 1000));

@@ -40,7 +40,7 @@ ChainSettings settings_of(double rate_hz, bool told) {
   return out;
 }
 
-// A ship: it rolls ten seconds a period, beside it something quicker.
+// A ship: it rolls with a period of ten seconds, and something quicker.
 std::function<double(double)> rolling(double amplitude_radps) {
   return [amplitude_radps](double t) {
     return amplitude_radps *

@@ -351,7 +351,7 @@ TEST(Incrementer, AStepOfTheWallClockMovesTheLabelAloneAndIsFlagged) {
   }
 }
 
-// A signed stamp of milliseconds that goes round, and one that counts up to a moment; 20 samples are lost
+// A signed stamp of milliseconds that rolls over, and one that counts up to a moment; 20 samples are lost
 // where they are below 0.
 TEST(Incrementer, AStampBelowZeroIsAClock) {
   for (const std::int64_t wrap_ns : {std::int64_t{65'536'000'000}, std::int64_t{0}}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Channels without a new value are told by name, with the place they should come from and the reason.
+// Channels without a new value are reported by name, with the place they should come from and the reason.
 #include "daemon/channels/channel_watch.h"
 
 #include <gtest/gtest.h>
@@ -110,7 +110,7 @@ TEST(ChannelWatch, WhatComesAndIsNoValueIsSaid) {
             "bad: channel 'temperature_degC': the sensor's frames bring none; the last value is held\n");
 }
 
-// Told at the start, before anything is opened, it is not told again.
+// Reported at the start, before anything is opened, it is not reported again.
 TEST(ChannelWatch, WhatIsNotThereAtTheStartIsToldOnce) {
   SensorConfig sensor;
   ChannelConfig file, can;

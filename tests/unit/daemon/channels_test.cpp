@@ -207,7 +207,7 @@ TEST(ChannelSources, TheSameWritingOfAFileIsOneReading) {
   put("61");
   EXPECT_EQ(await(*table, 61.0).value, 61.0);
   EXPECT_EQ(table->refused(), 1U);
-  // A good one goes on being now, however often it is read.
+  // A good one stays current, however often it is read.
   const std::int64_t time_ns = table->latest(0).time_ns;
   std::this_thread::sleep_for(50ms);
   EXPECT_GT(table->latest(0).time_ns, time_ns);

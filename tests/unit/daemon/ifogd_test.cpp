@@ -224,7 +224,7 @@ TEST_F(Ifogd, AFileCutOffWithinAFrameIsToldInOneLineAndCounted) {
   EXPECT_EQ(lines_with("299 samples read, 299 published"), 1) << all_said();
 }
 
-// A line of a log that is no frame is told where it stands, while all else is read.
+// A line of a log that is no frame is reported with its place, while all else is read.
 TEST_F(Ifogd, AFaultInALogIsToldWhereItIs) {
   configure("[sensor.options]\ndbc = \"" IFOG_SOURCE_DIR
             "/drivers/dbc/examples/ifogd_gyro.dbc\"\nsignal = \"Rate_x\"\nrate_hz = 100\n[sensor.transport]\n"

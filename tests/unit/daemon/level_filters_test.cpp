@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Filters in lanes beside a Kalman filter as the books write it, with matrices, one after the other.
+// Filters in lanes compared with a Kalman filter as the books write it, with matrices, one after the other.
 #include "daemon/health/level_filters.h"
 
 #include <gtest/gtest.h>

@@ -16,7 +16,7 @@ using namespace std::chrono_literals;
 // What the estimator has counted is the sensor's, not that of the parts a reload brings.
 TEST(PipelineStatus, CountersGoOnOverAReload) {
   constexpr int kCount = 4000, kHalf = 2000;
-  // In noise as the filter is told it, or it finds that there is none and that everything is motion.
+  // In noise as the filter is configured for, or it finds that there is none and that everything is motion.
   std::mt19937_64 random(3);
   std::normal_distribution<double> normal(0.0, 1e-4);
   const auto spikes = [&](int n) { return normal(random) + (n % 250 == 249 ? 0.5 : 0.0); };

@@ -137,7 +137,7 @@ TEST(Pipeline, IncrementsOfAngleAndVelocityAddUpOverOverflow) {
 }
 
 // Each step takes longer than a sample: whenever the reader has done two itself it leaves the work to the
-// filter thread for 16 deliveries, 32, 64 …, so that in 3000 it is held up a dozen times and no more.
+// filter thread for 16 deliveries, 32, 64 …, so that in 3000 it is delayed a dozen times and no more.
 TEST(Pipeline, AFilterThatIsSlowIsLeftToItsThread) {
   constexpr int kCount = 3000;
   Rig rig(frames(kCount), kFrame, false, 8, 1500us);

@@ -99,7 +99,7 @@ TEST(ProcessorShare, NobodyStandsBackWhileThreeQuartersAreNotTaken) {
   EXPECT_NEAR(parts[1], 0.3, 1e-3);
 }
 
-// Held up for seconds in the middle of a turn, which another has used.
+// Delayed for seconds in the middle of a turn, which another has used.
 TEST(ProcessorShare, WhoWasHeldUpDoesNotStandBackForThatToo) {
   SharedProcessors processors(1);
   ProcessorShare share(&processors);

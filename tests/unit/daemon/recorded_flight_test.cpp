@@ -179,7 +179,7 @@ TEST_F(RecordedFlight, DenoiseLooksForDriversWhereTheConfigurationSays) {
   ASSERT_TRUE(send_and_await(100)) << text_of(path("said"));
   ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
   write("raw.bin", sent_);
-  // A program that is not in the build tree finds no drivers beside itself.
+  // A program that is not in the build tree finds no drivers near itself.
   fs::create_directories(path("bin"));
   fs::copy(IFOG_BINARY_DIR "/tools/ifog/ifog", path("bin/ifog"));
   fs::path plugin;
@@ -228,7 +228,7 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
   EXPECT_EQ(text_of(path("again")), sent_);
 }
 
-// Bursts that the ring has no room for: as many rows more than were published are told, and where.
+// Bursts that the ring has no room for: as many rows more than were published are reported, and where.
 TEST_F(RecordedFlight, WhatTheRingMergedIsToldByDenoise) {
   realtime_lines_ = "[sensor.realtime]\nring_slots = 2\ndirect = false\n";
   // A source that does not wait until it is read.
@@ -295,7 +295,7 @@ TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
   for (int n = 0; n < 600 && !fs::exists(path("heard")); ++n) listen(10);
   for (int n = 0; n < 100; ++n) listen(10);
   const std::size_t before = published_.size();
-  // At the sensor's own rate, so that the fitted time goes on.
+  // At the sensor's own rate, so that the fitted time advances.
   auto due = std::chrono::steady_clock::now();
   for (int n = 0; n < 300; ++n) {
     std::this_thread::sleep_until(due += std::chrono::milliseconds(10));

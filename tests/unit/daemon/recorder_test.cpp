@@ -53,7 +53,7 @@ TEST(Recorder, APipelinesBytesAreInTheFileAsTheyCame) {
   EXPECT_EQ(recorded, sent);
 }
 
-// The disk stands still while a sensor sends: what it has no room for is lost, counted and told once; the
+// The disk stands still while a sensor sends: what it has no room for is lost, counted and reported once; the
 // samples all go their way; and with room all is recorded again.
 TEST(Recorder, ADiskThatStandsStillCostsNoSampleAndIsToldOnce) {
   MemoryDisk disk;

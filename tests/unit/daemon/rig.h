@@ -40,7 +40,7 @@ class MemoryTransport final : public Transport {
     const std::size_t n = std::min(portion_, bytes_to_give_.size() - at_);
     out.bytes = std::span(bytes_to_give_).subspan(at_, n);
     // As of a device that sends 1000 frames a second, whenever the threads of the test get their turn: one
-    // that is held up is no gap.
+    // that is delayed is no gap.
     out.arrival_ns = kBegin_ns + static_cast<std::int64_t>(at_ / kFrame) * 1'000'000;
     at_ += n;
     given_.store(at_);

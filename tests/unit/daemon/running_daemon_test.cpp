@@ -154,7 +154,7 @@ TEST_F(RunningDaemon, WhatIsNotThereIsSaidByTheCheck) {
   EXPECT_EQ(times_said(path("model") + ": is no regular file"), 1) << said();
 }
 
-// What one run has learned of the noise the next one begins with; what cannot be read is learned anew, and
+// What one run has learned of the noise the next one begins with; what cannot be read is learned again, and
 // where the settings say it nothing is kept.
 TEST_F(RunningDaemon, NoiseIsKeptOverRestartsWithItsDate) {
   std::mt19937_64 engine(7);

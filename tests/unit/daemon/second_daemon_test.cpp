@@ -92,7 +92,7 @@ TEST_F(SecondDaemon, AFolderOfRecordingsIsOneRecorders) {
                                ": another recorder writes into it (expected a folder of its own)\n");
   EXPECT_EQ(end(), 0) << said();
   EXPECT_EQ(std::distance(fs::directory_iterator(path("rec/nose")), fs::directory_iterator()), 1);
-  // And one that the daemon finds taken: it goes on without it, and says so.
+  // And one that the daemon finds taken: it continues without it, and says so.
   const int held = open(path("rec/nose").c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   ASSERT_EQ(flock(held, LOCK_EX | LOCK_NB), 0);
   start();

@@ -89,7 +89,7 @@ TEST(Tape, WhatFindsNoRoomIsLeftOutCountedAndTold) {
   EXPECT_EQ(tape.counters().deliveries.value(), 300U);
   EXPECT_EQ(tape.counters().lost_bytes.value(), lost * 1000);
   EXPECT_EQ(all_of(tape).heads.size(), 300 - lost);
-  // With room again: first what is missing, then the channel that changed meanwhile, then what came.
+  // With room again: first what is missing, then the channel that changed meanwhile, then the data.
   channels[0] = {3.0, 2};
   opened.restarted = false;
   tape.put(opened, 400, channels, 0);

@@ -89,7 +89,7 @@ TEST(CaptureDriver, WhatIsNoRowIsCountedAndPassedOver) {
   // The capture was cut off within its last line.
   driver.reset();
   EXPECT_EQ(driver.counters().bytes_skipped, fed.counters.bytes_skipped + 3);
-  // What follows is another capture, whose time may begin anew.
+  // What follows is another capture, whose time may start again.
   EXPECT_EQ(feed(driver, "time_s,rate_radps\n0,1\n", 5).samples.size(), 1U);
 }
 

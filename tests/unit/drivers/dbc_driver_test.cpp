@@ -256,7 +256,7 @@ TEST_F(DbcText, UnitsCountersAndClocks) {
   EXPECT_DOUBLE_EQ(t[1].value[0], 0.01 * std::numbers::pi / 180.0 / 3600.0);
 }
 
-// Eight bits of a millisecond each, at 125 Hz: the clock goes round within 32 samples.
+// Eight bits of a millisecond each, at 125 Hz: the clock rolls over within 32 samples.
 TEST_F(DbcText, HowOftenAClockWentRoundInAGapTheTimesOfArrivalSay) {
   const std::string text =
       "BO_ 2 B: 8 X\n SG_ R : 0|16@1- (0.01,0) [0|0] \"deg/s\" X\n SG_ T : 16|8@1+ (1,0) [0|0] \"ms\" X\n";
@@ -290,7 +290,7 @@ TEST_F(DbcText, AnIntegerAngleWrapsAtItsRange) {
 }
 
 // Ranges of real files are often wrong, as [0|127.5] of a signed speed: they are information. Each value is
-// kept; those beyond are counted, their samples flagged, and the first is told with both numbers.
+// kept; those beyond are counted, their samples flagged, and the first is reported with both numbers.
 TEST_F(DbcText, AValueBeyondTheStatedRangeIsKeptCountedAndFlagged) {
   const std::string text =
       "BO_ 1 A: 8 X\n SG_ R : 0|16@1- (0.01,0) [0|50] \"deg/s\" X\n SG_ T : 16|8@1- (1,0) [-40|85] "
@@ -321,7 +321,7 @@ TEST_F(DbcText, AValueBeyondTheStatedRangeIsKeptCountedAndFlagged) {
   EXPECT_EQ(d.description().full_scale[0], 0.0);
 }
 
-// Axes in one message, told apart by a multiplexor; CAN FD; what is encoded decodes to the same sample.
+// Axes in one message, distinguished by a multiplexor; CAN FD; what is encoded decodes to the same sample.
 TEST_F(DbcText, MultiplexedAxesAndLongFramesRoundTrip) {
   const std::string text =
       "BO_ 2147483904 M: 8 X\n SG_ S M : 0|8@1+ (1,0) [0|0] \"\" X\n SG_ N : 8|8@1+ (1,0) [0|0] \"\" X\n"

@@ -26,7 +26,7 @@ using ifog::DriverSettings;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const std::string kBus = std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/ifogd_gyro.dbc";
 
-// 1000 samples at 200 Hz, with `missing` rows left out after row 500.
+// 1000 samples at 200 Hz, with `missing` rows dropped after row 500.
 Capture wave(const std::vector<std::string>& axes, int missing = 0) {
   Capture c;
   c.axes = axes;

@@ -49,7 +49,7 @@ TEST(FlightArchive, WhatIsKilledMissesASecondAtMost) {
   Bench bench(limits);
   std::uint64_t added = 0;
   for (std::int64_t turn_ns = 0; turn_ns < 20 * kSecond; turn_ns += kSecond / 4) {
-    // What came since the turn before, 500 a second.
+    // What arrived since the turn before, 500 a second.
     for (; bench.now_ns < turn_ns; bench.now_ns += kSecond / 500) bench.add(added++);
     bench.turn();
     const auto waiting = static_cast<std::int64_t>(bench.archive.entries_waiting());
@@ -202,7 +202,7 @@ TEST(FlightArchive, OneRecorderAFolder) {
   second.turn(kSecond, kWall, true);
   EXPECT_EQ(second.complaint(), "another recorder writes into it (expected a folder of its own)");
   EXPECT_EQ(second.entries_waiting(), 1U);
-  // Removed and made anew it is another folder, which is locked as well.
+  // Removed and made again it is another folder, which is locked as well.
   std::filesystem::remove_all(path);
   EXPECT_EQ(first->list(files), 0);
   second.turn(3 * kSecond, kWall, true);

@@ -118,7 +118,7 @@ TEST(FlightFormat, WhatIsWrittenIsWhatTheDescriptionSays) {
   EXPECT_EQ(written, block_by_hand(1, 0, 0, payload));
 }
 
-// By zlib's own call, which begins anew for each.
+// By zlib's own call, which starts again for each.
 TEST(FlightFormat, EachBlockIsDeflatedByItself) {
   std::mt19937 random(7);
   Bytes noise(5000), half(5000);

@@ -41,7 +41,7 @@ class HardYear {
     trouble(now_ns < kLength - kDay);
     for (int i = 0; i < 4; ++i, ++count) {
       when[count] = now_ns;
-      // As the tape does it: what finds no room is left out, and that is known.
+      // As the tape does it: what finds no room is dropped, and counted.
       if (archive->full())
         left_out.insert(count);
       else

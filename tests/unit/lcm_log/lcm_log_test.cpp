@@ -257,7 +257,7 @@ TEST_F(LcmLog, SaysThatNoStatusCameWithTheEnvironmentWhereOneWasDue) {
     EXPECT_EQ(said.find("_STATUS"), std::string::npos) << said;
 }
 
-// The daemon was started again: its sensor's clock is at another place, the fitted time goes on.
+// The daemon was started again: its sensor's clock is at another place, the fitted time advances.
 TEST_F(LcmLog, ADeviceWhoseClockBeginsAnewGoesOnByTheFittedTime) {
   add("IFOG_NOSE", sample(0, 1, 5'000'000'000));
   add("IFOG_NOSE", sample(1, 1, 5'001'000'000));

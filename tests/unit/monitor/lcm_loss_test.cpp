@@ -86,7 +86,7 @@ TEST(LcmLoss, MessagesThatChangePlacesAreNotLost) {
   EXPECT_FALSE(way.two_publishers());
 }
 
-// A log that is played beside the live daemon.
+// A log that is played while the daemon runs.
 TEST(LcmLoss, OfTwoPublishersNothingIsKnownToBeLost) {
   LcmLoss way;
   for (std::int64_t n = 0; n < 400; ++n) {

@@ -40,7 +40,7 @@ inline double ramp_angle(double counts) { return 2e-7 * std::sin(2.0 * std::numb
 inline constexpr std::size_t kSamples = 40000;
 inline constexpr double kPeriod_s = 0.05;
 
-// What the rate is made of beside its mean.
+// What the rate is made of besides its mean.
 struct Parts {
   std::vector<double> noise, temperature, ramp;
 };

@@ -176,7 +176,7 @@ std::string bytes_of(const std::string& path) {
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-// What librsvg makes of it is looked at by its bytes: the curve's blue is there, and nothing is black but
+// The output of librsvg is tested by its bytes: the curve's blue is there, and nothing is black but
 // ink.
 TEST(ReportPicture, SvgAndPngByTheName) {
   Chart chart("a <b> & \x1b[31m \xff", "d", {"x", false, {}, {}}, {"y", true, {}, {}});

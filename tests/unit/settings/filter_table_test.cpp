@@ -153,7 +153,7 @@ TEST(FilterTable, TheExampleShowsIt) {
     if (!examples.contains(setting.key)) {
       EXPECT_EQ(*value, value_of(setting, standard)) << setting.key;
     }
-    // What it may be stands beside it, range and choices.
+    // Its range and choices stand next to it.
     if (!setting.choices.empty() || setting.range.most < 1e9) {
       const std::size_t line = text.str().find("\n  " + std::string(setting.key) + " = ");
       ASSERT_NE(line, std::string::npos) << setting.key;

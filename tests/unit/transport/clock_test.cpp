@@ -25,7 +25,7 @@ TEST(WallShift, StaysExactlyTheSameUntilTheClockIsSet) {
   const std::int64_t back = shift.from(kNow - 5 * kSecond, kNow);
   EXPECT_EQ(back, -5 * kSecond);
   EXPECT_EQ(shift.from(kNow - 5 * kSecond + 30'000, kNow), back);
-  // Held up between the two readings.
+  // Delayed between the two readings.
   EXPECT_EQ(shift.from(kNow - 5 * kSecond + 900'000, kNow, 880'000), back);
   EXPECT_EQ(shift.from(kNow - 5 * kSecond + 900'000, kNow, 840'000), back + 900'000);
   EXPECT_EQ(shift.from(kNow + 3600 * kSecond, kNow), 3600 * kSecond);

@@ -286,7 +286,7 @@ TEST_F(FileTransport, AFifoWhoseWriterReturnsStartsAnew) {
   EXPECT_EQ(transport->counters().reopened, 19U);
 }
 
-// While another tries again and again, opening it anew lets nobody in.
+// While another tries again and again, opening it again lets nobody in.
 TEST_F(FileTransport, AFifoOpenedAnewIsStillOneReaders) {
   fifo();
   ifog::ByteFile file;
@@ -309,7 +309,7 @@ TEST_F(FileTransport, AFifoOpenedAnewIsStillOneReaders) {
 TEST_F(FileTransport, AFifoIsOneReaders) {
   fifo();
   auto first = opened();
-  // Also after its writer has gone and it is open anew.
+  // Also after its writer has gone and it is open again.
   for (int round = 0; round < 2; ++round) {
     EXPECT_THROW(opened(), ifog::DeviceTaken) << round;
     { std::ofstream(settings_.path) << "abc"; }

@@ -85,7 +85,7 @@ TEST_P(Udp, EachDeliveryIsADatagramWithTheKernelsTimeOfIt) {
   EXPECT_EQ(transport->counters().bytes, 7U * warm_ups + 5U + longest.size());
 }
 
-// A reader that was held up finds datagrams of long ago, each with its own time.
+// A reader that was delayed finds datagrams of long ago, each with its own time.
 TEST_P(Udp, ADatagramReadLateHasTheTimeItCame) {
   const auto transport = make_udp_transport(settings_);
   transport->open({});

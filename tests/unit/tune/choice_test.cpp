@@ -141,7 +141,7 @@ TEST(TuneChoice, ARecordThatShowsNoWalkGetsTheOneItMightHide) {
     EXPECT_NEAR(at(walk.value), best - 0.5, 0.05) << seed;
     // The likelihood of a slower walk is no worse than that, of a quicker one it is.
     EXPECT_LT(at(2.0 * walk.value), best - 0.5) << seed;
-    // A filter told so follows: no level that stood still for the record is held for an hour.
+    // A filter with these settings follows: no level that stood still for the record is held for an hour.
     EXPECT_GT(walk.value * kPeriod * 5000.0 * 5000.0, 0.1 * kSigma * kSigma) << seed;
   }
 }

@@ -66,7 +66,7 @@ TEST(Tune, RecoversQAndRWithinItsOwnErrors) {
   EXPECT_GE(inside_r, 34);
 }
 
-// One model for all axes: however loud each is, the walk over the noise is the same, and what is told is of
+// One model for all axes: however loud each is, the walk over the noise is the same, and what is reported is of
 // the mean of their variances. The likelihood is that of the data as they are: less by n ln s where they are
 // scaled.
 TEST(Tune, ALoudAxisDoesNotDrownTheOthers) {
@@ -137,7 +137,7 @@ TEST(Tune, PicksTheModelThatMadeTheData) {
   EXPECT_EQ(plain.models[0].settings.state, "random-walk");
 }
 
-// A colour that dies within two samples beside a slow level: the likelihood has an optimum in which the
+// A colour that dies within two samples on a slow level: the likelihood has an optimum in which the
 // autoregression plays the level, and it is far below.
 TEST(Tune, PicksTheOrderOfAFastColour) {
   int right = 0;
@@ -163,7 +163,7 @@ TEST(Tune, PicksTheOrderOfAFastColour) {
   EXPECT_GE(right, 2);
 }
 
-// Held out: of white noise the chosen model's published rate is no louder than the random walk's; and figures
+// Held out: of white noise the chosen model's published rate has no more noise than the random walk's; and figures
 // of white noise are known: 1/sqrt(m).
 TEST(Tune, SaysWhatTheModelWillDo) {
   Noise noise(21);

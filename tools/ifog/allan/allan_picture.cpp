@@ -92,7 +92,7 @@ std::string in_words(const NoiseCoefficients& fit, const NamedCoefficient& named
 
 // The fitted terms as the straight lines that they are. Of one record each has its letter and value where the
 // word is farthest from every line and every other word; of several there is no such room, and their values
-// stand beside the curves' names.
+// stand next to the curves' names.
 class TermLines {
  public:
   TermLines(const std::vector<Curve>& curves, const Extent& extent)
@@ -129,7 +129,7 @@ class TermLines {
     std::string words;
   };
 
-  // The word stands beside its line: below it or above, its beginning, middle or end there.
+  // The word stands next to its line: below it or above, its beginning, middle or end there.
   Chart::Word place(const std::string& words, const Curve& line) {
     Chart::Word best{words, line.tau_s.front(), line.sigma.front(), "start"};
     double most = -1.0;

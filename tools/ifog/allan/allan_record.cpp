@@ -224,7 +224,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
   const Rest rest = rest_of(name, table, rows, clock, options, slow_turns);
   const std::vector<AnalysedRate> rates = rates_of(name, table, rows, options.axis);
   const AnalysedPart part{name, table, rows, time_s, clock, rest, slow_turns};
-  // Side by side; of what several of them refuse the first is told.
+  // Side by side; where several refuse, the first is reported.
   std::vector<AllanRecord> records(rates.size());
   std::vector<std::exception_ptr> refused(rates.size());
   share_out(rates.size(), std::max(kTogether, std::thread::hardware_concurrency()), [&](std::size_t i) {

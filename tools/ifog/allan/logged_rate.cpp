@@ -190,7 +190,7 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
       common(stretches(logged.time_s, logged.rate, logged.clock), rest.at_rest);
   if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
   const auto told_time_s = [&](std::size_t row) { return logged.told_time_s(row); };
-  // A filter leaps of itself, by its gain; what the logger did is in the raw rate beside it.
+  // A filter leaps of itself, by its gain; what the logger did is in the raw rate.
   const Glitches leaps = signal == "denoised" ? Glitches{} : find_glitches(logged.rate, parts);
   if (signal == "rate") record.findings = value_faults(logged.rate, parts, period, told_time_s);
   for (const ValueFault& found : record.findings)

@@ -62,7 +62,7 @@ class Command {
   template <typename T>
   Option add_option(const std::string& names, T& value, const std::string& help) const;
   Option add_flag(const std::string& names, bool& value, const std::string& help) const;
-  // Told the value when all has been read; throws WrongUsage where it will not do.
+  // Called with the value when all has been read; throws WrongUsage where it will not do.
   template <typename T>
   Option add_taken(const std::string& names, std::function<void(const T&)> take,
                    const std::string& help) const;

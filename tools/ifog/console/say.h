@@ -15,7 +15,7 @@ namespace ifog::tools {
 // other control character in it is shown as \xNN. A name that could hold a line end goes through printable().
 [[gnu::format(printf, 1, 2)]] void say(const char* format, ...);
 
-// To standard error: what went wrong or was passed over.
+// To standard error: what went wrong or was ignored.
 [[gnu::format(printf, 1, 2)]] void warn(const char* format, ...);
 
 // The data of this option takes standard output, and people read standard error from then on. Before the

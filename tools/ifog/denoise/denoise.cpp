@@ -203,7 +203,7 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
   for (std::size_t a = 0; a < result.axes.size(); ++a) tell_axis(result.axes[a], rows.moments(a));
 }
 
-// What the chain left out as invalid takes no part; what it compensated does: the same effects are removed.
+// What the chain dropped as invalid takes no part; what it compensated does: the same effects are removed.
 void smooth(DenoisedColumns& columns, const OfflineResult& result) {
   if (!result.noise_known)
     throw std::runtime_error(

@@ -59,7 +59,7 @@ bool DenoiseOptions::over_the_recording() const {
 std::optional<ConfiguredSensor> configured_sensor(DenoiseOptions& options, FileKind kind) {
   if (options.config.empty()) return std::nullopt;
   Config config = read_config(options.config);
-  // The service is told its state folder by systemd, a person at a terminal is not.
+  // systemd gives the service its state folder; a person at a terminal has none.
   if (std::error_code none; state_folder(config.state_folder).empty() &&
                             std::filesystem::equivalent(options.config, kServiceConfig, none))
     use_adopted_models(config, kServiceState);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `ifog denoise` is told, and the sensor and its settings that this makes.
+// The options of `ifog denoise`, and the sensor and its settings that this makes.
 #pragma once
 
 #include <cstdint>

@@ -40,7 +40,7 @@ struct OfflineSink {
 };
 
 // Hands a recording's samples on with the times that every command has for them. Of a device whose clock
-// jumps back the daemon goes on, and so does this.
+// jumps back the daemon continues, and so does this.
 class OfflineTimes {
  public:
   OfflineTimes(const ifog_description& description, const OfflineSink& sink);

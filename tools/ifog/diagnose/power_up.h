@@ -11,7 +11,7 @@
 namespace ifog::tools {
 
 // How long after power-up what was fitted of all of them began, s; fit_from: the share of each one's time
-// that was passed over before. None where one does not know, or they differ by over a second.
+// that was skipped before. None where one does not know, or they differ by over a second.
 [[nodiscard]] std::optional<double> began_after_power_up(const std::vector<CaptureView>& captures,
                                                          double fit_from = 0.0);
 

@@ -217,7 +217,7 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
   Together together("diagnose", axes.size(), options.most_effects + 1);
   std::vector<AxisDiagnosis> found(axes.size());
   std::vector<std::exception_ptr> failed(axes.size());
-  // Each axis has a thread: of three on two processors, the third would have one of them idle beside it.
+  // Each axis has a thread: of three on two processors, the third would leave one of them idle.
   const auto threads = wanted.threads == 0 ? static_cast<unsigned>(axes.size()) : wanted.threads;
   share_out(axes.size(), threads, [&](std::size_t i) {
     DiagnoseOptions own = options;

@@ -33,7 +33,7 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
 std::vector<Record> records_of(const std::vector<CaptureView>& captures,
                                const std::vector<std::string>& names, std::size_t axis);
 
-// `model` with what was found beside its own. hashes: SHA-256 of the captures.
+// `model` with what was found added to its own. hashes: SHA-256 of the captures.
 Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
                  const std::vector<std::string>& hashes);
 

@@ -45,7 +45,7 @@ Proposal waiting(const std::string& state, const std::string& sensor, const Mode
   return std::move(*found);
 }
 
-// Writes the watch's outcome into the history: who looks later finds what came of it.
+// Writes the watch's outcome into the history: a later reader finds the result.
 void keep_outcome(const Field& field, const std::string& sensor, const ModelName& model,
                   const std::string& text) {
   const StateInHand hand(field.state());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What came in and where it went, as status_t's identities have it, in words.
+// What was received and where it went, as status_t's identities have it, in words.
 #pragma once
 
 #include <ifog/status_t.hpp>

@@ -101,7 +101,7 @@ void ModelExchange::exchange(const std::optional<Model>& model, const std::optio
     why = error.what();
   }
   put(before);
-  // Whatever has become of the first question: with what is in place now it must go on.
+  // Whatever has become of the first question: the daemon must continue with the model that is in place now.
   try {
     ask_for_reload();
   } catch (const std::exception& error) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What was adopted for a sensor and what it took the place of, oldest first: NAME.history.json in the state
-// folder, schema ifog.history/1. A model that was replaced is kept beside it as NAME.kept-IDENTITY.toml.
+// folder, schema ifog.history/1. A model that was replaced is kept in the same folder as NAME.kept-IDENTITY.toml.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ class History {
   // The adoption that is in force, which a revert takes back; null: none, all were taken back.
   [[nodiscard]] const ModelChange* in_force() const;
 
-  // Both write the file, whole. `replaced`: kept beside it first.
+  // Both write the file, whole. `replaced` is kept first.
   void add(ModelChange change, const std::optional<Model>& replaced);
   // Sets the outcome of the last change.
   void set_outcome(const std::string& outcome);

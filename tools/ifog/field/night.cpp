@@ -109,7 +109,7 @@ class Night {
   [[nodiscard]] bool failed() const { return failed_; }
   // The model that was proposed, "": none.
   [[nodiscard]] const std::string& proposed() const { return proposed_; }
-  // What came of the last adoption, in words; "" where that was not judged.
+  // The outcome of the last adoption, in words; "" where that was not judged.
   [[nodiscard]] const std::string& promise() const { return promise_; }
 
  private:

@@ -32,7 +32,7 @@ std::string inside(const std::string& state, const std::string& file) {
   return (fs::path(state) / file).string();
 }
 
-// A file that the index names lies beside it and nowhere else.
+// A file that the index names lies in the same folder and nowhere else.
 std::string plain_name(const json& from, const std::string& path) {
   auto name = from.get<std::string>();
   if (name.empty() || name != fs::path(name).filename().string())

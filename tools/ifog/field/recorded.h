@@ -39,7 +39,7 @@ struct Recorded {
 [[nodiscard]] Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFile>& files,
                                      const std::vector<std::string>& plugin_folders);
 
-// How the new model's correction does beside the old one's on rows from `begin` on; the rows before are
+// How the new model's correction compares with the old one's on rows from `begin` on; the rows before are
 // there for both to settle on what has a memory. Axes on which the two differ. Throws std::runtime_error or
 // std::invalid_argument with one line.
 [[nodiscard]] std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before,

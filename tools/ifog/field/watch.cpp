@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kFilesBefore = 3;
 constexpr std::uint64_t kMostBytesBefore = 64'000'000;
 
-// How many rows the recordings to settle on have. Where they cannot be read, they are left out.
+// How many rows the recordings to settle on have. Recordings that cannot be read are skipped.
 std::size_t rows_to_settle(const SensorConfig& sensor, std::vector<RecordedFile>& files, const Field& field) {
   if (files.empty()) return 0;
   try {

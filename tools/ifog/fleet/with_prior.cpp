@@ -58,7 +58,7 @@ Fitted fit_with_prior(const AxisMeasured& axis, std::size_t gyro, std::vector<Ty
   return fitted;
 }
 
-// In the fit, whether the model then has it or not: one of the type's, or one with a place beside them.
+// In the fit, whether the model then has it or not: one of the type's, or one with a place next to them.
 bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effect& effect) {
   const auto alike = [&](const Effect& other) {
     return other.form == effect.form && other.channel == effect.channel &&

@@ -25,7 +25,7 @@ constexpr std::array kColours{std::pair{Tone::good, static_cast<short>(COLOR_GRE
                               std::pair{Tone::warning, static_cast<short>(COLOR_YELLOW)},
                               std::pair{Tone::bad, static_cast<short>(COLOR_RED)}};
 
-// As much of it as has room: what is longer would go on in the next line.
+// As much of it as has room: longer text would continue in the next line.
 std::string cut(const std::string& text, int columns) {
   std::mbstate_t state{};
   int taken = 0;

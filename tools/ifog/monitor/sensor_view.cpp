@@ -10,7 +10,7 @@
 namespace ifog::tools {
 namespace {
 
-// Welford's recurrence: numbers that are none are passed over.
+// Welford's recurrence: NaNs are ignored.
 void add(double value, std::int64_t& count, double& mean, double& square) {
   if (!std::isfinite(value)) return;
   ++count;

@@ -63,9 +63,9 @@ class SensorView {
     std::string_view name;
     std::int64_t count;
   };
-  // Messages of the interval with each flag, those without one left out.
+  // Messages of the interval with each flag, without those that have none.
   [[nodiscard]] std::vector<Count> flags() const;
-  // Whatever was lost, refused or passed over on the way from the device to here; empty: nothing.
+  // Whatever was lost, refused or skipped on the way from the device to here; empty: nothing.
   [[nodiscard]] std::vector<Count> losses() const;
 
  private:

@@ -57,7 +57,7 @@ std::string tau_text(double tau_s) {
   return text;
 }
 
-// What people read: deg/h, deg/h/sqrt(h) beside SI.
+// What people read: deg/h, deg/h/sqrt(h) and SI.
 std::string in_field_units(const TunedFigure& figure) {
   double factor = 0.0;
   const char* unit = "";
@@ -223,7 +223,7 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
   return noise;
 }
 
-// `before`: whose effects were taken from the rates; they stay, and so does what its filter was told beside
+// `before`: whose effects were taken from the rates; they stay, and so do its filter's settings besides
 // the noise.
 Model model_of(Model before, const Tuning& tuning, const NoiseByAxis& noise, const std::string& path) {
   Model model = std::move(before);

@@ -88,7 +88,7 @@ std::vector<std::size_t> draw_cuts(Draw& draw) {
   return cuts;
 }
 
-// A pipeline with one channel of another bus beside those of its frames.
+// A pipeline with one channel of another bus in addition to those of its frames.
 class Run {
  public:
   Run(unsigned seed, Draw& draw)
@@ -162,7 +162,7 @@ class Run {
     for (Event event; pipeline_->take_event(event);)
       if (draw_.disk_full) log_->warn("{}", describe(event));
     std::this_thread::sleep_for(500us);
-    // Without an answer the reader's books go on, as housekeeping does it.
+    // Without an answer the reader's books continue, as housekeeping does it.
     if (!pipeline_->filter().take_snapshot(snapshot_)) snapshot_.reader = pipeline_->reader().books();
     balance(report_->update(*pipeline_, snapshot_, 1.0));
   }
