@@ -90,7 +90,7 @@ TransportConfig read_transport(const toml::table& table, const std::string& wher
     take(in.boolean("await_writer"), out.await_writer);
     take(in.text("interface"), out.interface);
     if (out.recorded && !out.candump && !in.has("bytes_per_second"))
-      in.complain("pace", " = \"recorded\": raw bytes carry no times; expected bytes_per_second beside it");
+      in.complain("pace", " = \"recorded\": raw bytes carry no times; expected bytes_per_second as well");
   }
   in.refuse_the_rest();
   return out;

@@ -35,7 +35,7 @@ void Housekeeping::say_what_needs_a_restart(const Config& fresh) {
   for (const auto& sensor : sensors_) {
     const SensorConfig* const other = sensor_named(fresh, sensor->config.name);
     if (other == nullptr) {
-      sensor->log->warn("no longer in {}: goes on until a restart", config_.file);
+      sensor->log->warn("no longer in {}: runs until a restart", config_.file);
     } else if (const std::string keys = sensor->config.restart_for(*other); !keys.empty()) {
       sensor->log->warn("changed, needs a restart: {}", keys);
     }
@@ -65,7 +65,7 @@ void Housekeeping::use(Renewed renewed) {
   Sensor& sensor = *renewed.sensor;
   sensor.config = std::move(renewed.config);
   if (renewed.parts == nullptr) {
-    sensor.log->info("reloaded: nothing changed, the filter goes on");
+    sensor.log->info("reloaded: nothing changed, the filter continues");
     return;
   }
   for (const std::string& remark : renewed.remarks) sensor.log->warn("{}: {}", sensor.config.model, remark);

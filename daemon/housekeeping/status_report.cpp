@@ -237,7 +237,7 @@ std::string StatusReport::came() const {
 }
 
 std::string StatusReport::nothing_of_it() const {
-  return came() + " came and no frame of the sensor was in them: are driver, options and baud the device's?";
+  return came() + " received and no frame of the sensor in them: check driver, options and baud";
 }
 
 std::string StatusReport::unseen_axes() const {

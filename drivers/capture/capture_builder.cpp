@@ -54,7 +54,7 @@ CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::v
 void CaptureBuilder::go_on_as(const ifog_description& description) {
   if (columns_of(description) != columns_of(description_))
     throw std::runtime_error(
-        "goes on with other axes or channels, as the driver's options changed; expected recordings of one");
+        "continues with other axes or channels, as the driver's options changed; expected recordings of one");
   if (same_samples(description, description_)) return;
   description_ = description;
   last_.valid_axes = 0;  // no difference of angles over it

@@ -25,7 +25,7 @@ class Playback {
                                "\" does not read, expected --driver with another");
     if (begun_ && (header.driver != first_.driver || header.sensor != first_.sensor ||
                    header.channels != first_.channels))
-      throw std::runtime_error("goes on with sensor " + in_quotes(header.sensor) + " of driver " +
+      throw std::runtime_error("continues with sensor " + in_quotes(header.sensor) + " of driver " +
                                in_quotes(header.driver) + " after sensor " + in_quotes(first_.sensor) +
                                " of driver " + in_quotes(first_.driver) +
                                " or with other channels, expected recordings of one");

@@ -236,7 +236,7 @@ std::vector<std::string> losses(const FlightCounts& counts) {
   }
   say(counts.missing_entries, "entries are missing by the recording's own count");
   say(counts.lost_deliveries, "deliveries (" + std::to_string(counts.lost_bytes) +
-                                  " bytes) came and were not recorded: the disk was slow or full");
+                                  " bytes) were received and not recorded: the disk was slow or full");
   say(counts.lost_messages,
       "messages are not in the recording: lost on LCM on the way to it, or the disk was slow or full");
   say(counts.missing_files, "recording(s) between the first and the last are not there");

@@ -23,7 +23,7 @@ struct FlightCounts {
   std::uint64_t open_files = 0;
   std::uint64_t missing_entries = 0;  // that a file's end tells of and are not there
   std::uint64_t lost_deliveries = 0,
-                lost_bytes = 0;      // that came and were not recorded: the disk was too slow
+                lost_bytes = 0;      // that were received and not recorded: the disk was too slow
   std::uint64_t lost_messages = 0;   // the same of a recording of messages: LCM or the disk was too slow
   std::uint64_t missing_files = 0;   // of a run, between those that are there
   std::uint64_t early_files = 0;     // begun before the one in front of them had ended, in another run

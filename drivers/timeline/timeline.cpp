@@ -126,9 +126,6 @@ void Timeline::look_at_arrival(const Frame& frame, Look& now) const noexcept {
   now.elapsed_s = seconds(ns_between(due_ns_, frame.arrival_ns));
   now.quiet_s = seen_ns_ > 0 ? seconds(ns_between(seen_ns_, frame.arrival_ns)) : now.elapsed_s;
   now.silent = std::min(now.quiet_s, now.elapsed_s) > kSilence_s + 2.0 * period_s;
-  // The first of many that were read at once was delayed by as much as those behind it took.
-  if (now.silent && frame.at_once > 1 && now.counted)
-    now.elapsed_s = std::max(kSilence_s, now.elapsed_s - (frame.at_once - 1.0) * period_s);
   now.slack_s = slack_s(now.elapsed_s);
 }
 
@@ -212,12 +209,7 @@ bool Timeline::clock_is_wrong(const Look& now) const noexcept {
   const double grain_s = ticks_.grain_s();
   const double counted_s = static_cast<double>(now.counted_samples) * period_s();
   if (now.passed_s < 0.0 || contradicts(now.passed_s - grain_s, now)) return true;
-  if (!now.counted || now.silent || delay_) return false;
-  if (!now.timed) return now.ahead == 1 && now.passed_s > counted_s + kNoSetting_s;
-  // Where clock and counter disagree, the one nearer to the elapsed time is right.
-  const double apart_s = 2.0 * nominal_s_ + kClocksApart * now.passed_s + grain_s;
-  return std::abs(now.passed_s - counted_s) > apart_s &&
-         std::abs(counted_s - now.elapsed_s) < std::abs(now.passed_s - now.elapsed_s);
+  return now.counted && !now.timed && now.ahead == 1 && now.passed_s > counted_s + kNoSetting_s;
 }
 
 // With the rollovers that the clock tells of. Where the counter stood, or restarted, the clock alone tells.

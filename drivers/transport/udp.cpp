@@ -45,7 +45,7 @@ std::string resolve(const UdpSettings& settings, Addresses& out) {
   if (settings.host_port != 0 && !out.host) return "host_port: expected none without host";
   const bool joined = !settings.group.empty();
   if (joined && !settings.bind.empty())
-    return wrong("bind", settings.bind, "no address beside group: what the group gets is listened to");
+    return wrong("bind", settings.bind, "no address with group: it listens to the group");
   if (joined && settings.interface.empty())
     return "interface: missing; expected the interface on which the group is joined, \"eth0\"";
   if (settings.interface.size() >= IFNAMSIZ)
@@ -143,7 +143,7 @@ bool UdpTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
     require(fresh.set(SOL_SOCKET, SO_REUSEADDR, 1), "cannot share the port", "a kernel that allows it");
   socklen_t size = 0;
   const auto address = addresses_.local.at_port(settings_.port, settings_.interface, size);
-  require(address ? 0 : ENODEV, "cannot listen", "an interface that is there");
+  require(address ? 0 : ENODEV, "cannot listen", "an existing interface");
   require(fresh.bind(*address, size), "cannot listen", "an address of this computer and a port that is free");
   if (!settings_.group.empty()) join(fresh);
   interface_index_ = settings_.interface.empty() ? 0 : if_nametoindex(settings_.interface.c_str());

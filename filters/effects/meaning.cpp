@@ -298,7 +298,7 @@ std::string meaning_of(const Effect& effect) {
     case Form::kBias:
       return "constant bias: what the rate reads beyond the reference";
     case Form::kWarmUp:
-      return "warm-up: the bias settles exponentially after the start of the record, which is taken for "
+      return "warm-up: the bias settles exponentially after the start of the record, which is assumed to be "
              "power-up";
     case Form::kRebuiltRamp:
       return of_rebuilt_ramp(effect);

@@ -82,7 +82,7 @@ constexpr std::array kTable{
                   {},
                   kWideband,
                   "",
-                  "what is louder than the known noise: motion (followed) or noise (smoothed)"},
+                  "what exceeds the known noise: motion (followed) or noise (smoothed)"},
     FilterSetting{"draws",
                   "--draws",
                   SettingMember<int>{&S::draws, &C::draws},

@@ -24,7 +24,7 @@ std::string reason_against(const TunedModel& model, const TunedModel& walk, doub
   char text[160];
   if (const double told = memories_in_record(model.settings, period_s, samples); told < kToldFromAWalk) {
     std::snprintf(text, sizeof text,
-                  "its colour lasts %.2g of the record, too long to be told from a walk or a line",
+                  "its colour lasts %.2g of the record, too long to be distinguished from a walk or a line",
                   1.0 / told);
     return text;
   }

@@ -41,7 +41,8 @@ def same(found, kept, relative=0.0):
 
 
 def takes(option):
-    return (bool(option["value"]), option["repeats"])
+    """Whether it takes a value, and whether it may be repeated. What is false stands in no stored file."""
+    return (bool(option.get("value")), bool(option.get("repeats")))
 
 
 def narrower(new, old, where=""):
@@ -110,7 +111,7 @@ class Version:
                 for name in option["names"]:
                     assert name in options, f"ifog {command['name']} {name} is gone"
                     assert takes(options[name]) == takes(option), f"ifog {command['name']} {name} takes something else"
-                    gone = set(option["choices"]) - set(options[name]["choices"]) if options[name]["choices"] else set()
+                    gone = set(option.get("choices", [])) - set(options[name]["choices"]) if options[name]["choices"] else set()
                     assert not gone, f"ifog {command['name']} {name}: {sorted(gone)} is gone"
             known = {name for option in command["options"] for name in option["names"]}
             asked = [name for name, option in options.items() if option["required"] and name not in known]

@@ -109,12 +109,13 @@ void LcmRecorder::tell_books() const {
       static_cast<unsigned long long>(books.lost_here), static_cast<unsigned long long>(books.lost_on_way));
   if (!books.two_publishers.empty())
     warn(
-        "%s: two publishers sent on %s (two daemons, or a log that was played beside one): their messages "
+        "%s: two publishers sent on %s (two daemons, or a log played at the same time): their messages "
         "are mixed\n",
         options_.folder.c_str(), books.two_publishers.c_str());
   if (books.began_anew > 0)
     warn(
-        "%s: %llu times a message's seq was beyond what its sensor can have counted: taken for a new count\n",
+        "%s: %llu times a message's seq was beyond what its sensor can have counted: treated as a new "
+        "count\n",
         options_.folder.c_str(), static_cast<unsigned long long>(books.began_anew));
 }
 
@@ -151,7 +152,7 @@ void add_record(const Command& program) {
   command.add_option("--sensor", options->sensor, "Only this sensor").type_name("NAME");
   command
       .add_option("--lcm-channel", options->channels,
-                  "Another LCM channel beside, with ifog.channel_t; may stand several times")
+                  "Another LCM channel, with ifog.channel_t; may stand several times")
       .type_name("NAME");
   command.add_option("--seconds", options->seconds, "Stop after this long").positive();
   command.add_option("--bytes", options->bytes, "Keep no more than this; the oldest goes")

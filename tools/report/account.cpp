@@ -138,7 +138,7 @@ std::string account(const Diagnosis& d) {
            (key == "residual_rms_radps" ? "" : escaped(account_of_change(d, "residual_rms_radps"))) +
            "</p>\n";
   if (!d.indistinguishable.empty())
-    out += "<p>Not every name is certain: see <em>What cannot be told apart</em>.</p>\n";
+    out += "<p>Not every name is certain: see <em>What cannot be distinguished</em>.</p>\n";
   return out + "<p>" + account_of_rest(d) + "</p>\n";
 }
 

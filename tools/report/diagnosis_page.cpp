@@ -38,14 +38,13 @@ std::string parameter_rows(const FoundEffect& found) {
 
 std::string effect_section(const PageAxis& axis, std::size_t index) {
   const FoundEffect& found = axis.diagnosis->effects[index];
-  std::string out =
-      "<h3>" + std::to_string(index + 1) + ". " + escaped(effect_words(found.effect)) + "</h3>\n<p>" +
-      escaped(sentence(found.effect.meaning)) +
-      " Chance of such a find in noise alone, after correction "
-      "for everything tried: " +
-      probability(found.p_value) + ". Share of the error's variance" +
-      (parts_overlap(*axis.diagnosis) ? ", taken alone, beside other parts that overlap with it: " : ": ") +
-      number(100.0 * found.variance_explained, 3) + " %.</p>\n";
+  std::string out = "<h3>" + std::to_string(index + 1) + ". " + escaped(effect_words(found.effect)) +
+                    "</h3>\n<p>" + escaped(sentence(found.effect.meaning)) +
+                    " Chance of such a find in noise alone, after correction "
+                    "for everything tried: " +
+                    probability(found.p_value) + ". Share of the error's variance" +
+                    (parts_overlap(*axis.diagnosis) ? ", alone, overlapping with other parts: " : ": ") +
+                    number(100.0 * found.variance_explained, 3) + " %.</p>\n";
   out +=
       "<div class=\"scroll\"><table><caption>Parameters, with their standard errors</caption><thead><tr><th "
       "scope=\"col\">parameter</th><th scope=\"col\" class=\"n\">value</th><th "
@@ -111,7 +110,7 @@ std::string confusable_list(const Diagnosis& d) {
     out += "<li>";
     for (std::size_t i = 0; i < group.effects.size(); ++i)
       out += (i == 0   ? "<strong>"
-              : i == 1 ? " cannot be told from <strong>"
+              : i == 1 ? " cannot be distinguished from <strong>"
                        : " or <strong>") +
              escaped(effect_words(group.effects[i])) + "</strong>";
     out += " here (correlation after whitening " + number(group.correlation) + "). " +
@@ -183,7 +182,7 @@ std::string applying(const Page& page) {
          escaped(toml_quoted(path)) +
          "\n\nifogd --config /etc/ifogd/ifogd.toml --check\n"
          "systemctl reload ifogd</pre>\n"
-         "<p>And when the next capture is there, ask whether the model still holds:</p>\n<pre>ifog diagnose "
+         "<p>And when you have the next capture, ask whether the model still holds:</p>\n<pre>ifog diagnose "
          "next.csv" +
          read_with + " --model " + model + "</pre>\n";
 }
@@ -225,7 +224,7 @@ std::string axis_sections(const PageAxis& axis) {
                          : "<p>No effect passed. The error is what the noise below makes of it.</p>\n";
   out += section("effects" + id, "What was found" + of, effects.empty() ? none : effects);
   out += section("figures" + id, "Before and after in figures" + of, figures_table(d));
-  out += section("confusable" + id, "What cannot be told apart" + of, confusable_list(d));
+  out += section("confusable" + id, "What cannot be distinguished" + of, confusable_list(d));
   out += section("remaining" + id, "What remains" + of, remaining(d));
   return out;
 }
@@ -239,7 +238,7 @@ std::string contents(const Page& page) {
                                       {"residual", "The error"},
                                       {"effects", "What was found"},
                                       {"figures", "Figures"},
-                                      {"confusable", "Not told apart"},
+                                      {"confusable", "Indistinguishable"},
                                       {"remaining", "What remains"}})
       out += std::string("<li><a href=\"#") + name + id + "\">" + words + of + "</a></li>\n";
   }

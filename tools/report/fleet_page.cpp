@@ -104,7 +104,7 @@ std::string effect_section(const TypeEffect& effect, const std::vector<std::stri
       row("mean of those that have it", {value(effect.prior.mean, effect.prior.mean_std_error)}) +
       row("likeliest spread from gyro to gyro", {spread(effect.prior.likeliest_spread)}) +
       row("spread that is reckoned with, by so few gyros", {spread(effect.prior.spread)}) +
-      row("left out of these, for they stand out", {count(effect.set_aside, effect.gyros.size())}) +
+      row("excluded from these as outliers", {count(effect.set_aside, effect.gyros.size())}) +
       row("share of the type that has it", {number(100.0 * effect.prior.share, 3) + " %"}) +
       row("found by a gyro's own diagnosis", {count(effect.found_alone, effect.gyros.size())}) +
       row("found with the type's prior", {count(effect.found, effect.gyros.size())}) +

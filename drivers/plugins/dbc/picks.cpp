@@ -132,7 +132,7 @@ class Reader {
     for (const std::string_view key : {"signal", "x", "y", "z"}) {
       if (!options_.given(key)) continue;
       if (single && key != "signal")
-        options_.fail(key, "nothing beside 'signal': a sensor has either one axis without a name or x, y, z");
+        options_.fail(key, "nothing with 'signal': a sensor has either one axis without a name or x, y, z");
       Axis axis;
       axis.name = single ? "" : key;
       axis.pick = one(key, options_.text(key));

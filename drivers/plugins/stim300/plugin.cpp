@@ -113,7 +113,7 @@ SetUp read_set_up(const plugin::Options& options) {
       {{"125", 125.0}, {"250", 250.0}, {"500", 500.0}, {"1000", 1000.0}, {"2000", 2000.0}, {"trigger", 0.0}});
   if (s.rate_hz > 0.0) s.counter_step = static_cast<std::uint32_t>(kInternalRate_hz / s.rate_hz);
   if (s.delta_velocity && s.counter_step == 0)
-    options.fail("acceleration", "specific_force beside rate_hz = trigger: a speed needs its time");
+    options.fail("acceleration", "specific_force with rate_hz = trigger: a speed needs its time");
   s.terminated = options.choice<bool>("termination", {{"none", false}, {"crlf", true}});
   return s;
 }

@@ -256,7 +256,7 @@ class Checks:
 
     def check_what_makes_bytes_of_a_flight_recording_is_named(self):
         """And does: what comes out is the samples of the recording."""
-        recording, to = SOURCE / "tests/stable/0.1.0/recording.ifr", self.folder / "flight.bin"
+        recording, to = SOURCE / "tests/stable/0.2.0/recording.ifr", self.folder / "flight.bin"
         result = ran("convert", recording, to)
         assert result.returncode == 2, f"exit {result.returncode}: {result.stderr}"
         command = result.stderr.split("ifog replay ")[1].splitlines()[0].split()

@@ -143,7 +143,7 @@ class Checks:
         self.copied(html.unescape(re.findall(r"<pre>(ifog diagnose.*?)</pre>", report.read_text(), re.S)[0]), folder)
         assert (folder / "model.toml").stat().st_size > 0
         odd = folder / "flight 1.ifr"
-        odd.write_bytes((SOURCE / "tests/stable/0.1.0/recording.ifr").read_bytes())
+        odd.write_bytes((SOURCE / "tests/stable/0.2.0/recording.ifr").read_bytes())
         said = ran("convert", odd, folder / "flight 1.bin")
         self.copied("ifog replay " + said.stderr.split("ifog replay ")[1].splitlines()[0], folder)
         assert (folder / "flight 1.bin").stat().st_size > 0

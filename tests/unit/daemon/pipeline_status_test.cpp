@@ -59,10 +59,10 @@ TEST(PipelineStatus, InputThatIsNoneOfTheSensorsIsAFaultInWords) {
       snapshot.reader = rig.pipeline->reader().books();
       fault = report.update(*rig.pipeline, snapshot, 1.0).fault;
     }
-    EXPECT_EQ(fault, rubbish
-                         ? "1800 bytes came and no frame of the sensor was in them: are driver, options and "
-                           "baud the device's?"
-                         : "");
+    EXPECT_EQ(fault,
+              rubbish ? "1800 bytes received and no frame of the sensor in them: check driver, options and "
+                        "baud"
+                      : "");
     rig.pipeline->stop();
   }
 }

@@ -226,7 +226,7 @@ std::string page_of(const ifog::example::Example& e) {
   page.captures = {"bench.csv"};
   page.axes = {{"", &e.diagnosis, e.records()}};
   page.model_path = "bench.toml";
-  page.made = "2026-01-01, ifog 0.1.0";
+  page.made = "2026-01-01, ifog 0.2.0";
   page.command = "ifog diagnose bench.csv --report 'a & b.html'";
   page.inputs = {{"bench.csv", std::string(64, 'c'), {"serial: 17 <b>"}}};
   return diagnosis_page(page);
@@ -241,7 +241,7 @@ std::size_t count_of(const std::string& html, const std::string& part) {
 TEST(ReportPage, HoldsEverySectionAndFetchesNothing) {
   const std::string html = page_of(ifog::example::make());
   for (const char* part : {"In short", "Two effects were found", "The error before and after",
-                           "What was found", "Before and after in figures", "What cannot be told apart",
+                           "What was found", "Before and after in figures", "What cannot be distinguished",
                            "What remains", "Applying it", "ifog denoise", "RMS of 10 s means",
                            "bench &amp; co", "&lt;2 pi reset&gt;", "A capture with faster changes", "τ",
                            "serial: 17 &lt;b&gt;", "a &amp; b.html", "cccccccc", "class=\"band after\""})
@@ -265,9 +265,9 @@ TEST(ReportPage, HoldsEverySectionAndFetchesNothing) {
 TEST(ReportPage, SharesThatOverlapSaySo) {
   ifog::example::Example e = ifog::example::make();
   for (ifog::FoundEffect& found : e.diagnosis.effects) found.variance_explained = 0.4;
-  EXPECT_EQ(count_of(page_of(e), "taken alone, beside other parts that overlap with it: 40"), 0U);
+  EXPECT_EQ(count_of(page_of(e), "alone, overlapping with other parts: 40"), 0U);
   for (ifog::FoundEffect& found : e.diagnosis.effects) found.variance_explained = 1.0;
-  EXPECT_EQ(count_of(page_of(e), "taken alone, beside other parts that overlap with it: 100"), 2U);
+  EXPECT_EQ(count_of(page_of(e), "alone, overlapping with other parts: 100"), 2U);
 }
 
 TEST(ReportPage, ManyEffectsAreAListInShort) {

@@ -65,10 +65,10 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
     // Against a reference the sensor may turn.
     const std::size_t turned = find_rest(axes, references, clock.period_s).turned;
     if (turned > 0)
-      note =
-          "turned in " + six_digits(static_cast<double>(turned) * clock.period_s) +
-          " s: beside the reference the scale factor's error is left, which is no noise; ifog diagnose takes "
-          "it out";
+      note = "turned in " + six_digits(static_cast<double>(turned) * clock.period_s) +
+             " s: the scale factor's error against the reference remains, which is no noise; ifog diagnose "
+             "takes "
+             "it out";
     return all;
   }
   Rest rest = find_rest(axes, references, clock.period_s);
@@ -78,7 +78,7 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
     throw std::runtime_error(
         name + ": " + error.what() + (references.empty() ? "" : ", or --minus-reference") +
         ", or --moving keep" +
-        (references.empty() ? "" : "; a sensor turned beside a reference is for ifog diagnose"));
+        (references.empty() ? "" : "; a sensor turned with a reference is for ifog diagnose"));
   }
   note = slow_turns_in_words(rest, clock.period_s, told_time_s(table, rows.begin));
   return rest;

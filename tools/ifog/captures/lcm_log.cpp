@@ -144,7 +144,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   order.flush(hand_on);
   if (way.had_two_publishers())
     warn(
-        "%s: two publishers sent on %s (two daemons, or a log that was played beside one): their messages "
+        "%s: two publishers sent on %s (two daemons, or a log played at the same time): their messages "
         "are "
         "mixed\n",
         path.c_str(), printable(wanted).c_str());

@@ -71,7 +71,7 @@ class FlightChain {
     now_ = chain_settings(settings);
     if (now_.axes != axes_)
       throw std::runtime_error(
-          "goes on with other axes, as the driver's options changed; expected recordings of one");
+          "continues with other axes, as the driver's options changed; expected recordings of one");
     if (another_run) {
       ++runs_;
       missed_ = !begins_a_run(header);

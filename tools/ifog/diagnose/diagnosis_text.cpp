@@ -51,7 +51,7 @@ std::string effect_lines(const FoundEffect& found, std::size_t number, bool over
   }
   if (!effect.table_x.empty()) lines += text("     a table of %zu knots\n", effect.table_x.size());
   lines += text("     %s %s of the %s variance; by chance: %s\n",
-                overlap ? "taken alone, beside parts that overlap with it," : "explains",
+                overlap ? "alone, overlapping with other parts," : "explains",
                 percent(found.variance_explained).c_str(), effect.shown_only ? "rate's" : "error's",
                 chance(found.p_value).c_str());
   return lines;
@@ -129,10 +129,10 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
       report += effect_lines(diagnosis.effects[i], i + 1, report::parts_overlap(diagnosis));
   }
   if (diagnosis.bias)
-    report += text("\nBias beside the reference: %.4g ± %.2g °/h, corrected by the model\n",
+    report += text("\nBias against the reference: %.4g ± %.2g °/h, corrected by the model\n",
                    diagnosis.bias->value / kDegreePerHour, diagnosis.bias->std_error / kDegreePerHour);
   report += "\nError, the worse of full-data and held-out error:\n" + figure_lines(diagnosis);
-  if (!diagnosis.indistinguishable.empty()) report += "\nCannot be told apart on this data:\n";
+  if (!diagnosis.indistinguishable.empty()) report += "\nCannot be distinguished on this data:\n";
   for (const Indistinguishable& pair : diagnosis.indistinguishable) {
     for (std::size_t i = 0; i < pair.effects.size(); ++i)
       report += (i ? "  or  " : "  ") + named(pair.effects[i]);

@@ -36,7 +36,7 @@ std::string inside(const std::string& state, const std::string& file) {
 std::string plain_name(const json& from, const std::string& path) {
   auto name = from.get<std::string>();
   if (name.empty() || name != fs::path(name).filename().string())
-    throw std::runtime_error(path + ": names a file that does not lie beside it");
+    throw std::runtime_error(path + ": names a file outside of its folder");
   return name;
 }
 

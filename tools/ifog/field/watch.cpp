@@ -108,7 +108,7 @@ Watched watch(LiveStatus& live, const Field& field, const SensorConfig& sensor, 
 }
 
 std::string outcome(const Watched& watched) {
-  if (watched.gain.empty()) return "whether the promise came true cannot be told: " + watched.not_weighed;
+  if (watched.gain.empty()) return "whether the promise came true cannot be judged: " + watched.not_weighed;
   std::string figures;
   for (const AxisGain& axis : watched.gain) {
     char text[160];
@@ -132,7 +132,7 @@ std::string outcome(const Watched& watched) {
     case PromiseVerdict::open:
       break;
   }
-  return "whether the promise came true cannot be told yet, too little has changed around the sensor: " +
+  return "whether the promise came true cannot be judged yet, too little has changed around the sensor: " +
          figures;
 }
 

@@ -307,7 +307,7 @@ void add_fleet(const Command& program) {
   command.add_option("manifest", arguments->manifest, "type, and of each gyro serial and captures (.toml)")
       .required();
   command.add_option("--results", arguments->results,
-                     "folder of results; otherwise beside the manifest, under its name with .results");
+                     "folder of results; otherwise next to the manifest, under its name with .results");
   command
       .add_option("--engine", arguments->engine,
                   "who runs the diagnoses: auto takes slurm where there is an sbatch")

@@ -36,7 +36,7 @@ void make_folder(const fs::path& path) {
   fs::create_directories(path, error);
   if (error || !fs::is_directory(path))
     throw std::runtime_error(path.string() + ": cannot make the folder: " +
-                             (error ? error.message() : "something of that name is there"));
+                             (error ? error.message() : "something of that name exists"));
 }
 
 // What was written, or nothing: missing, cut short by an old disk, of another program.

@@ -141,7 +141,7 @@ class SlurmEngine : public Engine {
     while (std::chrono::steady_clock::now() < until) {
       if (interrupted()) {
         warn(
-            "ifog: interrupted; the array %s goes on, and the same command takes it up (scancel --name=%s "
+            "ifog: interrupted; the array %s continues, and the same command takes it up (scancel --name=%s "
             "ends it)\n",
             name_.c_str(), name_.c_str());
         throw Failed("interrupted");

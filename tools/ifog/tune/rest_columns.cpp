@@ -22,7 +22,7 @@ Rest mostly_at_rest(const CaptureView& capture, double period_s, const std::stri
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(
         path + ": " + error.what() +
-        (references.empty() ? "" : "; a sensor turned beside a reference is for ifog diagnose"));
+        (references.empty() ? "" : "; a sensor turned with a reference is for ifog diagnose"));
   }
   return rest;
 }
