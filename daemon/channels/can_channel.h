@@ -18,7 +18,7 @@ class CanChannel {
   CanChannel(const std::string& dbc_file, const std::string& signal);
 
   [[nodiscard]] CanId id() const { return {message_.id, message_.extended}; }
-  // False: another frame, or one that does not carry the signal. NaN: beyond the range the file states.
+  // False: the frame does not carry the signal. NaN: beyond the range the file states.
   bool decode(const ifog_can_frame& frame, double& value) const noexcept;
 
  private:

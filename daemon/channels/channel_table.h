@@ -30,7 +30,7 @@ class ChannelTable {
     miss(channel, fault);
     refused_.fetch_add(1, std::memory_order_relaxed);
   }
-  // Nothing came, for that reason; it stands until another does.
+  // Nothing was received, for that reason; it stands until the next one.
   void miss(int channel, ChannelFault fault) noexcept {
     entries_[static_cast<std::size_t>(channel)].fault.store(fault, std::memory_order_relaxed);
   }

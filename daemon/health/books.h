@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The books of one pipeline: all that came in, and where each of it went. Nothing is lost in silence, so at
+// The books of one pipeline: all that was received, and where it went. Nothing is lost in silence, so at
 // every moment
 //   bytes read      = bytes of frames + bytes skipped + bytes of a frame that is not complete yet
 //   CAN frames read = frames decoded + frames refused + frames that are none of the sensor's
-//   samples decoded = samples + samples that came twice
+//   samples decoded = samples + duplicates
 //   samples         = samples sent, alone or merged into another one's message, + samples in messages that
 //                     LCM did not take + samples on their way to the filter
 // and each way out has its counter in the status message.
@@ -42,7 +42,7 @@ class SharedBooks {
   void write(const ReaderBooks& books) noexcept;
   // For a thread that may wait for the writer.
   [[nodiscard]] ReaderBooks read() const noexcept;
-  // For one that may not, since it may hold the writer's processor. False: the writer is at it.
+  // For a thread that may not wait, since it may hold the writer's processor. False: the writer is writing.
   bool try_read(ReaderBooks& out) const noexcept;
 
  private:

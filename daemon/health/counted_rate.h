@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many come in a second, by a count that is read from time to time: by the last reading alone where many
-// come between two, else over the last ten that came.
+// A rate in Hz by a count that is read from time to time: by the last reading alone where it grew by many,
+// else over the last ten events.
 #pragma once
 
 #include <cstdint>

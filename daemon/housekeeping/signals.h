@@ -10,7 +10,7 @@ namespace ifog {
 void block_reload();
 // For the calling thread and all that it makes: they come to wait_for_signal() alone.
 void block_signals();
-// The next one, 0 when none came until `deadline_ns` of the monotonic clock. However often SIGHUP comes, it hides no end.
+// The next signal, 0 when there was none until `deadline_ns` of the monotonic clock. SIGHUP never hides an end.
 [[nodiscard]] int wait_for_signal(std::int64_t deadline_ns);
 
 }  // namespace ifog

@@ -33,8 +33,8 @@ class StatusReport {
   // Once, when a device is found to repeat itself; "" else.
   [[nodiscard]] std::string newly_frozen() const;
 
-  // Once, when a device that counts and has no clock sends at another rate than it should: by how much its
-  // intervals, and the angle of one that sends a rate, are wrong, in words; "" else.
+  // Once, when a device with a counter and no clock sends at another rate than configured: by how much its
+  // intervals, and the angle if it sends a rate, are wrong, in words; "" otherwise.
   [[nodiscard]] std::string wrong_rate() const;
 
   // What was noticed of the sensor with the last update() and was not before, in words; "" for nothing.

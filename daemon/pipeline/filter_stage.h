@@ -76,7 +76,7 @@ class FilterStage {
   bool step() noexcept;
 
   // Any one other thread.
-  // New parts, in use from the next delivery on; parts offered before and not yet taken are replaced. number:
+  // New parts, in use from the next delivery on; parts offered before and not yet in use are replaced. number:
   // of their settings, as a recording notes it.
   void offer(std::unique_ptr<ChainParts> parts, std::uint32_t number = 1) {
     exchange_.offer(std::move(parts), number);

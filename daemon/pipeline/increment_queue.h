@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The way from the reader thread to the filter thread: a ring that loses no angle.
 //
-// Overflow policy: merge. When the ring is full, further increments are added up in one that waits outside;
+// Overflow policy: merge. When the ring is full, further increments are added up in a single one outside of it;
 // it goes in as soon as there is room. Δθ, time and count of every sample arrive, only their resolution in
 // time suffers; each merge is counted. A source that keeps its bytes until they are read (a file) waits for
 // room instead.
@@ -45,7 +45,7 @@ class IncrementQueue {
   void pop() noexcept { ring_.pop(); }
   // Sleeps until there is something, or notify().
   void wait() noexcept;
-  // True once close() has been called and all has been taken.
+  // True once close() has been called and the queue is empty.
   [[nodiscard]] bool finished() noexcept {
     return closed_.load(std::memory_order_acquire) && ring_.front() == nullptr;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a thread does not come round: one that is ready to run and gets no processor is starved, by something
+// Why a thread makes no progress. If it is ready to run and gets no processor, it is starved by something
 // of a higher priority, and nothing is wrong with it. One that waits, or works and does not come to an end,
 // is stuck.
 #pragma once

@@ -65,7 +65,7 @@ class Recorder {
   Tape tape_;
   FlightArchive archive_;
   std::vector<std::uint8_t> payload_;
-  // Deliveries and bytes lost, by the entries that came off the tape.
+  // Deliveries and bytes lost, by the entries read from the tape.
   std::array<std::uint64_t, 2> told_{};
   // A trouble: what had been lost before it, and from when to when it lost, by the turns that saw it.
   bool troubled_ = false;

@@ -21,7 +21,7 @@
 
 namespace ifog {
 
-// Deliveries and bytes (payload) that came, and those of them that found no room. Any thread may read them.
+// Deliveries and bytes (payload) received, and those of them that found no room. Any thread may read them.
 struct TapeCounters {
   Counter deliveries, bytes, lost_deliveries, lost_bytes;
 };
@@ -63,7 +63,7 @@ class Tape {
   // Recorder thread: the oldest entry; false: there is none, or it is still being written. A `settings` entry
   // has no payload, its number is the head's length.
   bool take(FlightEntryHead& head, std::vector<std::uint8_t>& payload);
-  // Recorder thread: the entry that was taken last is the first of a delivery.
+  // Recorder thread: the last entry read is the first of a delivery.
   [[nodiscard]] bool begins_delivery() const noexcept { return begins_delivery_; }
   // Recorder thread.
   [[nodiscard]] bool is_half_full() const noexcept { return queue_.read_available() > bytes_ / 2; }

@@ -41,8 +41,8 @@ struct ChainChoice {
 };
 ChainChoice chain_choice(const SensorConfig& sensor, const Model* model);
 
-// When a sensor was switched on, arrival clock: of one that is switched on with the computer when that was,
-// suspended time since then included. Nothing is known of others.
+// When a sensor was switched on, arrival clock. Known only where it is switched on with the computer,
+// suspended time since then included; nullopt otherwise.
 std::optional<std::int64_t> powered_ns(const SensorConfig& sensor);
 
 // Identifies the computer's run since it was switched on, as the service manager hands it on (IFOGD_BOOT_ID) or the

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The folder in which the daemon keeps what outlives a run, and the one home for files in it. Others may write there: members
-// of the daemon's group, and root by `ifog adopt`. So a name in it is never followed, and what has other names is not taken.
+// of the daemon's group, and root by `ifog adopt`. So a link in it is never followed, and a file with hard links is refused.
 // tests/layout/check_state_paths.py says that nobody else opens them.
 #pragma once
 
@@ -51,7 +51,7 @@ void write_state_file(const std::string& path, std::string_view bytes);
 // Nothing: there is none. Throws likewise, also beyond `most` bytes.
 [[nodiscard]] std::optional<std::string> state_file(const std::string& path,
                                                     std::size_t most = kInputLimits.json_bytes);
-// The same of one that must be there.
+// The same for a file that must exist.
 [[nodiscard]] std::string read_state_file(const std::string& path,
                                           std::size_t most = kInputLimits.json_bytes);
 

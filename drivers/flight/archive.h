@@ -28,8 +28,8 @@ struct ArchiveLimits {
   std::int64_t age_ns = 30LL * 86'400 * 1'000'000'000;
   std::uint64_t file_bytes = 16'000'000;
   std::int64_t file_ns = 3'600LL * 1'000'000'000;
-  // At the first turn so long after the one that found it waiting it is written: with turns a quarter of a
-  // second apart that is three quarters after it came, and what is killed misses a second at most.
+  // Data is written at the first turn that is so long after the turn that found it: with turns a quarter of a
+  // second apart, three quarters of a second after its arrival. A killed process loses a second at most.
   std::int64_t flush_ns = 500'000'000;
 };
 
@@ -64,7 +64,7 @@ class FlightArchive {
   // errno of the disk's last answer, 0 while it is well; and in words, with what was expected.
   [[nodiscard]] int error() const { return error_; }
   [[nodiscard]] std::string complaint() const;
-  // What is in no recording: with files that were taken away while they were written, and what waited when it
+  // What is in no recording: with files that were removed while they were written, and what waited when it
   // was closed and no disk took.
   [[nodiscard]] const FlightLoss& taken_away() const { return taken_away_; }
   [[nodiscard]] const FlightLoss& not_taken() const { return not_taken_; }

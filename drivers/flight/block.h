@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A flight recording is a row of blocks. Each says how long it is and carries a checksum over its content,
 // the file's own number and its place in the file: what is torn or changed is found, and nothing that merely
-// looks like a block (a recording within a recording) is taken for one.
+// looks like a block (a recording within a recording) is read as one.
 #pragma once
 
 #include <cstddef>
@@ -34,7 +34,7 @@ struct BlockHead {
   [[nodiscard]] std::size_t size() const { return kBlockHead + stored + kBlockTail; }
 };
 
-// What deflating takes, 260 kB, kept from block to block: taken and given back for each, every processor that
+// The 260 kB that deflating needs are kept from block to block: allocated for each, every processor that
 // runs a thread of the process would be told of the pages that go.
 class Deflater {
  public:

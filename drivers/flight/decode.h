@@ -29,7 +29,7 @@ struct RecordedSamples {
   // A file begins behind the first, before its samples: of another run, or with other settings, perhaps. The
   // driver may be exchanged here for one with the options that the header names. May be empty.
   std::function<void(const FlightHeader&)> file{};
-  // So many of the samples that come now, or came just before, went into others before the daemon's filter.
+  // So many of the next samples, or of those just before, were merged into others before the daemon's filter.
   // May be empty.
   std::function<void(std::uint64_t)> merged{};
 };

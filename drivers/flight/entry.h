@@ -63,7 +63,7 @@ struct FlightEntry {
   }
 };
 
-// The entry at the front of `content`, which is then without it. False: there is no whole one, or one that
+// The entry at the front of `content`, which is then without it. False: there is no whole entry, or one that
 // cannot be.
 inline bool take_entry(std::span<const std::uint8_t>& content, FlightEntry& out) noexcept {
   if (content.size() < sizeof out.head) return false;

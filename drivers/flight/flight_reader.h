@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads a flight recording, or several one after another, entry by entry, whatever happened to it: what is
-// torn or damaged is skipped, counted and never taken for data.
+// torn or damaged is skipped and counted, and never read as data.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,7 @@ struct FlightCounts {
   std::uint64_t missing_files = 0;   // of a run, between those that are there
   std::uint64_t early_files = 0;     // begun before the one in front of them had ended, in another run
   std::uint64_t merged_samples = 0;  // before the filter, see FlightKind::merged
-  // Runs of what wrote it; those that another follows though they have no end; and from the last entry of one
+  // Runs of the recorder; those without an end that another follows; and the time from the last entry of one
   // to the first of the next.
   std::uint64_t runs = 0, cut_off_runs = 0;
   double between_runs_s = 0.0, longest_between_runs_s = 0.0;

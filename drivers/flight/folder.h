@@ -25,7 +25,7 @@ class FlightFolder {
   virtual int list(std::vector<File>& out) = 0;
   // Makes the file `name` and leaves it open. It must not exist.
   virtual int begin(const std::string& name) = 0;
-  // Behind what the open file holds: all of it, or nothing is left of it. ENOENT: somebody has taken the file
+  // Behind what the open file holds: all of it, or nothing is left of it. ENOENT: somebody has removed the file
   // away.
   virtual int append(std::span<const std::uint8_t> bytes) = 0;
   // The open file's content is on the disk, then its name becomes `name`. Closes it in any case.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the head of a flight recording says: all that reading it later needs, so that it goes through the
-// driver and the configuration it came by on another computer, in another year.
+// driver and the configuration that recorded it on another computer, in another year.
 #pragma once
 
 #include <cstdint>

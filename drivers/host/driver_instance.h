@@ -100,7 +100,7 @@ class DriverInstance {
     }
   };
 
-  // About how many samples a portion of bytes brings, by what a sample of this device has taken so far. Asked
+  // About how many samples a portion of bytes brings, by the bytes a sample of this device has had so far. Asked
   // always of a device with neither counter nor clock to tell a late delivery by, of others where it is many.
   struct Portion {
     bool asked = false;

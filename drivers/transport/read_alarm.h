@@ -6,7 +6,7 @@
 // has a timer of its own that sends it a signal (SIGURG, as the runtime of Go does: ignored by default, and
 // used by nothing else here): the call is interrupted and returns EINTR. A signal that comes between the last
 // look and the call would be lost; therefore it is repeated every millisecond for as long as the thread is at
-// its call. Steady traffic sets the timer only once in a time limit: one that rings too early is set again.
+// its call. Steady traffic sets the timer only once in a time limit: an alarm that rings too early is set again.
 #pragma once
 
 #include <atomic>

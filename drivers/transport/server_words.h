@@ -22,7 +22,7 @@ class ServerWords {
     length_ += bytes.size();
     if (runs_ < kShow) count_runs(bytes);
   }
-  // All that came, if it is a sentence; else "".
+  // All that was received, if it is a sentence; else "".
   [[nodiscard]] std::string_view sentence() const noexcept {
     std::string_view text(text_.data(), std::min(length_, text_.size()));
     while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.remove_suffix(1);

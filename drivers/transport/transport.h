@@ -112,7 +112,7 @@ class Transport {
   [[nodiscard]] bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  // Whoever sees a state sees the reason it came with, too.
+  // Whoever sees a state sees its reason, too.
   [[nodiscard]] TransportState state() const { return state_.load(std::memory_order_acquire); }
   [[nodiscard]] int reason() const {
     return reason_.load(std::memory_order_relaxed);
@@ -127,7 +127,7 @@ class Transport {
 
  protected:
   // Opens the device, again if need be, and sends opening(). False: the other end has not answered when
-  // `until_ns` of CLOCK_MONOTONIC came or stop() was called; the next call waits on. Throws OpenError.
+  // `until_ns` of CLOCK_MONOTONIC has passed or stop() was called; the next call waits on. Throws OpenError.
   virtual bool connect(std::string& warning, std::int64_t until_ns) = 0;
   // read() of an open device, until `until_ns` of CLOCK_MONOTONIC. Calls lost(), left() or end() when there
   // is no more.

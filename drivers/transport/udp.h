@@ -22,7 +22,7 @@ struct UdpSettings {
   // Datagrams from elsewhere are dropped and counted. A driver's opening bytes go there, and without it
   // nowhere. Empty: from anywhere.
   std::string host;
-  // The port that the host's datagrams come from, and opening bytes go to. 0: the one that sends first, until it has
+  // The port that the host's datagrams come from, and opening bytes go to. 0: that of the first sender, until it has
   // been silent for two seconds; opening bytes go to `port`.
   std::uint16_t host_port = 0;
   // Room for what waits for the reader, as the kernel counts it. What net.core.rmem_max forbids needs

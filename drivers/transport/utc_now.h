@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Dates as people are shown them: those that models, pages and learned noise bear.
+// Dates as people are shown them, in models, pages and learned noise.
 #pragma once
 
 #include <cstdint>

@@ -25,11 +25,11 @@ struct IncrementerCounts {
   std::uint64_t gaps = 0;      // places where samples are missing
   std::uint64_t missing = 0;   // samples missing
   std::uint64_t untold = 0;    // of those: or the device's clock was set, and nothing tells which
-  std::uint64_t repeated = 0;  // samples left out because they came twice, or after one that follows
-  std::uint64_t mixed = 0;     // of those: they come with another device's, and neither is taken
+  std::uint64_t repeated = 0;  // samples dropped as duplicates or because a later one had arrived
+  std::uint64_t mixed = 0;     // of those: two devices send on one line, and both are dropped
   std::uint64_t restarts = 0;  // device counter or clock jumped back: it was switched off and on
-  // Samples with an axis that may not be used; one that the device has never marked good it may not have at
-  // all: what is missing of that counts from when it comes.
+  // Samples with an axis that may not be used. An axis that the device has never marked good may not exist:
+  // its missing values count from its first good one.
   std::uint64_t invalid = 0;
   std::uint64_t saturated = 0;            // of those: at or beyond full scale
   std::uint64_t implausible = 0;          // of those: marked good, but a value that cannot be
@@ -44,7 +44,7 @@ class Incrementer {
   // facts.nominal_rate_hz > 0; the caller has checked it.
   explicit Incrementer(const SensorFacts& facts) noexcept;
 
-  // False: the sample came twice (counted), `out` is not touched. No allocation, no exception.
+  // False: the sample is a duplicate (counted), `out` is not touched. No allocation, no exception.
   bool next(const Reading& reading, Increment& out) noexcept;
   // The device was closed and opened: the next sample comes after a gap of unknown length.
   void discontinuity() noexcept { reopened_ = true; }
@@ -52,7 +52,7 @@ class Incrementer {
   [[nodiscard]] const IncrementerCounts& counts() const noexcept { return counts_; }
   // Bits of the axes that the device has marked good at least once.
   [[nodiscard]] std::uint32_t axes_seen() const noexcept { return axes_seen_; }
-  // Frames of two devices come on one line, and none is taken.
+  // Two devices send on one line, and no frame is accepted.
   [[nodiscard]] bool mixed() const noexcept { return timeline_.two_devices(); }
   // Fitted against nominal period, 1e-6; 0 until the line has settled.
   [[nodiscard]] double clock_offset_ppm() const noexcept;

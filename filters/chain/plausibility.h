@@ -25,8 +25,8 @@ struct Turn {
   double covered_s = 0.0;  // 0: nothing is known of the turn
 };
 
-// A scalar within limits that does not jump. The first value beyond max_step is refused; a second one that
-// agrees with it shows that the quantity did move, and is the new beginning.
+// A scalar within limits that does not jump. The first value beyond max_step is refused; a second value that
+// agrees with it shows that the quantity did move, and is accepted.
 class PlausibleValue {
  public:
   PlausibleValue() = default;

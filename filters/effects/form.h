@@ -101,7 +101,7 @@ inline constexpr std::string_view kHalfWidth = "half_width";
 [[nodiscard]] std::string rate_of_axis(std::string_view axis);
 [[nodiscard]] std::string axis_of_rate(std::string_view channel);  // "" when the channel is none
 
-// The reference rate, known on a rate table; online its place is taken by the rate itself.
+// The reference rate, known on a rate table; online the rate itself replaces it.
 [[nodiscard]] bool is_reference_rate(std::string_view channel);
 
 // Under this name a model's ranges say for how long after a record's start a ramp in time was fitted.

@@ -13,7 +13,7 @@
 // would not do: a ramp's flyback is a step, and where it stands in a sample makes a likelihood with edges.
 // What is subtracted is the table's mean over the phases still possible, so that a vague phase puts in no
 // noise. A slower frequency offset (an uncertain bias, k over temperature) is followed as well. A phase too
-// vague for the table to be of use is acquired again, as is one that no longer explains the rate.
+// vague for the table to be of use is acquired again, as is a phase that no longer explains the rate.
 //
 // A sample is compared with what the ramp makes of it at the mean rate, not at the sample's own: near a
 // standstill f(phase now) - f(phase before) is in proportion to the rotation itself, and a phase could be

@@ -22,7 +22,7 @@ struct ShapeSettings {
   // lagged: a second stage; band_power: what the power is averaged over, 0: a second.
   double second_time_constant_s = 0.0;
   // band_power: what vibrates was not always at its first sample, so the low-pass begins as the mean so far.
-  // A model that says no average_s was fitted to one that began with that sample, and is read as it was.
+  // A model without average_s was fitted to a shape that began with that sample, and is read so.
   bool begins_at_mean = false;
   std::vector<double> table_x, table_y;  // lookup
   double period = 0.0;                   // lookup (0: not periodic), cosine, sine

@@ -22,7 +22,7 @@ inline constexpr std::size_t kMostSpare = 4;
 [[nodiscard]] void* map_new_file(std::size_t bytes);
 // What that gave.
 void unmap_new_file(void* at, std::size_t bytes) noexcept;
-// One of those that wait, half to twice as long, for what writes from its beginning and reads only what it
+// A waiting file, half to twice as long, for a user that writes from its beginning and reads only what it
 // wrote: its pages are there already. None: none such waits.
 [[nodiscard]] std::optional<UnnamedFile> take_spare_file(std::size_t bytes) noexcept;
 // As memcpy, `to` being in memory that map_new_file() gave: by way of the file, for writing a page that is

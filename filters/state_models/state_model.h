@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rate is taken to be between samples: x(k+1) = A x(k) + w, rate = h'x, with A and cov w as
+// The model of the rate between samples: x(k+1) = A x(k) + w, rate = h'x, with A and cov w as
 // functions of the time between samples. Axes of one sensor share one model.
 //
 // Names and parameters (FilterSettings::state, ::state_parameters), q = process_noise in (rad/s)^2/s:

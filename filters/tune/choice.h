@@ -2,7 +2,7 @@
 // Which of the fitted models is written.
 //
 // The likelihood decides, and may be overruled only towards the random walk, on two grounds. A colour that
-// forgets more slowly than the record can tell from one that never does may be the walk itself, or is a line,
+// forgets too slowly for the record to show that it forgets may be the walk itself, or is a line,
 // for which there is a term; and a model that is likelier may still put into its level what is noise, or into
 // its colour what is level, as the likelihood only knows their sum. That shows in what the published rate
 // says of measurements to come. How little the published rate moves does not show it: a constant moves least.
@@ -25,7 +25,7 @@ namespace ifog {
 [[nodiscard]] double memories_in_record(const FilterSettings& settings, double period_s, double samples);
 
 // The likeliest model with nothing against it; says why of those before it. models: by BIC; without a random
-// walk among them the first is taken. samples: of an axis.
+// walk among them the first is chosen. samples: of an axis.
 [[nodiscard]] std::size_t choose(std::vector<TunedModel>& models, double period_s, double samples);
 
 }  // namespace ifog

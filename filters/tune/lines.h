@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The strongest sinusoid of a record, found and taken out.
+// The strongest sinusoid of a record, found and subtracted.
 #pragma once
 
 #include <vector>

@@ -24,7 +24,7 @@ struct Outcome {
   std::vector<RateFigures> before, after;  // by axis: measured, published
   // By axis: mean square by which the published rate misses the measured one's mean over the next 1, 4, 16 …
   // samples, as long as eight such windows fit. The level is in it: a filter that does not follow misses what
-  // comes, as does one that follows the noise.
+  // comes, as does a filter that follows the noise.
   std::vector<std::vector<double>> ahead;
 };
 

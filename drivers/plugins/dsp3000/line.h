@@ -6,7 +6,7 @@
 //
 // There is no checksum and no counter: a lost or changed digit is a wrong value that nothing can tell. What
 // can be held to is the form, six decimals exactly, which catches most of what a bad line does. Loggers write
-// other line ends: any is taken.
+// other line ends: any is accepted.
 #pragma once
 
 #include <cstddef>

@@ -83,7 +83,7 @@ inline float float_of(double value, const std::string& what) {
 class Channels {
  public:
   Channels() { held_.fill(std::numeric_limits<double>::quiet_NaN()); }
-  // A new value, which came with this sample. What is not finite is none.
+  // A new value, sent with this sample. A value that is not finite is none.
   void set(ifog_sample& sample, std::size_t channel, double value) noexcept {
     if (!std::isfinite(value)) return;
     held_[channel] = value;

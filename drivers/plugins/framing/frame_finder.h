@@ -6,9 +6,9 @@
 // found. While a frame is not yet whole the positions behind its header are tried too: a header that damage
 // or chance has made, and that announces bytes which never come, holds back nothing. So an intact frame comes
 // out with its own last byte, never later. The price is that a whole frame, checksum and all, inside another
-// one's payload is taken for itself and the outer one lost; no device sends that. Of frames that overlap the
-// one that ends first is taken, also where all bytes are there at once: a recording gives the frames that the
-// line gave, however either came in portions.
+// one's payload is accepted and the outer one lost; no device sends that. Of frames that overlap the
+// one that ends first is accepted, also where all bytes arrive at once: a recording gives the frames that the
+// line gave, however either was cut into portions.
 #pragma once
 
 #include <algorithm>
@@ -128,7 +128,7 @@ class FrameFinder {
     return std::nullopt;
   }
 
-  // What is before it and not yet taken is part of no intact frame.
+  // Bytes before it that are not yet consumed are part of no intact frame.
   void pass_over(std::size_t upto) noexcept {
     counters_.bytes_skipped += upto - begin_;
     if (!any_failed_) return;

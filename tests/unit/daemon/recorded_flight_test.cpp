@@ -98,7 +98,7 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   };
   ASSERT_TRUE(send_and_await(600)) << text_of(path("said"));
   ASSERT_NE(published_.back().denoised[0], published_.back().compensated[0]);  // its noise is known
-  reload("nothing changed, the filter goes on");
+  reload("nothing changed, the filter continues");
   const std::size_t unchanged = published_.size();
   ASSERT_TRUE(send_and_await(200)) << text_of(path("said"));
   for (std::size_t n = unchanged; n < published_.size(); ++n)

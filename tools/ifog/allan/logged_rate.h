@@ -35,7 +35,7 @@ class Gaps {
   std::size_t first_row_;
 };
 
-// A rate as it was logged: its name in the file, when its rows were taken, and where the sensor rested.
+// A rate as it was logged: its name in the file, the times of its rows, and where the sensor rested.
 // time_s: since the origin.
 struct LoggedRate {
   const std::string& capture;

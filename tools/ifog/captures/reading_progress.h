@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The progress of whatever reads a file, by the bytes that have been taken from it.
+// The progress of whatever reads a file, by the bytes that have been read.
 #pragma once
 
 #include <filesystem>

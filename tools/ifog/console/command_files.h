@@ -41,7 +41,7 @@ inline constexpr auto kByteEndings =
 void expect_no_other_kind(const std::string& option, const std::string& path,
                           std::span<const std::string_view> endings);
 
-// The ending of a file's name chooses what is written into it: with one that is not `known` nothing is.
+// The ending of a file's name chooses its format; a file with an ending that is not `known` is not written.
 // Throws WrongUsage with the endings that were `expected`. A name without an ending, a device, a
 // pipe and standard output say nothing.
 void expect_ending(const std::string& option, const std::string& path, bool known,

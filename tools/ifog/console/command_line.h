@@ -17,7 +17,7 @@ using AddCommand = void (*)(const Command& app);
 // under its own name, wherever it lies. Empty before run_command_line().
 std::string typed_command();
 
-// The same word by word, as they came, without the program.
+// The same word by word, unchanged, without the program.
 std::vector<std::string> typed_words();
 
 // main() of a program with these commands. Exit 0 good, 1 failed, 2 usage.

@@ -17,7 +17,7 @@ class Progress {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Whether a thread of its own redraws between the steps, so that one that lasts shows that it does. Not
+  // Whether a thread of its own redraws between the steps, so that a long step shows that it lasts. Not
   // where a thread would be in the way.
   enum class Between { redraw, nothing };
 

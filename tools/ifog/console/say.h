@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text for people. Everything that a command tells goes through here, so that no name or value that came from
+// Text for people. Everything that a command says goes through here, so that no name or value from
 // a file, a device or the network reaches the terminal as a command to it, and so that it stands on standard
 // error when standard output is where the data goes.
 #pragma once

@@ -25,7 +25,7 @@ class ChainRun {
   void begin(const ChainSettings& settings);
   // As it takes other settings into use, from the next sample on.
   void exchange(const ChainSettings& settings);
-  // Null: the sample came twice, or after one that follows it.
+  // Null: the sample is a duplicate, or a later one had arrived.
   const Increment* run(const Reading& reading, ChainOutput& out);
   // Whether what has come since the last call counts in the result.
   void count(bool counts);

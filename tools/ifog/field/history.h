@@ -31,7 +31,7 @@ class History {
   History(const std::string& state, const std::string& sensor);
 
   [[nodiscard]] const std::vector<ModelChange>& changes() const { return changes_; }
-  // The adoption that is in force, which a revert takes back; null: none, all were taken back.
+  // The adoption that is in force, which a revert takes back; null: none is.
   [[nodiscard]] const ModelChange* in_force() const;
 
   // Both write the file, whole. `replaced` is kept first.
@@ -40,7 +40,7 @@ class History {
   void set_outcome(const std::string& outcome);
   // The last change did not come about.
   void take_back();
-  // A change that was written down and never came about, as the model before it is in use: an adoption or a
+  // A change that was written down and never made, as the model before it is in use: an adoption or a
   // revert that was killed between the two. Taken back.
   void forget_what_never_was(const ModelName& in_use);
 

@@ -53,7 +53,7 @@ struct Proposal {
 // "10 s means 0.0312 -> 0.0081 °/h": of the averaging time that gains most.
 [[nodiscard]] std::string gain_text(const std::vector<AxisGain>& gain);
 
-// In place of the one that waits, if any. All files are whole or none counts. Throws std::runtime_error with
+// Replaces the waiting one, if any. All files are whole or none counts. Throws std::runtime_error with
 // one line.
 void write_proposal(const std::string& state, const Proposal& proposal, const Model& model,
                     const std::string& report);

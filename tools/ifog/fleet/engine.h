@@ -21,7 +21,7 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  // Processes for these gyros of the manifest, started and waited for. Of those that ended badly the last
+  // Processes for these gyros of the manifest, started and waited for. For those that failed the last
   // word on how, where it is known. done: called now and then with how many have ended. Throws Failed when
   // interrupted, std::runtime_error with one line when none can be started.
   virtual std::map<std::size_t, std::string> run(const std::vector<std::size_t>& gyros,

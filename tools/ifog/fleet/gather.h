@@ -26,7 +26,7 @@ Diagnosed gather_diagnosed(const Results& results, const Manifest& manifest, con
 // The noise of every gyro on every axis, by the diagnoses.
 std::vector<PopulationParameter> noise_parameters(const Diagnosed& diagnosed);
 
-// The measurements of the type's effects, by gyro; those that failed, or are not of these captures and
+// The measurements of the type's effects, by gyro. Those that failed, or belong to other captures or
 // options, are among `failed` instead.
 std::map<std::size_t, GyroMeasured> gather_measured(const Results& results, const Manifest& manifest,
                                                     const std::string& options, const Diagnosed& diagnosed,
@@ -39,7 +39,7 @@ std::vector<TypeEffect> judged_effects(const TypeToMeasure& type,
                                        const Diagnosed& diagnosed, double level);
 
 // What the measurements say of the choice: of each effect the form that explains most in all gyros together
-// comes first (where `forms` may change), and the least of those that no population would show by chance is
+// comes first (where `forms` may change), and the least of those that chance would not show is
 // left out. Whether anything changed: then it has to be measured again.
 bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
                 const std::map<std::size_t, GyroMeasured>& measured, double level, bool forms);

@@ -29,7 +29,7 @@ struct TypeToMeasure {
   std::string id;  // of the file's content; 16 hex digits
 };
 
-// What a gyro's own diagnosis came to.
+// The result of a gyro's own diagnosis.
 struct GyroDone {
   std::string inputs;                 // of which captures, with which options
   std::optional<std::string> failed;  // why there is none
@@ -66,7 +66,7 @@ class Results {
   // Before anything of it is written.
   void make_folder_of(const FleetGyro& gyro) const;
 
-  // Nothing where there is none, or one that cannot be read: it is made again.
+  // nullopt where there is none, or it cannot be read: it is made again.
   [[nodiscard]] std::optional<TypeToMeasure> type() const;
   [[nodiscard]] std::optional<GyroDone> done(const FleetGyro& gyro) const;
   [[nodiscard]] std::optional<GyroMeasured> measured(const FleetGyro& gyro, const std::string& type_id) const;

@@ -14,7 +14,7 @@ namespace ifog::tools {
 class KnownHere {
  public:
   // A configuration that was not named counts while a daemon runs with its state folder, and need not be there or be readable.
-  // Throws as Field does: one that was named.
+  // Throws as Field does, for a named configuration.
   explicit KnownHere(const FieldOptions& options);
   // Reads models and proposals again.
   void look();

@@ -33,7 +33,7 @@ struct MonitorOptions {
 class Monitor {
  public:
   explicit Monitor(const MonitorOptions& options);
-  // False: nothing was heard.
+  // False: no message was received.
   bool run();
   [[nodiscard]] std::string who_publishes() const;
 

@@ -43,10 +43,10 @@ class SensorView {
   [[nodiscard]] std::int64_t messages() const { return messages_; }
   [[nodiscard]] bool judged() const { return judged_; }  // an interval has ended
   [[nodiscard]] bool shown() const { return shown_; }    // an interval with rates or a status has ended
-  // The last message came so long ago, s, at the end of the interval.
+  // Age of the last message, s, at the end of the interval.
   [[nodiscard]] double silent_s() const { return silent_s_; }
   [[nodiscard]] bool silent() const { return silent_s_ > kStale_s; }
-  // Null: none came, or so long ago, s, that it says nothing of now.
+  // Null: none was received, or it is too old, s, to describe the present.
   [[nodiscard]] const status_t* live_status() const {
     return status_ && status_age_s_ <= kStale_s ? &*status_ : nullptr;
   }

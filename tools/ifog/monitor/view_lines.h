@@ -24,7 +24,7 @@ struct LineStyle {
   RateUnit unit = RateUnit::automatic;
 };
 
-// What this computer's own files say of a sensor that is heard: its messages carry neither driver nor transport, and of the model
+// What this computer's own files say of a sensor on LCM: its messages carry neither driver nor transport, and of the model
 // an identity.
 struct KnownSensor {
   std::string driver;           // "kvh1750, serial /dev/ttyUSB0"
@@ -44,7 +44,7 @@ struct ShownLine {
 // How the sensor does, in a word.
 Tone tone_of(const SensorView& sensor);
 
-// Names from the network in them are as they came, but without control characters. `known`: null for nothing.
+// Names from the network are unchanged in them, but without control characters. `known`: null for nothing.
 std::vector<ShownLine> view_lines(std::string_view name, const SensorView& sensor, const LineStyle& style,
                                   const KnownSensor* known = nullptr);
 
