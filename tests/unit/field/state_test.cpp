@@ -164,7 +164,7 @@ TEST_F(StateFolder, ADamagedProposalIsOneLine) {
   EXPECT_NE(with("\"why\"", "\"who\"").find("damaged"), std::string::npos);
   EXPECT_NE(with("\"nose\"", "\"tail\"").find("another sensor"), std::string::npos);
   // What the index names is removed and read: nothing but what lies beside it.
-  EXPECT_NE(with("nose.proposal-", "../../proposal-").find("does not lie beside it"), std::string::npos);
+  EXPECT_NE(with("nose.proposal-", "../../proposal-").find("outside of its folder"), std::string::npos);
 }
 
 TEST_F(StateFolder, AProposalWhoseModelWasChangedIsRefused) {
