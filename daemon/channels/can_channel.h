@@ -7,7 +7,7 @@
 #include "daemon/config/config.h"
 #include "drivers/dbc/database.h"
 #include "drivers/ifog/driver.h"
-#include "drivers/transport/file.h"
+#include "drivers/transport/file/file.h"
 
 namespace ifog {
 

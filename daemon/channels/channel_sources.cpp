@@ -22,7 +22,7 @@
 #include "daemon/channels/number_file.h"
 #include "daemon/sensor/facts.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/transport/can.h"
+#include "drivers/transport/can/can.h"
 #include "drivers/transport/clock.h"
 #include "filters/chain/plausibility.h"
 

@@ -10,7 +10,7 @@
 
 #include "daemon/channels/channel_table.h"
 #include "daemon/config/config.h"
-#include "drivers/transport/can.h"
+#include "drivers/transport/can/can.h"
 
 namespace ifog {
 

@@ -13,9 +13,9 @@
 #include <vector>
 
 #include "daemon/config/published_type.h"
-#include "drivers/transport/serial_port.h"
-#include "drivers/transport/tcp.h"
-#include "drivers/transport/udp.h"
+#include "drivers/transport/network/tcp.h"
+#include "drivers/transport/network/udp.h"
+#include "drivers/transport/serial/serial_port.h"
 #include "filters/chain/reading.h"
 #include "filters/settings/filter_settings.h"
 

@@ -3,7 +3,7 @@
 
 #include "daemon/config/table_reader.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/transport/set_up_dialogue.h"
+#include "drivers/transport/serial/set_up_dialogue.h"
 
 namespace ifog {
 namespace {

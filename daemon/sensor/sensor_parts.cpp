@@ -12,12 +12,12 @@
 
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/transport/can.h"
+#include "drivers/transport/can/can.h"
 #include "drivers/transport/clock.h"
-#include "drivers/transport/file.h"
-#include "drivers/transport/serial.h"
-#include "drivers/transport/tcp.h"
-#include "drivers/transport/udp.h"
+#include "drivers/transport/file/file.h"
+#include "drivers/transport/network/tcp.h"
+#include "drivers/transport/network/udp.h"
+#include "drivers/transport/serial/serial.h"
 
 namespace ifog {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "filters/diagnosis/record.h"
 #include "filters/model_file/model.h"
 #include "filters/rest/noise_change.h"

@@ -7,7 +7,7 @@
 #include <span>
 #include <string>
 
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "filters/allan/stretches.h"
 #include "filters/rest/channel_outline.h"
 #include "filters/series/series_view.h"

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/allan/noise_spectrum.h"
+#include "filters/allan/noise/noise_spectrum.h"
 #include "filters/allan/stretches.h"
 
 namespace ifog {

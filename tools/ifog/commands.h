@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "tools/ifog/console/command.h"
+#include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
 

@@ -17,10 +17,10 @@
 #include "tools/ifog/captures/lcm_listener.h"
 #include "tools/ifog/captures/message_archive.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "filters/rest/noise_change.h"
 
 namespace ifog::report {

@@ -7,7 +7,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "filters/diagnosis/record/even_grid.h"
 
 namespace ifog {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "filters/allan/confidence.h"
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "tools/simulate/noise.h"
 
 namespace {

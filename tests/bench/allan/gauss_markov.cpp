@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "filters/diagnosis/regression/whitening.h"
 #include "filters/diagnosis/report/prediction.h"
 #include "tools/simulate/noise.h"

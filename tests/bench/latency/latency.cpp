@@ -24,7 +24,7 @@
 #include "daemon/recorder/recorder.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/clock.h"
-#include "drivers/transport/file.h"
+#include "drivers/transport/file/file.h"
 #include "tests/bench/latency/thread_costs.h"
 
 namespace {

@@ -34,7 +34,7 @@
 #include "daemon/sensor/facts.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/clock.h"
-#include "drivers/transport/file.h"
+#include "drivers/transport/file/file.h"
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 

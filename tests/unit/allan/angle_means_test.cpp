@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Rates at a coarser step against their definition, and their covariance against closed forms.
-#include "filters/allan/angle_means.h"
+#include "filters/allan/noise/angle_means.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "filters/distributions/chi_squared.h"
 #include "tools/simulate/noise.h"
 

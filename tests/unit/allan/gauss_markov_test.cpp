@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/allan/gauss_markov.h"
+#include "filters/allan/noise/gauss_markov.h"
 
 #include <gtest/gtest.h>
 
@@ -7,8 +7,8 @@
 #include <numbers>
 #include <vector>
 
-#include "filters/allan/angle_means.h"
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/angle_means.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "tools/simulate/noise.h"
 
 namespace {

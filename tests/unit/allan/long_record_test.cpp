@@ -7,7 +7,7 @@
 
 #include "filters/allan/confidence.h"
 #include "filters/allan/deviation.h"
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "filters/allan/theo1.h"
 #include "filters/rest/rest.h"
 #include "filters/series/long_series.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Seeded simulations with known coefficients: the error bars are kept as often as they promise, terms that
 // are absent are reported absent, and a ramp is not a random walk.
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "filters/allan/confidence.h"
-#include "filters/allan/curve_miss.h"
+#include "filters/allan/noise/curve_miss.h"
 #include "tools/simulate/noise.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/allan/noise_likelihood.h"
+#include "filters/allan/noise/noise_likelihood.h"
 
 #include <gtest/gtest.h>
 

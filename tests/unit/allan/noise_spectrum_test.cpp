@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the numbers taken of a record are expected to scatter like, against closed forms, and how much of what
 // all samples together say of the terms is left in them.
-#include "filters/allan/noise_spectrum.h"
+#include "filters/allan/noise/noise_spectrum.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <numbers>
 #include <vector>
 
-#include "filters/allan/angle_means.h"
-#include "filters/allan/noise_likelihood.h"
+#include "filters/allan/noise/angle_means.h"
+#include "filters/allan/noise/noise_likelihood.h"
 #include "tools/simulate/noise.h"
 
 namespace {

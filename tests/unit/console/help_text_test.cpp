@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/console/help_text.h"
+#include "tools/ifog/console/options/help_text.h"
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@
 
 #include "daemon/pipeline/pipeline.h"
 #include "drivers/host/driver_instance.h"
-#include "drivers/transport/file.h"
+#include "drivers/transport/file/file.h"
 #include "tests/unit/daemon/private_network.h"
 #include "tests/unit/malloc_counter.h"
 

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "drivers/transport/clock.h"
-#include "drivers/transport/pace.h"
+#include "drivers/transport/file/pace.h"
 #include "tools/ifog/replay/lateness.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/report/fleet_page.h"
+#include "tools/report/pages/fleet_page.h"
 
 #include <gtest/gtest.h>
 

@@ -11,12 +11,12 @@
 
 #include "tests/unit/report/example.h"
 #include "tools/report/chart.h"
-#include "tools/report/diagnosis_page.h"
+#include "tools/report/pages/diagnosis_page.h"
+#include "tools/report/pages/traced.h"
+#include "tools/report/pages/words.h"
 #include "tools/report/picture.h"
 #include "tools/report/style.h"
 #include "tools/report/text.h"
-#include "tools/report/traced.h"
-#include "tools/report/words.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "filters/diagnosis/diagnose.h"
 #include "tools/simulate/noise.h"
 

@@ -19,7 +19,7 @@
 #include "filters/model_file/model.h"
 #include "filters/settings/filter_table.h"
 #include "tools/ifog/console/command_line.h"
-#include "tools/ifog/console/filter_options.h"
+#include "tools/ifog/console/options/filter_options.h"
 
 namespace {
 

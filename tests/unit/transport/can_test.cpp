@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What of the CAN transport can be seen without a kernel that has CAN: the two forms of a frame, what the
 // kernel says beside it, and the refusals. The rest runs on vcan in tests/system.
-#include "drivers/transport/can.h"
+#include "drivers/transport/can/can.h"
 #include "drivers/transport/clock.h"
 
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include <cerrno>
 #include <cstring>
 
-#include "drivers/transport/can_socket.h"
+#include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/receiving_socket.h"
 
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/transport/file.h"
+#include "drivers/transport/file/file.h"
 #include "drivers/transport/clock.h"
 
 #include <fcntl.h>
@@ -17,7 +17,7 @@
 #include <thread>
 
 #include "drivers/capture/text_file.h"
-#include "drivers/transport/byte_file.h"
+#include "drivers/transport/file/byte_file.h"
 #include "drivers/transport/sole_reader.h"
 #include "tests/unit/transport/forever.h"
 

@@ -12,7 +12,7 @@
 #include <cstring>
 #include <string>
 
-#include "drivers/transport/udp.h"
+#include "drivers/transport/network/udp.h"
 
 namespace ifog {
 

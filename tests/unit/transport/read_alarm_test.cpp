@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "drivers/transport/clock.h"
-#include "drivers/transport/file.h"
-#include "drivers/transport/udp.h"
+#include "drivers/transport/file/file.h"
+#include "drivers/transport/network/udp.h"
 #include "tests/unit/transport/loopback.h"
 
 namespace ifog {

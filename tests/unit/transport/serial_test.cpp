@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The serial transport over a pseudo terminal in the place of the line: libserialport itself takes none (no
 // modem lines), it is tried in tests/system on an emulated UART and a USB adapter that is pulled out.
-#include "drivers/transport/serial.h"
+#include "drivers/transport/serial/serial.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/sole_reader.h"
 

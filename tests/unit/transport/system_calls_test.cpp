@@ -18,10 +18,10 @@
 #include <string>
 #include <thread>
 
-#include "drivers/transport/file.h"
-#include "drivers/transport/serial.h"
-#include "drivers/transport/tcp.h"
-#include "drivers/transport/udp.h"
+#include "drivers/transport/file/file.h"
+#include "drivers/transport/network/tcp.h"
+#include "drivers/transport/network/udp.h"
+#include "drivers/transport/serial/serial.h"
 #include "tests/unit/transport/loopback.h"
 
 namespace {

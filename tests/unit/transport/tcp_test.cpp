@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The TCP transport on the loopback, with a sensor that listens, closes, is taken and is not there.
-#include "drivers/transport/tcp.h"
+#include "drivers/transport/network/tcp.h"
 #include "drivers/transport/clock.h"
 
 #include <gtest/gtest.h>

@@ -15,7 +15,7 @@
 #include <memory>
 #include <string>
 
-#include "drivers/transport/serial.h"
+#include "drivers/transport/serial/serial.h"
 
 namespace ifog {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The UDP transport on the loopback.
-#include "drivers/transport/udp.h"
+#include "drivers/transport/network/udp.h"
 #include "drivers/transport/clock.h"
-#include "drivers/transport/ip_address.h"
+#include "drivers/transport/network/ip_address.h"
 
 #include <gtest/gtest.h>
 #include <net/if.h>

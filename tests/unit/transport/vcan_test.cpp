@@ -15,8 +15,8 @@
 #include <string>
 #include <thread>
 
-#include "drivers/transport/can.h"
-#include "drivers/transport/can_socket.h"
+#include "drivers/transport/can/can.h"
+#include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/clock.h"
 #include "tests/unit/transport/forever.h"
 

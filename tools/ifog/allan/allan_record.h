@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "filters/allan/confidence.h"
-#include "filters/allan/noise_coefficients.h"
+#include "filters/allan/noise/noise_coefficients.h"
 #include "filters/allan/theo1.h"
 #include "filters/rest/value_faults.h"
 #include "tools/ifog/captures/long_table.h"

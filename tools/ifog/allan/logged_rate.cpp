@@ -8,7 +8,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "filters/allan/curve_miss.h"
+#include "filters/allan/noise/curve_miss.h"
 #include "filters/allan/row_times.h"
 #include "filters/rest/followed_channel.h"
 #include "filters/rest/glitches.h"

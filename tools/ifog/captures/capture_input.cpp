@@ -22,10 +22,10 @@
 #include "tools/ifog/captures/named_log.h"
 #include "tools/ifog/captures/rate_rows.h"
 #include "tools/ifog/captures/reading_progress.h"
-#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 

@@ -14,7 +14,7 @@
 #include "drivers/host/driver_instance.h"
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/long_table.h"
-#include "tools/ifog/console/command.h"
+#include "tools/ifog/console/options/command.h"
 
 namespace ifog {
 class CaptureBuilder;

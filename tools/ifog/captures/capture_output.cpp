@@ -16,9 +16,9 @@
 #include "filters/series/series_view.h"
 #include "tools/ifog/captures/column_writer.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {

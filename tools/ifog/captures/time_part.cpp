@@ -6,8 +6,8 @@
 
 #include "drivers/ifog/quoted.h"
 #include "filters/units/told_time.h"
-#include "tools/ifog/console/command.h"
-#include "tools/ifog/console/wrong_usage.h"
+#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {

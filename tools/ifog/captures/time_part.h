@@ -11,7 +11,7 @@
 #include "drivers/capture/capture.h"
 #include "filters/series/samples.h"
 #include "filters/series/series_view.h"
-#include "tools/ifog/console/command.h"
+#include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
 

@@ -12,8 +12,8 @@
 #include "drivers/capture/name_ending.h"
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
+#include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {

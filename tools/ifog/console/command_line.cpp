@@ -17,12 +17,12 @@
 #include "drivers/system/shell_word.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/describe.h"
-#include "tools/ifog/console/help_text.h"
-#include "tools/ifog/console/plain_words.h"
+#include "tools/ifog/console/options/describe.h"
+#include "tools/ifog/console/options/help_text.h"
+#include "tools/ifog/console/options/plain_words.h"
+#include "tools/ifog/console/options/usage_error.h"
+#include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/console/usage_error.h"
-#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {

@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
+#include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/progress.h"
-#include "tools/ifog/console/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {

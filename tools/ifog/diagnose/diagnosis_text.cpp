@@ -6,8 +6,8 @@
 #include "filters/effects/form.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
-#include "tools/report/account.h"
-#include "tools/report/words.h"
+#include "tools/report/pages/account.h"
+#include "tools/report/pages/words.h"
 
 namespace ifog::tools {
 namespace {

@@ -31,7 +31,7 @@
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/diagnose/power_up.h"
-#include "tools/report/diagnosis_page.h"
+#include "tools/report/pages/diagnosis_page.h"
 
 namespace ifog::tools {
 namespace {

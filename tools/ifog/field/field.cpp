@@ -19,8 +19,8 @@
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/ifog/captures/configured_files.h"
-#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/installed.h"
+#include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
 

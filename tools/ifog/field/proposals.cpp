@@ -8,9 +8,9 @@
 
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/field/proposal.h"

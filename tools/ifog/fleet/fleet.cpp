@@ -18,20 +18,20 @@
 #include "drivers/transport/utc_now.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/console/wrong_usage.h"
 #include "tools/ifog/fleet/engine.h"
 #include "tools/ifog/fleet/fleet_json.h"
 #include "tools/ifog/fleet/gather.h"
 #include "tools/ifog/fleet/gyro_work.h"
 #include "tools/ifog/fleet/process.h"
 #include "tools/ifog/fleet/with_prior.h"
-#include "tools/report/fleet_page.h"
+#include "tools/report/pages/fleet_page.h"
 
 namespace ifog::tools {
 namespace {

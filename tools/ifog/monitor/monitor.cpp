@@ -27,10 +27,10 @@
 #include "drivers/ifog/quoted.h"
 #include "msgs/channel_name.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/console/wrong_usage.h"
 #include "tools/ifog/monitor/message_json.h"
 
 namespace ifog::tools {

@@ -23,12 +23,12 @@
 #include <system_error>
 
 #include "drivers/transport/clock.h"
-#include "drivers/transport/pace.h"
+#include "drivers/transport/file/pace.h"
 #include "tools/ifog/commands.h"
-#include "tools/ifog/console/command.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/replay/lateness.h"

@@ -20,8 +20,8 @@
 #include "drivers/capture/candump.h"
 #include "drivers/capture/output_file.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/transport/can_socket.h"
-#include "drivers/transport/ip_socket.h"
+#include "drivers/transport/can/can_socket.h"
+#include "drivers/transport/network/ip_socket.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/say.h"
 

@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "drivers/transport/serial_port.h"
+#include "drivers/transport/serial/serial_port.h"
 #include "tools/ifog/replay/outlet.h"
 #include "tools/ifog/replay/replay_timeline.h"
 

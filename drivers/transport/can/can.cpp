@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/transport/can/can.h"
+#include "drivers/transport/clock.h"
+
+#include <linux/sock_diag.h>
+#include <sys/socket.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdint>
+
+#include "drivers/transport/can/can_socket.h"
+#include "drivers/transport/receiving_socket.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kFramesAtOnce = 64;  // frames a system call
+
+class CanTransport final : public Transport {
+ public:
+  explicit CanTransport(const CanSettings& settings) : Transport(settings.interface), settings_(settings) {
+    for (std::size_t i = 0; i < kFramesAtOnce; ++i) {
+      vectors_[i] = {&raw_[i], sizeof raw_[i]};
+      messages_[i].msg_hdr.msg_iov = &vectors_[i];
+      messages_[i].msg_hdr.msg_iovlen = 1;
+      messages_[i].msg_hdr.msg_control = control_[i].bytes;
+    }
+  }
+
+ private:
+  bool connect(std::string& warning, std::int64_t until_ns) override;
+  Delivery receive(std::int64_t until_ns) noexcept override;
+  int receive_waiting() noexcept;
+  bool leaves_for(int error) noexcept;
+  int receive_batch(int flags) noexcept;
+  std::span<const ifog_can_frame> accept(std::size_t received, std::int64_t read_at) noexcept;
+  void count_losses() noexcept override;
+  void count_drops(std::uint32_t drops) noexcept;
+
+  CanSettings settings_;
+  CanSocket socket_;
+  std::uint32_t drops_ = 0;
+  bool blocks_ = false;
+  std::size_t filled_ = kFramesAtOnce;  // messages_ that are to be made ready
+  int leaving_ = 0;  // the interface went away with this errno; what waits in the socket is still read
+  KernelStamps stamps_;
+  std::array<canfd_frame, kFramesAtOnce> raw_{};
+  std::array<iovec, kFramesAtOnce> vectors_{};
+  std::array<ControlRoom, kFramesAtOnce> control_{};
+  std::array<mmsghdr, kFramesAtOnce> messages_{};
+  std::array<ifog_can_frame, kFramesAtOnce> frames_{};
+};
+
+bool CanTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
+  if (!opening().empty())
+    throw OpenError(name(), "cannot send the driver's opening bytes", EOPNOTSUPP,
+                    "a driver without them on CAN");
+  socket_.close();  // before another is opened: the interface may be a new one of the same name
+  CanSocket fresh(settings_.interface);
+  fresh.receive_only(settings_.ids, settings_.interface);
+  socket_ = std::move(fresh);
+  drops_ = 0;
+  leaving_ = 0;
+  stamps_.begin(realtime_ns(), arrival_clock_ns());
+  ask_for_drops(socket_.fd());
+  ask_for_room(socket_.fd(), settings_.receive_buffer_bytes, name(), warning);
+  ask_for_times(socket_.fd(), name(), warning);
+  blocks_ = let_block(socket_.fd());
+  return true;
+}
+
+Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
+  int n = 0;
+  if (leaving_ == 0) {
+    const Received got = receive_by(socket_.fd(), blocks_, until_ns, [this](bool may_wait) {
+      return ssize_t{receive_batch(may_wait ? MSG_WAITFORONE : MSG_DONTWAIT)};
+    });
+    if (got.wake != Wake::ready) {
+      count_losses();
+      return {};
+    }
+    n = static_cast<int>(got.n);
+    if (n <= 0 && !leaves_for(got.error)) return {};
+  }
+  if (n <= 0) n = receive_waiting();
+  if (n > 0) {
+    Delivery delivery;
+    delivery.read_ns = arrival_clock_ns();
+    delivery.frames = accept(static_cast<std::size_t>(n), delivery.read_ns);
+    return delivery;
+  }
+  if (leaving_ == 0) return {};
+  count_losses();
+  socket_.close();
+  lost(leaving_);
+  return {};
+}
+
+// What is in the socket: frames, or none and, where the interface is gone, why. ENETDOWN (set down) and
+// ENODEV (taken away) are each said once; frames that came before are read after them.
+int CanTransport::receive_waiting() noexcept {
+  constexpr int kErrors = 4;  // more than can be said of one socket
+  for (int errors = 0; errors < kErrors; ++errors) {
+    const int n = receive_batch(MSG_DONTWAIT);
+    if (n > 0) return n;
+    if (!leaves_for(n < 0 ? errno : 0)) return 0;
+  }
+  return 0;
+}
+
+// False: it is no reason, only nothing there.
+bool CanTransport::leaves_for(int error) noexcept {
+  if (error == EINTR || error == EAGAIN) return false;
+  leaving_ = error != 0 ? error : ENODEV;
+  return true;
+}
+
+int CanTransport::receive_batch(int flags) noexcept {
+  // What the call before has written to.
+  for (std::size_t i = 0; i < filled_; ++i) {
+    messages_[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
+    messages_[i].msg_hdr.msg_flags = 0;
+  }
+  const int n = recvmmsg(socket_.fd(), messages_.data(), kFramesAtOnce, flags, nullptr);
+  // One that failed may have been begun.
+  filled_ = std::min(kFramesAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
+  return n;
+}
+
+// With a frame the kernel says what it had no room for until then; after the last one it must be asked.
+void CanTransport::count_losses() noexcept {
+  std::array<std::uint32_t, SK_MEMINFO_VARS> info{};
+  socklen_t size = sizeof info;
+  if (getsockopt(socket_.fd(), SOL_SOCKET, SO_MEMINFO, info.data(), &size) == 0 &&
+      size > SK_MEMINFO_DROPS * sizeof info[0])
+    count_drops(info[SK_MEMINFO_DROPS]);
+}
+
+// Modulo 2^32, as the kernel counts. A frame may say less than the socket: it waited since then.
+void CanTransport::count_drops(std::uint32_t drops) noexcept {
+  const std::uint32_t more = drops - drops_;
+  if (more == 0 || more > UINT32_MAX / 2) return;
+  kernel_drops_.add(more);
+  drops_ = drops;
+}
+
+std::span<const ifog_can_frame> CanTransport::accept(std::size_t received, std::int64_t read_at) noexcept {
+  std::size_t kept = 0;
+  stamps_.begin(realtime_ns(), read_at);
+  for (std::size_t i = 0; i < received; ++i) {
+    const ReceiveControl said = receive_control(messages_[i].msg_hdr);
+    if (said.has_drops) count_drops(said.drops);
+    ifog_can_frame& frame = frames_[kept];
+    switch (from_socket(raw_[i], messages_[i].msg_len, frame)) {
+      case CanKind::data:
+        frame.arrival_ns = said.arrival_ns != 0 ? stamps_.on_arrival_clock(said.arrival_ns) : read_at;
+        ++kept;
+        break;
+      case CanKind::error:
+        error_frames_.add(1);
+        break;
+      case CanKind::remote:
+      case CanKind::unknown:
+        break;
+    }
+  }
+  return std::span<const ifog_can_frame>(frames_).first(kept);
+}
+
+}  // namespace
+
+std::unique_ptr<Transport> make_can_transport(const CanSettings& settings) {
+  return std::make_unique<CanTransport>(settings);
+}
+
+}  // namespace ifog

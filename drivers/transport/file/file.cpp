@@ -1,0 +1,361 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/transport/file/file.h"
+#include "drivers/transport/clock.h"
+
+#include <poll.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+#include <utility>
+
+#include "drivers/capture/candump.h"
+#include "drivers/transport/file/byte_file.h"
+#include "drivers/transport/file/pace.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kBatch = 64;  // frames a delivery
+
+class FileTransport : public Transport {
+ public:
+  explicit FileTransport(FileSettings settings)
+      : Transport(settings.path == "-" ? "standard input" : settings.path),
+        settings_(std::move(settings)),
+        pace_(settings_.speed) {}
+
+  [[nodiscard]] bool holds_back() const override { return settings_.pace == FileSettings::Pace::free; }
+  [[nodiscard]] bool times_are_recorded() const override {
+    return holds_back() &&
+           (settings_.format == FileSettings::Format::candump || settings_.bytes_per_second > 0.0);
+  }
+
+ protected:
+  bool connect(std::string& /*warning*/, std::int64_t /*until_ns*/) override {
+    reopen();
+    return true;
+  }
+  Delivery receive(std::int64_t until_ns) noexcept override;
+
+  [[nodiscard]] const FileSettings& settings() const { return settings_; }
+  [[nodiscard]] bool recorded() const { return settings_.pace == FileSettings::Pace::recorded; }
+  [[nodiscard]] std::span<const std::uint8_t> unread() const { return file_.unread(); }
+  void consume(std::size_t n) { file_.consume(n); }
+  [[nodiscard]] bool at_end() const { return at_end_; }
+  [[nodiscard]] const Pace& pace() const { return pace_; }
+
+  // Adds to unread(), waiting until `until_ns` for it. False: nothing came, or the file is at its end.
+  bool fill(std::int64_t until_ns) noexcept;
+  // Waits until the recorded time is due; false when `until_ns` or stop() comes first.
+  bool await(std::int64_t recorded_ns, std::int64_t until_ns) noexcept;
+
+  // A new file is open, nothing of it is taken yet.
+  virtual void begin() noexcept = 0;
+  // Takes one delivery from what is unread, empty when that is not enough for one.
+  virtual Delivery take(std::int64_t until_ns) noexcept = 0;
+
+ private:
+  void reopen();
+  void finish() noexcept;
+
+  FileSettings settings_;
+  ByteFile file_;
+  Pace pace_;
+  int read_error_ = 0;
+  bool at_end_ = false;
+  // Somebody has written since it was opened. Until then it is polled: reading a FIFO that no writer has
+  // opened yet looks like its end.
+  bool written_ = false;
+};
+
+// Nobody listens at the other end of a recording: opening() is not sent.
+void FileTransport::reopen() {
+  file_.open(settings_.path);
+  at_end_ = written_ = false;
+  pace_ = Pace(settings_.speed);
+  begin();
+}
+
+Delivery FileTransport::receive(std::int64_t until_ns) noexcept {
+  const Delivery delivery = take(until_ns);
+  if (delivery.empty() && at_end_ && unread().empty()) finish();
+  return delivery;
+}
+
+// The reader has taken all there was.
+void FileTransport::finish() noexcept {
+  if (!file_.is_fifo() || !settings_.await_writer || read_error_ != 0) {
+    file_.close();
+    end(read_error_);
+    return;
+  }
+  // The old descriptor would report its hang-up for ever: the next writer is awaited on a new one.
+  try {
+    reopen();
+    left();
+  } catch (const OpenError& error) {
+    file_.close();
+    lost(error.reason);
+  } catch (const std::exception&) {
+    file_.close();
+    lost(ENOMEM);
+  }
+}
+
+bool FileTransport::fill(std::int64_t until_ns) noexcept {
+  while (!at_end_) {
+    ByteFile::Fill filled = ByteFile::Fill::none;
+    const auto read = [&](bool) -> ssize_t {
+      filled = file_.fill();
+      return filled == ByteFile::Fill::more ? 1 : filled == ByteFile::Fill::end ? 0 : -1;
+    };
+    int error = 0;
+    if (file_.poll_fd() >= 0) {
+      const Received got = receive_by(file_.poll_fd(), file_.blocks() && written_, until_ns, read);
+      if (got.wake != Wake::ready) return false;
+      error = got.error;
+      written_ = true;
+    } else if (read(true) < 0) {
+      error = errno;
+    }
+    switch (filled) {
+      case ByteFile::Fill::more:
+        return true;
+      case ByteFile::Fill::none:
+        break;
+      case ByteFile::Fill::truncated:
+        report("the gzip stream ends early or is damaged", 0);
+        at_end_ = true;
+        break;
+      case ByteFile::Fill::error:
+        read_error_ = error;
+        at_end_ = true;
+        break;
+      case ByteFile::Fill::end:
+        at_end_ = true;
+        break;
+    }
+  }
+  return false;
+}
+
+bool FileTransport::await(std::int64_t recorded_ns, std::int64_t until_ns) noexcept {
+  if (!pace_.started()) pace_.start(recorded_ns, monotonic_ns());
+  const std::int64_t due = pace_.due_ns(recorded_ns);
+  if (due <= monotonic_ns()) return true;
+  short happened = 0;
+  return wait(-1, 0, std::min(due, until_ns), happened) != Wake::stopped && due <= until_ns;
+}
+
+// Raw bytes.
+class BytesFile final : public FileTransport {
+ public:
+  explicit BytesFile(FileSettings settings) : FileTransport(std::move(settings)) {
+    const double rate = this->settings().bytes_per_second * this->settings().speed;
+    block_ = this->settings().block_bytes;
+    if (block_ == 0)
+      block_ = static_cast<std::size_t>(std::max(1.0, std::min(rate / 1000.0, ByteFile::kCapacity / 2.0)));
+  }
+
+ private:
+  void begin() noexcept override {
+    opened_ns_ = arrival_clock_ns();
+    delivered_ = held_ = 0;
+  }
+  Delivery take(std::int64_t until_ns) noexcept override;
+  // Recorded time of the end of the first n bytes.
+  [[nodiscard]] std::int64_t recorded_ns(std::uint64_t n) const {
+    return std::llround(static_cast<double>(n) / settings().bytes_per_second * 1e9);
+  }
+
+  std::size_t block_;
+  std::size_t held_ = 0;  // of unread(), given out by the delivery before
+  std::int64_t opened_ns_ = 0;
+  std::uint64_t delivered_ = 0;
+};
+
+Delivery BytesFile::take(std::int64_t until_ns) noexcept {
+  consume(std::exchange(held_, 0));
+  const std::size_t wanted = recorded() ? block_ : 1;
+  while (unread().size() < wanted && fill(until_ns)) {
+  }
+  std::size_t n = unread().size();
+  if (n == 0 || (n < wanted && !at_end())) return {};
+  if (recorded()) {
+    n = std::min(n, block_);
+    if (!await(recorded_ns(delivered_ + n), until_ns)) return {};
+  }
+  held_ = n;
+  delivered_ += n;
+  Delivery delivery;
+  delivery.bytes = unread().first(n);
+  if (recorded() || settings().bytes_per_second <= 0.0)
+    delivery.arrival_ns = delivery.read_ns = arrival_clock_ns();
+  else
+    delivery.arrival_ns = opened_ns_ + recorded_ns(delivered_);
+  return delivery;
+}
+
+// A candump log.
+class CandumpFile final : public FileTransport {
+ public:
+  using FileTransport::FileTransport;
+
+ private:
+  void begin() noexcept override {
+    line_ = 0;
+    pending_ = false;
+    overlong_ = false;
+    shift_ns_ = 0;
+    clock_ = CandumpClock();
+    buses_ = CandumpBuses();
+    refused_ = false;
+  }
+  Delivery take(std::int64_t until_ns) noexcept override;
+  bool next_frame(std::int64_t until_ns) noexcept;
+  bool wanted(const CandumpEntry& entry) const noexcept;
+  bool of_one_device() noexcept;
+  bool next_line(std::string_view& line, std::int64_t until_ns) noexcept;
+
+  CandumpEntry entry_;
+  CandumpClock clock_;
+  CandumpBuses buses_;
+  bool refused_ = false;   // frames of two devices under one id: nothing more is read
+  bool pending_ = false;   // entry_ is read and not yet delivered
+  bool overlong_ = false;  // in a line longer than the buffer, reported already
+  std::uint64_t line_ = 0;
+  std::int64_t shift_ns_ = 0;  // from the clock of deadlines to that of arrival times
+  std::array<ifog_can_frame, kBatch> batch_{};
+};
+
+bool CandumpFile::wanted(const CandumpEntry& entry) const noexcept {
+  if (!settings().interface.empty() && entry.interface != settings().interface) return false;
+  if (settings().ids.empty()) return true;
+  const bool extended = (entry.frame.flags & IFOG_CAN_EXTENDED) != 0;
+  return std::any_of(settings().ids.begin(), settings().ids.end(),
+                     [&](const CanId& id) { return id.id == entry.frame.id && id.extended == extended; });
+}
+
+// True if no frame with the id of entry_ has come on another interface.
+bool CandumpFile::of_one_device() noexcept {
+  const std::string_view other = buses_.other(entry_.frame, entry_.interface);
+  if (other.empty()) return true;
+  std::array<char, 60> both{};
+  const int n =
+      std::snprintf(both.data(), both.size(), "%.*s and %.*s", static_cast<int>(other.size()), other.data(),
+                    static_cast<int>(entry_.interface.size()), entry_.interface.data());
+  report(
+      "frames of one id come on two interfaces, as from two devices, and nothing more is read; expected "
+      "sensor.transport.interface with one of them",
+      line_, {both.data(), std::min(static_cast<std::size_t>(n), both.size() - 1)});
+  refused_ = true;
+  return false;
+}
+
+// The line's bytes stay where they are until the next fill().
+bool CandumpFile::next_line(std::string_view& line, std::int64_t until_ns) noexcept {
+  for (;;) {
+    const std::span<const std::uint8_t> bytes = unread();
+    const auto* text = reinterpret_cast<const char*>(bytes.data());
+    const auto* newline =
+        bytes.empty() ? nullptr : static_cast<const char*>(std::memchr(text, '\n', bytes.size()));
+    if (newline == nullptr && bytes.size() == ByteFile::kCapacity) {
+      if (!std::exchange(overlong_, true))
+        report("a line of more than 64 KiB, this is no candump log", line_ + 1);
+      consume(bytes.size());
+    } else if (newline != nullptr || (at_end() && !bytes.empty())) {
+      const std::size_t length = newline != nullptr ? static_cast<std::size_t>(newline - text) : bytes.size();
+      ++line_;
+      consume(newline != nullptr ? length + 1 : length);
+      if (std::exchange(overlong_, false)) continue;
+      line = {text, length};
+      return true;
+    } else if (!fill(until_ns) && !(at_end() && !unread().empty())) {
+      return false;
+    }
+  }
+}
+
+bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
+  std::string_view line;
+  while (!pending_ && !refused_ && next_line(line, until_ns)) {
+    const CandumpLine kind = parse_candump_line(line, entry_);
+    if (kind != CandumpLine::blank && kind != CandumpLine::malformed && kind != CandumpLine::drops) {
+      const bool known = clock_.differences();
+      entry_.frame.arrival_ns = clock_.time_ns(entry_);
+      if (clock_.differences() != known)
+        report("times are differences (candump -t d), expected -t a or -t z", line_);
+    }
+    switch (kind) {
+      case CandumpLine::frame:
+        pending_ = wanted(entry_) && of_one_device();
+        break;
+      case CandumpLine::error:
+        error_frames_.add(1);
+        break;
+      case CandumpLine::malformed:
+        report(at_end() && unread().empty() ? "the log is cut off here" : kCandumpExpected, line_, line);
+        break;
+      case CandumpLine::drops:
+        if (settings().interface.empty() || entry_.interface == settings().interface)
+          kernel_drops_.add(entry_.dropped);
+        break;
+      case CandumpLine::xl:
+      case CandumpLine::remote:
+      case CandumpLine::blank:
+        break;
+    }
+  }
+  return pending_;
+}
+
+Delivery CandumpFile::take(std::int64_t until_ns) noexcept {
+  std::size_t n = 0;
+  while (n < batch_.size()) {
+    // With something in hand, only what is there already is added to it.
+    const std::int64_t until = n == 0 ? until_ns : monotonic_ns();
+    if (!next_frame(until)) break;
+    const bool timed = entry_.stamp != CandumpStamp::none;
+    if (recorded() && timed) {
+      if (!pace().started()) shift_ns_ = arrival_clock_ns() - monotonic_ns();
+      if (!await(entry_.frame.arrival_ns, until)) break;
+    }
+    batch_[n] = entry_.frame;
+    if (recorded() && timed) batch_[n].arrival_ns = pace().due_ns(entry_.frame.arrival_ns) + shift_ns_;
+    if (!timed) batch_[n].arrival_ns = arrival_clock_ns();
+    ++n;
+    pending_ = false;
+  }
+  if (n == 0 && refused_) end(0);
+  Delivery delivery;
+  delivery.frames = std::span<const ifog_can_frame>(batch_).first(n);
+  return delivery;
+}
+
+}  // namespace
+
+std::unique_ptr<Transport> make_file_transport(FileSettings settings) {
+  const auto refuse = [&](const std::string& what) {
+    throw std::runtime_error((settings.path.empty() ? "file transport" : settings.path) + ": " + what);
+  };
+  const bool bytes = settings.format == FileSettings::Format::bytes;
+  if (settings.path.empty()) refuse("no path, expected a file, a FIFO or '-'");
+  if (!(settings.speed > 0.0) || !std::isfinite(settings.speed))
+    refuse("speed is " + std::to_string(settings.speed) + ", expected a number above 0");
+  if (!(settings.bytes_per_second >= 0.0) || !std::isfinite(settings.bytes_per_second))
+    refuse("bytes_per_second is " + std::to_string(settings.bytes_per_second) + ", expected 0 or more");
+  if (bytes && settings.pace == FileSettings::Pace::recorded && settings.bytes_per_second == 0.0)
+    refuse("raw bytes carry no times: recorded pace needs bytes_per_second");
+  if (settings.block_bytes > ByteFile::kCapacity)
+    refuse("block_bytes is " + std::to_string(settings.block_bytes) + ", expected at most " +
+           std::to_string(ByteFile::kCapacity));
+  if (bytes) return std::make_unique<BytesFile>(std::move(settings));
+  return std::make_unique<CandumpFile>(std::move(settings));
+}
+
+}  // namespace ifog

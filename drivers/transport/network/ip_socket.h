@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// A UDP or TCP socket over IPv4 or IPv6, non-blocking.
+#pragma once
+
+#include <string>
+
+#include "drivers/transport/network/ip_address.h"
+
+namespace ifog {
+
+// Owns it.
+class IpSocket {
+ public:
+  IpSocket() = default;
+  // `type`: SOCK_DGRAM or SOCK_STREAM. Throws OpenError, which names `name`.
+  IpSocket(int family, int type, const std::string& name);
+  // The next connection of a listening TCP socket; not open where there is none, errno then says why.
+  static IpSocket accepted(const IpSocket& listener) noexcept;
+  ~IpSocket() { close(); }
+  IpSocket(const IpSocket&) = delete;
+  IpSocket& operator=(const IpSocket&) = delete;
+  IpSocket(IpSocket&& other) noexcept;
+  IpSocket& operator=(IpSocket&& other) noexcept;
+  void close() noexcept;
+
+  [[nodiscard]] int fd() const { return fd_; }
+  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
+  // 0, or errno.
+  [[nodiscard]] int set(int level, int option, int value) const noexcept;
+  [[nodiscard]] int bind(const sockaddr_storage& address, socklen_t size) const noexcept;
+  [[nodiscard]] int connect(const sockaddr_storage& address, socklen_t size) const noexcept;
+
+ private:
+  int fd_ = -1;
+};
+
+}  // namespace ifog

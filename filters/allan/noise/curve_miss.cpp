@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/allan/noise/curve_miss.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "filters/allan/confidence.h"
+#include "filters/allan/deviation.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kFewestDegrees = 8.0;  // of freedom: the deviation is known to a quarter
+constexpr double kOneSigma = 0.682689;  // of a Gaussian variable within one standard deviation
+// Standard deviations, each by chance in one of two hundred records of 15 octaves: neighbours have a
+// correlation of 0.5 (3000 records of white noise; tests/unit/allan/noise_coefficients_test.cpp).
+constexpr double kAtOne = 3.5, kAtTwo = 2.75;
+
+// (rad/s)² at τ, by term.
+struct Share {
+  NoiseCoefficient NoiseCoefficients::*term;
+  double variance;
+};
+std::array<Share, 5> shares_at(const NoiseCoefficients& c, double tau_s) {
+  return {{{&NoiseCoefficients::Q, 3.0 * std::pow(c.Q.value / tau_s, 2)},
+           {&NoiseCoefficients::N, c.N.value * c.N.value / tau_s},
+           {&NoiseCoefficients::B, 2.0 * std::numbers::ln2 / std::numbers::pi * c.B.value * c.B.value},
+           {&NoiseCoefficients::K, c.K.value * c.K.value * tau_s / 3.0},
+           {&NoiseCoefficients::R, std::pow(c.R.value * tau_s, 2) / 2.0}}};
+}
+
+}  // namespace
+
+CurveMiss widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& found) {
+  CurveMiss miss;
+  if ((found.markov && found.markov->present) || !found.left_out_hz.empty() || !found.lines_hz.empty())
+    return miss;
+  std::vector<std::size_t> octaves;
+  for (std::size_t m = 1; m <= longest_average(Deviation::kAllan, sum.longest()); m *= 2)
+    octaves.push_back(m);
+  const std::vector<DeviationPoint> points = deviation(sum, octaves);
+  const std::vector<AllanInterval> intervals =
+      allan_intervals(sum, Deviation::kAllan, points, found.variances, kOneSigma);
+  double before = 0.0;  // the departure of the octave before, in standard deviations
+  for (std::size_t i = 0; i < points.size() && intervals[i].degrees >= kFewestDegrees; ++i) {
+    const double tau_s = static_cast<double>(octaves[i]) * period_s, measured = std::sqrt(points[i].variance),
+                 modelled = modelled_deviation(found, tau_s);
+    if (!(measured > 0.0 && modelled > 0.0)) continue;
+    const double sigma = 0.5 * std::log(intervals[i].upper_radps / intervals[i].lower_radps);
+    const double off = std::log(modelled / measured), here = off / sigma;
+    const bool counts = std::abs(here) > kAtOne ||
+                        (std::abs(here) > kAtTwo && std::abs(before) > kAtTwo && here * before > 0.0);
+    before = here;
+    if (!counts) continue;
+    const auto shares = shares_at(found, tau_s);
+    const auto most = std::max_element(
+        shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.variance < b.variance; });
+    NoiseCoefficient& term = found.*most->term;
+    const double share = most->variance / (modelled * modelled);
+    const double error = term.value * std::abs(std::expm1(-off)) / share;
+    if (error > term.std_error) {
+      term.upper += 1.959964 * (error - term.std_error);  // of 97.5 %, as it was
+      term.std_error = error;
+    }
+    if (std::abs(off) > miss.departure) miss = {std::abs(off), tau_s};
+  }
+  return miss;
+}
+
+}  // namespace ifog

@@ -1,0 +1,290 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/allan/noise/noise_spectrum.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <numeric>
+#include <span>
+#include <unsupported/Eigen/FFT>
+
+#include "filters/allan/noise/angle_means.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kSegment = 480;  // steps of a level; one fits where twice the slow part's least do
+constexpr std::size_t kMostSegments = 8192;  // of a level
+constexpr std::size_t kSlow = 32;            // cosines of a stretch
+constexpr std::size_t kSlowMeans = 256;  // of the angle they are taken of, at least: fewer than twice this
+constexpr std::size_t kMostSlowStretches = 4;
+constexpr double kTopOfLevel = 1.0 / 16.0;     // cycles a sample of the level; above, the level below has it:
+constexpr double kBottomOfLevel = 1.0 / 32.0;  // averaging folds next to nothing onto frequencies this low
+
+// A windowed segment: its power, and what each term makes of it.
+class Segment {
+ public:
+  explicit Segment(std::size_t size) : size_(size), window_(size), from_(size), into_(size) {
+    for (std::size_t i = 0; i < size; ++i)
+      window_[i] = std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(size));
+    fill_expected();
+  }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  // For one unit of each term's variance.
+  [[nodiscard]] TermVariances expected(int level, std::size_t bin) const {
+    const auto table = std::min(static_cast<std::size_t>(level), expected_.size() - 1);
+    TermVariances out = level_unit(level);
+    for (std::size_t t = 0; t < kTerms; ++t) out[t] *= expected_[table][bin][t];
+    return out;
+  }
+
+  // rate: size() samples, spoilt. Adds the power of every bin below the Nyquist frequency.
+  void add_power(std::vector<double>& rate, std::vector<double>& power) {
+    detrend(rate);
+    for (std::size_t i = 0; i < size_; ++i) from_[i] = rate[i] * window_[i];
+    fft_.fwd(into_, from_);
+    for (std::size_t k = 0; k < power.size(); ++k) power[k] += std::norm(into_[k]);
+  }
+
+  // Samples' worth of information in `segments` of them `hop` apart: (Σu)²/Σu², u the sum of squared windows.
+  [[nodiscard]] double effective_samples(std::size_t segments, std::size_t hop) const {
+    const auto overlap = [&](std::size_t shift) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i + shift < size_; ++i)
+        sum += window_[i] * window_[i] * window_[i + shift] * window_[i + shift];
+      return sum;
+    };
+    const double n = static_cast<double>(segments);
+    double squares = n * overlap(0);
+    for (std::size_t j = 1; j < segments && j * hop < size_; ++j)
+      squares += 2.0 * (n - static_cast<double>(j)) * overlap(j * hop);
+    const double all = n * 0.5 * static_cast<double>(size_);
+    return all * all / squares;
+  }
+
+ private:
+  template <typename T>
+  void detrend(std::vector<T>& v) const {
+    const double n = static_cast<double>(size_), middle = 0.5 * (n - 1.0);
+    T mean{}, slope{};
+    for (std::size_t i = 0; i < size_; ++i) {
+      mean += v[i] / n;
+      slope += v[i] * (12.0 * (static_cast<double>(i) - middle) / (n * (n * n - 1.0)));
+    }
+    for (std::size_t i = 0; i < size_; ++i) v[i] -= mean + slope * (static_cast<double>(i) - middle);
+  }
+
+  // A bin is |u'x|² with u the windowed wave less its own mean and slope: expected is Σ over lags of the
+  // covariance times u's autocorrelation. Levels above the last differ by their unit only.
+  void fill_expected() {
+    constexpr int kLevels = 7;
+    const std::size_t twice = 2 * size_, bins = size_ / 2;
+    expected_.assign(kLevels, std::vector<TermVariances>(bins));
+    std::vector<std::complex<double>> u(size_), spectrum, correlation;
+    for (std::size_t k = 1; k < bins; ++k) {
+      u.assign(size_, {});
+      for (std::size_t i = 0; i < size_; ++i)
+        u[i] = std::polar(window_[i], 2.0 * std::numbers::pi * static_cast<double>(k * i % size_) /
+                                          static_cast<double>(size_));
+      detrend(u);
+      u.resize(twice);
+      fft_.fwd(spectrum, u);
+      for (auto& s : spectrum) s = std::norm(s);
+      fft_.inv(correlation, spectrum);
+      for (int level = 0; level < kLevels; ++level) {
+        // Above the lowest, only low frequencies are used.
+        if (level > 0 && static_cast<double>(k) > kTopOfLevel * static_cast<double>(size_)) break;
+        const std::span<const TermVariances> covariance = level_covariance(level);
+        TermVariances& expected = expected_[static_cast<std::size_t>(level)][k];
+        for (std::size_t lag = 0; lag < size_; ++lag)
+          for (std::size_t t = 0; t < kTerms; ++t)
+            expected[t] += (lag == 0 ? 1.0 : 2.0) * covariance[lag][t] * correlation[lag].real();
+      }
+    }
+  }
+
+  std::size_t size_;
+  std::vector<double> window_, from_;
+  std::vector<std::complex<double>> into_;
+  std::vector<std::vector<TermVariances>> expected_;  // by level and bin
+  Eigen::FFT<double> fft_;
+};
+
+// How far up a stretch is averaged before its slow part is taken.
+int last_level(std::size_t samples) {
+  int level = 0;
+  while (((samples + 1) >> (level + 1)) >= kSlowMeans) ++level;
+  return level;
+}
+
+std::size_t slow_count(std::size_t averages) { return std::min(kSlow, averages / 2); }
+
+// The highest level whose spectrum is taken: half as far averaged as the slow part, so that a segment fits.
+int last_spectrum(std::size_t samples) { return std::max(0, last_level(samples) - 1); }
+
+// Lowest bin frequency that the slow part leaves to the last spectrum, cycles a sample of that level.
+double slow_edge(std::size_t samples) {
+  const std::size_t averages = ((samples + 1) >> last_level(samples)) - 1;
+  const double edge =
+      (static_cast<double>(slow_count(averages)) + 0.5) / (2.0 * static_cast<double>(averages));
+  return edge * std::exp2(last_spectrum(samples) - last_level(samples));
+}
+
+// Every second of the first `count` cosines without the constant, from the `first` on: alike or opposite on
+// either side of the middle.
+Eigen::MatrixXd cosines(std::size_t n, std::size_t count, std::size_t first) {
+  Eigen::MatrixXd w(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>((count - first + 1) / 2));
+  for (std::size_t k = first; k < count; k += 2)
+    for (std::size_t i = 0; i < n; ++i)
+      w(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>((k - first) / 2)) =
+          std::sqrt(2.0 / static_cast<double>(n)) *
+          std::cos(std::numbers::pi * static_cast<double>(k + 1) * (static_cast<double>(i) + 0.5) /
+                   static_cast<double>(n));
+  return w;
+}
+
+// w'Γw of the Toeplitz matrix of a term; the columns of w all alike on either side of the middle, or all
+// opposite.
+Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariances> covariance,
+                          std::size_t term) {
+  const Eigen::Index n = w.rows();
+  const auto at = [&](Eigen::Index lag) { return covariance[static_cast<std::size_t>(lag)][term]; };
+  if (term == kB) {
+    Eigen::VectorXd lag(n);
+    for (Eigen::Index i = 0; i < n; ++i) lag[i] = at(i);
+    const Eigen::Index half = (n + 1) / 2;
+    Eigen::MatrixXd product(half, w.cols());
+    for (Eigen::Index i = 0; i < half; ++i)
+      product.row(i) =
+          (2 * i + 1 == n ? 1.0 : 2.0) * (lag.head(i + 1).reverse().transpose() * w.topRows(i + 1) +
+                                          lag.segment(1, n - 1 - i).transpose() * w.bottomRows(n - 1 - i));
+    return w.topRows(half).transpose() * product;
+  }
+  // Quantisation and white noise end at a lag of one; a random walk's is −|lag|/2 from two on, that of a
+  // running sum up to constants, which columns without a mean do not see.
+  const double walk = term == kK ? 1.0 : 0.0;
+  const Eigen::MatrixXd beside = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
+  Eigen::MatrixXd out = at(0) * w.transpose() * w + (at(1) + 0.5 * walk) * (beside + beside.transpose());
+  if (term == kK) {
+    Eigen::MatrixXd sums = w;
+    for (Eigen::Index i = 1; i < n; ++i) sums.row(i) += sums.row(i - 1);
+    out += sums.transpose() * sums;
+  }
+  return out;
+}
+
+// Noise that is the same all along correlates nothing that is alike on either side of the middle with
+// anything that is opposite: two parts of half the size.
+std::array<SlowPart, 2> slow_parts(const AngleMeans& means, std::size_t samples) {
+  const int level = last_level(samples);
+  const std::size_t count = means.rates(level);
+  const auto n = static_cast<Eigen::Index>(count);
+  Eigen::VectorXd rate(n), ramp(n);
+  means.rates(level, 0, {rate.data(), count});
+  for (Eigen::Index i = 0; i < n; ++i)
+    ramp[i] = (static_cast<double>(i) - 0.5 * static_cast<double>(n - 1)) * std::exp2(level);
+  const TermVariances unit = level_unit(level);
+  std::array<SlowPart, 2> parts;
+  for (std::size_t first = 0; first < parts.size(); ++first) {
+    SlowPart& part = parts[first];
+    part.cosines = std::make_shared<const Eigen::MatrixXd>(cosines(count, slow_count(count), first));
+    part.level = level;
+    const Eigen::MatrixXd& w = *part.cosines;
+    part.value = w.transpose() * rate;
+    part.ramp = w.transpose() * ramp;
+    // A ramp is opposite.
+    if (first == 1) part.ramp.setZero();
+    for (std::size_t t = 0; t < kTerms; ++t)
+      part.covariance[t] = unit[t] * projected(w, level_covariance(level), t);
+  }
+  return parts;
+}
+
+// Spectrum of one level: all stretches that are long enough, and not below their own slow part.
+class Level {
+ public:
+  Level(Segment& segment, int level) : segment_(segment), level_(level), power_(segment.size() / 2) {
+    bins_.resize(power_.size());
+  }
+
+  void add(const AngleMeans& means, std::size_t samples) {
+    const std::size_t size = segment_.size(), count = means.rates(level_);
+    if (count < size || level_ > last_spectrum(samples)) return;
+    // As many as overlap by half, spread from the first sample to the last.
+    std::size_t segments = (count - size + size / 2 - 1) / (size / 2) + 1;
+    segments = std::min(segments, kMostSegments);
+    const double hop =
+        segments > 1 ? static_cast<double>(count - size) / static_cast<double>(segments - 1) : 0.0;
+    std::fill(power_.begin(), power_.end(), 0.0);
+    std::vector<double> rate(size);
+    for (std::size_t s = 0; s < segments; ++s) {
+      const auto begin = static_cast<std::size_t>(hop * static_cast<double>(s));
+      means.rates(level_, begin, rate);
+      segment_.add_power(rate, power_);
+    }
+    const double degrees =
+        2.0 / static_cast<double>(size) *
+        segment_.effective_samples(segments, std::max<std::size_t>(1, static_cast<std::size_t>(hop)));
+    const double bottom = level_ < last_spectrum(samples) ? kBottomOfLevel : slow_edge(samples);
+    const double top = level_ == 0 ? 0.5 : kTopOfLevel;
+    for (std::size_t k = 1; k < bins_.size(); ++k) {
+      const double frequency = static_cast<double>(k) / static_cast<double>(size);
+      if (frequency <= bottom || frequency > top) continue;
+      bins_[k].power += power_[k] / static_cast<double>(segments) * degrees;
+      bins_[k].degrees += degrees;
+    }
+  }
+
+  // Ascending in frequency.
+  [[nodiscard]] std::vector<SpectralBin> bins() const {
+    std::vector<SpectralBin> out;
+    for (std::size_t k = 1; k < bins_.size(); ++k) {
+      SpectralBin bin = bins_[k];
+      if (bin.degrees == 0.0) continue;
+      bin.frequency = static_cast<double>(k) / static_cast<double>(segment_.size()) / std::exp2(level_);
+      bin.power /= bin.degrees;
+      bin.expected = segment_.expected(level_, k);
+      out.push_back(bin);
+    }
+    return out;
+  }
+
+ private:
+  Segment& segment_;
+  int level_;
+  std::vector<double> power_;
+  std::vector<SpectralBin> bins_;
+};
+
+}  // namespace
+
+NoiseSpectrum noise_spectrum(const AngleSum& sum) {
+  NoiseSpectrum spectrum;
+  // Most records have room for whole segments, whose table is made once.
+  static const Segment kWhole(kSegment);
+  Segment segment = sum.longest() >= kSegment ? kWhole : Segment(std::bit_floor(sum.longest()));
+  std::vector<AngleMeans> means;
+  for (const AngleSum::Part& part : sum.parts()) means.emplace_back(sum.angle(), part.first, part.angles);
+  for (int l = last_spectrum(sum.longest()); l >= 0; --l) {
+    Level level(segment, l);
+    for (std::size_t p = 0; p < means.size(); ++p) level.add(means[p], sum.parts()[p].angles - 1);
+    for (const SpectralBin& bin : level.bins()) spectrum.bins.push_back(bin);
+  }
+  std::sort(spectrum.bins.begin(), spectrum.bins.end(),
+            [](const SpectralBin& a, const SpectralBin& b) { return a.frequency < b.frequency; });
+  std::vector<std::size_t> slow(means.size());
+  std::iota(slow.begin(), slow.end(), std::size_t{0});
+  const auto samples = [&](std::size_t p) { return sum.parts()[p].angles - 1; };
+  std::sort(slow.begin(), slow.end(), [&](std::size_t a, std::size_t b) { return samples(a) > samples(b); });
+  slow.resize(std::min(slow.size(), kMostSlowStretches));
+  for (const std::size_t p : slow)
+    if (samples(p) >= kShortestStretch)
+      for (SlowPart& part : slow_parts(means[p], samples(p))) spectrum.slow.push_back(std::move(part));
+  leave_out_lines(spectrum);
+  return spectrum;
+}
+
+}  // namespace ifog

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+// The daemon as it runs, its flight recorder on: what the command line makes of the recording is what the
+// daemon published and what the device sent.
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+
+#include <utility>
+
+#include "tests/unit/daemon/recorder/recorded_flight.h"
+
+namespace ifog {
+namespace {
+
+TEST_F(RecordedFlight, DenoiseGivesWhatTheDaemonPublishedToTheBit) {
+  configure();
+  start();
+  for (int n = 0; n < 60; ++n) {
+    send(50);
+    if (n % 15 == 7) write("supply", std::to_string(11'600 + 100 * n) + "\n");
+    ASSERT_TRUE(await(static_cast<std::size_t>(samples_))) << text_of(path("said"));
+  }
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  EXPECT_NE(text_of(path("said")).find(" 0 lost, "), std::string::npos) << text_of(path("said"));
+  // Neither model nor configuration nor channel is there any more: the recording carries what it needs.
+  fs::remove(path("model.toml"));
+  fs::remove(path("ifogd.toml"));
+  fs::remove(path("supply"));
+  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
+  EXPECT_EQ(complaint_, stale_in_words("record/nose"));
+  const auto rows = rows_of("denoised.csv");
+  ASSERT_EQ(rows.size(), published_.size());
+  bool corrected = false;
+  for (std::size_t n = 0; n < rows.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const rate_t& message = published_[n];
+      ASSERT_EQ(rows[n][1 + 4 * axis], message.raw[axis]) << n;
+      ASSERT_EQ(rows[n][2 + 4 * axis], message.compensated[axis]) << n;
+      ASSERT_EQ(rows[n][3 + 4 * axis], message.denoised[axis]) << n;
+      corrected = corrected || message.compensated[axis] != message.raw[axis];
+    }
+  EXPECT_TRUE(corrected);
+  // Every command reads it as a capture, the channel from elsewhere among its columns.
+  ASSERT_EQ(ifog("convert " + path("record/nose") + " " + path("capture.csv")), 0) << complaint_;
+  EXPECT_NE(text_of(path("capture.csv")).substr(0, 200).find("supply_V"), std::string::npos);
+  EXPECT_EQ(rows_of("capture.csv").size(), published_.size());
+  EXPECT_EQ(ifog("allan " + path("record/nose") + " --json " + path("allan.json")), 0) << complaint_;
+  // And it is sent again as it came, to the bit.
+  ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
+  EXPECT_EQ(text_of(path("again")), sent_);
+}
+
+// Of a sensor that has run before: what it knew of its noise is in the recording, too, though the state
+// folder has gone on since.
+TEST_F(RecordedFlight, DenoiseBeginsWithTheNoiseTheDaemonBeganWith) {
+  KeptNoise kept;
+  kept.sensor = "nose";
+  kept.driver = "kvh1750";
+  kept.axes = 3;
+  kept.sample_rate_hz = 1000.0;
+  kept.learned = "2026-01-31T13:05:09Z";
+  kept.noise.process_noise = 3e-11;
+  kept.noise.measurement_noise = 2e-8;
+  kept.noise.noise = {2e-8, 2.2e-8, 1.8e-8};
+  kept.noise.samples = 1e6;
+  fs::create_directories(path("state"));
+  write("state/nose.noise.toml", kept_noise_text(kept));
+  filter_lines_ = "";
+  configure();
+  start();
+  ASSERT_TRUE(send_and_await(1500)) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  fs::remove_all(path("state"));
+  fs::remove(path("ifogd.toml"));
+  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
+  const auto rows = rows_of("denoised.csv");
+  ASSERT_EQ(rows.size(), published_.size());
+  for (std::size_t n = 0; n < rows.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      ASSERT_EQ(rows[n][3 + 4 * axis], published_[n].denoised[axis]) << n;
+  // The noise did come from there: without it that of the first seconds is not known.
+  EXPECT_EQ(published_[1000].flags & static_cast<std::int32_t>(rate_t::FLAG_NOISE_UNKNOWN), 0);
+  EXPECT_GT(published_[1000].variance[0], 0.0);
+}
+
+// Through a reload that changes nothing, one that changes the model, one that changes the filter, and a
+// restart: each sample comes out as it was published.
+TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
+  filter_lines_ = "[sensor.filter]\nprocess_noise = 1e-10\nmeasurement_noise = 1e-8\n";
+  configure();
+  start();
+  const auto reload = [&](const std::string& expected) {
+    kill(child_, SIGHUP);
+    for (int n = 0; n < 600 && text_of(path("said")).find(expected) == std::string::npos; ++n) listen(20);
+    EXPECT_NE(text_of(path("said")).find(expected), std::string::npos) << text_of(path("said"));
+    // New parts are in use from the next delivery on: the next one at the latest.
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  };
+  ASSERT_TRUE(send_and_await(600)) << text_of(path("said"));
+  ASSERT_NE(published_.back().denoised[0], published_.back().compensated[0]);  // its noise is known
+  reload("nothing changed, the filter continues");
+  const std::size_t unchanged = published_.size();
+  ASSERT_TRUE(send_and_await(200)) << text_of(path("said"));
+  for (std::size_t n = unchanged; n < published_.size(); ++n)
+    ASSERT_EQ(published_[n].flags & static_cast<std::int32_t>(rate_t::FLAG_NOISE_UNKNOWN), 0) << n;
+  std::string other = text_of(path("model.toml"));
+  other.replace(other.find("1e-3"), 4, "4e-3");
+  write("model.toml", other);
+  reload("reloaded: model");
+  ASSERT_TRUE(send_and_await(600)) << text_of(path("said"));
+  filter_lines_ = "[sensor.filter]\nprocess_noise = 2e-10\nmeasurement_noise = 1e-8\n";
+  configure();
+  write("model.toml", other);
+  reload("reloaded: model");
+  ASSERT_TRUE(send_and_await(300)) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  start();
+  ASSERT_TRUE(send_and_await(300)) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  std::set<std::string> models;
+  for (const rate_t& message : published_) models.insert(message.model);
+  EXPECT_EQ(models.size(), 2U);
+  fs::remove(path("model.toml"));
+  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
+  EXPECT_TRUE(complaint_.starts_with(path("record/nose") + ": 2 runs of what wrote it, with ")) << complaint_;
+  EXPECT_EQ(complaint_.substr(complaint_.find('\n') + 1), stale_in_words("record/nose"));
+  const auto rows = rows_of("denoised.csv");
+  ASSERT_EQ(rows.size(), published_.size());
+  for (std::size_t n = 0; n < rows.size(); ++n)
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      ASSERT_EQ(rows[n][1 + 4 * axis], published_[n].raw[axis]) << n;
+      ASSERT_EQ(rows[n][2 + 4 * axis], published_[n].compensated[axis]) << n;
+      ASSERT_EQ(rows[n][3 + 4 * axis], published_[n].denoised[axis]) << n;
+      ASSERT_EQ(rows[n][4 + 4 * axis], published_[n].variance[axis]) << n;
+    }
+  // Without its beginning nobody knows how the filter stood: that is said.
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(path("record/nose"))) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  ASSERT_EQ(files.size(), 4U);
+  fs::remove(files.front());
+  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
+  EXPECT_NE(complaint_.find("from 0 s on, until the filter has settled, this need not be what was published"),
+            std::string::npos)
+      << complaint_;
+}
+
+// A timer that runs it must see that it failed.
+TEST_F(RecordedFlight, ANightThatCannotJudgeFails) {
+  configure();
+  const std::string night = "night --config " + path("ifogd.toml");
+  EXPECT_NE(ifog(night), 0);  // no state folder
+  EXPECT_NE(complaint_.find("expected the daemon's state folder"), std::string::npos) << complaint_;
+  fs::create_directories(path("state"));
+  EXPECT_EQ(ifog(night), 0) << complaint_;  // nothing is recorded yet
+  write("state/nose.night.json", "{");
+  EXPECT_NE(ifog(night), 0);
+  EXPECT_NE(complaint_.find("nose.night.json: is no JSON object"), std::string::npos) << complaint_;
+  write("state/nose.night.json", "{\"schema\": \"ifog.night/1\"}");
+  EXPECT_NE(ifog(night), 0);
+  EXPECT_NE(complaint_.find("nose.night.json: damaged: key 'until' not found"), std::string::npos)
+      << complaint_;
+  EXPECT_EQ(complaint_.find("json.exception"), std::string::npos) << complaint_;
+  fs::remove(path("state/nose.night.json"));
+  fs::create_directories(path("record/nose"));
+  write("record/nose/00000001-20260101T000000Z.ifr", "junk");
+  EXPECT_NE(ifog(night), 0);
+  EXPECT_NE(complaint_.find("is no flight recording"), std::string::npos) << complaint_;
+  fs::remove_all(path("record/nose"));
+  write("record/nose", "a file");
+  EXPECT_NE(ifog(night), 0);
+  EXPECT_NE(complaint_.find("record/nose: cannot read"), std::string::npos) << complaint_;
+}
+
+// All settings of the configuration: where the drivers are, too.
+TEST_F(RecordedFlight, DenoiseLooksForDriversWhereTheConfigurationSays) {
+  configure();
+  start();
+  ASSERT_TRUE(send_and_await(100)) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  write("raw.bin", sent_);
+  // A program that is not in the build tree finds no drivers near itself.
+  fs::create_directories(path("bin"));
+  fs::copy(IFOG_BINARY_DIR "/tools/ifog/ifog", path("bin/ifog"));
+  fs::path plugin;
+  for (const auto& entry : fs::recursive_directory_iterator(IFOG_BINARY_DIR "/plugins"))
+    if (entry.path().filename().string().find("kvh1750") != std::string::npos) plugin = entry.path();
+  fs::create_directories(path("plugins"));
+  fs::copy(plugin, path("plugins") / plugin.filename());
+  std::string configuration = text_of(path("ifogd.toml"));
+  configuration.replace(0, 8, "[daemon]\nplugin_folder = \"plugins\"");
+  write("ifogd.toml", configuration);
+  for (const std::string recording : {"record/nose", "raw.bin"}) {
+    const int status =
+        std::system((path("bin/ifog") + " denoise " + path(recording) + " --config " + path("ifogd.toml") +
+                     " --output " + path("out.csv") + " >/dev/null 2>" + path("complaint"))
+                        .c_str());
+    EXPECT_EQ(status, 0) << recording << ": " << text_of(path("complaint"));
+  }
+}
+
+TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) {
+  model_line_ = "";
+  configure();
+  start();
+  ASSERT_TRUE(send_and_await(500)) << text_of(path("said"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  ASSERT_EQ(end(SIGKILL), 1000 + SIGKILL);
+  ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
+  EXPECT_EQ(text_of(path("again")), sent_);
+  EXPECT_NE(complaint_.find("without an end"), std::string::npos) << complaint_;
+  published_.clear();
+  start();
+  ASSERT_TRUE(send_and_await(500)) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0);
+  for (const auto& entry : fs::directory_iterator(path("record/nose")))
+    EXPECT_EQ(entry.path().extension(), ".ifr") << entry.path();
+  // Every reader names the run that was killed, and for how long nothing was recorded.
+  for (const std::string& command :
+       {"denoise " + path("record/nose") + " --output " + path("denoised.csv"),
+        "convert " + path("record/nose") + " " + path("capture.csv"), "allan " + path("record/nose")}) {
+    EXPECT_EQ(ifog(command), 0) << complaint_;
+    EXPECT_NE(complaint_.find("1 run(s) of what wrote it were cut off"), std::string::npos) << complaint_;
+    EXPECT_NE(complaint_.find("2 runs of what wrote it, with "), std::string::npos) << complaint_;
+  }
+  EXPECT_NE(rows_of("denoised.csv").size(), 0U);
+  ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
+  EXPECT_EQ(text_of(path("again")), sent_);
+}
+
+// Bursts that the ring has no room for: as many rows more than were published are reported, and where.
+TEST_F(RecordedFlight, WhatTheRingMergedIsToldByDenoise) {
+  realtime_lines_ = "[sensor.realtime]\nring_slots = 2\ndirect = false\n";
+  // A source that does not wait until it is read.
+  transport_lines_ = "type = \"udp\"\nbind = \"127.0.0.1\"\nport = 45671\n";
+  close(std::exchange(line_, socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0)));
+  sockaddr_in to{};
+  to.sin_family = AF_INET;
+  to.sin_port = htons(45671);
+  to.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  ASSERT_EQ(connect(line_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
+  configure();
+  start();
+  for (int n = 0; n < 600 && text_of(path("said")).find("reading udp") == std::string::npos; ++n) listen(50);
+  for (int n = 0; n < 200; ++n) {
+    send(1);
+    ASSERT_TRUE(await(samples_)) << text_of(path("said"));
+  }
+  const auto came = [&] {
+    std::uint64_t out = 0;
+    for (const rate_t& message : published_)
+      out += static_cast<std::uint64_t>(std::max<std::int32_t>(message.merged, 1));
+    return out;
+  };
+  for (int burst = 0; burst < 100 && published_.size() == came(); ++burst) {
+    send(50);
+    for (int n = 0; n < 600 && came() < samples_; ++n) listen(50);
+    ASSERT_EQ(came(), samples_) << text_of(path("said"));
+  }
+  const std::size_t merged = static_cast<std::size_t>(samples_) - published_.size();
+  ASSERT_GT(merged, 0U);
+  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv") + " --json " +
+                 path("denoised.json")),
+            0)
+      << complaint_;
+  EXPECT_EQ(rows_of("denoised.csv").size(), published_.size() + merged);
+  EXPECT_NE(complaint_.find(": " + std::to_string(merged) + " samples, the first about 0."),
+            std::string::npos)
+      << complaint_;
+  EXPECT_NE(complaint_.find("were published as one with others (the ring was full)"), std::string::npos)
+      << complaint_;
+  EXPECT_NE(text_of(path("denoised.json")).find("\"merged\": " + std::to_string(merged) + ","),
+            std::string::npos);
+  // Until the first of them, every row is what was published.
+  const auto rows = rows_of("denoised.csv");
+  for (std::size_t n = 0; n < 200; ++n) ASSERT_EQ(rows[n][3], published_[n].denoised[0]) << n;
+}
+
+TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
+  rate_hz_ = "100";
+  configure();
+  const pid_t recorder = fork();
+  ASSERT_GE(recorder, 0);
+  if (recorder == 0) {
+    close(STDOUT_FILENO);
+    open("/dev/null", O_WRONLY);
+    execl(IFOG_BINARY_DIR "/tools/ifog/ifog", "ifog", "record", "--output", path("heard").c_str(), "--sensor",
+          "nose", nullptr);
+    _exit(127);
+  }
+  // It listens soon after its folder is there, which it keeps for itself first; a message that came before is
+  // none of it.
+  start();
+  for (int n = 0; n < 600 && !fs::exists(path("heard")); ++n) listen(10);
+  for (int n = 0; n < 100; ++n) listen(10);
+  const std::size_t before = published_.size();
+  // At the sensor's own rate, so that the fitted time advances.
+  auto due = std::chrono::steady_clock::now();
+  for (int n = 0; n < 300; ++n) {
+    std::this_thread::sleep_until(due += std::chrono::milliseconds(10));
+    send(1);
+    ASSERT_TRUE(await(before + static_cast<std::size_t>(samples_))) << text_of(path("said"));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds(2200));  // two status messages
+  ASSERT_EQ(end(SIGTERM), 0);
+  kill(recorder, SIGTERM);
+  int status = 0;
+  waitpid(recorder, &status, 0);
+  EXPECT_EQ(status, 0);
+  ASSERT_EQ(ifog("convert " + path("heard") + " " + path("capture.csv")), 0) << complaint_;
+  const std::string capture = text_of(path("capture.csv"));
+  EXPECT_NE(capture.substr(0, 200).find("supply_V"), std::string::npos) << capture.substr(0, 200);
+  const auto rows = rows_of("capture.csv");
+  ASSERT_EQ(rows.size(), published_.size());
+  for (std::size_t n = 0; n < rows.size(); ++n) ASSERT_EQ(rows[n][1], published_[n].raw[0]) << n;
+  EXPECT_EQ(ifog("allan " + path("heard") + " --json " + path("allan.json")), 0) << complaint_;
+}
+
+}  // namespace
+}  // namespace ifog

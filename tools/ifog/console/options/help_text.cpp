@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/console/options/help_text.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <string_view>
+
+namespace ifog::tools {
+namespace {
+
+constexpr std::string_view kExample = "  ifog ";
+
+// Letters, not bytes.
+std::size_t columns_of(std::string_view text) {
+  return static_cast<std::size_t>(std::count_if(
+      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
+
+std::string broken(std::string_view line, std::size_t indent, std::size_t width) {
+  std::string out(line.substr(0, indent));
+  std::size_t at = columns_of(out);
+  const std::size_t begin = at;
+  line.remove_prefix(indent);
+  while (!line.empty()) {
+    const std::size_t end = std::min(line.find(' '), line.size());
+    const std::size_t word = columns_of(line.substr(0, end));
+    if (at > begin && at + 1 + word > width) {
+      out += "\n" + std::string(begin, ' ');
+      at = begin;
+    } else if (at > begin) {
+      out += ' ';
+      ++at;
+    }
+    out += line.substr(0, end);
+    at += word;
+    line.remove_prefix(std::min(end + 1, line.size()));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::string broken_lines(const std::string& help, std::size_t column, std::size_t width) {
+  std::string out;
+  bool empty = false;
+  for (std::size_t from = 0; from < help.size();) {
+    const std::size_t end = std::min(help.find('\n', from), help.size());
+    const std::string_view line = std::string_view(help).substr(from, end - from);
+    from = end + 1;
+    if (line.empty() && empty) continue;
+    empty = line.empty();
+    const bool described = line.starts_with("  ") && line.size() > column && line[column - 1] == ' ';
+    if (line.starts_with(kExample) || columns_of(line) <= width)
+      out += line;
+    else
+      out += broken(line, described ? column : 0, width);
+    out += '\n';
+  }
+  return out;
+}
+
+std::size_t help_width() {
+  constexpr std::size_t kUsual = 100, kLeast = 60;
+  winsize size{};
+  if (isatty(STDOUT_FILENO) == 0 || ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0)
+    return kUsual;
+  return std::clamp<std::size_t>(size.ws_col, kLeast, 2 * kLeast);
+}
+
+}  // namespace ifog::tools

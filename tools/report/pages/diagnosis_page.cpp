@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/report/pages/diagnosis_page.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "drivers/system/shell_word.h"
+#include "filters/effects/form.h"
+#include "filters/model_file/toml_text.h"
+#include "filters/units/field_units.h"
+#include "tools/report/pages/account.h"
+#include "tools/report/pages/diagnosis_pictures.h"
+#include "tools/report/pages/section.h"
+#include "tools/report/pages/words.h"
+#include "tools/report/style.h"
+#include "tools/report/text.h"
+
+namespace ifog::report {
+namespace {
+
+std::string parameter_rows(const FoundEffect& found) {
+  std::string out;
+  for (const ModelParameter& p : shown_parameters(found)) {
+    const FieldUnit unit = field_unit(p.unit);
+    std::string name = p.name;
+    for (const std::string_view suffix : {"_hz", "_s"}) {  // the unit has a column of its own
+      if (name.ends_with(suffix)) name.erase(name.size() - suffix.size());
+    }
+    std::replace(name.begin(), name.end(), '_', ' ');
+    out += "<tr><th scope=\"row\">" + escaped(name) + "</th><td class=\"n\">" +
+           with_error(p.value * unit.scale, p.std_error * unit.scale) + "</td><td>" + escaped(unit.unit) +
+           "</td></tr>\n";
+  }
+  return out;
+}
+
+std::string effect_section(const PageAxis& axis, std::size_t index) {
+  const FoundEffect& found = axis.diagnosis->effects[index];
+  std::string out = "<h3>" + std::to_string(index + 1) + ". " + escaped(effect_words(found.effect)) +
+                    "</h3>\n<p>" + escaped(sentence(found.effect.meaning)) +
+                    " Chance of such a find in noise alone, after correction "
+                    "for everything tried: " +
+                    probability(found.p_value) + ". Share of the error's variance" +
+                    (parts_overlap(*axis.diagnosis) ? ", alone, overlapping with other parts: " : ": ") +
+                    number(100.0 * found.variance_explained, 3) + " %.</p>\n";
+  out +=
+      "<div class=\"scroll\"><table><caption>Parameters, with their standard errors</caption><thead><tr><th "
+      "scope=\"col\">parameter</th><th scope=\"col\" class=\"n\">value</th><th "
+      "scope=\"col\">unit</th></tr></thead>"
+      "<tbody>\n" +
+      parameter_rows(found) + "</tbody></table></div>\n";
+  return out + "<div class=\"pair\">\n" + traced_picture(axis, index) +
+         contribution_picture(*axis.diagnosis, index) + "</div>\n";
+}
+
+std::string figures_table(const Diagnosis& d) {
+  std::string out =
+      "<div class=\"scroll\"><table><caption>By the model as written, or on data held out of the fit: the "
+      "larger</caption><thead><tr><th "
+      "scope=\"col\">figure</th>"
+      "<th scope=\"col\" class=\"n\">before</th><th scope=\"col\" class=\"n\">after</th><th "
+      "scope=\"col\">unit</th>"
+      "<th scope=\"col\" class=\"n\">change</th></tr></thead><tbody>\n";
+  for (const std::string& key : in_reading_order(d.before)) {
+    const double before = d.before.at(key);
+    const auto at = d.after.find(key);
+    const double after = at == d.after.end() ? std::nan("") : at->second;
+    const Figure f = figure(key);
+    const double change = 100.0 * (after / before - 1.0);
+    const bool relative = key != "whiteness" && std::isfinite(change);
+    out += "<tr><th scope=\"row\">" + escaped(f.label) + "</th><td class=\"n\">" + number(before * f.scale) +
+           "</td><td class=\"n\">" + number(after * f.scale) + "</td><td>" + f.unit + "</td><td class=\"n" +
+           (relative && change < -0.5 ? " better" : "") + "\">" +
+           (relative ? (std::abs(change) < 0.05 ? "0" : (change > 0 ? "+" : "") + number(change, 2)) + " %"
+                     : "") +
+           "</td></tr>\n";
+  }
+  return out + "</tbody></table></div>\n";
+}
+
+// The figure that gained most comes first.
+std::string tiles(const Diagnosis& d) {
+  std::string out;
+  std::array keys{"residual_rms_radps", "rms_10s_radps", "adev_1s_radps", "heading_drift_rad"};
+  const auto left = [&](const char* key) {
+    const auto before = d.before.find(key), after = d.after.find(key);
+    const bool told = before != d.before.end() && after != d.after.end() && before->second > 0.0;
+    return told ? after->second / before->second : std::numeric_limits<double>::infinity();
+  };
+  std::stable_sort(keys.begin(), keys.end(), [&](const char* a, const char* b) { return left(a) < left(b); });
+  for (const char* key : keys) {
+    const auto before = d.before.find(key), after = d.after.find(key);
+    if (before == d.before.end() || after == d.after.end() || !std::isfinite(before->second)) continue;
+    const Figure f = figure(key);
+    out += "<div class=\"tile\"><b>" + number(before->second * f.scale) + " → " +
+           number(after->second * f.scale) + "\u00a0" + f.unit + "</b><span>" + escaped(f.label) +
+           "</span></div>\n";
+  }
+  return out.empty() ? "" : "<div class=\"tiles\">\n" + out + "</div>\n";
+}
+
+std::string confusable_list(const Diagnosis& d) {
+  if (d.effects.empty()) return "<p>Nothing was found, so there is nothing to tell apart.</p>\n";
+  if (d.indistinguishable.empty())
+    return "<p>Every effect named here differs from its rivals by more than this capture's noise.</p>\n";
+  std::string out = "<ul>\n";
+  for (const Indistinguishable& group : d.indistinguishable) {
+    out += "<li>";
+    for (std::size_t i = 0; i < group.effects.size(); ++i)
+      out += (i == 0   ? "<strong>"
+              : i == 1 ? " cannot be distinguished from <strong>"
+                       : " or <strong>") +
+             escaped(effect_words(group.effects[i])) + "</strong>";
+    out += " here (correlation after whitening " + number(group.correlation) + "). " +
+           (group.separate_by.empty() ? "" : "What would tell: " + escaped(sentence(group.separate_by))) +
+           "</li>\n";
+  }
+  return out + "</ul>\n";
+}
+
+std::string noise_table(const NoiseTerms& noise) {
+  struct Row {
+    const char* name;
+    std::optional<double> value;
+    double scale;
+    const char* unit;
+  };
+  const Row rows[] = {{"quantisation Q", noise.Q, 1e6, "µrad"},
+                      {"angle random walk N", noise.N, 1.0 / kDegreePerRootHour, "°/√h"},
+                      {"bias instability B", noise.B, 1.0 / kDegreePerHour, "°/h"},
+                      {"rate random walk K", noise.K, 1.0 / kDegreePerHourPerRootHour, "°/h/√h"},
+                      {"rate ramp R", noise.R, 1.0 / kDegreePerHourPerHour, "°/h/h"}};
+  std::string out =
+      "<div class=\"scroll\"><table><caption>Noise after the effects (IEEE Std 952 "
+      "terms)</caption><thead><tr><th "
+      "scope=\"col\">term</th><th scope=\"col\" class=\"n\">value</th><th "
+      "scope=\"col\">unit</th></tr></thead><tbody>\n";
+  for (const Row& row : rows)
+    out += std::string("<tr><th scope=\"row\">") + row.name + "</th><td class=\"n\">" +
+           (row.value ? number(*row.value * row.scale) : "not seen") + "</td><td>" +
+           (row.value ? row.unit : "") + "</td></tr>\n";
+  return out + "</tbody></table></div>\n";
+}
+
+std::string heading_words(const HeadingPrediction& h) {
+  if (h.after_s.empty()) return "";
+  return "<p>With the bias taken over the first " + duration(h.aligned_s) +
+         " at rest and held, this sensor is expected "
+         "to be " +
+         number(h.sigma_rad.back() / kDegree, 2) + "° off (1 σ) after " + duration(h.after_s.back()) +
+         ".</p>\n";
+}
+
+std::string remaining(const Diagnosis& d) {
+  std::string out = "<p>" + account_of_rest(d) + "</p>\n";
+  if (!d.remarks.empty()) {
+    out += "<ul>\n";
+    for (const std::string& remark : d.remarks) out += "<li>" + escaped(sentence(remark)) + "</li>\n";
+    out += "</ul>\n";
+  }
+  return out + noise_table(d.noise) + heading_words(d.heading) + heading_picture(d.heading);
+}
+
+// The commands are for a shell, and the line of the configuration is TOML.
+std::string applying(const Page& page) {
+  const std::string path = page.model_path.empty() ? "model.toml" : page.model_path;
+  const std::string model = escaped(shell_file(path)), read_with = escaped(page.read_with);
+  const std::string capture =
+      escaped(shell_file(page.captures.empty() ? "capture.csv" : page.captures.front()));
+  std::string out;
+  if (page.model_path.empty())
+    out += "<p>No model file was written in this run. To write one:</p>\n<pre>ifog diagnose " + capture +
+           read_with + " --write-model " + model + "</pre>\n";
+  return out + "<p>Offline, with the same causal code that the daemon runs:</p>\n<pre>ifog denoise " +
+         capture + read_with + " --model " + model +
+         " --output corrected.csv</pre>\n"
+         "<p>In the daemon: name the file in the sensor's section of the configuration, check, and reload. "
+         "No sample is "
+         "lost.</p>\n<pre>[[sensor]]\nmodel = " +
+         escaped(toml_quoted(path)) +
+         "\n\nifogd --config /etc/ifogd/ifogd.toml --check\n"
+         "systemctl reload ifogd</pre>\n"
+         "<p>And when you have the next capture, ask whether the model still holds:</p>\n<pre>ifog diagnose "
+         "next.csv" +
+         read_with + " --model " + model + "</pre>\n";
+}
+
+// What would be asked for first if somebody doubted the page.
+std::string origin(const Page& page) {
+  std::string out;
+  if (!page.command.empty()) out += "<p>Made by</p>\n<pre>" + escaped(page.command) + "</pre>\n";
+  std::string rows;
+  for (const Page::Input& input : page.inputs) {
+    std::string said;
+    constexpr std::size_t kMostComments = 4;
+    for (std::size_t i = 0; i < std::min(kMostComments, input.comments.size()); ++i)
+      said += (said.empty() ? "" : "<br>") + escaped(input.comments[i]);
+    rows += "<tr><th scope=\"row\">" + escaped(input.name) + "</th><td>" + said + "</td><td><code>" +
+            escaped(input.sha256) + "</code></td></tr>\n";
+  }
+  if (rows.empty()) return out;
+  return out +
+         "<div class=\"scroll\"><table class=\"origin\"><caption>Captures</caption><thead><tr><th "
+         "scope=\"col\">file</th><th scope=\"col\">what it says of itself (sensor, serial number)</th><th "
+         "scope=\"col\">SHA-256, unpacked</th></tr></thead><tbody>\n" +
+         rows + "</tbody></table></div>\n";
+}
+
+std::string axis_sections(const PageAxis& axis) {
+  const Diagnosis& d = *axis.diagnosis;
+  const std::string id = axis.axis.empty() ? "" : "-" + axis.axis;
+  const std::string of = axis.axis.empty() ? "" : ", axis " + escaped(axis.axis);
+  std::string out =
+      section("account" + id, "In short" + of,
+              "<div class=\"account\">" + account(d) + "</div>\n" + (d.effects.empty() ? "" : tiles(d)));
+  out += section("residual" + id, d.effects.empty() ? "The error" + of : "The error before and after" + of,
+                 time_picture(d) + allan_picture(d) + spectrum_picture(d));
+  std::string effects;
+  for (std::size_t i = 0; i < d.effects.size(); ++i) effects += effect_section(axis, i);
+  const char* none = d.hysteresis
+                         ? "<p>No effect that a correction could take away; see what remains.</p>\n"
+                         : "<p>No effect passed. The error is what the noise below makes of it.</p>\n";
+  out += section("effects" + id, "What was found" + of, effects.empty() ? none : effects);
+  out += section("figures" + id, "Before and after in figures" + of, figures_table(d));
+  out += section("confusable" + id, "What cannot be distinguished" + of, confusable_list(d));
+  out += section("remaining" + id, "What remains" + of, remaining(d));
+  return out;
+}
+
+std::string contents(const Page& page) {
+  std::string out = "<nav aria-label=\"Contents\"><ul>\n";
+  for (const PageAxis& axis : page.axes) {
+    const std::string id = axis.axis.empty() ? "" : "-" + axis.axis;
+    const std::string of = axis.axis.empty() ? "" : " " + escaped(axis.axis);
+    for (const auto& [name, words] : {std::pair{"account", "In short"},
+                                      {"residual", "The error"},
+                                      {"effects", "What was found"},
+                                      {"figures", "Figures"},
+                                      {"confusable", "Indistinguishable"},
+                                      {"remaining", "What remains"}})
+      out += std::string("<li><a href=\"#") + name + id + "\">" + words + of + "</a></li>\n";
+  }
+  return out + std::string("<li><a href=\"#apply\">Applying it</a></li>\n") +
+         (page.inputs.empty() && page.command.empty()
+              ? ""
+              : "<li><a href=\"#origin\">Where it comes from</a></li>\n") +
+         "</ul></nav>\n";
+}
+
+}  // namespace
+
+std::string diagnosis_page(const Page& page) {
+  std::string names;
+  for (const std::string& capture : page.captures) names += (names.empty() ? "" : ", ") + escaped(capture);
+  std::string size;
+  if (!page.axes.empty()) {
+    const Diagnosis& d = *page.axes.front().diagnosis;
+    size = std::to_string(d.samples) + " samples at " + number(d.sample_rate_hz, 4) + " Hz, " +
+           duration(static_cast<double>(d.samples) / d.sample_rate_hz) + " in all";
+  }
+  const std::string title = "Diagnosis of " + escaped(page.sensor);
+  std::string out =
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light "
+      "dark\">\n"
+      "<link rel=\"icon\" href=\"data:,\">\n<title>" +
+      title + "</title>\n<style>" + page_style() + "</style>\n</head>\n<body>\n<main>\n<h1>" + title +
+      "</h1>\n<p class=\"sub\">" + names + " · " + size + "</p>\n" + contents(page);
+  for (const PageAxis& axis : page.axes) out += axis_sections(axis);
+  out += section("apply", "Applying it", applying(page));
+  out += section("origin", "Where it comes from", origin(page));
+  out +=
+      "<footer>Made " + escaped(page.made) +
+      ". Rates in °/h; the model file is in SI units. Standard errors are one "
+      "sigma. Under the pointer a picture shows its values; draw over a stretch to look closer, twice on it "
+      "for the whole; arrow keys, + and − do the same.</footer>\n</main>\n<script>" +
+      page_script() + "</script>\n</body>\n</html>\n";
+  return out;
+}
+
+}  // namespace ifog::report
