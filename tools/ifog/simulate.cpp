@@ -12,7 +12,7 @@
 #include "drivers/capture/text_file.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
-#include "tools/ifog/captures/whole_table.h"
+#include "tools/ifog/captures/table/whole_table.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/command.h"

@@ -7,7 +7,7 @@
 #include "drivers/capture/capture_builder.h"
 #include "tests/unit/flight/recordings.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/flight/flight_input.h"
 
 namespace ifog::tools {
 namespace {

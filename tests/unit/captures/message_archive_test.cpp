@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Messages into recordings: what is lost is lost in one place, and a folder is one recorder's.
-#include "tools/ifog/captures/message_archive.h"
+#include "tools/ifog/captures/lcm/message_archive.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Logs of lcm-logger as captures: written here with LCM's own library, read by ours.
-#include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/captures/lcm/lcm_log.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>

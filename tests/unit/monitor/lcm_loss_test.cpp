@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is lost on LCM by the messages' numbers, and which numbers are believed.
-#include "tools/ifog/captures/lcm_loss.h"
+#include "tools/ifog/captures/lcm/lcm_loss.h"
 
 #include <gtest/gtest.h>
 

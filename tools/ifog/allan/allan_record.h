@@ -12,7 +12,7 @@
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/allan/theo1.h"
 #include "filters/rest/value_faults.h"
-#include "tools/ifog/captures/long_table.h"
+#include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/report/coefficients.h"
 

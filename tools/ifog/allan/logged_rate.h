@@ -11,7 +11,7 @@
 #include "filters/rest/rest.h"
 #include "filters/series/series_view.h"
 #include "tools/ifog/allan/allan_record.h"
-#include "tools/ifog/captures/long_table.h"
+#include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {
 

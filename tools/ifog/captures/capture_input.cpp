@@ -15,13 +15,14 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/sha256.h"
-#include "tools/ifog/captures/driver_of_run.h"
-#include "tools/ifog/captures/flight_input.h"
-#include "tools/ifog/captures/lcm_log.h"
-#include "tools/ifog/captures/logged_bytes.h"
-#include "tools/ifog/captures/named_log.h"
-#include "tools/ifog/captures/rate_rows.h"
+#include "tools/ifog/captures/flight/driver_of_run.h"
+#include "tools/ifog/captures/flight/flight_input.h"
+#include "tools/ifog/captures/flight/sample_remarks.h"
+#include "tools/ifog/captures/lcm/lcm_log.h"
+#include "tools/ifog/captures/lcm/logged_bytes.h"
+#include "tools/ifog/captures/lcm/named_log.h"
 #include "tools/ifog/captures/reading_progress.h"
+#include "tools/ifog/captures/table/rate_rows.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/wrong_usage.h"
@@ -191,32 +192,7 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
     throw std::runtime_error(line.starts_with(path) ? line : path + ": " + line);
   }
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", path.c_str(), loss.c_str());
-  tell_of(builder, path);
-}
-
-void CaptureInput::tell_of(const CaptureBuilder& builder, const std::string& path) {
-  if (builder.missing() != 0)
-    warn("%s: %zu samples are missing by the device's counter or clock\n", path.c_str(), builder.missing());
-  if (builder.restarts() != 0)
-    warn("%s: the device's counter or clock jumped back %zu times: was it switched off and on?\n",
-         path.c_str(), builder.restarts());
-  if (builder.clock_sets() != 0)
-    warn(
-        "%s: the device's clock was set %zu times while it measured on; there its times are by its counter "
-        "or its rate\n",
-        path.c_str(), builder.clock_sets());
-  if (builder.repeated() != 0)
-    warn("%s: %zu samples came twice or after one that follows, and are dropped\n", path.c_str(),
-         builder.repeated());
-  if (builder.mixed() != 0)
-    warn("%s: %zu samples are of two devices that come mixed, and dropped: which of them is wanted?\n",
-         path.c_str(), builder.mixed());
-  if (builder.impossible() != 0)
-    warn("%s: %zu values of channels cannot be, in the unit of their name: dropped\n", path.c_str(),
-         builder.impossible());
-  for (const std::string& line :
-       not_measured_in_words(builder.at_full_scale(), builder.implausible(), builder.untold()))
-    warn("%s: %s\n", path.c_str(), line.c_str());
+  say_of_samples(builder, path);
 }
 
 FileKind CaptureInput::readable(const InputFile& file) const {

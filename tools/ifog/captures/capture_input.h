@@ -13,7 +13,7 @@
 #include "drivers/capture/row_sink.h"
 #include "drivers/host/driver_instance.h"
 #include "tools/ifog/captures/long_capture.h"
-#include "tools/ifog/captures/long_table.h"
+#include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/console/options/command.h"
 
 namespace ifog {
@@ -89,9 +89,6 @@ struct CaptureInput {
                                               const LongTableSink::Wanted& wanted = {}) const;
   // Reads a file of columns, also where a driver is given that is there to write with.
   [[nodiscard]] LongTable read_long_columns(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
-
-  // What a driver's samples had besides: missing, repeated, of two devices; to the user.
-  static void tell_of(const CaptureBuilder& builder, const std::string& path);
 
  private:
   RowNotes column_rows(InputFile& file, RowSink& sink) const;

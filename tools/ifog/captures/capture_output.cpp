@@ -14,7 +14,7 @@
 #include "drivers/capture/capture_encoder.h"
 #include "drivers/capture/text_file.h"
 #include "filters/series/series_view.h"
-#include "tools/ifog/captures/column_writer.h"
+#include "tools/ifog/captures/table/column_writer.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/progress.h"

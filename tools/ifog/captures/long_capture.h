@@ -10,7 +10,7 @@
 #include "filters/model_file/model.h"
 #include "filters/series/samples.h"
 #include "tools/ifog/captures/capture_view.h"
-#include "tools/ifog/captures/long_table.h"
+#include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/captures/time_part.h"
 
 namespace ifog::tools {

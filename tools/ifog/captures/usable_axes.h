@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "tools/ifog/captures/capture_view.h"
-#include "tools/ifog/captures/long_table.h"
+#include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {
 

@@ -11,7 +11,7 @@
 #include "drivers/capture/recording.h"
 #include "filters/settings/filter_settings.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/denoise/offline_chain.h"
 

@@ -12,7 +12,7 @@
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 #include "filters/series/samples.h"
-#include "tools/ifog/captures/column_writer.h"
+#include "tools/ifog/captures/table/column_writer.h"
 #include "tools/ifog/captures/time_part.h"
 
 namespace ifog::tools {

@@ -15,8 +15,8 @@
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 #include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/flight_input.h"
-#include "tools/ifog/captures/long_table.h"
+#include "tools/ifog/captures/flight/flight_input.h"
+#include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {
 

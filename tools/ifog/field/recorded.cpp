@@ -15,7 +15,7 @@
 
 #include "drivers/capture/input_file.h"
 #include "tools/ifog/captures/compensated_rates.h"
-#include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/reading_progress.h"
 
 namespace ifog::tools {

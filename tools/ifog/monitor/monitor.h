@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "drivers/capture/output_file.h"
-#include "tools/ifog/captures/lcm_listener.h"
+#include "tools/ifog/captures/lcm/lcm_listener.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/monitor/known_here.h"
 #include "tools/ifog/monitor/screen.h"

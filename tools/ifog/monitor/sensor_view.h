@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "msgs/flag_names.h"
-#include "tools/ifog/captures/lcm_loss.h"
+#include "tools/ifog/captures/lcm/lcm_loss.h"
 
 namespace ifog::tools {
 

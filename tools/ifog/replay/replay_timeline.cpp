@@ -13,7 +13,7 @@
 #include "drivers/capture/recording.h"
 #include "drivers/host/timeline_frame.h"
 #include "drivers/timeline/timeline.h"
-#include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/console/say.h"
 

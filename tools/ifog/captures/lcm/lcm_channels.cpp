@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/lcm_channels.h"
+#include "tools/ifog/captures/lcm/lcm_channels.h"
 
 #include <ifog/decode.h>
 

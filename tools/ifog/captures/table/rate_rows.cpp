@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/rate_rows.h"
+#include "tools/ifog/captures/table/rate_rows.h"
 
 #include <algorithm>
 #include <cmath>

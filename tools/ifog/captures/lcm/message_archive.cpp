@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/message_archive.h"
+#include "tools/ifog/captures/lcm/message_archive.h"
 
 #include <ifog/decode.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/long_table.h"
+#include "tools/ifog/captures/table/long_table.h"
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "drivers/capture/capture.h"
-#include "tools/ifog/captures/long_table.h"
+#include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/lcm_log.h"
+#include "tools/ifog/captures/lcm/lcm_log.h"
 
 #include <ifog/decode.h>
 
@@ -20,15 +20,15 @@
 #include "drivers/transport/utc_now.h"
 #include "msgs/channel_name.h"
 #include "msgs/in_order.h"
-#include "tools/ifog/captures/lcm_channels.h"
-#include "tools/ifog/captures/lcm_events.h"
-#include "tools/ifog/captures/lcm_loss.h"
-#include "tools/ifog/captures/logged_bytes.h"
-#include "tools/ifog/captures/named_log.h"
-#include "tools/ifog/captures/peer_reader.h"
-#include "tools/ifog/captures/peer_types.h"
-#include "tools/ifog/captures/sensor_seconds.h"
-#include "tools/ifog/captures/status_beside.h"
+#include "tools/ifog/captures/lcm/lcm_channels.h"
+#include "tools/ifog/captures/lcm/lcm_events.h"
+#include "tools/ifog/captures/lcm/lcm_loss.h"
+#include "tools/ifog/captures/lcm/logged_bytes.h"
+#include "tools/ifog/captures/lcm/named_log.h"
+#include "tools/ifog/captures/lcm/peer_reader.h"
+#include "tools/ifog/captures/lcm/peer_types.h"
+#include "tools/ifog/captures/lcm/sensor_seconds.h"
+#include "tools/ifog/captures/lcm/status_beside.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/flight/flight_input.h"
 
 #include <sys/mman.h>
 #include <unistd.h>
@@ -16,8 +16,8 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture_builder.h"
 #include "filters/model_file/kept_noise.h"
-#include "tools/ifog/captures/capture_input.h"
-#include "tools/ifog/captures/driver_of_run.h"
+#include "tools/ifog/captures/flight/driver_of_run.h"
+#include "tools/ifog/captures/flight/sample_remarks.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -197,7 +197,7 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
                                {},
                                [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
-  CaptureInput::tell_of(builder, file_.path());
+  say_of_samples(builder, file_.path());
 }
 
 // By the first file's header; files of several power-ups behind one another show in the times.

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "drivers/flight/archive.h"
-#include "tools/ifog/captures/lcm_loss.h"
-#include "tools/ifog/captures/status_beside.h"
+#include "tools/ifog/captures/lcm/lcm_loss.h"
+#include "tools/ifog/captures/lcm/status_beside.h"
 
 namespace ifog::tools {
 

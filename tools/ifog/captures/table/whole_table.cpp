@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/whole_table.h"
+#include "tools/ifog/captures/table/whole_table.h"
 
 #include <string>
 #include <utility>

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/ifog/captures/peer_types.h"
+#include "tools/ifog/captures/lcm/peer_types.h"
 
 namespace ifog::tools {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/driver_of_run.h"
+#include "tools/ifog/captures/flight/driver_of_run.h"
 
 #include <memory>
 #include <utility>

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "tools/ifog/captures/long_table.h"
+#include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/logged_bytes.h"
+#include "tools/ifog/captures/lcm/logged_bytes.h"
 
 #include <ifog/decode.h>
 
@@ -9,8 +9,8 @@
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
-#include "tools/ifog/captures/lcm_events.h"
-#include "tools/ifog/captures/named_log.h"
+#include "tools/ifog/captures/lcm/lcm_events.h"
+#include "tools/ifog/captures/lcm/named_log.h"
 
 namespace ifog::tools {
 namespace {

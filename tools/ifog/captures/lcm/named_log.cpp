@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/named_log.h"
+#include "tools/ifog/captures/lcm/named_log.h"
 
 #include <cstdint>
 #include <lcm/lcm-cpp.hpp>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "drivers/capture/recording.h"
-#include "tools/ifog/captures/flight_input.h"
+#include "tools/ifog/captures/flight/flight_input.h"
 
 namespace ifog::tools {
 

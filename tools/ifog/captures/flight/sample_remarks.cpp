@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tools/ifog/captures/flight/sample_remarks.h"
+
+#include "drivers/capture/capture_builder.h"
+#include "tools/ifog/console/say.h"
+
+namespace ifog::tools {
+
+void say_of_samples(const CaptureBuilder& builder, const std::string& path) {
+  if (builder.missing() != 0)
+    warn("%s: %zu samples are missing by the device's counter or clock\n", path.c_str(), builder.missing());
+  if (builder.restarts() != 0)
+    warn("%s: the device's counter or clock jumped back %zu times: was it switched off and on?\n",
+         path.c_str(), builder.restarts());
+  if (builder.clock_sets() != 0)
+    warn(
+        "%s: the device's clock was set %zu times while it measured on; there its times are by its counter "
+        "or its rate\n",
+        path.c_str(), builder.clock_sets());
+  if (builder.repeated() != 0)
+    warn("%s: %zu samples came twice or after one that follows, and are dropped\n", path.c_str(),
+         builder.repeated());
+  if (builder.mixed() != 0)
+    warn("%s: %zu samples are of two devices that come mixed, and dropped: which of them is wanted?\n",
+         path.c_str(), builder.mixed());
+  if (builder.impossible() != 0)
+    warn("%s: %zu values of channels cannot be, in the unit of their name: dropped\n", path.c_str(),
+         builder.impossible());
+  for (const std::string& line :
+       not_measured_in_words(builder.at_full_scale(), builder.implausible(), builder.untold()))
+    warn("%s: %s\n", path.c_str(), line.c_str());
+}
+
+}  // namespace ifog::tools
