@@ -70,14 +70,12 @@ class LcmRecorder {
                    buffer.recv_utime, arrival_clock_ns(), realtime_ns());
   }
   void tell_trouble();
-  void tell_without_status();
   void tell_books() const;
 
   const RecordOptions& options_;
   LcmListener listener_;
   MessageArchive messages_;
   bool troubled_ = false;
-  std::size_t without_status_ = 0;  // sensors that it was said of
 };
 
 // Once when it begins, once when it is over.
@@ -91,14 +89,6 @@ void LcmRecorder::tell_trouble() {
   else
     warn("%s: all is recorded again, %llu messages were lost\n", options_.folder.c_str(),
          static_cast<unsigned long long>(messages_.books().lost_here));
-}
-
-// Once for each sensor, while something can be done about it.
-void LcmRecorder::tell_without_status() {
-  const std::vector<std::string> found = messages_.without_status();
-  if (found.size() > without_status_)
-    for (const std::string& line : found) warn("%s: %s\n", options_.folder.c_str(), line.c_str());
-  without_status_ = std::max(without_status_, found.size());
 }
 
 void LcmRecorder::tell_books() const {
@@ -128,7 +118,6 @@ void LcmRecorder::run() {
     if (poll(&wanted, 1, kTurn_ms) > 0) listener_.take();
     messages_.turn(arrival_clock_ns(), realtime_ns());
     tell_trouble();
-    tell_without_status();
   }
   messages_.close(arrival_clock_ns(), realtime_ns());
   tell_books();

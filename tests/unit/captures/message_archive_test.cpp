@@ -70,27 +70,6 @@ TEST(MessageArchive, WhatIsLostHereIsNotLostOnTheWayAsWell) {
   EXPECT_EQ(held + reader.counts().lost_messages, 20'000U);
 }
 
-TEST(MessageArchive, KnowsWhoseRatesComeForSecondsWithoutTheirStatus) {
-  MemoryDisk disk;
-  MessageArchive archive(std::make_unique<MemoryFolder>(disk), {}, of_messages());
-  archive.open(0, kWall);
-  const auto take = [&](const std::string& channel, std::int64_t ms) {
-    archive.take(channel, rate(ms), kWall / 1000 + ms * 1000, ms * kSecond / 1000, kWall);
-  };
-  for (std::int64_t ms = 0; ms <= 3000; ms += 100) {
-    if (ms % 1000 == 500) take("IFOG_NOSE_STATUS", ms);
-    for (const char* const channel : {"IFOG_NOSE", "IFOG_TAIL", "OTHER"}) take(channel, ms);
-    ASSERT_TRUE(archive.without_status().empty()) << ms;
-  }
-  take("IFOG_TAIL", 4200);
-  take("IFOG_NOSE", 4200);
-  const std::vector<std::string> found = archive.without_status();
-  ASSERT_EQ(found.size(), 1U);
-  EXPECT_TRUE(found[0].starts_with("rates on IFOG_TAIL for 4 s and nothing on IFOG_TAIL_STATUS, "))
-      << found[0];
-  archive.close(0, kWall);
-}
-
 TEST(MessageArchive, ASecondRecorderOfAFolderIsRefusedAndWritesNothing) {
   const std::string folder = fs::temp_directory_path() / ("message_archive." + std::to_string(::getpid()));
   fs::remove_all(folder);

@@ -229,34 +229,6 @@ TEST_F(LcmLog, ChannelsOfTheStatusAndOfMessagesAreColumns) {
   EXPECT_EQ(known(capture.channels[1]), (Known{{1, 12.5}, {3, 12.5}, {5, 13.0}}));
 }
 
-// Rates that came within `seconds`, and whether one status did.
-TEST_F(LcmLog, SaysThatNoStatusCameWithTheEnvironmentWhereOneWasDue) {
-  const auto said_of = [&](double seconds, bool with_status, bool rates_alone) {
-    SetUp();
-    constexpr int kRates = 40;
-    status_t status{};
-    for (int n = 0; n < kRates; ++n) {
-      add("IFOG_NOSE", sample(n, 1), static_cast<std::int64_t>(seconds * 1e6 * n / (kRates - 1)));
-      if (with_status && n == kRates / 2) add("IFOG_NOSE_STATUS", status);
-    }
-    finish();
-    testing::internal::CaptureStderr();
-    if (rates_alone)
-      (void)published("");
-    else
-      (void)read("");
-    return testing::internal::GetCapturedStderr();
-  };
-  const std::string line = path_ +
-                           ": rates on IFOG_NOSE for 60 s and nothing on IFOG_NOSE_STATUS, which says once a "
-                           "second what the sensor's environment channels are: none of them is in it\n";
-  EXPECT_NE(said_of(60.0, false, false).find(line), std::string::npos);
-  // Played faster than it was measured, all came before a status was due; what was published has no channels.
-  for (const std::string& said :
-       {said_of(2.0, false, false), said_of(60.0, true, false), said_of(60.0, false, true)})
-    EXPECT_EQ(said.find("_STATUS"), std::string::npos) << said;
-}
-
 // The daemon was started again: its sensor's clock is at another place, the fitted time advances.
 TEST_F(LcmLog, ADeviceWhoseClockBeginsAnewGoesOnByTheFittedTime) {
   add("IFOG_NOSE", sample(0, 1, 5'000'000'000));

@@ -28,7 +28,6 @@
 #include "tools/ifog/captures/lcm/peer_reader.h"
 #include "tools/ifog/captures/lcm/peer_types.h"
 #include "tools/ifog/captures/lcm/sensor_seconds.h"
-#include "tools/ifog/captures/lcm/status_beside.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
@@ -161,35 +160,25 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   tell_damage(path, log);
 }
 
-struct FirstLook {
-  std::map<std::string, bool> of_status;  // LcmChannelNames::of_status()
-  StatusBeside beside;
-};
-
 // The first look at a log: which columns its channels make. Throws std::runtime_error with one line where
-// nobody said which of several channels with rates it is.
-FirstLook look_through(ChosenLog& chosen) {
+// nobody said which of several channels with rates it is. Returns LcmChannelNames::of_status().
+std::map<std::string, bool> look_through(ChosenLog& chosen) {
   LcmChannelNames names(chosen.rates);
   std::set<std::string> with_rates;
-  StatusBeside beside;
   LcmEvents log(chosen.source.name());
   Progress progress("looking through " + std::filesystem::path(chosen.path).filename().string(), log.size());
   while (const LcmEvents::Event* event = log.next()) {
     progress.at(log.at());
     if (event->channel == chosen.rates) {
       names.end_row();
-      if (chosen.peer)
-        chosen.peer->look_at(event->data);
-      else
-        beside.rate(event->timestamp_us);
+      if (chosen.peer) chosen.peer->look_at(event->data);
       continue;
     }
     const bool others_rates = chosen.peer ? peer_type(event->data) != nullptr : carries_rates(event->channel);
     if (!chosen.asked_for && others_rates) with_rates.insert(event->channel);
-    if (event->channel == chosen.rates + std::string(kStatusEnding)) beside.status();
     names.take(event->channel, event->data);
   }
-  if (with_rates.empty()) return {names.of_status(), beside};
+  if (with_rates.empty()) return names.of_status();
   with_rates.insert(chosen.rates);
   std::string list;
   for (const std::string& each : with_rates) list += (list.empty() ? "" : ", ") + printable(each);
@@ -262,12 +251,10 @@ void tell_start(const std::string& path, const rate_t& first) {
 
 void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
   ChosenLog chosen(file, channel);
-  FirstLook look = look_through(chosen);
-  if (look.beside.missing())
-    warn("%s: %s\n", chosen.path.c_str(), look.beside.complaint(chosen.rates).c_str());
+  std::map<std::string, bool> of_status = look_through(chosen);
   const std::vector<std::string> beside = chosen.peer ? chosen.peer->beside() : std::vector<std::string>();
-  for (const std::string& name : beside) look.of_status.erase(name);
-  LcmRows rows({chosen.rates, look.of_status}, beside, sink);
+  for (const std::string& name : beside) of_status.erase(name);
+  LcmRows rows({chosen.rates, of_status}, beside, sink);
   bool told = false;
   for_each_rate(
       chosen,

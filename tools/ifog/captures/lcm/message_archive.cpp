@@ -23,24 +23,18 @@ void MessageArchive::tell_lost(std::int64_t wall_ns) {
                {reinterpret_cast<const std::uint8_t*>(lost), sizeof lost});
 }
 
-void MessageArchive::look_at(const std::string& channel, std::span<const std::uint8_t> message,
-                             std::int64_t came_utime) {
-  const ChannelContent content = channel_name(channel).content;
-  if (content == ChannelContent::status) {
-    const auto rates = beside_.find(channel.substr(0, channel.size() - kStatusEnding.size()));
-    if (rates != beside_.end()) rates->second.status();
-  }
+void MessageArchive::look_at(const std::string& channel, std::span<const std::uint8_t> message) {
   rate_t rate{};
-  if (content != ChannelContent::rate || !decode_message(message.data(), message.size(), rate)) return;
-  untold_ += static_cast<std::uint64_t>(ways_[channel].take(rate));
-  beside_[channel].rate(came_utime);
+  if (channel_name(channel).content == ChannelContent::rate &&
+      decode_message(message.data(), message.size(), rate))
+    untold_ += static_cast<std::uint64_t>(ways_[channel].take(rate));
 }
 
 void MessageArchive::take(const std::string& channel, std::span<const std::uint8_t> message,
                           std::int64_t came_utime, std::int64_t now_ns, std::int64_t wall_ns) {
   ++books_.heard;
   // Whether or not there is room for it: what is lost here was not lost on the way as well.
-  look_at(channel, message, came_utime);
+  look_at(channel, message);
   payload_.assign(channel.begin(), channel.end());
   payload_.insert(payload_.end(), message.begin(), message.end());
   if (archive_.full()) archive_.turn(now_ns, wall_ns);
@@ -60,13 +54,6 @@ void MessageArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
   if (!archive_.full()) tell_lost(wall_ns);
   archive_.close(now_ns, wall_ns);
   books_.lost_here += archive_.not_taken().deliveries;
-}
-
-std::vector<std::string> MessageArchive::without_status() const {
-  std::vector<std::string> out;
-  for (const auto& [rates, beside] : beside_)
-    if (beside.missing()) out.push_back(beside.complaint(rates));
-  return out;
 }
 
 MessageArchive::Books MessageArchive::books() const {

@@ -12,7 +12,6 @@
 
 #include "drivers/flight/archive.h"
 #include "tools/ifog/captures/lcm/lcm_loss.h"
-#include "tools/ifog/captures/lcm/status_beside.h"
 
 namespace ifog::tools {
 
@@ -40,18 +39,15 @@ class MessageArchive {
   void close(std::int64_t now_ns, std::int64_t wall_ns);
 
   [[nodiscard]] Books books() const;
-  // Whose rates came for seconds without their status, one line for each.
-  [[nodiscard]] std::vector<std::string> without_status() const;
   // Its disk and what it has written.
   [[nodiscard]] const FlightArchive& archive() const { return archive_; }
 
  private:
   void tell_lost(std::int64_t wall_ns);
-  void look_at(const std::string& channel, std::span<const std::uint8_t> message, std::int64_t came_utime);
+  void look_at(const std::string& channel, std::span<const std::uint8_t> message);
 
   FlightArchive archive_;
   std::map<std::string, LcmLoss> ways_;
-  std::map<std::string, StatusBeside> beside_;  // by the channel of the rates
   std::vector<std::uint8_t> payload_;
   Books books_;
   std::uint64_t untold_ = 0, untold_bytes_ = 0;  // lost, and not yet said in the recording
