@@ -1,19 +1,21 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""No source file is longer than a sitting, no function of a script longer than a screen. (Functions in C++: clang-tidy,
-readability-function-size.)
+"""No source file is longer than a sitting, no function of a script longer than a screen, and no folder has more files of C++
+than a reader looks through. (Functions in C++: clang-tidy, readability-function-size.)
 
 usage: tests/layout/check_lengths.py [TREE]      the tree's root; default: this one
 
-One line a violation, FILE: what; exit 1 when there is one.
+One line a violation, FILE or FOLDER: what; exit 1 when there is one.
 """
 import ast
+import collections
 import pathlib
 import subprocess
 import sys
 
 MOST_OF_A_FILE = 400
 MOST_OF_A_FUNCTION = 60
+MOST_OF_A_FOLDER = 24  # files of C++
 SOURCES = {".cpp", ".h", ".c", ".py", ".java", ".sh", ".cmake"}
 
 
@@ -44,7 +46,11 @@ def violations(name, text):
 
 def main():
     tree = pathlib.Path(sys.argv[1]) if len(sys.argv) > 1 else pathlib.Path(__file__).resolve().parents[2]
-    wrong = [f"{name}: {what}" for name, text in sources(tree) for what in violations(name, text)]
+    wrong, folders = [], collections.Counter()
+    for name, text in sources(tree):
+        wrong += [f"{name}: {what}" for what in violations(name, text)]
+        folders[str(pathlib.PurePath(name).parent)] += name.endswith((".cpp", ".h"))
+    wrong += [f"{folder}: {count} files of C++, at most {MOST_OF_A_FOLDER}" for folder, count in folders.items() if count > MOST_OF_A_FOLDER]
     print(*wrong, sep="\n", end="\n" if wrong else "")
     return 1 if wrong else 0
 
