@@ -114,8 +114,7 @@ class Run {
   // Lines are looked for in what the effects leave; a slow one then competes with them in a second search. A
   // peak that slow noise or an effect made is no line once both are in the fit.
   void separate_lines() {
-    if (!data_.grid.dwells)
-      lines_ = coherent_lines(errors_, data_.grid, options_.significance * kOfLines, periodograms_);
+    if (!data_.grid.dwells) lines_ = coherent_lines(errors_, data_.grid, options_.significance * kOfLines);
     take_out(lines_.fast, data_.grid.sample_s, errors_);
     while (!lines_.slow.empty()) {
       search(lines_.slow);
@@ -218,8 +217,7 @@ class Run {
   }
 
   void report_figures() {
-    result_.series =
-        series_of(data_, errors_, found_.chosen, result_.effects, parts_, periodograms_, angles_);
+    result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_, angles_);
     write_before_and_after(errors_, data_.grid.sample_s, figures_, angles_, result_, data_.reference >= 0);
     write_noise(records_, errors_, data_.grid, found_.noise, angles_, result_);
     add_allan_band(errors_.front(), data_.grid.sample_s, result_.noise, angles_, result_.series);
@@ -231,8 +229,7 @@ class Run {
     result_.channel_delays =
         delayed_channels(reconstructed_, candidates_of(found_.chosen), found_.noise.shape);
     for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
-    result_.unexplained =
-        describe_rest(errors_, found_.noise, data_.grid, options_.significance, periodograms_);
+    result_.unexplained = describe_rest(errors_, found_.noise, data_.grid, options_.significance);
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
     say(unexplained_beside_claims(result_, records_.size()));
@@ -264,7 +261,6 @@ class Run {
   BlockData data_;           // without the ramps
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
-  KnownPeriodograms periodograms_;
   KnownFigures figures_{64};
   KnownAngles angles_;
   std::optional<FoundZone> zone_;

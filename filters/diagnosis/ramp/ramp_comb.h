@@ -4,34 +4,38 @@
 // rate changes; against lines of fixed frequencies, which stand still over time.
 #pragma once
 
-#include <complex>
-#include <cstddef>
-#include <numbers>
 #include <optional>
+#include <vector>
 
-#include "filters/diagnosis/ramp/unbroken_part.h"
+#include "filters/diagnosis/ramp/phase_table.h"
 
 namespace ifog {
 
-// A coil of diameter D has D/(n lambda) cycles a radian (Lefevre, The Fiber-Optic Gyroscope, on the phase
-// ramp): 2.3 cm at 1.55 um to 70 cm at 0.8 um. What wants another coil is no ramp.
-inline constexpr double kLeastCycles = 1e4, kMostCycles = 6e5;
-inline constexpr std::size_t kMostHarmonics = 96;
+// A part of a record without a hole, with the angle that the sensor has measured in it.
+struct UnbrokenPart {
+  Record record;                  // of these samples; none where there are too few
+  std::size_t first = 0;          // sample of the whole record
+  std::vector<double> angle_rad;  // turned since the first sample, by the rate as measured
+
+  [[nodiscard]] std::size_t size() const { return angle_rad.size(); }
+  [[nodiscard]] double sample_s() const;
+  [[nodiscard]] double mean_turn_rad() const;  // of a sample, signed
+  // With the phase of a ramp of so many cycles a radian. It shows what this owns.
+  [[nodiscard]] PhasedRecord with_phase(double cycles_per_rad) const;
+};
+
+// The longest, and of it the first 131072 samples; empty when there are not 4096.
+UnbrokenPart unbroken_part(const Record& record);
 
 struct RampComb {
   double cycles_per_rad = 0.0;  // positive
-  std::size_t harmonics = 0;    // that are worth their two parameters
-  double ratio = 0.0;           // twice the log-likelihood they gain
-  double over_fixed = 0.0;      // of it, what the best fixed frequency of each harmonic does not gain
-  double tries = 0.0;           // values of k that could have been found
+  PhaseTable table;
+  double tries = 0.0;       // values of k that could have been found
+  double over_fixed = 0.0;  // twice the log-likelihood gained over the best fixed frequency and its harmonics
+  double over_line = 0.0;   // the same over one line that follows the angle
 };
 
 // Nothing where no comb stands out of the noise, or near zero rate.
 std::optional<RampComb> find_ramp_comb(const UnbrokenPart& part);
-
-// A turn of the unit circle a cycle.
-inline std::complex<double> carrier_of(double cycles) {
-  return std::polar(1.0, 2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
-}
 
 }  // namespace ifog

@@ -3,17 +3,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
+#include <numbers>
 #include <utility>
 
 #include "filters/diagnosis/ramp/ramp_comb.h"
-#include "filters/diagnosis/ramp/ramp_table.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/known_columns.h"
 #include "filters/diagnosis/record/record_clock.h"
+#include "filters/diagnosis/record/words.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/effects/meaning.h"
+#include "filters/effects/ramp_tracker.h"
 #include "filters/units/field_units.h"
 
 namespace ifog {
@@ -52,8 +53,8 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
 
 namespace {
 
-// What a comb that follows the angle has to gain beyond its harmonics at fixed frequencies, each at its best.
-constexpr double kOverFixed = 30.0;
+// Twice the log-likelihood that a comb has to gain beyond one at fixed frequencies, and beyond one line.
+constexpr double kOverOthers = 30.0;
 // Slower sensors cannot show a ramp, and nothing is said of it.
 constexpr double kQuickSensor_hz = 20.0;
 constexpr double kUsualCycles = 1e5;  // a coil of 10 cm at 1.55 um has 7e4
@@ -63,26 +64,10 @@ constexpr double kCertain = 3.0;  // standard errors of the table
 // measured walks. A line that walks more, of a swaying structure or a machine, follows itself.
 constexpr double kMostWalk = 0.002;  // cycles/sqrt(s)
 
-double rms(const std::vector<double>& angle) {
-  double square = 0.0;
-  for (const double value : angle) square += value * value;
-  return std::sqrt(square / static_cast<double>(angle.size()));
-}
-
-std::string rounded(double value, int digits) {
-  std::ostringstream out;
-  out.precision(digits);
-  out << value;
-  return out.str();
-}
-
-double frequency_of(const RampComb& comb, const UnbrokenPart& part) {
-  return comb.cycles_per_rad * std::abs(part.mean_turn_rad()) / part.sample_s;
-}
-
 // Of a comb that is not corrected.
 std::string lines_in_words(const RampComb& comb, const UnbrokenPart& part) {
-  return "lines at " + rounded(frequency_of(comb, part), 4) +
+  const double hz = comb.cycles_per_rad * std::abs(part.mean_turn_rad()) / part.sample_s();
+  return "lines at " + printed("%.4g", hz) +
          " Hz or multiples of it may be a machine's. A feedback ramp (phase modulator, 2 pi reset) that was "
          "not logged would make such, with " +
          std::to_string(std::lround(comb.cycles_per_rad)) +
@@ -91,11 +76,75 @@ std::string lines_in_words(const RampComb& comb, const UnbrokenPart& part) {
 }
 
 std::string too_slow_in_words(const UnbrokenPart& part) {
-  const double span_s = static_cast<double>(part.size()) * part.sample_s;
+  const double span_s = static_cast<double>(part.size()) * part.sample_s();
   const double needed = kSeenCycles / kUsualCycles / span_s;
   return "a feedback ramp (phase modulator, 2 pi reset) that was not logged would not show here, so near "
          "zero rate its line stands still: it would from " +
-         rounded(needed / kDegreePerHour, 2) + " degrees an hour on";
+         printed("%.2g", needed / kDegreePerHour) + " degrees an hour on";
+}
+
+// The phase against k times the angle, piece by piece, to first order: how far it walks, and what that and the
+// noise leave uncertain of k.
+struct Phase {
+  double walk = 0.0, walk_error = 0.0;  // cycles/sqrt(s)
+  double cycles_error = 0.0;            // of k
+};
+
+Phase phase_of(const UnbrokenPart& part, const RampComb& comb) {
+  constexpr std::size_t kPieces = 32;
+  const Eigen::VectorXd& angle = comb.table.angle_rad;
+  const double variance = comb.table.left() / comb.table.samples;
+  const double middle = 0.5 * (part.angle_rad.back() + part.angle_rad.front());
+  const double aside = 0.25 / static_cast<double>(angle.size());  // cycles
+  const auto moved = [](double cycles) { return cycles - std::floor(cycles); };
+  std::array<double, kPieces> along{}, square{};
+  double information = 0.0;
+  each_phase_step(part.with_phase(comb.cycles_per_rad), [&](std::size_t i, const PhaseStep& step) {
+    const auto beside = [&](double off) {
+      return ramp_rate(angle, {moved(step.before + off), moved(step.now + off), step.dt_s, 0.0});
+    };
+    const double slope = (beside(aside) - beside(-aside)) / (2.0 * aside);
+    const std::size_t piece = i * kPieces / part.size();
+    along[piece] += slope * (step.error_radps - ramp_rate(angle, step));
+    square[piece] += slope * slope;
+    information += std::pow(slope * (part.angle_rad[i] - middle), 2);
+  });
+  const double span_s = static_cast<double>(part.size()) * part.sample_s();
+  // Means over two neighbouring pieces of a walk differ by two thirds of what it makes in one.
+  double walk = 0.0;
+  for (std::size_t p = 1; p < kPieces; ++p) {
+    if (!(square[p] > 0.0) || !(square[p - 1] > 0.0)) continue;
+    const double apart = along[p] / square[p] - along[p - 1] / square[p - 1];
+    walk += apart * apart - variance / square[p] - variance / square[p - 1];
+  }
+  walk /= 2.0 / 3.0 * span_s * static_cast<double>(kPieces - 1) / static_cast<double>(kPieces);
+  // A smaller one than this part of the phase that blurs the table is not told.
+  constexpr double kWalkSeen = 0.1;
+  const double least = kWalkSeen / (std::numbers::pi * static_cast<double>(angle.size()));
+  Phase phase;
+  phase.walk = std::sqrt(std::max(walk, least * least / span_s));
+  phase.walk_error = phase.walk / std::sqrt(2.0 * static_cast<double>(kPieces - 1));
+  const double turned = std::abs(part.angle_rad.back() - part.angle_rad.front());
+  const double by_walk = 1.2 * phase.walk * phase.walk * span_s / (turned * turned);
+  phase.cycles_error = std::sqrt(variance / std::max(information, 1e-300) + by_walk);
+  return phase;
+}
+
+// One cycle about its mean, twice as fine as the table and between its steps, where straight lines through noise scatter
+// least.
+std::vector<double> cycle_of(const Eigen::VectorXd& angle_rad) {
+  const Eigen::Index values = 2 * angle_rad.size();
+  Eigen::VectorXd cycle(values);
+  for (Eigen::Index i = 0; i < values; ++i)
+    cycle[i] = angle_at(angle_rad, (static_cast<double>(i) + 0.5) / static_cast<double>(values));
+  cycle.array() -= cycle.mean();
+  return {cycle.begin(), cycle.end()};
+}
+
+double rms(const std::vector<double>& angle) {
+  double square = 0.0;
+  for (const double value : angle) square += value * value;
+  return std::sqrt(square / static_cast<double>(angle.size()));
 }
 
 // Runs the tracker over the records as the daemon would. use(record, sample, correction).
@@ -118,76 +167,76 @@ void run_over(const std::vector<Record>& records, const RampSettings& settings, 
   }
 }
 
-Effect effect_of(const RampTable& table) {
+Effect effect_of(const RampComb& comb, const RampSettings& settings, const Phase& phase) {
   Effect effect;
   effect.form = "rebuilt_ramp";
   effect.period = 1.0;
   effect.angle = true;
-  const std::vector<double> angle = table.one_cycle();
+  const std::vector<double>& angle = settings.angle_rad;
   for (std::size_t i = 0; i <= angle.size(); ++i) {
     effect.table_x.push_back(static_cast<double>(i) / static_cast<double>(angle.size()));
     effect.table_y.push_back(angle[i % angle.size()]);
   }
-  effect.parameters = {{"angle_rms", rms(angle), table.angle_error, "rad"},
-                       {"cycles_per_rad", table.cycles_per_rad, table.cycles_error, "1/rad"},
-                       {"noise_density", table.noise_density, table.noise_error, "rad/s/sqrt(Hz)"},
-                       {"phase_walk", table.phase_walk, table.walk_error, "cycles/sqrt(s)"}};
+  const double density_error = settings.noise_density / std::sqrt(2.0 * comb.table.samples);
+  effect.parameters = {{"angle_rms", rms(angle), comb.table.angle_error, "rad"},
+                       {"cycles_per_rad", settings.cycles_per_rad, phase.cycles_error, "1/rad"},
+                       {"noise_density", settings.noise_density, density_error, "rad/s/sqrt(Hz)"},
+                       {"phase_walk", settings.phase_walk, phase.walk_error, "cycles/sqrt(s)"}};
   effect.meaning = meaning_of(effect);
   return effect;
 }
 
+// Of record `fitted` each part as the table of the others corrects it.
 void correct_all(const std::vector<Record>& records, std::size_t fitted, const UnbrokenPart& part,
-                 const RampTable& table, RampFit& fit) {
+                 const RampComb& comb, const RampSettings& settings, RampFit& fit) {
   for (const Record& record : records) fit.correction.emplace_back(record.time_s.size(), 0.0);
+  run_over(records, settings,
+           [&](std::size_t r, std::size_t i, double ramp) { fit.correction[r][i] = ramp; });
   fit.held_out = fit.correction;
-  run_over(records, table.settings(), [&](std::size_t r, std::size_t i, double ramp) {
-    fit.correction[r][i] = fit.held_out[r][i] = ramp;
-  });
   for (std::size_t p = 0; p < kRampParts; ++p) {
-    run_over({records[fitted]}, table.without(p).settings(), [&](std::size_t, std::size_t i, double ramp) {
+    RampSettings without = settings;
+    without.angle_rad = cycle_of(comb.table.without[p]);
+    run_over({records[fitted]}, without, [&](std::size_t, std::size_t i, double ramp) {
       if (i < part.first || i >= part.first + part.size()) return;
       if (ramp_part(i - part.first, part.size()) == p) fit.held_out[fitted][i] = ramp;
     });
   }
 }
 
-double energy_taken(const std::vector<Record>& records, const RampFit& fit) {
-  double taken = 0.0;
+// Whether the errors are smaller without what the held-out tables make of them.
+bool helps(const std::vector<Record>& records, const RampFit& fit) {
+  double before = 0.0, after = 0.0;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const Samples error = error_of(records[r]);
-    double mean = 0.0;
-    double n = 0.0;
-    for (const double e : error) {
-      if (!std::isfinite(e)) continue;
-      mean += e;
-      n += 1.0;
-    }
-    mean /= std::max(n, 1.0);
-    for (std::size_t i = 0; i < error.size(); ++i) {
-      const double ramp = fit.held_out[r][i];
-      if (std::isfinite(error[i])) taken += ramp * (2.0 * (error[i] - mean) - ramp);
-    }
+    Samples error = error_of(records[r]);
+    before += variance_of(error) * static_cast<double>(error.size());
+    for (std::size_t i = 0; i < error.size(); ++i) error[i] -= fit.held_out[r][i];
+    after += variance_of(error) * static_cast<double>(error.size());
   }
-  return taken;
+  return after < before;
 }
 
 double chance_of(const RampComb& comb) {
-  return std::min(1.0, comb.tries * chi_squared_above(comb.ratio, 2.0 * static_cast<double>(comb.harmonics)));
+  const PhaseTable& table = comb.table;
+  return std::min(1.0,
+                  comb.tries * chi_squared_above(table.ratio(), static_cast<double>(table.angle_rad.size())));
 }
 
 // With the ramp's table and what the tracker makes of it; nothing where it does not help.
 std::optional<RampFit> fit_of(const std::vector<Record>& records, std::size_t at, const UnbrokenPart& part,
                               const RampComb& comb) {
-  const std::optional<RampTable> table = fit_ramp_table(part, comb);
-  if (!table || rms(table->one_cycle()) < kCertain * table->angle_error) return std::nullopt;
-  if (table->phase_walk > kMostWalk) return std::nullopt;
+  const PhaseTable& table = comb.table;
+  if (table.predicted <= 0.0 || comb.over_fixed < kOverOthers || comb.over_line < kOverOthers)
+    return std::nullopt;
+  const Phase phase = phase_of(part, comb);
+  const RampSettings settings{comb.cycles_per_rad, cycle_of(table.angle_rad),
+                              std::sqrt(table.left() / table.samples * part.sample_s()), phase.walk};
+  if (rms(settings.angle_rad) < kCertain * table.angle_error || phase.walk > kMostWalk) return std::nullopt;
   RampFit fit;
-  fit.effect = effect_of(*table);
-  fit.ratio = comb.ratio;
+  fit.effect = effect_of(comb, settings, phase);
+  fit.ratio = table.ratio();
   fit.p_value = chance_of(comb);
-  correct_all(records, at, part, *table, fit);
-  if (energy_taken(records, fit) <= 0.0) return std::nullopt;
-  return fit;
+  correct_all(records, at, part, comb, settings, fit);
+  return helps(records, fit) ? std::optional(std::move(fit)) : std::nullopt;
 }
 
 }  // namespace
@@ -197,23 +246,16 @@ RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance
   for (std::size_t r = 0; r < records.size(); ++r) {
     const UnbrokenPart part = unbroken_part(records[r]);
     if (part.size() == 0) continue;
-    const bool quick = part.sample_s * kQuickSensor_hz < 1.0;
+    const bool quick = part.sample_s() * kQuickSensor_hz < 1.0;
     if (kUsualCycles * std::abs(part.mean_turn_rad()) * static_cast<double>(part.size()) < kSeenCycles) {
       if (records[r].reference_radps.empty() && quick && out.remark.empty())
         out.remark = too_slow_in_words(part);
       continue;
     }
-    const auto comb_of = [&](const UnbrokenPart& turned) {
-      std::optional<RampComb> comb = find_ramp_comb(turned);
-      return comb && chance_of(*comb) <= significance ? comb : std::nullopt;
-    };
-    std::optional<RampComb> comb = comb_of(part);
-    // One line that wanders, of a structure or a machine, goes a part of the way of one of the hundred
-    // thousand combs that were tried.
-    if (comb && comb->over_fixed > kOverFixed && comb->harmonics > 1)
-      if (auto fit = fit_of(records, r, part, *comb)) return {std::move(fit), ""};
-    if (!comb) comb = comb_of(evenly_turned(part));
-    if (comb && out.remark.empty() && (quick || comb->harmonics > 1))
+    const std::optional<RampComb> comb = find_ramp_comb(part);
+    if (!comb || chance_of(*comb) > significance) continue;
+    if (auto fit = fit_of(records, r, part, *comb)) return {std::move(fit), ""};
+    if (out.remark.empty() && (quick || comb->over_line > kOverOthers))
       out.remark = lines_in_words(*comb, part);
   }
   return out;

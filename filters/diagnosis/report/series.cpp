@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "filters/allan/confidence.h"
+#include "filters/diagnosis/residual/periodogram.h"
 #include "filters/series/mapped_file.h"
 
 namespace ifog {
@@ -33,8 +34,7 @@ double mean_of_block(const BlockGrid& grid, std::span<const double> error, std::
 
 DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& errors,
                           const std::vector<Chosen>& chosen, const std::vector<FoundEffect>& effects,
-                          const std::vector<Eigen::VectorXd>& parts, KnownPeriodograms& known,
-                          KnownAngles& angles) {
+                          const std::vector<Eigen::VectorXd>& parts, KnownAngles& angles) {
   DiagnosisSeries series;
   const BlockGrid& grid = data.grid;
   const std::size_t stride = std::max<std::size_t>(1, grid.size() / kSeriesPoints);
@@ -69,9 +69,9 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
     }
   }
   const EvenError& first = errors.front();
-  const Spectrum before = averaged_spectrum(first.before, grid.sample_s, known);
+  const Spectrum before = averaged(periodogram(first.before), grid.sample_s);
   const Spectrum after =
-      first.written.is(first.before) ? before : averaged_spectrum(first.written, grid.sample_s, known);
+      first.written.is(first.before) ? before : averaged(periodogram(first.written), grid.sample_s);
   series.frequency_hz = before.frequency_hz;
   for (const double d : before.density) series.before_radps_rthz.push_back(std::sqrt(d));
   for (const double d : after.density) series.after_radps_rthz.push_back(std::sqrt(d));

@@ -76,37 +76,43 @@ Complex shifted(const std::vector<Complex>& sums, double cycles_per_piece, std::
 // What a peak is refined in.
 struct Search {
   std::span<const double> error;
-  double mean, start_s, period_s;
-  std::size_t length;
-  double tries, significance;
-
-  [[nodiscard]] double cycles(std::size_t bin) const {
-    return static_cast<double>(bin) / static_cast<double>(length);
-  }
-  [[nodiscard]] std::size_t pieces() const { return std::min<std::size_t>(256, error.size() / 4); }
+  double start_s, period_s, significance;
+  const Periodogram& spectrum;
 };
 
-// sums: of the error at the bin's frequency. Of what chance would do as well only the p-value is said.
-SpectralLine refine(const Search& in, std::size_t bin, const std::vector<Complex>& sums, double floor) {
-  const auto& [error, mean, start_s, period_s, length, tries, significance] = in;
-  const auto n = static_cast<double>(error.size());
-  const double f0 = in.cycles(bin);
-  const auto pieces = static_cast<double>(sums.size());
-  const auto power_lacking = [&](double offset_bins) {
-    return -std::norm(shifted(sums, offset_bins / pieces, 0, sums.size()));
+// Offset from the bin, in parts of one over the whole length, at which the pieces add up to most. Of a series
+// in several transforms a bin holds as many of those: the tops are tried first.
+double best_offset(const std::vector<Complex>& sums, std::size_t transforms) {
+  const auto power_lacking = [&](double offset) {
+    return -std::norm(shifted(sums, offset / static_cast<double>(sums.size()), 0, sums.size()));
   };
   constexpr int kBits = 14;  // 1e-4 of a bin
+  const auto reach = static_cast<double>(transforms - 1);
+  double top = 0.0, least = power_lacking(0.0);
+  for (double offset = -reach; offset <= reach; offset += 0.5)
+    if (const double now = power_lacking(offset); now < least) least = now, top = offset;
   std::uintmax_t most_evaluations = 50;
-  const double offset =
-      boost::math::tools::brent_find_minima(power_lacking, -1.0, 1.0, kBits, most_evaluations).first;
+  return boost::math::tools::brent_find_minima(power_lacking, top - 1.0, top + 1.0, kBits, most_evaluations)
+      .first;
+}
+
+// Of what chance would do as well only the p-value is said.
+SpectralLine refine(const Search& in, std::size_t bin, double floor) {
+  const auto& [error, start_s, period_s, significance, spectrum] = in;
+  const auto n = static_cast<double>(error.size()), length = static_cast<double>(spectrum.length);
+  const double f0 = static_cast<double>(bin) / length;
+  const std::vector<Complex> sums =
+      demodulate(error, spectrum.mean, f0, std::min<std::size_t>(256, error.size() / 4));
+  const auto pieces = static_cast<double>(sums.size());
+  const double offset = best_offset(sums, spectrum.pieces);
   const Complex total = shifted(sums, offset / pieces, 0, sums.size());
 
   SpectralLine line;
   line.frequency_hz = (f0 + offset / n) / period_s;
-  line.ratio = std::norm(total) / (floor * n / static_cast<double>(length));
+  line.ratio = std::norm(total) / (floor * n / length);
   // Between the bins there are more tries than bins: Rice's count of the maxima of a spectrum.
   const double between = std::max(1.0, std::sqrt(std::numbers::pi * line.ratio / 3.0));
-  line.p_value = std::min(1.0, between * tries * std::exp(-line.ratio));
+  line.p_value = std::min(1.0, between * spectrum.bins() * std::exp(-line.ratio));
   if (line.p_value > significance) return line;
   double separate = 0.0;
   Complex together(0.0, 0.0);
@@ -116,12 +122,12 @@ SpectralLine refine(const Search& in, std::size_t bin, const std::vector<Complex
     together += quarter;
   }
   line.coherence = separate > 0.0 ? std::norm(together) / (separate * separate) : 0.0;
-  const std::vector<Complex> whole = demodulate(error, mean, line.frequency_hz * period_s, 1);
+  const std::vector<Complex> whole = demodulate(error, spectrum.mean, line.frequency_hz * period_s, 1);
   const Complex amplitude =
       2.0 / n * whole[0] * std::polar(1.0, -2.0 * std::numbers::pi * line.frequency_hz * start_s);
   line.cosine = amplitude.real();
   line.sine = -amplitude.imag();
-  line.std_error = std::sqrt(2.0 * floor / static_cast<double>(length) / n);
+  line.std_error = std::sqrt(2.0 * floor / length / n);
   const double size = std::max(std::abs(amplitude), 1e-300);
   // Cramer-Rao bound of a tone's frequency in white noise (Rife and Boorstyn 1974).
   line.frequency_std_hz = std::sqrt(6.0) / std::numbers::pi * line.std_error / size / (n * period_s);
@@ -130,18 +136,6 @@ SpectralLine refine(const Search& in, std::size_t bin, const std::vector<Complex
 
 // Bins in which a peak has no other beside it.
 std::size_t beside(std::size_t k) { return std::max<std::size_t>(6, k / 100); }
-
-const KnownPeriodogram& periodogram_of(const AskedSeries& error, KnownPeriodograms& known) {
-  return known.of(error, [](std::span<const double> series) {
-    return KnownPeriodogram{periodogram(series), {}, {}};
-  });
-}
-
-const std::vector<Complex>& pieces_of(const Search& in, std::size_t peak, const KnownPeriodogram& known) {
-  const auto [at, added] = known.pieces.try_emplace(peak);
-  if (added) at->second = demodulate(in.error, in.mean, in.cycles(peak), in.pieces());
-  return at->second;
-}
 
 // peaks: strongest first.
 std::vector<std::size_t> not_beside(const std::vector<std::size_t>& peaks) {
@@ -157,33 +151,15 @@ std::vector<std::size_t> not_beside(const std::vector<std::size_t>& peaks) {
 
 std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
                                      double significance, std::size_t most) {
-  KnownPeriodograms none;
-  return find_lines(error, start_s, period_s, significance, none, most);
-}
-
-std::vector<SpectralLine> find_lines(const AskedSeries& asked, double start_s, double period_s,
-                                     double significance, KnownPeriodograms& known, std::size_t most) {
   std::vector<SpectralLine> lines;
-  const std::span<const double> error = asked.values();
   if (error.size() < 128) return lines;
-  const KnownPeriodogram& looked_at = periodogram_of(asked, known);
-  const Periodogram& spectrum = looked_at.spectrum;
-  const Samples& power = spectrum.power;
-  if (!looked_at.standing_out) looked_at.standing_out.emplace(power);
-  const NoiseFloor& floor = looked_at.standing_out->floor;
-  const auto tries = static_cast<double>(power.size());
-  const double least = std::log(tries / significance);
-  std::vector<std::size_t> peaks;
-  for (const SpectralPeaks::Peak& peak : looked_at.standing_out->peaks)
-    if (peak.ratio > kLeastOfLines * least) peaks.push_back(peak.bin);
-  std::sort(peaks.begin(), peaks.end(),
-            [&](std::size_t a, std::size_t b) { return power[a] / floor[a] > power[b] / floor[b]; });
-  const std::vector<std::size_t> apart = not_beside(peaks);
-  const Search in{error, spectrum.mean, start_s, period_s, spectrum.length, tries, significance};
-  for (std::size_t i = 0; i < apart.size() && lines.size() < most; ++i) {
-    const std::size_t k = apart[i];
-    SpectralLine line =
-        refine(in, k, pieces_of(in, k, looked_at), std::max(floor[k], noise_beside(power, k)));
+  const Periodogram spectrum = periodogram(error);
+  const std::vector<double>& power = spectrum.power;
+  const NoiseFloor floor(power);
+  const Search in{error, start_s, period_s, significance, spectrum};
+  for (const std::size_t k : not_beside(peaks_of(spectrum, floor, significance))) {
+    if (lines.size() >= most) break;
+    SpectralLine line = refine(in, k, std::max(floor[k], noise_beside(power, k)));
     if (line.p_value > significance) continue;
     std::size_t first = k;
     std::size_t last = k;
@@ -198,33 +174,6 @@ std::vector<SpectralLine> find_lines(const AskedSeries& asked, double start_s, d
   return lines;
 }
 
-Spectrum averaged_spectrum(std::span<const double> error, double period_s, std::size_t points) {
-  KnownPeriodograms none;
-  return averaged_spectrum(error, period_s, none, points);
-}
-
-Spectrum averaged_spectrum(const AskedSeries& error, double period_s, KnownPeriodograms& known,
-                           std::size_t points) {
-  Spectrum spectrum;
-  if (error.size() < 64) return spectrum;
-  const Periodogram& of = periodogram_of(error, known).spectrum;
-  const Samples& power = of.power;
-  const std::size_t length = of.length;
-  const double scale = 2.0 * period_s / static_cast<double>(length);
-  const double growth = std::pow(static_cast<double>(power.size()), 1.0 / static_cast<double>(points));
-  for (std::size_t k = 1; k < power.size();) {
-    const auto next = std::max(k + 1, static_cast<std::size_t>(static_cast<double>(k) * growth));
-    const std::size_t end = std::min(next, power.size());
-    double sum = 0.0;
-    for (std::size_t i = k; i < end; ++i) sum += power[i];
-    spectrum.frequency_hz.push_back(0.5 * static_cast<double>(k + end - 1) /
-                                    (static_cast<double>(length) * period_s));
-    spectrum.density.push_back(scale * sum / static_cast<double>(end - k));
-    k = end;
-  }
-  return spectrum;
-}
-
 namespace {
 
 constexpr std::size_t kMostSlowLines = 6;  // in one fit; the strongest come first
@@ -234,12 +183,11 @@ bool is_slow(double frequency_hz, const BlockGrid& grid) { return frequency_hz *
 
 }  // namespace
 
-Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance,
-                     KnownPeriodograms& known) {
+Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance) {
   Lines found;
   for (std::size_t r = 0; r < errors.size(); ++r) {
     for (const SpectralLine& line :
-         find_lines(errors[r].after, errors[r].start_s, grid.sample_s, significance, known)) {
+         find_lines(errors[r].after, errors[r].start_s, grid.sample_s, significance)) {
       if (line.coherence < kCoherent) continue;
       if (is_slow(line.frequency_hz, grid)) {
         if (found.slow.size() >= kMostSlowLines) continue;

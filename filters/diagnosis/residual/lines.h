@@ -4,18 +4,12 @@
 // line.
 #pragma once
 
-#include <complex>
 #include <cstddef>
-#include <map>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "filters/diagnosis/cleaning/even_error.h"
-#include "filters/diagnosis/record/known_series.h"
 #include "filters/diagnosis/regression/candidates.h"
-#include "filters/diagnosis/residual/noise_floor.h"
-#include "filters/diagnosis/residual/periodogram.h"
 #include "filters/diagnosis/search/search.h"
 
 namespace ifog {
@@ -34,35 +28,10 @@ struct SpectralLine {
 // A line keeps more than this of its power when its quarters are added with their phases.
 inline constexpr double kCoherent = 0.8;
 
-struct Spectrum {
-  std::vector<double> frequency_hz;
-  std::vector<double> density;  // one-sided, unit^2/Hz
-};
-
-struct KnownPeriodogram {
-  Periodogram spectrum;
-  // By bin of a peak that was looked at more closely: the error's sums at its frequency over equal pieces.
-  mutable std::map<std::size_t, std::vector<std::complex<double>>> pieces;
-  mutable std::optional<SpectralPeaks> standing_out;
-};
-
-// Of the errors that were looked at last.
-class KnownPeriodograms : public KnownOfSeries<KnownPeriodogram> {
- public:
-  KnownPeriodograms() : KnownOfSeries(3) {}
-};
-
 // Missing samples (NaN) count as the mean. Peaks above what noise makes once in 1 / significance records,
 // strongest first. error: at even steps of period_s, starting at start_s.
 std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
                                      double significance, std::size_t most = 12);
-std::vector<SpectralLine> find_lines(const AskedSeries& error, double start_s, double period_s,
-                                     double significance, KnownPeriodograms& known, std::size_t most = 12);
-
-// Averaged in logarithmic bands for drawing, at most `points`.
-Spectrum averaged_spectrum(std::span<const double> error, double period_s, std::size_t points = 600);
-Spectrum averaged_spectrum(const AskedSeries& error, double period_s, KnownPeriodograms& known,
-                           std::size_t points = 600);
 
 // The coherent lines of the records' errors, slow ones as candidates for the fit of block means, fast ones as
 // they are.
@@ -77,8 +46,7 @@ struct Lines {
 };
 
 // Of what is left of each record's error.
-Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance,
-                     KnownPeriodograms& known);
+Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance);
 
 // Keeps the slow lines, which the search was given first, that are still lines once the slow noise and the
 // effects are known. samples: of all records.

@@ -4,16 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <numbers>
 #include <unsupported/Eigen/FFT>
-#include <vector>
 
-#include "filters/diagnosis/residual/paired_transform.h"
-#include "filters/series/series_view.h"
+#include "filters/diagnosis/record/words.h"
+#include "filters/distributions/chi_squared.h"
+#include "filters/series/finite_sum.h"
 
 namespace ifog {
 namespace {
-
-using Complex = std::complex<double>;
 
 bool is_smooth(std::size_t length) {
   for (const std::size_t prime : {2U, 3U, 5U})
@@ -21,42 +20,88 @@ bool is_smooth(std::size_t length) {
   return length == 1;
 }
 
-Samples power_in_memory(std::span<const double> error, double mean) {
-  std::vector<double> values(error.size());
-  for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::isfinite(error[i]) ? error[i] - mean : 0.0;
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<Complex> bins;
-  fft.fwd(bins, values);
-  Samples power(bins.size());
-  for (std::size_t k = 0; k < bins.size(); ++k) power[k] = std::norm(bins[k]);
-  return power;
-}
-
 }  // namespace
 
-double mean_of_present(std::span<const double> values) {
-  double sum = 0.0;
-  std::size_t n = 0;
-  for_each_piece(values, 0, values.size(), [&](std::span<const double> some, std::size_t) {
-    for (const double v : some) {
-      if (!std::isfinite(v)) continue;
-      sum += v;
-      ++n;
-    }
-  });
-  return n ? sum / static_cast<double>(n) : 0.0;
+Periodogram periodogram(std::span<const double> error, std::size_t most_in_memory) {
+  Periodogram out;
+  out.pieces = (error.size() + most_in_memory - 1) / most_in_memory;
+  out.length = error.size() / out.pieces;
+  while (out.length > 16 && !is_smooth(out.length)) --out.length;
+  const auto [sum, present] = finite_sum(error);
+  out.mean = present > 0.0 ? sum / present : 0.0;
+  out.power.assign(out.length / 2 + 1, 0.0);
+  Eigen::FFT<double> fft;
+  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
+  std::vector<double> values(out.length);
+  std::vector<std::complex<double>> bins;
+  for (std::size_t p = 0; p < out.pieces; ++p) {
+    const std::size_t from = p * (error.size() / out.pieces);
+    for (std::size_t i = 0; i < out.length; ++i)
+      values[i] = std::isfinite(error[from + i]) ? error[from + i] - out.mean : 0.0;
+    fft.fwd(bins, values);
+    for (std::size_t k = 0; k < out.power.size(); ++k)
+      out.power[k] += std::norm(bins[k]) / static_cast<double>(out.pieces);
+  }
+  return out;
 }
 
-Periodogram periodogram(std::span<const double> error, std::size_t in_memory) {
-  const bool pairs = error.size() > in_memory;
-  Periodogram out;
-  out.length = error.size();
-  while (out.length > 16 && (!is_smooth(out.length) || (pairs && out.length % 2 != 0))) --out.length;
-  out.mean = mean_of_present(error);
-  const std::span<const double> used = error.first(out.length);
-  out.power = pairs ? PairedTransform(used, out.mean).power() : power_in_memory(used, out.mean);
-  return out;
+NoiseFloor::NoiseFloor(std::span<const double> power) {
+  // Noise is taken from +-15 % of the frequency, and at least so many bins.
+  constexpr double kBand = 0.15;
+  constexpr std::size_t kLeastBins = 25;
+  std::vector<double> window;
+  for (std::size_t k = 1; k < power.size(); k += std::max<std::size_t>(1, k / 50)) {
+    const std::size_t half = std::max(kLeastBins, static_cast<std::size_t>(kBand * static_cast<double>(k)));
+    const std::size_t low = k > half ? k - half : 1;
+    const std::size_t high = std::min(power.size(), k + half + 1);
+    const std::size_t stride = std::max<std::size_t>(1, (high - low) / 2000);
+    window.clear();
+    for (std::size_t i = low; i < high; i += stride) window.push_back(power[i]);
+    at_.push_back(k);
+    value_.push_back(median(window) / std::numbers::ln2);
+  }
+}
+
+double NoiseFloor::operator[](std::size_t bin) const {
+  const auto above = std::upper_bound(at_.begin() + 1, at_.end(), bin);
+  const auto j = static_cast<std::size_t>(above - at_.begin()) - 1;
+  const bool inside = j + 1 < at_.size();
+  const double next = inside ? value_[j + 1] : value_[j];
+  const double span = inside ? static_cast<double>(at_[j + 1] - at_[j]) : 1.0;
+  const double share = bin > at_[j] ? std::min(1.0, static_cast<double>(bin - at_[j]) / span) : 0.0;
+  return std::max(value_[j] + share * (next - value_[j]), 1e-300);
+}
+
+std::vector<std::size_t> peaks_of(const Periodogram& spectrum, const NoiseFloor& floor, double significance) {
+  const std::vector<double>& power = spectrum.power;
+  const auto pieces = static_cast<double>(spectrum.pieces);
+  const double chance = significance / static_cast<double>(power.size());
+  const double least = spectrum.pieces == 1 ? -kLeastOfLines * std::log(chance)
+                                            : chi_squared_exceeded(chance, 2.0 * pieces) / (2.0 * pieces);
+  std::vector<std::size_t> peaks;
+  for (std::size_t k = kFirstBinOfLines; k + 1 < power.size(); ++k)
+    if (power[k] >= power[k - 1] && power[k] >= power[k + 1] && power[k] > least * floor[k])
+      peaks.push_back(k);
+  std::sort(peaks.begin(), peaks.end(),
+            [&](std::size_t a, std::size_t b) { return power[a] / floor[a] > power[b] / floor[b]; });
+  return peaks;
+}
+
+Spectrum averaged(const Periodogram& of, double period_s, std::size_t points) {
+  Spectrum spectrum;
+  const std::vector<double>& power = of.power;
+  const auto length = static_cast<double>(of.length);
+  const double growth = std::pow(static_cast<double>(power.size()), 1.0 / static_cast<double>(points));
+  for (std::size_t k = 1; k < power.size();) {
+    const auto next = std::max(k + 1, static_cast<std::size_t>(static_cast<double>(k) * growth));
+    const std::size_t end = std::min(next, power.size());
+    double sum = 0.0;
+    for (std::size_t i = k; i < end; ++i) sum += power[i];
+    spectrum.frequency_hz.push_back(0.5 * static_cast<double>(k + end - 1) / (length * period_s));
+    spectrum.density.push_back(2.0 * period_s / length * sum / static_cast<double>(end - k));
+    k = end;
+  }
+  return spectrum;
 }
 
 }  // namespace ifog

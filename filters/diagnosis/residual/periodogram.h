@@ -1,27 +1,54 @@
 // SPDX-License-Identifier: Apache-2.0
-// Power of a series at the multiples of one over its length, however long it is.
+// Power of a series at the multiples of one over its length, the noise that its peaks stand in, and the bins
+// that stand out of it.
 #pragma once
 
 #include <cstddef>
 #include <span>
-
-#include "filters/series/samples.h"
+#include <vector>
 
 namespace ifog {
 
-struct Periodogram {
-  // Up to so many samples in one transform in memory, beyond in many short ones (paired_transform.h).
-  static constexpr std::size_t kMostInMemory = std::size_t{1} << 22U;
+inline constexpr std::size_t kFirstBinOfLines = 16;  // below, slow noise and a line look alike
+inline constexpr double kLeastOfLines = 0.6;  // of a line's power that its nearest bin has, between two bins
 
-  Samples power;           // of bins 0 … length / 2, not scaled
-  std::size_t length = 0;  // of the series, cut to a product of small primes for the transform's sake
-  double mean = 0.0;       // of all samples that are there, which is taken out first
+struct Periodogram {
+  std::vector<double> power;  // of bins 0 … length / 2, not scaled: the mean of all pieces
+  std::size_t length = 0;     // of a piece, cut to a product of small primes for the transform's sake
+  std::size_t pieces = 1;     // of a series that is longer than one transform in memory
+  double mean = 0.0;          // of all samples that are there, which is taken out first
+
+  // Frequencies of the whole series that are told apart.
+  [[nodiscard]] double bins() const { return static_cast<double>(power.size() * pieces); }
 };
 
-// Of the samples that are there; 0 for none.
-[[nodiscard]] double mean_of_present(std::span<const double> values);
-
 // Missing samples (NaN) count as the mean. At least 16 samples.
-Periodogram periodogram(std::span<const double> error, std::size_t in_memory = Periodogram::kMostInMemory);
+Periodogram periodogram(std::span<const double> error, std::size_t most_in_memory = std::size_t{1} << 22U);
+
+// Mean noise power around each bin, from medians so that lines do not count; computed at a few hundred
+// frequencies, and between them in proportion.
+class NoiseFloor {
+ public:
+  explicit NoiseFloor(std::span<const double> power);
+
+  [[nodiscard]] double operator[](std::size_t bin) const;
+
+ private:
+  std::vector<std::size_t> at_;
+  std::vector<double> value_;
+};
+
+// Bins no lower than those beside them whose power over the floor is above kLeastOfLines of what the highest
+// of all bins of noise reaches at this significance, strongest over it first. Of the mean of several pieces
+// noise reaches less, and all of that is asked.
+std::vector<std::size_t> peaks_of(const Periodogram& spectrum, const NoiseFloor& floor, double significance);
+
+struct Spectrum {
+  std::vector<double> frequency_hz;
+  std::vector<double> density;  // one-sided, unit^2/Hz
+};
+
+// Averaged in logarithmic bands for drawing, at most `points`.
+Spectrum averaged(const Periodogram& spectrum, double period_s, std::size_t points = 600);
 
 }  // namespace ifog

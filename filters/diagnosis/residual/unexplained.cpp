@@ -237,10 +237,10 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
 }
 
 Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
-                          double significance, KnownPeriodograms& known) {
+                          double significance) {
   const EvenError& longest = longest_of(errors);
   std::vector<SpectralLine> peaks;
-  if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, grid.sample_s, significance, known);
+  if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, grid.sample_s, significance);
   return describe_unexplained(longest.before, longest.after, longest.origin.told(longest.start_s),
                               grid.sample_s, noise, grid, peaks);
 }

@@ -20,7 +20,7 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
 
 // Of the longest record's error, peaks looked for in what is left (none on a rate table).
 Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
-                          double significance, KnownPeriodograms& known);
+                          double significance);
 
 // A loop takes the description's place.
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found);

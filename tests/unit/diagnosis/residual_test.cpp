@@ -10,6 +10,7 @@
 #include <random>
 
 #include "filters/diagnosis/residual/lines.h"
+#include "filters/diagnosis/residual/periodogram.h"
 #include "filters/diagnosis/residual/unexplained.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
 
@@ -51,7 +52,7 @@ TEST(Lines, WhiteNoiseHasNoneAndItsSpectrumIsFlat) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed)
     found += static_cast<int>(find_lines(white(4096, seed), 0.0, kPeriod, 0.01).size());
   EXPECT_LE(found, 2);  // 0.2 expected
-  const Spectrum spectrum = averaged_spectrum(white(65536, 5), kPeriod, 40);
+  const Spectrum spectrum = averaged(periodogram(white(65536, 5)), kPeriod, 40);
   // One-sided: 2 sigma^2 dt. The last bands hold thousands of bins.
   EXPECT_NEAR(spectrum.density.back(), 2.0 * kPeriod, 0.05 * 2.0 * kPeriod);
 }
@@ -199,8 +200,7 @@ TEST(Unexplained, OfTheLongestRecordAndALoopTakesThePlace) {
   grid.sample_s = kPeriod;
   NoiseFit noise;
   noise.white_variance = kPeriod;
-  KnownPeriodograms known;
-  Unexplained found = describe_rest(errors, noise, grid, 0.01, known);
+  Unexplained found = describe_rest(errors, noise, grid, 0.01);
   EXPECT_EQ(found.kind, "changing_variance");
   Hysteresis loop;
   loop.channel = "temperature_degC";
