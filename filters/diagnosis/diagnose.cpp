@@ -165,6 +165,7 @@ class Run {
     run_written_model(records_, result_, data_.grid.sample_s, errors_);
     leave_as_written(errors_);
     if (as_logged_) run_as_logged(records_, *as_logged_, result_, data_.grid.sample_s, errors_);
+    write_before_and_after(errors_, data_.grid.sample_s, data_.reference >= 0, result_);
   }
 
   [[nodiscard]] double uncorrected_mean() const {
@@ -193,7 +194,6 @@ class Run {
     if (const auto uncertain = least_proven()) return uncertain;
     if (holds(errors_, &EvenError::written) && holds(errors_, &EvenError::held_out) &&
         (!as_logged_ || holds(errors_, &EvenError::logged))) {
-      write_before_and_after(errors_, data_.grid.sample_s, figures_, angles_, result_, data_.reference >= 0);
       if (!grows_over_many(result_, errors_)) return std::nullopt;
     }
     if (const auto harmful =
@@ -217,10 +217,8 @@ class Run {
   }
 
   void report_figures() {
-    result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_, angles_);
-    write_before_and_after(errors_, data_.grid.sample_s, figures_, angles_, result_, data_.reference >= 0);
-    write_noise(records_, errors_, data_.grid, found_.noise, angles_, result_);
-    add_allan_band(errors_.front(), data_.grid.sample_s, result_.noise, angles_, result_.series);
+    write_noise(records_, errors_, data_.grid, found_.noise, result_);
+    result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_, result_.noise);
     const bool as_cut = records_.size() == 1 && ramps_.empty();  // with nothing taken out of its channels
     result_.heading = predict_like_longest(result_, records_, as_cut ? &data_ : nullptr);
   }
@@ -261,8 +259,6 @@ class Run {
   BlockData data_;           // without the ramps
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
-  KnownFigures figures_{64};
-  KnownAngles angles_;
   std::optional<FoundZone> zone_;
   Lines lines_;
   SearchResult found_;

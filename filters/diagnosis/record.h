@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -30,15 +29,6 @@ struct RecordOrigin {
   [[nodiscard]] double since(double told_s) const { return told_s - whole_s - beyond_s; }
 };
 
-// Of these times.
-struct KnownClock {
-  std::span<const double> time_s;
-  SampleClock clock;
-  double usual_step_s = 0.0;
-};
-
-class KnownColumns;
-
 struct Record {
   std::string name;
   std::span<const double> time_s;             // strictly increasing
@@ -51,8 +41,6 @@ struct Record {
   std::vector<std::span<const double>> other_references{};  // of those, in their order; empty: none
   std::vector<Stretch> at_rest;                             // samples, in order; empty: not looked for, all
   RecordOrigin origin;                                      // that time_s is counted from
-  std::shared_ptr<const KnownClock> clock;  // null: not looked at; of other times: says nothing of these
-  std::shared_ptr<KnownColumns> known;      // of its columns, shared with the other axes; null: nothing
 };
 
 // Of the channel of that name; empty when the record has none.

@@ -39,6 +39,16 @@ std::vector<EvenError> even_errors(const std::vector<Record>& records, const Wit
   return errors;
 }
 
+FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::*series) {
+  FiniteSum all;
+  for (const EvenError& error : errors) {
+    const FiniteSum mine = finite_sum(error.*series);
+    all.sum += mine.sum;
+    all.count += mine.count;
+  }
+  return all;
+}
+
 const EvenError& longest_of(const std::vector<EvenError>& errors) {
   return *std::max_element(errors.begin(), errors.end(), [](const EvenError& a, const EvenError& b) {
     return a.before.size() < b.before.size();

@@ -6,6 +6,7 @@
 
 #include "filters/diagnosis/ramp/ramps_out.h"
 #include "filters/diagnosis/record/even_grid.h"
+#include "filters/series/finite_sum.h"
 #include "filters/series/shared_samples.h"
 
 namespace ifog {
@@ -29,6 +30,9 @@ struct EvenError {
 // on_even_grid() does.
 std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
                                    double sample_s);
+
+// Of one series of all of them.
+FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::*series);
 
 // Of the record with the most steps; at least one.
 const EvenError& longest_of(const std::vector<EvenError>& errors);

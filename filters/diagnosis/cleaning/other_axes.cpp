@@ -55,7 +55,6 @@ AlignedRecords aligned_others(const Record& record) {
     axis.rate_radps = record.other_axes[a].values;
     if (a < record.other_references.size()) axis.reference_radps = record.other_references[a];
     axis.origin = record.origin;
-    axis.clock = record.clock;
     axes.push_back(std::move(axis));
   }
   return align_references(axes);

@@ -2,21 +2,17 @@
 #include "filters/diagnosis/cleaning/prepared_channels.h"
 
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include "filters/allan/row_times.h"
 #include "filters/diagnosis/record/blocks.h"
-#include "filters/diagnosis/record/known_columns.h"
-#include "filters/diagnosis/record/record_clock.h"
 #include "filters/diagnosis/record/words.h"
 
 namespace ifog {
 namespace {
 
-std::vector<Record> checked(std::vector<Record> captures) {
+const std::vector<Record>& checked(const std::vector<Record>& captures) {
   check_columns(captures);
-  for (Record& record : captures) look_at_clock(record);
   return captures;
 }
 
@@ -27,17 +23,7 @@ PreparedChannels::PreparedChannels(const std::vector<Record>& captures, unsigned
     : timed_(with_even_stamps(checked(captures))),
       unwrapped_(with_unwrapped_angles(timed_.records)),
       repaired_(repair_channels(unwrapped_.records, threads)),
-      whole_(with_differences(repaired_.records)) {
-  const auto known = std::make_shared<KnownColumns>();
-  for (Record& record : whole_.records) {
-    look_at_clock(record);
-    record.known = known;
-    known->add(record.time_s);
-    known->add(record.rate_radps);
-    for (const RecordChannel& axis : record.other_axes) known->add(axis.values);
-    for (const RecordChannel& channel : record.channels) known->add(channel.values);
-  }
-}
+      whole_(with_differences(repaired_.records)) {}
 
 std::vector<Record> PreparedChannels::of_axis(const std::vector<Record>& captures) const {
   return with_rates_of(captures, whole_.records);
@@ -57,8 +43,6 @@ std::vector<Record> PreparedChannels::with_rates_of(const std::vector<Record>& c
     record.name = channels[i].name;
     record.time_s = channels[i].time_s;
     record.channels = channels[i].channels;
-    record.clock = channels[i].clock;
-    record.known = channels[i].known;
     records.push_back(std::move(record));
   }
   return records;
@@ -106,7 +90,7 @@ TimedRecords with_even_stamps(const std::vector<Record>& records) {
   timed.times.resize(records.size());
   for (std::size_t r = 0; r < records.size(); ++r) {
     Record& record = timed.records[r];
-    const SampleClock clock = clock_of(record);
+    const SampleClock clock = sample_clock(record.time_s);
     if (!clock.scatters() || clock.period_s > kLongestPeriod_s || !keeps_a_beat(record.time_s, clock))
       continue;
     RowTimes times(record.time_s, clock);

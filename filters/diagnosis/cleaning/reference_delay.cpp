@@ -20,7 +20,6 @@
 #include "filters/diagnosis/cleaning/autoregression.h"
 #include "filters/diagnosis/cleaning/series_fit.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/diagnosis/record/record_clock.h"
 #include "filters/diagnosis/record/words.h"
 
 namespace ifog {
@@ -67,7 +66,7 @@ std::optional<Pair> pair_of(const Record& record) {
   double period_s = 0.0;
   Pair pair;
   try {
-    period_s = clock_of(record).period_s;
+    period_s = sample_clock(record.time_s).period_s;
     if (period_s > kSlowest_s) return std::nullopt;
     const Samples rate = on_even_grid(record, period_s, record.rate_radps);
     const std::size_t count = (rate.size() + kMost - 1) / kMost;
@@ -231,7 +230,7 @@ void settle_without_jumps(Pair& pair, Delay& delay) {
 
 // By row of the record, the reference as it would have been without delay.
 Samples moved_reference(const Record& record, double delay_s) {
-  const double period_s = clock_of(record).period_s;
+  const double period_s = sample_clock(record.time_s).period_s;
   const Samples logged = on_even_grid(record, period_s, record.reference_radps);
   const Samples even = shifted(logged, delay_s / period_s);
   Samples out(record.time_s.size());

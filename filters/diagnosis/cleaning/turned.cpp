@@ -8,8 +8,6 @@
 #include <stdexcept>
 
 #include "filters/allan/stretches.h"
-#include "filters/diagnosis/record/known_columns.h"
-#include "filters/diagnosis/record/record_clock.h"
 #include "filters/rest/rest.h"
 #include "filters/rest/value_faults.h"
 
@@ -19,7 +17,7 @@ namespace {
 // Of a record without an even clock, such as a list of dwells, nothing can be said.
 std::optional<double> period_of(const Record& record) {
   try {
-    return clock_of(record).period_s;
+    return sample_clock(record.time_s).period_s;
   } catch (const std::invalid_argument&) {
     return {};
   }
@@ -27,7 +25,7 @@ std::optional<double> period_of(const Record& record) {
 
 // As `allan` and `tune` say it: of a rate in another unit, or of a sensor that moved all along.
 void note_implausible(const Record& record, const Rest& rest, std::vector<std::string>& remarks) {
-  const SampleClock clock = clock_of(record);
+  const SampleClock clock = sample_clock(record.time_s);
   const std::vector<Stretch> parts = common(stretches(record.time_s, record.rate_radps, clock), rest.at_rest);
   for (const ValueFault& found : value_faults(record.rate_radps, parts, clock.period_s, [&](std::size_t i) {
          return record.origin.told(record.time_s[i]);
@@ -47,13 +45,7 @@ WithoutTurns without_turns(const std::vector<Record>& records) {
     std::vector<std::span<const double>> axes{record.rate_radps};
     for (const RecordChannel& other : record.other_axes) axes.push_back(other.values);
     const std::vector<SeriesView> views(axes.begin(), axes.end());
-    if (record.known)
-      for (const std::span<const double> axis : axes)
-        record.known->prepare({"rest windows", axis, period_s}, [&] { return rest_windows(axis, period_s); });
-    const Rest rest = find_rest(views, {}, period_s, [&](std::size_t axis) {
-      return known_or(record.known.get(), {"rest windows", axes[axis], period_s},
-                      [&] { return rest_windows(axes[axis], period_s); });
-    });
+    const Rest rest = find_rest(views, {}, period_s);
     note_implausible(record, rest, out.remarks);
     if (rest.turned == 0) {
       out.records.back().at_rest = rest.at_rest;

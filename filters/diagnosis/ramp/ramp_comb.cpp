@@ -9,8 +9,8 @@
 #include <unsupported/Eigen/FFT>
 
 #include "filters/diagnosis/record/fitted_part.h"
-#include "filters/diagnosis/record/record_clock.h"
 #include "filters/diagnosis/record/words.h"
+#include "filters/effects/compensate_series.h"
 
 namespace ifog {
 namespace {
@@ -215,7 +215,7 @@ PhasedRecord UnbrokenPart::with_phase(double cycles_per_rad) const {
 UnbrokenPart unbroken_part(const Record& record) {
   UnbrokenPart part;
   if (record.time_s.size() < kLeastSamples) return part;
-  Stretch where = longest_without_hole(record, usual_step_of(record));
+  Stretch where = longest_without_hole(record, usual_step(record.time_s));
   where.end = std::min(where.end, where.begin + kMostSamples);
   if (where.end - where.begin < kLeastSamples) return part;
   part.first = where.begin;

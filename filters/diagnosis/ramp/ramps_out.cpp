@@ -8,8 +8,6 @@
 
 #include "filters/diagnosis/ramp/ramp_comb.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/diagnosis/record/known_columns.h"
-#include "filters/diagnosis/record/record_clock.h"
 #include "filters/diagnosis/record/words.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/compensate_series.h"
@@ -25,8 +23,7 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
   if (records.empty()) return parts;
   for (const RecordChannel& channel : records.front().channels) {
     const auto wraps = [&](const Record& record) {
-      const std::span<const double> values = values_of(record, channel.name);
-      return *known_or(record.known.get(), {"wraps", values}, [&] { return wrap_period(values) > 0.0; });
+      return wrap_period(values_of(record, channel.name)) > 0.0;
     };
     if (!std::any_of(records.begin(), records.end(), wraps)) continue;
     for (Record& record : parts.records) {
@@ -153,7 +150,7 @@ void run_over(const std::vector<Record>& records, const RampSettings& settings, 
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Record& record = records[r];
     RampTracker tracker(settings);
-    const double usual_s = usual_step_of(record);
+    const double usual_s = usual_step(record.time_s);
     for (std::size_t i = 0; i < record.time_s.size(); ++i) {
       const double dt = i == 0 ? usual_s : record.time_s[i] - record.time_s[i - 1];
       double error = record.rate_radps[i];

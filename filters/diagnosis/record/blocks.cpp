@@ -5,13 +5,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "filters/allan/stretches.h"
-#include "filters/diagnosis/record/record_clock.h"
 #include "filters/diagnosis/record/step_means.h"
 #include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
@@ -80,7 +78,7 @@ double median_period(const std::vector<Record>& records) {
 double sample_period(const std::vector<Record>& records) {
   constexpr double kRounded = 1.0, kExact = 1e-9;  // of the median
   const double step_s = median_period(records);
-  const double clock_s = clock_of(records.front()).period_s;
+  const double clock_s = sample_clock(records.front().time_s).period_s;
   const double apart = std::abs(clock_s / step_s - 1.0);
   return apart > kExact && apart < kRounded ? clock_s : step_s;
 }
@@ -212,14 +210,12 @@ BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_
 }
 
 // The first samples of the steps of its fine grid.
-std::shared_ptr<const StepStarts> add_blocks_of(const Record& record, BlockGrid& grid,
-                                                std::vector<double>& error) {
+StepStarts add_blocks_of(const Record& record, BlockGrid& grid, std::vector<double>& error) {
   const std::size_t steps = fine_index(record, record.time_s.size() - 1, grid.fine_s) + 1;
   const std::size_t blocks = (steps + grid.fine - 1) / grid.fine;
   grid.records.push_back({grid.size(), grid.size() + blocks});
   grid.origin.push_back(record.origin);
-  auto starts = step_starts(record, grid.fine_s, blocks * grid.fine);
-  const StepStarts& first = *starts;
+  StepStarts first = step_starts(record, grid.fine_s, blocks * grid.fine);
   const double full = grid.block_s / grid.sample_s;
   for (std::size_t b = 0; b < blocks; ++b) {
     double sum = 0.0, count = 0.0;
@@ -236,25 +232,20 @@ std::shared_ptr<const StepStarts> add_blocks_of(const Record& record, BlockGrid&
     grid.time_s.push_back(record.time_s[0] + (static_cast<double>(b) + 0.5) * grid.block_s -
                           0.5 * grid.fine_s);
   }
-  return starts;
-}
-
-StepMeansOf means_of(const Record& record, const StepStarts& starts, const BlockGrid& grid) {
-  const bool several = grid.fine_s > grid.sample_s;  // samples a step
-  return {record, starts, grid.fine_s, several};
+  return first;
 }
 
 template <class ValuesOf>
 FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& grid,
-                         const std::vector<std::shared_ptr<const StepStarts>>& starts,
-                         const std::string& name, ValuesOf&& values_in) {
+                         const std::vector<StepStarts>& starts, const std::string& name,
+                         ValuesOf&& values_in) {
   FineChannel channel;
   channel.name = name;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::span<const double> values = values_in(records[r]);
-    const auto steps = means_of(records[r], *starts[r], grid).column(values);
-    channel.values.insert(channel.values.end(), steps->means.begin(), steps->means.end());
-    channel.power.insert(channel.power.end(), steps->power.begin(), steps->power.end());
+    const bool several = grid.fine_s > grid.sample_s;  // samples a step
+    const StepMeans steps = step_means(values_in(records[r]), starts[r], several);
+    channel.values.insert(channel.values.end(), steps.means.begin(), steps.means.end());
+    channel.power.insert(channel.power.end(), steps.power.begin(), steps.power.end());
   }
   describe(channel);
   return channel;
@@ -323,12 +314,10 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   BlockData data;
   data.grid = steps_and_blocks(records, most_blocks);
   std::vector<double> error;
-  std::vector<std::shared_ptr<const StepStarts>> starts;  // by record: the first samples of its steps
+  std::vector<StepStarts> starts;  // by record: the first samples of its steps
   starts.reserve(records.size());
   for (const Record& record : records) starts.push_back(add_blocks_of(record, data.grid, error));
   data.grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
-  for (std::size_t r = 0; r < records.size(); ++r)
-    means_of(records[r], *starts[r], data.grid).prepare(records[r].channels);
   for (const RecordChannel& channel : records.front().channels) {
     const auto has_it = [&](const Record& record) { return !values_of(record, channel.name).empty(); };
     if (!std::all_of(records.begin(), records.end(), has_it)) continue;

@@ -7,31 +7,22 @@
 #include <optional>
 #include <stdexcept>
 
-#include "filters/diagnosis/record/known_columns.h"
 #include "filters/series/finite_sum.h"
-#include "filters/series/mapped_file.h"
 #include "filters/series/series_view.h"
 
 namespace ifog {
 
 namespace {
 
-constexpr std::size_t kPiece = std::size_t{1} << 17U;
-
 double step_of(const Record& record, std::size_t i, double sample_s) {
   return std::floor((record.time_s[i] - record.time_s.front()) / sample_s + 0.5);
 }
 
 bool is_even(const Record& record, double sample_s) {
-  const std::size_t n = record.time_s.size();
-  if (step_of(record, n - 1, sample_s) != static_cast<double>(n - 1)) return false;
-  for (std::size_t from = 0; from < n; from += kPiece) {
-    const std::size_t to = std::min(from + kPiece, n);
-    expect_reading(record.time_s.data() + from, (to - from) * sizeof(double));
-    bool even = true;  // without a branch
-    for (std::size_t i = from; i < to; ++i)
-      even = even && step_of(record, i, sample_s) == static_cast<double>(i);
-    if (!even) return false;
+  ReadingAhead ahead(record.time_s);
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    ahead.at(i);
+    if (step_of(record, i, sample_s) != static_cast<double>(i)) return false;
   }
   return true;
 }
@@ -40,10 +31,7 @@ bool is_even(const Record& record, double sample_s) {
 
 std::span<const double> even_samples(const Record& record, double sample_s, std::span<const double> values,
                                      Samples& room) {
-  if (values.size() == record.time_s.size() &&
-      *known_or(record.known.get(), {"is even", record.time_s, sample_s},
-                [&] { return is_even(record, sample_s); }))
-    return values;
+  if (values.size() == record.time_s.size() && is_even(record, sample_s)) return values;
   room = on_even_grid(record, sample_s, values);
   return room;
 }

@@ -2,15 +2,14 @@
 #include "filters/diagnosis/record/figures.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
+#include "filters/allan/gapped_deviation.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/diagnosis/record/known_angles.h"
-#include "filters/series/mapped_file.h"
+#include "filters/series/finite_sum.h"
 #include "filters/series/series_view.h"
 
 namespace ifog {
@@ -25,16 +24,9 @@ double rms_about_mean(std::span<const double> values) {
 
 double lag_one(std::span<const double> values) {
   const double rms = rms_about_mean(values);
-  double mean = 0.0;
-  double n = 0.0;
-  for (const double v : values) {
-    if (std::isfinite(v)) {
-      mean += v;
-      n += 1.0;
-    }
-  }
+  const auto [all, n] = finite_sum(values);
   if (n < 4.0 || !(rms > 0.0)) return 0.0;
-  mean /= n;
+  const double mean = all / n;
   double sum = 0.0;
   double pairs = 0.0;
   for (std::size_t i = 1; i < values.size(); ++i) {
@@ -47,15 +39,9 @@ double lag_one(std::span<const double> values) {
 
 double heading_drift(std::span<const double> error, double period_s) {
   const std::size_t aligned = error.size() / 10;
-  double bias = 0.0;
-  double n = 0.0;
-  for (std::size_t i = 0; i < aligned; ++i) {
-    if (!std::isfinite(error[i])) continue;
-    bias += error[i];
-    n += 1.0;
-  }
+  const auto [sum, n] = finite_sum(error.first(aligned));
   if (n == 0.0) return kMissing;
-  bias /= n;
+  const double bias = sum / n;
   double angle = 0.0;
   for_each_piece(error, aligned, error.size(), [&](std::span<const double> some, std::size_t) {
     for (const double each : some)
@@ -66,52 +52,23 @@ double heading_drift(std::span<const double> error, double period_s) {
 
 }  // namespace
 
-// Four sums, so that no addition waits for the one before; one look at a time where something is missing.
-Present present(std::span<const double> values) {
-  constexpr std::size_t kLanes = 4;
-  std::array<double, kLanes> lane{};
-  std::size_t i = 0;
-  for (; i + kLanes <= values.size(); i += kLanes)
-    for (std::size_t k = 0; k < kLanes; ++k) lane[k] += values[i + k];
-  for (; i < values.size(); ++i) lane[0] += values[i];
-  const double all = (lane[0] + lane[1]) + (lane[2] + lane[3]);
-  if (std::isfinite(all)) return {all, values.size()};
-  Present there;
-  for (const double value : values) {
-    if (!std::isfinite(value)) continue;
-    there.sum += value;
-    ++there.count;
-  }
-  return there;
-}
-
 Samples means_over(std::span<const double> error, std::size_t count) {
-  return std::move(means_over(error, std::vector{count}).front());
-}
-
-std::vector<Samples> means_over(std::span<const double> error, const std::vector<std::size_t>& counts) {
-  std::vector<Samples> means(counts.size());
-  std::vector<std::size_t> next(counts.size());
-  for (std::size_t c = 0; c < counts.size(); ++c) means[c].reserve(error.size() / counts[c]);
-  // A piece is read once for all of them, while it is in the second-level cache.
-  constexpr std::size_t kPiece = std::size_t{1} << 16U;
-  for (std::size_t from = 0; from < error.size(); from += kPiece) {
-    const std::size_t to = std::min(from + kPiece, error.size());
-    expect_reading(error.data() + from, (to - from) * sizeof(double));
-    for (std::size_t c = 0; c < counts.size(); ++c)
-      for (; next[c] + counts[c] <= to; next[c] += counts[c])
-        means[c].push_back(present(error.subspan(next[c], counts[c])).mean_of(counts[c]));
+  Samples means;
+  means.reserve(error.size() / count);
+  ReadingAhead ahead(error);
+  for (std::size_t from = 0; from + count <= error.size(); from += count) {
+    double sum = 0.0;
+    std::size_t there = 0;
+    for (std::size_t i = from; i < from + count; ++i) {
+      ahead.at(i);
+      if (std::isfinite(error[i])) sum += error[i], ++there;
+    }
+    means.push_back(2 * there >= count ? sum / static_cast<double>(there) : kMissing);
   }
   return means;
 }
 
 std::map<std::string, double> error_figures(std::span<const double> error, double period_s) {
-  KnownAngles none;
-  return error_figures(error, period_s, none);
-}
-
-std::map<std::string, double> error_figures(const AskedSeries& asked, double period_s, KnownAngles& angles) {
-  const std::span<const double> error = asked.values();
   std::map<std::string, double> figures;
   figures["residual_rms_radps"] = rms_about_mean(error);
   std::vector<std::string> names;
@@ -123,18 +80,15 @@ std::map<std::string, double> error_figures(const AskedSeries& asked, double per
     names.emplace_back(name);
     counts.push_back(count);
   }
-  const std::vector<double> deviations = angles.gapped(asked, counts);
+  const std::vector<double> deviations = gapped_deviation(error, counts);
   const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
-  std::vector<std::size_t> with_second = counts;
-  with_second.push_back(second);
-  const std::vector<Samples> means = means_over(error, with_second);
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    figures["rms_" + names[i]] = rms_about_mean(means[i]);
+    figures["rms_" + names[i]] = rms_about_mean(means_over(error, counts[i]));
     figures["adev_" + names[i]] = deviations[i];
   }
   figures["heading_drift_rad"] = heading_drift(error, period_s);
   const bool long_enough = error.size() >= 20 * second;
-  figures["whiteness"] = long_enough ? lag_one(means.back()) : lag_one(error);
+  figures["whiteness"] = long_enough ? lag_one(means_over(error, second)) : lag_one(error);
   return figures;
 }
 

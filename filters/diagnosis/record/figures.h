@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstddef>
-#include <limits>
 #include <map>
 #include <span>
 #include <string>
@@ -13,36 +12,17 @@
 
 namespace ifog {
 
-class AskedSeries;
-class KnownAngles;
-
 // Even steps of period_s; NaN missing. Keys: residual_rms_radps, rms_<T>s_radps and adev_<T>s_radps for T of
 // 0.1, 1, 10 and 100, heading_drift_rad, whiteness. Averaging times that the record does not hold ten of are
 // left out. Heading drift: error of the angle at the end when the bias is the mean of the first tenth.
 // Whiteness: lag-1 autocorrelation of 1 s means (of samples, if those are longer); 0 for white noise.
 std::map<std::string, double> error_figures(std::span<const double> error, double period_s);
-std::map<std::string, double> error_figures(const AskedSeries& error, double period_s, KnownAngles& angles);
 
 // Several records of one sensor: squares averaged by length, whiteness by length.
 std::map<std::string, double> pooled(const std::vector<std::map<std::string, double>>& figures,
                                      const std::vector<double>& weights);
 
-// Of those numbers that are there.
-struct Present {
-  double sum = 0.0;
-  std::size_t count = 0;
-
-  // Of so many, there or not: NaN where fewer than half are there.
-  [[nodiscard]] double mean_of(std::size_t all) const {
-    return 2 * count >= all && count > 0 ? sum / static_cast<double>(count)
-                                         : std::numeric_limits<double>::quiet_NaN();
-  }
-};
-Present present(std::span<const double> values);
-
 // Means over `count` samples, NaN where fewer than half are there.
 Samples means_over(std::span<const double> error, std::size_t count);
-// Over each of these counts.
-std::vector<Samples> means_over(std::span<const double> error, const std::vector<std::size_t>& counts);
 
 }  // namespace ifog

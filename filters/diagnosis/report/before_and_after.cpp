@@ -12,29 +12,22 @@
 
 namespace ifog {
 
-void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, KnownFigures& known,
-                            KnownAngles& angles, Diagnosis& diagnosis, bool with_bias) {
-  const auto figures_of = [&](const SharedSamples& error) {
-    return known.of(error, [&](std::span<const double>) { return error_figures(error, sample_s, angles); });
-  };
-  std::vector<std::map<std::string, double>> before;
-  std::vector<std::map<std::string, double>> written;
-  std::vector<std::map<std::string, double>> held_out;
-  std::vector<std::map<std::string, double>> logged;
+void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, bool with_bias,
+                            Diagnosis& diagnosis) {
+  std::vector<std::map<std::string, double>> before, written, held_out, logged;
   std::vector<double> weight;
   for (const EvenError& error : errors) {
-    before.push_back(figures_of(error.before));
+    before.push_back(error_figures(error.before, sample_s));
+    const auto figures_of = [&](const SharedSamples& after) {
+      return after.is(error.before) ? before.back() : error_figures(after, sample_s);
+    };
     written.push_back(figures_of(error.written));
     held_out.push_back(figures_of(error.held_out));
     if (!error.logged.empty()) logged.push_back(figures_of(error.logged));
     weight.push_back(static_cast<double>(error.before.size()));
   }
   const auto add_mean = [&](SharedSamples EvenError::*of, std::map<std::string, double>& figures) {
-    double sum = 0.0, n = 0.0;
-    for (const EvenError& error : errors)
-      for (const double value : error.*of)
-        if (std::isfinite(value)) sum += value, n += 1.0;
-    if (n > 0.0) figures["bias_radps"] = sum / n;
+    if (const auto [sum, n] = sum_of(errors, of); n > 0.0) figures["bias_radps"] = sum / n;
   };
   diagnosis.before = pooled(before, weight);
   diagnosis.after = pooled(written, weight);

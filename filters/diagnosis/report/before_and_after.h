@@ -9,18 +9,14 @@
 #include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/record/fitted_part.h"
-#include "filters/diagnosis/record/known_angles.h"
-#include "filters/diagnosis/record/known_series.h"
 
 namespace ifog {
-
-using KnownFigures = KnownOfSeries<std::map<std::string, double>>;
 
 // `before` and `after` of the diagnosis. Each figure after is the larger of two, so that neither promises
 // what the other does not keep: what the written model leaves, and what effects leave that were fitted
 // without each sample's own part.
-void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, KnownFigures& known,
-                            KnownAngles& angles, Diagnosis& diagnosis, bool with_bias = false);
+void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, bool with_bias,
+                            Diagnosis& diagnosis);
 
 // Parts of effects that run against each other, or against slow noise, are together more than they take away.
 // Lowers the shares of the first `jointly` effects in proportion, down to what the unexplained leaves; those

@@ -20,7 +20,8 @@ void put(const NoiseCoefficient& found, std::optional<double>& value, std::optio
 }
 
 // What the effects leave of a record's samples at rest, NaN elsewhere: in `room` unless it is all of them.
-AskedSeries error_at_rest(const Record& record, const EvenError& error, double sample_s, Samples& room) {
+std::span<const double> error_at_rest(const Record& record, const EvenError& error, double sample_s,
+                                      Samples& room) {
   const bool all = record.at_rest.empty() ||
                    (record.at_rest.size() == 1 && record.at_rest.front().size() == record.time_s.size());
   // A step of the grid without a sample is missing in the error, too.
@@ -38,16 +39,16 @@ AskedSeries error_at_rest(const Record& record, const EvenError& error, double s
 
 // All records one after the other.
 NoiseCoefficients coefficients_at_rest(const std::vector<Record>& records,
-                                       const std::vector<EvenError>& errors, double sample_s,
-                                       KnownAngles& angles) {
+                                       const std::vector<EvenError>& errors, double sample_s) {
   Samples room;
-  if (records.size() == 1)
-    return noise_coefficients(angles.of(error_at_rest(records.front(), errors.front(), sample_s, room)),
-                              sample_s);
+  if (records.size() == 1) {
+    const std::span<const double> rate = error_at_rest(records.front(), errors.front(), sample_s, room);
+    return noise_coefficients(AngleSum(rate, stretches({}, rate, {})), sample_s);
+  }
   Samples all;
   std::vector<Stretch> parts;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room).values();
+    const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room);
     for (const Stretch& part : stretches({}, rate, {}))
       parts.push_back({all.size() + part.begin, all.size() + part.end});
     all.insert(all.end(), rate.begin(), rate.end());
@@ -59,7 +60,7 @@ void write_changes(const std::vector<Record>& records, const std::vector<EvenErr
                    Diagnosis& diagnosis) {
   Samples room;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room).values();
+    const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room);
     const std::vector<NoiseChange> found =
         noise_changes(rate, stretches({}, rate, {}), sample_s, [&](std::size_t i) {
           return errors[r].origin.told(errors[r].start_s + static_cast<double>(i) * sample_s);
@@ -88,8 +89,7 @@ void weigh_return(const NoiseCoefficients& found, double sample_s, NoisePosterio
 }  // namespace
 
 void write_noise(const std::vector<Record>& records, const std::vector<EvenError>& errors,
-                 const BlockGrid& grid, const NoiseFit& regression, KnownAngles& angles,
-                 Diagnosis& diagnosis) {
+                 const BlockGrid& grid, const NoiseFit& regression, Diagnosis& diagnosis) {
   NoiseTerms &value = diagnosis.noise, &error = diagnosis.noise_error;
   if (grid.dwells) {
     value = noise_terms(regression.shape, regression.white_variance, grid.block_s);
@@ -102,7 +102,7 @@ void write_noise(const std::vector<Record>& records, const std::vector<EvenError
   }
   write_changes(records, errors, grid.sample_s, diagnosis);
   try {
-    const NoiseCoefficients found = coefficients_at_rest(records, errors, grid.sample_s, angles);
+    const NoiseCoefficients found = coefficients_at_rest(records, errors, grid.sample_s);
     put(found.Q, value.Q, error.Q);
     put(found.N, value.N, error.N);
     put(found.B, value.B, error.B);

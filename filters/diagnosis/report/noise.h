@@ -6,7 +6,6 @@
 
 #include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/diagnosis.h"
-#include "filters/diagnosis/record/known_angles.h"
 #include "filters/diagnosis/regression/noise_fit.h"
 
 namespace ifog {
@@ -15,7 +14,6 @@ namespace ifog {
 // them and where they are of unlike parts. Dwells are no evenly sampled record: there the regression's own
 // white noise is all there is.
 void write_noise(const std::vector<Record>& records, const std::vector<EvenError>& errors,
-                 const BlockGrid& grid, const NoiseFit& regression, KnownAngles& angles,
-                 Diagnosis& diagnosis);
+                 const BlockGrid& grid, const NoiseFit& regression, Diagnosis& diagnosis);
 
 }  // namespace ifog

@@ -6,8 +6,9 @@
 #include <limits>
 
 #include "filters/allan/confidence.h"
+#include "filters/allan/gapped_deviation.h"
 #include "filters/diagnosis/residual/periodogram.h"
-#include "filters/series/mapped_file.h"
+#include "filters/series/finite_sum.h"
 
 namespace ifog {
 namespace {
@@ -16,25 +17,36 @@ constexpr std::size_t kSeriesPoints = 4000;
 
 double mean_of_block(const BlockGrid& grid, std::span<const double> error, std::size_t block) {
   const double samples = grid.block_s / grid.sample_s;
-  const auto from = static_cast<std::size_t>(std::lround(static_cast<double>(block) * samples));
-  const auto to = static_cast<std::size_t>(std::lround(static_cast<double>(block + 1) * samples));
-  if (from < error.size())
-    expect_reading(error.data() + from, (std::min(to, error.size()) - from) * sizeof(double));
-  double sum = 0.0;
-  double n = 0.0;
-  for (std::size_t i = from; i < std::min(to, error.size()); ++i) {
-    if (!std::isfinite(error[i])) continue;
-    sum += error[i];
-    n += 1.0;
-  }
+  const auto from =
+      std::min(error.size(), static_cast<std::size_t>(std::lround(static_cast<double>(block) * samples)));
+  const auto to =
+      std::min(error.size(), static_cast<std::size_t>(std::lround(static_cast<double>(block + 1) * samples)));
+  const auto [sum, n] = finite_sum(error.subspan(from, to - from));
   return n > 0.0 ? sum / n : std::numeric_limits<double>::quiet_NaN();
+}
+
+// How well the deviation after is known.
+void add_allan_band(const EvenError& error, double sample_s, const NoiseTerms& noise,
+                    std::span<const std::size_t> counts, DiagnosisSeries& series) {
+  constexpr double kOneSigma = 0.6826894921370859;
+  const auto squared = [](const std::optional<double>& value) { return value ? *value * *value : 0.0; };
+  const TermVariances terms{squared(noise.Q) / (sample_s * sample_s), squared(noise.N) / sample_s,
+                            squared(noise.B), squared(noise.K) * sample_s};
+  const std::span<const double> left = error.written;
+  const AngleSum sum(left, stretches({}, left, {}));
+  if (sum.parts().empty()) return;
+  const std::vector<DeviationPoint> points = deviation(sum, counts, Deviation::kAllan);
+  for (const AllanInterval& each : allan_intervals(sum, Deviation::kAllan, points, terms, kOneSigma)) {
+    series.after_adev_low_radps.push_back(each.lower_radps);
+    series.after_adev_high_radps.push_back(each.upper_radps);
+  }
 }
 
 }  // namespace
 
 DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& errors,
                           const std::vector<Chosen>& chosen, const std::vector<FoundEffect>& effects,
-                          const std::vector<Eigen::VectorXd>& parts, KnownAngles& angles) {
+                          const std::vector<Eigen::VectorXd>& parts, const NoiseTerms& noise) {
   DiagnosisSeries series;
   const BlockGrid& grid = data.grid;
   const std::size_t stride = std::max<std::size_t>(1, grid.size() / kSeriesPoints);
@@ -83,28 +95,11 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
     series.tau_s.push_back(tau);
     counts.push_back(count);
   }
-  series.before_adev_radps = angles.gapped(first.before, counts);
+  series.before_adev_radps = gapped_deviation(first.before, counts);
   series.after_adev_radps =
-      first.written.is(first.before) ? series.before_adev_radps : angles.gapped(first.written, counts);
+      first.written.is(first.before) ? series.before_adev_radps : gapped_deviation(first.written, counts);
+  add_allan_band(first, grid.sample_s, noise, counts, series);
   return series;
-}
-
-void add_allan_band(const EvenError& error, double sample_s, const NoiseTerms& noise, KnownAngles& angles,
-                    DiagnosisSeries& series) {
-  constexpr double kOneSigma = 0.6826894921370859;
-  const auto squared = [](const std::optional<double>& value) { return value ? *value * *value : 0.0; };
-  const TermVariances terms{squared(noise.Q) / (sample_s * sample_s), squared(noise.N) / sample_s,
-                            squared(noise.B), squared(noise.K) * sample_s};
-  if (angles.of(error.written).parts().empty()) return;
-  std::vector<std::size_t> counts;
-  for (const double tau : series.tau_s)
-    counts.push_back(static_cast<std::size_t>(std::lround(tau / sample_s)));
-  const std::vector<DeviationPoint> points = angles.points(error.written, counts);
-  for (const AllanInterval& each :
-       allan_intervals(angles.of(error.written), Deviation::kAllan, points, terms, kOneSigma)) {
-    series.after_adev_low_radps.push_back(each.lower_radps);
-    series.after_adev_high_radps.push_back(each.upper_radps);
-  }
 }
 
 }  // namespace ifog

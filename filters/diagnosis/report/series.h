@@ -6,18 +6,14 @@
 
 #include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/diagnosis.h"
-#include "filters/diagnosis/record/known_angles.h"
 #include "filters/diagnosis/search/search.h"
 
 namespace ifog {
 
-// parts: rad/s by block, of each chosen effect; effects: those and others after them.
+// parts: rad/s by block, of each chosen effect; effects: those and others after them; noise: what they leave,
+// by which the deviation after is known.
 DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& errors,
                           const std::vector<Chosen>& chosen, const std::vector<FoundEffect>& effects,
-                          const std::vector<Eigen::VectorXd>& parts, KnownAngles& angles);
-
-// How well the deviation after is known, under the noise that was found after it.
-void add_allan_band(const EvenError& error, double sample_s, const NoiseTerms& noise, KnownAngles& angles,
-                    DiagnosisSeries& series);
+                          const std::vector<Eigen::VectorXd>& parts, const NoiseTerms& noise);
 
 }  // namespace ifog

@@ -20,16 +20,9 @@ double error_in_means(std::span<const double> error) {
   return variance_of(means_over(error, std::max<std::size_t>(1, error.size() / kPieces)));
 }
 
-// Of what the effects leave, NaN left out; each record counts by its samples.
+// Of what the effects leave; each record counts by its samples.
 double bias_of(const std::vector<EvenError>& errors) {
-  double sum = 0.0;
-  double n = 0.0;
-  for (const EvenError& error : errors)
-    for (const double value : error.after) {
-      if (!std::isfinite(value)) continue;
-      sum += value;
-      n += 1.0;
-    }
+  const auto [sum, n] = sum_of(errors, &EvenError::after);
   return n > 0.0 ? sum / n : 0.0;
 }
 

@@ -35,7 +35,8 @@ TEST(Periodogram, OfALongSeriesIsTheMeanOfItsPieces) {
   EXPECT_LT(found.power[kBin + 1], 1e-12);
   const Periodogram white = periodogram(noise(100000), 1000);
   double square = 0.0;
-  for (std::size_t k = 1; k + 1 < white.power.size(); ++k) square += std::pow(white.power[k] / 1000.0 - 1.0, 2);
+  for (std::size_t k = 1; k + 1 < white.power.size(); ++k)
+    square += std::pow(white.power[k] / 1000.0 - 1.0, 2);
   // Means of a hundred exponential variates.
   EXPECT_NEAR(square / 499.0, 0.01, 0.004);
 }
