@@ -38,7 +38,9 @@ double quantile(std::vector<double> values, double p) {
   return *at;
 }
 
-using Window = RestWindow;
+struct Window {
+  double mean = 0.0, scatter = 0.0;  // NaN: too little there
+};
 
 // By four quarters, of which an outlier spoils one: the mean is that of the middle two, the scatter the
 // second smallest. All four at once, as each sample waits for the one before it in its quarter.
@@ -240,15 +242,9 @@ Rest rest_by_references(std::span<const SeriesView> references, std::size_t samp
   return as_samples(state, 1, samples);
 }
 
-}  // namespace
-
-Rest find_rest(std::span<const std::span<const double>> axes, double period_s) {
-  return find_rest(std::vector<SeriesView>(axes.begin(), axes.end()), {}, period_s);
-}
-
-RestWindows rest_windows(const SeriesView& rate, double period_s) {
+std::vector<Window> rest_windows(const SeriesView& rate, double period_s) {
   const std::size_t window = samples_of_window(period_s), count = rate.size() / window;
-  RestWindows out;
+  std::vector<Window> out;
   out.reserve(count);
   const std::size_t together = std::max<std::size_t>(1, kSeriesPiece / window);
   std::vector<double> room;
@@ -260,14 +256,13 @@ RestWindows rest_windows(const SeriesView& rate, double period_s) {
   return out;
 }
 
-Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references, double period_s) {
-  return find_rest(axes, references, period_s, [&](std::size_t axis) {
-    return std::make_shared<const RestWindows>(rest_windows(axes[axis], period_s));
-  });
+}  // namespace
+
+Rest find_rest(std::span<const std::span<const double>> axes, double period_s) {
+  return find_rest(std::vector<SeriesView>(axes.begin(), axes.end()), {}, period_s);
 }
 
-Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references, double period_s,
-               const RestWindowsOf& windows_of) {
+Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references, double period_s) {
   const std::size_t samples = axes.empty() ? 0 : axes.front().size();
   const std::size_t window = samples_of_window(period_s);
   const std::size_t count = samples / window;
@@ -278,13 +273,14 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
     if (period_s > kSlowest_s) rest.slow_turns = dwells_of(axes);
     return rest;
   }
-  std::vector<std::shared_ptr<const RestWindows>> windows(axes.size());
-  share_out(axes.size(), samples < kWorthThreads ? 1 : 0, [&](std::size_t a) { windows[a] = windows_of(a); });
+  std::vector<std::vector<Window>> windows(axes.size());
+  share_out(axes.size(), samples < kWorthThreads ? 1 : 0,
+            [&](std::size_t a) { windows[a] = rest_windows(axes[a], period_s); });
   std::vector<double> leap(count);
-  for (const auto& of_axis : windows)
-    mark_axis(*of_axis, static_cast<double>(window) * period_s, state, leap);
+  for (const std::vector<Window>& of_axis : windows)
+    mark_axis(of_axis, static_cast<double>(window) * period_s, state, leap);
   widen(state);
-  for (const auto& of_axis : windows) mark_steady_turns(*of_axis, state);
+  for (const std::vector<Window>& of_axis : windows) mark_steady_turns(of_axis, state);
   Rest rest = as_samples(state, window, samples);
   rest.slow_turns = slow_turns_of(leap, state, window);
   return rest;

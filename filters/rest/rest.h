@@ -13,8 +13,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
-#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -45,17 +43,6 @@ struct Rest {
 // alone say where the sensor was turned, where one departs by more than 0.001 rad/s from its own median.
 [[nodiscard]] Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references,
                              double period_s);
-
-// What is made of the rates of one axis first: of windows one behind the other, in order.
-struct RestWindow {
-  double mean = 0.0, scatter = 0.0;  // NaN: too little there
-};
-using RestWindows = std::vector<RestWindow>;
-[[nodiscard]] RestWindows rest_windows(const SeriesView& rate, double period_s);
-// windows(axis): rest_windows() of that axis, from elsewhere; by several threads at once.
-using RestWindowsOf = std::function<std::shared_ptr<const RestWindows>(std::size_t axis)>;
-[[nodiscard]] Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references,
-                             double period_s, const RestWindowsOf& windows);
 
 // "moving in 37 of 60 s (turned 30 s, shaken 7 s), at rest 5 … 12 s, 40 … 56 s"; empty when nothing moved.
 // first_s: time of the first sample.

@@ -5,14 +5,12 @@
 
 #include <cstddef>
 #include <memory>
-#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "filters/series/samples.h"
 #include "filters/series/samples_writer.h"
-#include "filters/series/series_mark.h"
 
 namespace ifog {
 
@@ -41,22 +39,14 @@ class SharedSamples {
     return values_ == other.values_ && others_.data() == other.others_.data();
   }
 
-  // Worked out when it is first asked for, for all who share them.
-  [[nodiscard]] const SeriesMark& mark() const {
-    if (!*mark_) *mark_ = mark_of({data(), size()});
-    return **mark_;
-  }
-
   // To change, before anything else is asked of them: a copy, where others share them.
   [[nodiscard]] Samples& own() {
-    mark_ = unmarked();
     if (values_.use_count() != 1) values_ = std::make_shared<Samples>(values());
     others_ = {};
     return *values_;
   }
   // To write all of them: so many, whatever is in them.
   [[nodiscard]] Samples& anew(std::size_t size) {
-    mark_ = unmarked();
     if (values_.use_count() != 1) values_ = std::make_shared<Samples>();
     others_ = {};
     values_->resize(size);
@@ -64,13 +54,10 @@ class SharedSamples {
   }
 
  private:
-  using Mark = std::shared_ptr<std::optional<SeriesMark>>;
-  static Mark unmarked() { return std::make_shared<std::optional<SeriesMark>>(); }
   explicit SharedSamples(std::nullptr_t) {}
 
   std::shared_ptr<Samples> values_;  // null: of others
   std::span<const double> others_;   // without own ones
-  Mark mark_ = unmarked();
 };
 
 }  // namespace ifog

@@ -104,6 +104,20 @@ void add_transitions(const BlockData& data, std::size_t channel, std::vector<Can
   }
 }
 
+// Fewer fringes are a polynomial's as well, of more a thermometer's noise leaves nothing.
+void add_fringes(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
+  constexpr double kFewest = 1.25, kMost = 12.0;  // within the range
+  constexpr double kFreePeriod = 4.0;             // twice the log-likelihood, of either half
+  const FineChannel& source = data.channels[channel];
+  if (kind_of(source.name) != ChannelKind::kTemperature || data.grid.dwells) return;
+  for (double fringes = kFewest; fringes <= kMost; fringes += kStepOfFringes)
+    for (const Form form : {Form::kCosine, Form::kSine}) {
+      found.push_back(candidate_of(form, channel));
+      found.back().period = (source.high - source.low) / fringes;
+      found.back().of_channel = kFreePeriod;
+    }
+}
+
 // A switch is its own square; what it heats follows late.
 void add_switch(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   found.push_back(candidate_of(Form::kLinear, channel));
@@ -129,6 +143,7 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
   if (!source.still) {
     for (const Form form : {Form::kQuadratic, Form::kCubic}) add(form, 0.0);
     add_transitions(data, channel, found);
+    add_fringes(data, channel, found);
     // Gravity's share of a horizontal acceleration changes with the tilt, so its derivative is the rotation
     // itself (times g). Without a reference nothing tells the two apart, and a correction must be transparent
     // to rotation. Beside one that moves it is the rotation's own change, by which a reference that is late
@@ -234,6 +249,10 @@ bool Candidate::same_shape(const Candidate& other) const {
          period == other.period;
 }
 
+bool is_fringe(const BlockData& data, const Candidate& candidate) {
+  return candidate.is_periodic() && !(data.channels[candidate.channel].period > 0.0);
+}
+
 std::vector<double> time_constants(const BlockGrid& grid, Form form) {
   const double longest = static_cast<double>(grid.longest()) * grid.block_s;
   double from = grid.block_s * kBlocksOfRate;
@@ -324,11 +343,10 @@ std::vector<NaturalPair> natural_pairs(const BlockData& data) {
   }
   for (std::size_t channel = 0; channel < data.channels.size(); ++channel) {
     const FineChannel& source = data.channels[channel];
-    if (source.period > 0.0 && source.varies) {
-      std::vector<Candidate> turns;
-      add_angle(data, channel, turns);
-      for (std::size_t i = 0; i + 1 < turns.size(); i += 2) pairs.push_back({turns[i], turns[i + 1]});
-    }
+    std::vector<Candidate> swings;
+    if (source.period > 0.0 && source.varies) add_angle(data, channel, swings);
+    if (may_be_factor(data, channel)) add_fringes(data, channel, swings);
+    for (std::size_t i = 0; i + 1 < swings.size(); i += 2) pairs.push_back({swings[i], swings[i + 1]});
     if (source.moves && source.varies) add_band(data, channel, pairs);
     if (!may_be_factor(data, channel) || source.two_valued) continue;
     if (!source.moves) add_band(data, channel, pairs);

@@ -35,6 +35,12 @@ struct Candidate {
   [[nodiscard]] Eigen::Index width() const { return form == Form::kLine ? 2 : 1; }  // columns
   [[nodiscard]] bool searched() const { return time_constant_s > 0.0 || is_transition(); }
   [[nodiscard]] bool is_transition() const { return form == Form::kTransition; }
+  [[nodiscard]] bool is_periodic() const { return form == Form::kCosine || form == Form::kSine; }
+  // A cosine and a sine of one period are one swing, of unknown phase.
+  [[nodiscard]] bool swings_with(const Candidate& other) const {
+    return is_periodic() && other.is_periodic() && form != other.form && channel == other.channel &&
+           period == other.period;
+  }
   [[nodiscard]] bool uses(std::size_t of) const { return channel == of || with_channel == of; }
   // Whether the model will take it away, in this record and the next.
   [[nodiscard]] bool corrected() const { return carries_over(form) && !shown(); }
@@ -62,6 +68,12 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form);
 // acceleration, see findings.cpp.
 std::vector<Candidate> library(const BlockData& data);
 
+// Light that reaches the detector by a second path, over a splice, a connector or the wrong polarisation,
+// interferes with the rest, and the bias swings as the temperature changes the difference of the paths: a
+// fringe of a period that no maker tells. They are tried this far apart.
+inline constexpr double kStepOfFringes = 0.5;  // of fringes within the range: neighbours correlate by 0.7
+bool is_fringe(const BlockData& data, const Candidate& candidate);
+
 // Of an angle: harmonics of the turn that the arc on which it was seen tells apart, 0 on a short one.
 int harmonics_told_apart(const BlockData& data, std::size_t channel);
 // Those that are tried: on a short arc the first, where the angle is not its own acceleration as well, with
@@ -70,7 +82,7 @@ int harmonics_tried(const BlockData& data, std::size_t channel);
 
 // Two effects that are one law together, each of which may be hidden while the other is missing: a law about
 // a point that nobody knows, k (c - c0)^2, k g (c - c0) while a switch g is on, or k w (c - c0) of a scale
-// factor, a swing of unknown phase, and the power of vibration in one band.
+// factor, a swing of unknown phase, a fringe, and the power of vibration in one band.
 struct NaturalPair {
   Candidate first, second;
 };

@@ -49,13 +49,35 @@ void refine_transition(const BlockData& data, const NoiseShape& shape, std::vect
   }
 }
 
+// By fringes within the range, between its neighbours on the grid.
+void refine_fringe(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
+                   std::size_t at) {
+  const FineChannel& channel = data.channels[model[at].channel];
+  const double span = channel.high - channel.low, now = span / model[at].period;
+  const auto with = [&](double fringes) {
+    std::vector<Candidate> trial = model;
+    for (Candidate& each : trial)
+      if (each.same_shape(model[at]) || each.swings_with(model[at])) each.period = span / fringes;
+    return trial;
+  };
+  const auto value = [&](double fringes) {
+    return -fit_whitened(data.grid, shape, design(data, with(fringes))).log_likelihood;
+  };
+  std::uintmax_t most_evaluations = 30;
+  model = with(boost::math::tools::brent_find_minima(value, std::max(0.9, now - kStepOfFringes),
+                                                     now + kStepOfFringes, kBits, most_evaluations)
+                   .first);
+}
+
 }  // namespace
 
 void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
                   std::size_t at) {
   if (model[at].is_transition())
     refine_transition(data, shape, model, at);
-  else
+  else if (is_fringe(data, model[at]))
+    refine_fringe(data, shape, model, at);
+  else if (model[at].searched())
     refine(data, shape, model, at);
 }
 

@@ -14,8 +14,8 @@ namespace ifog {
 void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model, std::size_t at,
             double Candidate::*which = &Candidate::time_constant_s);
 
-// Whatever of model[at] is searched: its time constant, or a transition's middle and width. The middle stays
-// off the edges of the channel's range and the width below a half of it.
+// Whatever of model[at] is searched: its time constant, a transition's middle and width, or a fringe's period,
+// of both halves. The middle stays off the edges of the channel's range and the width below a half of it.
 void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
                   std::size_t at);
 

@@ -8,7 +8,6 @@
 
 #include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/regression/harmonics.h"
-#include "filters/diagnosis/search/fringes.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
 #include "filters/effects/meaning.h"
@@ -56,8 +55,7 @@ class EffectSearch {
     result.noise_without = noise_;
     count_tries();
     start_with_basics();
-    do improve();
-    while (add_fringe());
+    improve();
     // Beside the effects there may be fewer harmonics, or one that they had hidden.
     if (model_.size() > first_) noise_ = with_harmonics(data_.grid, design(data_, model_), noise_);
     FittedModel unfolded{model_, noise_};
@@ -92,6 +90,9 @@ class EffectSearch {
   // Whether with one of those beside it `candidate` is one law: what is proven then needs no second proof,
   // only what the Bayesian information criterion asks of one coefficient more.
   [[nodiscard]] bool completes_a_law(const Candidate& candidate, std::span<const Candidate> beside) const {
+    if (std::any_of(beside.begin(), beside.end(),
+                    [&](const Candidate& each) { return each.swings_with(candidate); }))
+      return true;
     return std::any_of(laws_.begin(), laws_.end(), [&](const NaturalPair& law) {
       const auto other = candidate.same_shape(law.second)  ? &law.first
                          : candidate.same_shape(law.first) ? &law.second
@@ -121,9 +122,9 @@ class EffectSearch {
 
   [[nodiscard]] Trial refined(std::vector<Candidate> model, std::size_t at, const NoiseShape& start) const {
     Trial trial;
-    if (model[at].searched()) refine_shape(data_, start, model, at);
+    refine_shape(data_, start, model, at);
     trial.noise = fit_noise(data_.grid, design(data_, model), start, kTrialFactor);
-    if (model[at].searched()) refine_shape(data_, trial.noise.shape, model, at);
+    refine_shape(data_, trial.noise.shape, model, at);
     trial.noise = fit_noise(data_.grid, design(data_, model), trial.noise.shape);
     if (levels_seen(data_, model)) trial.score = score(model, trial.noise);
     trial.model = std::move(model);
@@ -254,17 +255,7 @@ class EffectSearch {
       ++i;
     }
     for (std::size_t i = first_; i < model_.size(); ++i)
-      if (model_[i].searched()) take(refined(model_, i, noise_.shape));
-  }
-
-  // When all else is in: what polynomials of a temperature stood for, or what is still slow.
-  bool add_fringe() {
-    if (model_.size() + 1 >= options_.most_effects + first_) return false;
-    std::optional<FittedModel> found =
-        with_fringe(data_, first_, {model_, noise_}, {options_.significance, tries_of_channels_});
-    if (!found) return false;
-    laws_.push_back({found->effects.end()[-2], found->effects.back()});
-    return take({found->effects, found->noise, score(found->effects, found->noise)});
+      if (model_[i].searched() || is_fringe(data_, model_[i])) take(refined(model_, i, noise_.shape));
   }
 
   void finish(SearchResult& result) {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A bias that swings as the temperature goes on: told as what it is, whatever its period, and not spelled by
 // polynomials, which go off outside.
-#include "filters/diagnosis/search/fringes.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
