@@ -51,9 +51,9 @@ class Run {
   Diagnosis run() {
     refuse_constant(records_);
     look_at_channels();
+    separate_dead_zone();
     search({});
     subtract_found(data_, found_, errors_);
-    separate_dead_zone();
     separate_lines();
     separate_hysteresis();
     drop_what_a_capture_denies();
@@ -94,21 +94,19 @@ class Run {
     if (!options_.allow_proxies) doubt_proxies(reconstructed_, found_);
   }
 
-  // The forms of the search may have taken a part of it for a nonlinearity.
+  // The forms of the search would take a part of it for a nonlinearity.
   void separate_dead_zone() {
     if (data_.reference < 0 || data_.grid.dwells || data_.grid.noisy_reference) return;
     FoundZone found;
     for (const Record& record : records_)
       found.rates.push_back(on_even_grid(record, data_.grid.sample_s, record.reference_radps));
-    const auto zone = find_dead_zone(errors_, found.rates, data_.grid.sample_s, options_.significance);
+    const auto zone = find_dead_zone(errors_, found.rates, data_.grid.white_variance, options_.significance);
     if (!zone) return;
     found.zone = *zone;
     found.channel = data_.channels[static_cast<std::size_t>(data_.reference)].name;
     zone_ = std::move(found);
     take_out(*zone, zone_->rates, data_.grid, errors_);
     reconstructed_.grid.error = data_.grid.error;
-    search({});
-    subtract_found(data_, found_, errors_);
   }
 
   // Lines are looked for in what the effects leave; a slow one then competes with them in a second search. A

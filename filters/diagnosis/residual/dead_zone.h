@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rate below which the sensor sees none: what it says there is its bias, and the error is the rotation that
-// it missed. A turn passes through in a few samples, so it is sought in the samples themselves, in what the
-// effects of block means leave.
+// it missed. A turn passes through in a few samples, so it is sought in the samples themselves, about a mean
+// of a few seconds, before the effects of block means.
 #pragma once
 
 #include <optional>
@@ -21,11 +21,11 @@ struct DeadZone {
   double p_value = 1.0;
 };
 
-// errors: what is left, `after`. rates: true ones on the same grid of sample_s, by record; NaN missing.
-// Nothing where chance, one passage alone, or a scale factor and its nonlinearity would do as well, or where
-// the coefficient is another than -1.
+// errors: what is left, `rest`. rates: true ones on the same grid, by record; NaN missing. white_variance: of
+// a sample's noise. Nothing where chance or one passage alone would do as well, or where the coefficient is
+// another than -1, as that of a scale factor is.
 std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
-                                       const std::vector<Samples>& rates, double sample_s,
+                                       const std::vector<Samples>& rates, double white_variance,
                                        double significance);
 
 // What the zone makes of a rate, sample by sample; zero where that is missing.
