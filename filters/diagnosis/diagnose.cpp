@@ -190,10 +190,7 @@ class Run {
   // left out of the fit: index of the one to leave out, none when they make no error larger.
   std::optional<std::size_t> what_makes_it_worse() {
     if (const auto uncertain = least_proven()) return uncertain;
-    if (holds(errors_, &EvenError::written) && holds(errors_, &EvenError::held_out) &&
-        (!as_logged_ || holds(errors_, &EvenError::logged))) {
-      if (!grows_over_many(result_, errors_)) return std::nullopt;
-    }
+    if (!grows_over_many(result_, errors_)) return std::nullopt;
     if (const auto harmful =
             most_harmful_effect(records_, result_, found_.chosen.size(), data_.grid.sample_s, errors_))
       return harmful;

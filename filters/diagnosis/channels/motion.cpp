@@ -9,7 +9,6 @@
 namespace ifog {
 namespace {
 
-constexpr double kStandardGravity = 9.80665;  // m/s^2
 // Means of this length keep a tenth of the variance of an acceleration that a sled or a tumble table holds.
 // Traffic, sway, swell and the body waves of an earthquake are quicker.
 constexpr double kHeld_s = 30.0;

@@ -12,6 +12,8 @@
 
 namespace ifog {
 
+inline constexpr double kStandardGravity = 9.80665;  // m/s^2
+
 // Marks the channels that sense motion (FineChannel::moves) where there is no reference rate, and returns
 // what they would explain, read as rotation, in sentences. An acceleration that stays for half a minute at a
 // time is left to the search, which takes it only at a size that makers specify (see search/plausible.h).

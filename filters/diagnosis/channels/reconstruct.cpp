@@ -4,9 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
-
-#include "filters/diagnosis/channels/polled_readings.h"
 
 namespace ifog {
 namespace {
@@ -20,6 +17,11 @@ constexpr double kSmoother = 5.0;
 constexpr double kScatter = 6.0;
 // The channel must vary by this many times its reading noise.
 constexpr double kAboveNoise = 3.0;
+
+struct Reading {
+  double step;  // of the fine grid, fractional between two steps
+  double value;
+};
 
 double change_of(std::span<const Reading> readings) {
   std::vector<double> changes;
@@ -215,7 +217,6 @@ class Spline {
     if (step > last.step) return states_.back().level + (step - last.step) * states_.back().slope;
     return between(readings_[i_], states_[i_], readings_[i_ + 1], states_[i_ + 1], step);
   }
-  void rewind() { i_ = 0; }
 
  private:
   static double between(const Reading& from, const State& a, const Reading& to, const State& b, double step) {
@@ -231,7 +232,6 @@ class Spline {
   std::size_t i_ = 0;
 };
 
-// One a step, as they are not polled.
 std::vector<Reading> one_a_step(std::span<const double> values) {
   std::vector<Reading> readings;
   readings.reserve(values.size());
@@ -239,13 +239,7 @@ std::vector<Reading> one_a_step(std::span<const double> values) {
   return readings;
 }
 
-Reconstruction as_read(std::span<const double> values, const std::optional<PolledReadings>& polled) {
-  Reconstruction result{{values.begin(), values.end()}, false};
-  if (polled)
-    for (std::size_t k = 0; k < values.size(); ++k)
-      result.values[k] = on_line(polled->readings, static_cast<double>(k));
-  return result;
-}
+Reconstruction as_read(std::span<const double> values) { return {{values.begin(), values.end()}, false}; }
 
 double sum_of_squares(std::span<const double> values, double about) {
   double sum = 0.0;
@@ -256,43 +250,30 @@ double sum_of_squares(std::span<const double> values, double about) {
 }  // namespace
 
 Reconstruction reconstruct(std::span<const double> values) {
-  const std::optional<PolledReadings> polled = polled_readings(values);
-  const std::vector<Reading> read = polled ? polled->readings : one_a_step(values);
+  const std::vector<Reading> read = one_a_step(values);
   const bool coarse = is_coarse(read);
   const double step = coarse ? change_of(read) : 0.0;
   const std::vector<Reading> used = coarse ? crossings(read, step) : read;
-  if (used.size() < 8) return as_read(values, polled);
+  if (used.size() < 8) return as_read(values);
   const std::vector<Reading> few = thinned(used);
   const Drive smooth = best_drive(few, Course::kSmooth);
-  if (smooth.likelihood < best_drive(few, Course::kWalk).likelihood + kSmoother)
-    return as_read(values, polled);
+  if (smooth.likelihood < best_drive(few, Course::kWalk).likelihood + kSmoother) return as_read(values);
   // The variance of a mean of readings is that share of a reading's.
   const double share = static_cast<double>(few.size()) / static_cast<double>(used.size());
   Spline spline(used, smooth.drive * share);
-  // Within half a step of the reading, or of those before and after.
-  const auto possible = [&](double value, double before, double after) {
-    if (!coarse) return value;
-    return std::clamp(value, std::min(before, after) - 0.5 * step, std::max(before, after) + 0.5 * step);
-  };
-  Reconstruction result{std::vector<double>(values.size()), true};
+  Reconstruction result{{}, true};
+  std::vector<double> taken;  // away: it has to be reading noise and nothing else
   double mean = 0.0;
-  std::size_t at = 0;  // of the reading before
-  for (std::size_t k = 0; k < values.size(); ++k) {
-    while (at + 1 < read.size() && read[at + 1].step <= static_cast<double>(k)) ++at;
-    const double after = polled && at + 1 < read.size() ? read[at + 1].value : read[at].value;
-    result.values[k] = possible(spline.at(static_cast<double>(k)), read[at].value, after);
-    mean += result.values[k] / static_cast<double>(values.size());
+  for (const Reading& each : read) {
+    double value = spline.at(each.step);
+    if (coarse) value = std::clamp(value, each.value - 0.5 * step, each.value + 0.5 * step);
+    result.values.push_back(value);
+    taken.push_back(each.value - value);
+    mean += value / static_cast<double>(values.size());
   }
-  // What was taken away has to be reading noise and nothing else.
-  std::vector<double> taken;
-  taken.reserve(read.size());
-  spline.rewind();
-  for (const Reading& each : read)
-    taken.push_back(each.value - possible(spline.at(each.step), each.value, each.value));
-  if (!coarse && !stands_still(taken)) return as_read(values, polled);
-  const double signal = sum_of_squares(result.values, mean) * static_cast<double>(read.size()) /
-                        static_cast<double>(values.size());
-  return signal > kAboveNoise * kAboveNoise * sum_of_squares(taken, 0.0) ? result : as_read(values, polled);
+  if (!coarse && !stands_still(taken)) return as_read(values);
+  const double signal = sum_of_squares(result.values, mean);
+  return signal > kAboveNoise * kAboveNoise * sum_of_squares(taken, 0.0) ? result : as_read(values);
 }
 
 bool stands_still(std::span<const double> readings) {

@@ -22,8 +22,7 @@ struct Reconstruction {
 // plus white reading noise, Kalman smoother; Wecker and Ansley 1983), where that is more likely than a random
 // walk: a channel that jumps or jitters is returned as it was. A channel read in steps coarser than its
 // changes is measured only where the reading changes, and stays within half a step of the reading. One whose
-// spline is not well above the reading noise is returned as it was, too. A channel that is polled is known at
-// its readings alone (polled_readings.h); as it was then means a line between them.
+// spline is not well above the reading noise is returned as it was, too.
 Reconstruction reconstruct(std::span<const double> values);
 
 // Whether averages over 4, 16, 64 … readings scatter no more than those of white noise would, within 6

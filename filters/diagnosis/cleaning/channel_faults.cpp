@@ -14,7 +14,6 @@
 #include "filters/rest/glitches.h"
 #include "filters/series/series_view.h"
 #include "filters/threads/share_out.h"
-#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -25,12 +24,10 @@ constexpr double kFar = 20.0;    // the same of a channel that is not slow
 constexpr double kBeside = 0.3;  // of an excursion: as near it comes back to where it began
 constexpr double kSlow = 0.1;    // of the span, the most that a slow channel moves in a sample
 constexpr double kLongestExcursion_s = 60.0;
-// In excursions together but for those to one number; the least of a stretch that stands still.
-constexpr double kMostOfRecord = 0.02;
-constexpr double kMostNone = 0.1;      // of the record, without a reading
-constexpr double kJump = 8.0;          // usual changes
-constexpr std::size_t kAlone = 20;     // times as long as any other stretch of one value
-constexpr double kPlaceholder = 30.0;  // interquartile ranges from the median
+constexpr double kMostOfRecord = 0.02;  // in excursions together but for those to one number
+constexpr double kMostNone = 0.1;       // of the record, without a reading
+constexpr double kJump = 8.0;           // usual changes
+constexpr double kPlaceholder = 30.0;   // interquartile ranges from the median
 constexpr std::size_t kFewValues = 5;
 
 // The first i in [from, to) with test(i); `to` if none is. Where it seldom is, without a branch.
@@ -195,36 +192,6 @@ std::vector<Run> excursions(const Readings& of, std::span<const double> values, 
   return found;
 }
 
-struct Stuck {
-  Run run;
-  bool leaps;  // when it ends
-};
-
-// A value that stands still for long and then leaps, or for many times as long as any other.
-std::vector<Stuck> stuck_stretches(std::span<const double> values, const Usual& usual) {
-  const auto least =
-      static_cast<std::size_t>(kMostOfRecord * static_cast<double>(values.size())) + std::size_t{16};
-  std::vector<Stuck> found;
-  std::size_t longest = 0;
-  std::size_t second = 0;
-  ReadingAhead ahead(values);
-  for (std::size_t from = 0; from < values.size();) {
-    ahead.at(from);
-    const std::size_t to = end_of_one_value(values, from);
-    const std::size_t length = to - from;
-    second = std::max(second, std::min(length, longest));
-    longest = std::max(longest, length);
-    if (to < values.size() && length >= least)
-      found.push_back({{from, to}, std::abs(values[to] - values[from]) > kJump * usual.change});
-    from = to;
-  }
-  std::erase_if(found, [&](const Stuck& each) {
-    const std::size_t length = each.run.to - each.run.from;
-    return !each.leaps && (length < longest || length < kAlone * second);
-  });
-  return found;
-}
-
 // Linear in time between the reading before the run and the one behind it; held where one of them is missing.
 void interpolate(const Readings& of, const Run& run, Samples& values) {
   const bool before = run.from > 0;
@@ -259,24 +226,10 @@ RepairedChannel repaired_channel(const Record& record, const RecordChannel& chan
   const Usual usual = usual_of(of.values);
   if (!usual.varied) return repaired;
   const std::vector<Run> away = excursions(of, of.values, usual);
-  Samples values;  // none where they are as they were read
-  if (!away.empty()) values.assign(of.values.begin(), of.values.end());
+  if (away.empty()) return repaired;
+  Samples values(of.values.begin(), of.values.end());
   for (const Run& run : away) interpolate(of, run, values);
-  const bool as_read = away.empty();
-  const std::vector<Stuck> stuck =
-      usual.slow ? stuck_stretches(as_read ? of.values : values, usual) : std::vector<Stuck>{};
-  if (as_read && stuck.empty()) return repaired;
-  if (as_read) values.assign(of.values.begin(), of.values.end());
-  if (!away.empty()) repaired.remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
-  const auto told = [&](std::size_t i) { return told_time(record.origin.told(of.time_s[i])); };
-  for (const auto& [run, leaps] : stuck) {
-    repaired.remarks.push_back(
-        channel.name + where +
-        printed(" stands at %.6g from %s s to %s s and %s: taken for stuck, interpolated", values[run.from],
-                told(run.from).c_str(), told(run.to).c_str(),
-                leaps ? "then jumps" : "never else for a twentieth as long"));
-    interpolate(of, {run.from + 1, run.to}, values);
-  }
+  repaired.remarks.push_back(channel.name + where + excursions_in_words(of.values, away));
   for (const Run& run : away)
     if (of.time_s[run.to - 1] - of.time_s[run.from] > kLongestExcursion_s)
       for (std::size_t i = run.from; i < run.to; ++i) values[i] = std::nan("");

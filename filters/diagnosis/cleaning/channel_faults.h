@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faults of logging: a thermometer that says 85 or -127 °C for some seconds (power-on and bus error of the
-// DS18B20), a glitch of the logger, a value that stands still while the sensor moves on; and knocks of the
-// rate.
+// DS18B20), a glitch of the logger; and knocks of the rate.
 #pragma once
 
 #include <cstddef>
@@ -22,8 +21,6 @@ struct RepairedRecords {
 // Values that cannot be the channel's, interpolated between those beside them:
 // - leaps as the channel never makes, and back within a minute; of channels that do not move slowly only
 //   those of twenty spans, for a blow is no fault of an accelerometer;
-// - of slow channels, stretches of one value, a fiftieth of the record or more, that end in such a leap or
-//   are twenty times as long as any other;
 // - one number but zero, again and again, twenty spans from all that is usual, in a tenth of the record at
 //   most: no reading, and missing where it stands for more than a minute.
 // Channels of a few values are left alone: a switch may be off for an hour. Missing values stay missing.

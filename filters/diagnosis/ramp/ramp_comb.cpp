@@ -192,12 +192,6 @@ double explained_by_line(const UnbrokenPart& part, double cycles_per_rad) {
   return square > 0.0 ? 2.0 * std::norm(sum) / square : 0.0;
 }
 
-UnbrokenPart evenly_turned(UnbrokenPart part) {
-  const double turn = part.mean_turn_rad();
-  for (std::size_t i = 0; i < part.size(); ++i) part.angle_rad[i] = turn * static_cast<double>(i);
-  return part;
-}
-
 }  // namespace
 
 double UnbrokenPart::sample_s() const {
@@ -226,6 +220,12 @@ UnbrokenPart unbroken_part(const Record& record) {
     angle += part.record.rate_radps[i] * (part.record.time_s[i] - part.record.time_s[i - 1]);
     part.angle_rad.push_back(angle);
   }
+  return part;
+}
+
+UnbrokenPart evenly_turned(UnbrokenPart part) {
+  const double turn = part.mean_turn_rad();
+  for (std::size_t i = 0; i < part.size(); ++i) part.angle_rad[i] = turn * static_cast<double>(i);
   return part;
 }
 

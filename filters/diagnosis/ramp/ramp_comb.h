@@ -27,6 +27,9 @@ struct UnbrokenPart {
 // The longest, and of it the first 131072 samples; empty when there are not 4096.
 UnbrokenPart unbroken_part(const Record& record);
 
+// The same samples, as if the rate had been its mean all along.
+UnbrokenPart evenly_turned(UnbrokenPart part);
+
 struct RampComb {
   double cycles_per_rad = 0.0;  // positive
   PhaseTable table;

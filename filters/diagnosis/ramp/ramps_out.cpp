@@ -249,10 +249,15 @@ RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance
         out.remark = too_slow_in_words(part);
       continue;
     }
-    const std::optional<RampComb> comb = find_ramp_comb(part);
-    if (!comb || chance_of(*comb) > significance) continue;
-    if (auto fit = fit_of(records, r, part, *comb)) return {std::move(fit), ""};
-    if (out.remark.empty() && (quick || comb->over_line > kOverOthers))
+    const auto comb_of = [&](const UnbrokenPart& turned) {
+      std::optional<RampComb> found = find_ramp_comb(turned);
+      return found && chance_of(*found) <= significance ? found : std::nullopt;
+    };
+    std::optional<RampComb> comb = comb_of(part);
+    if (comb)
+      if (auto fit = fit_of(records, r, part, *comb)) return {std::move(fit), ""};
+    if (!comb) comb = comb_of(evenly_turned(part));
+    if (comb && out.remark.empty() && (quick || comb->over_line > kOverOthers))
       out.remark = lines_in_words(*comb, part);
   }
   return out;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -251,50 +252,16 @@ FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& gr
   return channel;
 }
 
-// On or off, and by a meter that reads either level with a little noise: of the distance of the two this
-// much.
-constexpr double kOfLevels = 0.05;
-constexpr double kOnTheWay = 0.02;    // of the readings, that lie between
-constexpr double kOfEither = 0.01;    // of the readings, at least, that either level has
-constexpr double kBesideLevel = 0.2;  // of the distance: farther is between
-
-// A thermometer of whole degrees in a steady room takes two values and is no switch.
+// Of two values. A thermometer of whole degrees in a steady room takes two values and is no switch.
 bool is_switch(const std::vector<Record>& records, const std::string& name) {
   if (kind_of(name) != ChannelKind::kOther) return false;
-  double low = std::numeric_limits<double>::infinity(), high = -low;
+  std::set<double> different;
   for (const Record& record : records)
-    for (const double value : values_of(record, name))
-      if (std::isfinite(value)) low = std::min(low, value), high = std::max(high, value);
-  const double apart = high - low;
-  if (!(apart > 0.0)) return false;
-  struct Level {
-    double count = 0.0, sum = 0.0, square = 0.0;  // about the end that is its own
-    void add(double off) { ++count, sum += off, square += off * off; }
-    [[nodiscard]] double spread() const {
-      return std::sqrt(std::max(0.0, square / count - sum * sum / count / count));
-    }
-  };
-  Level off, on;
-  double between = 0.0;
-  bool switched = false;  // within one record: two set points of two captures are no switch
-  for (const Record& record : records) {
-    const double were_off = off.count, were_on = on.count;
     for (const double value : values_of(record, name)) {
-      if (!std::isfinite(value)) continue;
-      if (value - low < kBesideLevel * apart)
-        off.add(value - low);
-      else if (high - value < kBesideLevel * apart)
-        on.add(high - value);
-      else
-        ++between;
+      if (std::isfinite(value)) different.insert(value);
+      if (different.size() > 2) return false;
     }
-    const double now_off = off.count - were_off, now_on = on.count - were_on;
-    switched = switched || std::min(now_off, now_on) > kOfEither * (now_off + now_on);
-  }
-  if (between == 0.0 && off.spread() == 0.0 && on.spread() == 0.0) return true;
-  const double all = off.count + on.count + between;
-  return switched && std::min(off.count, on.count) > kOfEither * all && between <= kOnTheWay * all &&
-         std::max(off.spread(), on.spread()) < kOfLevels * apart;
+  return different.size() == 2;
 }
 
 }  // namespace

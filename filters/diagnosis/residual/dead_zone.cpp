@@ -38,7 +38,7 @@ std::vector<Slow> slow_samples(const std::vector<EvenError>& errors, const std::
         continue;
       }
       const auto [sum, there] = finite_sum({error.begin() + i - kWindow / 2, kWindow + 1});
-      const double left = error[i] - sum / there;
+      const double left = error[i] - (sum - error[i]) / (there - 1.0);
       found.push_back({rate, bend, -rate * (2.0 * left + rate), rate * left, passage});
     }
   }

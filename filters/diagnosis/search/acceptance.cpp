@@ -4,13 +4,9 @@
 #include <algorithm>
 
 #include "filters/diagnosis/checks/cross_validation.h"
-#include "filters/diagnosis/record/figures.h"
 
 namespace ifog {
 namespace {
-
-constexpr double kWorse = 1.05;
-constexpr double kWorseSlowly = 1.2;
 
 // Beside the effects that came after it.
 bool step_stands(const BlockData& reconstructed, const SearchResult& found, std::size_t at) {
@@ -43,24 +39,6 @@ SearchResult without_effect(const BlockData& reconstructed, SearchResult found, 
   found.noise = fit_noise(reconstructed.grid, columns, found.noise.shape);
   found.coefficients = solve(reconstructed.grid, found.noise.shape, columns, &found.covariance);
   return found;
-}
-
-bool holds(const std::vector<EvenError>& errors, SharedSamples EvenError::*after) {
-  if (std::all_of(errors.begin(), errors.end(),
-                  [&](const EvenError& error) { return (error.*after).is(error.before); }))
-    return true;
-  const auto grows = [&](double pieces, double most) {
-    double without = 0.0;
-    double with = 0.0;
-    for (const EvenError& error : errors) {
-      const auto count = std::max<std::size_t>(
-          1, static_cast<std::size_t>(static_cast<double>(error.before.size()) / pieces));
-      without += variance_of(means_over(error.before, count));
-      with += variance_of(means_over(error.*after, count));
-    }
-    return with > most * without;
-  };
-  return !grows(2000.0, kWorse) && !grows(20.0, kWorseSlowly);
 }
 
 std::vector<Effect> drop_steps_that_do_not_last(const BlockData& data, const BlockData& reconstructed,

@@ -16,10 +16,6 @@ void subtract_found(const BlockData& data, const SearchResult& found, std::vecto
 // Without effect `at`, everything else fitted again.
 SearchResult without_effect(const BlockData& reconstructed, SearchResult found, std::size_t at);
 
-// Whether the effects do not make the error larger: what is quick, and what a heading is made of, where
-// chance has fewer pieces to average over. `after`: EvenError::held_out, written or logged.
-bool holds(const std::vector<EvenError>& errors, SharedSamples EvenError::*after);
-
 // Index of the least certain effect that is corrected online; none when there is no such effect.
 std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen);
 

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filters/diagnosis/channels/motion.h"
+#include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
@@ -12,43 +14,15 @@ namespace ifog {
 namespace {
 
 constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
-constexpr double kGravity = 9.80665;    // m/s^2
 constexpr double kWithin = 2.0;         // standard errors
 constexpr double kOfGravity = 0.05;     // by which a resting triad may miss g: scale and mounting errors
 constexpr double kSteady = 0.2;         // change of the whole force over that of one of its parts
 constexpr double kUndone = 0.5;         // share of an acceleration's square that the others may leave
 
-double gravity_in(const std::string& channel) { return unit_of(channel) == "g" ? 1.0 : kGravity; }
+double gravity_in(const std::string& channel) { return unit_of(channel) == "g" ? 1.0 : kStandardGravity; }
 
 bool is_acceleration(const BlockData& data, std::size_t channel) {
   return channel != Candidate::kNone && kind_of(data.channels[channel].name) == ChannelKind::kAcceleration;
-}
-
-// Slope of y on x, both about their means.
-double slope_of(const std::vector<double>& x, const std::vector<double>& y) {
-  double mean_x = 0.0;
-  double mean_y = 0.0;
-  const auto n = static_cast<double>(x.size());
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    mean_x += x[k] / n;
-    mean_y += y[k] / n;
-  }
-  double xx = 0.0;
-  double xy = 0.0;
-  for (std::size_t k = 0; k < x.size(); ++k) {
-    xx += (x[k] - mean_x) * (x[k] - mean_x);
-    xy += (x[k] - mean_x) * (y[k] - mean_y);
-  }
-  return xx > 0.0 ? xy / xx : 0.0;
-}
-
-double spread_of(const std::vector<double>& values) {
-  double mean = 0.0;
-  double square = 0.0;
-  const auto n = static_cast<double>(values.size());
-  for (const double value : values) mean += value / n;
-  for (const double value : values) square += (value - mean) * (value - mean) / n;
-  return std::sqrt(square);
 }
 
 // Power of g by which an effect's largest coefficient goes down; 0 for what is never the Earth's rate.
@@ -86,26 +60,28 @@ bool may_be_tilt(const BlockData& data, std::size_t channel) {
   const FineChannel& mine = data.channels[channel];
   const double g = gravity_in(mine.name);
   if (std::max(std::abs(mine.low), std::abs(mine.high)) > (1.0 + kOfGravity) * g) return false;
-  std::vector<double> own(mine.values.size());
-  std::vector<double> all(mine.values.size(), 0.0);
+  const auto squares_of = [](const FineChannel& channel) {
+    const auto n = static_cast<Eigen::Index>(channel.values.size());
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(channel.values.data(), n).array().square());
+  };
+  Eigen::VectorXd own = squares_of(mine), all = Eigen::VectorXd::Zero(own.size());
   std::size_t count = 0;
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     const FineChannel& other = data.channels[c];
     if (!is_acceleration(data, c) || unit_of(other.name) != unit_of(mine.name)) continue;
     ++count;
-    for (std::size_t k = 0; k < all.size(); ++k) all[k] += other.values[k] * other.values[k];
+    all += squares_of(other);
   }
-  double mean = 0.0;
-  for (std::size_t k = 0; k < all.size(); ++k) {
-    own[k] = mine.values[k] * mine.values[k];
-    mean += all[k] / static_cast<double>(all.size());
-  }
+  const double mean = all.mean();
   const bool all_of_gravity = std::abs(std::sqrt(mean) - g) < kOfGravity * g;
   if (!all_of_gravity) return count < 3;
   // Of a triad the force itself may not change, whichever axis drives it.
-  const double changes = spread_of(all) / (2.0 * std::sqrt(mean));
-  if (count >= 3 && changes > kSteady * spread_of(mine.values)) return false;
-  return slope_of(own, all) < kUndone;
+  all.array() -= mean;
+  const double changes = all.squaredNorm() / (4.0 * mean);
+  const double moves = variance_of(mine.values) * static_cast<double>(mine.values.size());
+  if (count >= 3 && changes > kSteady * kSteady * moves) return false;
+  own.array() -= own.mean();
+  return own.dot(all) < kUndone * own.squaredNorm();
 }
 
 double largest_earth_rate(const std::string& channel, const EarthRateOptions& options) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
@@ -26,7 +27,6 @@ struct Grade {
 constexpr double kMargin = 4.0;
 constexpr std::array<Grade, 2> kGrades = {
     {{0.3, "an optical gyro", 1.0, 10.0, 60.0, 100.0}, {1e300, "a MEMS gyro", 360.0, 1080.0, 1152.0, 360.0}}};
-constexpr double kStandardGravity = 9.80665;
 // m/s: no surface wave and no vehicle is quicker. So what turns with an acceleration does so by 1/2c or more.
 constexpr double kQuickest = 8000.0;
 

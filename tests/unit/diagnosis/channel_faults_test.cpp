@@ -71,63 +71,6 @@ TEST(ChannelFaults, ANumberInPlaceOfAVibrationIsNoneHoweverOftenItStands) {
   }
 }
 
-// Whatever the channel does besides: an angle that wraps leaps by itself every few seconds, and a supply that
-// others load for half a minute at a time. Where it stands for minutes nothing is put in its place.
-TEST(ChannelFaults, ANumberInPlaceOfWhatLeapsByItselfIsNone) {
-  const auto angle = [](double t) { return std::fmod(0.37 * t, 6.28318530718); };
-  const auto supply = [](double t) {
-    return 12.0 + 0.2 * std::sin(t / 500.0) + (std::fmod(t, 400.0) < 30.0 ? 0.3 : 0.0);
-  };
-  for (const auto& [name, value] :
-       {std::pair<const char*, double (*)(double)>{"table_rad", angle}, {"supply_V", supply}}) {
-    Logged logged(value);
-    const std::vector<double> before = logged.channel;
-    for (const auto& [from, to] : {std::pair{500U, 540U}, {1700U, 1710U}, {2900U, 3100U}})
-      for (std::size_t i = from; i < to; ++i) logged.channel[i] = -999.0;
-    const RepairedRecords repaired = logged.repaired(name);
-    const auto values = repaired.records[0].channels[0].values;
-    for (std::size_t i = 0; i < kSamples; ++i) {
-      EXPECT_FALSE(values[i] < -1.0) << name << i;
-      EXPECT_EQ(std::isnan(values[i]), i >= 2900 && i < 3100) << name << i;
-      if (logged.channel[i] != -999.0) {
-        EXPECT_EQ(values[i], before[i]) << name << i;
-      }
-    }
-    ASSERT_FALSE(repaired.remarks.empty()) << name;
-    EXPECT_NE(
-        repaired.remarks[0].find(" leaps away and back 3 time(s), for 250 sample(s) in all, first to -999"),
-        std::string::npos)
-        << repaired.remarks[0];
-  }
-}
-
-TEST(ChannelFaults, WhatStoodStillIsInterpolated) {
-  Logged logged(warming);
-  for (std::size_t i = 1500; i < 2300; ++i) logged.channel[i] = logged.channel[1500];
-  const RepairedRecords repaired = logged.repaired("temperature_degC");
-  ASSERT_EQ(repaired.remarks.size(), 1U);
-  EXPECT_NE(repaired.remarks[0].find(" s to 2300 s and then jumps"), std::string::npos)
-      << repaired.remarks[0];
-  const auto values = repaired.records[0].channels[0].values;
-  for (std::size_t i = 1500; i < 2300; ++i)
-    EXPECT_NEAR(values[i], values[1500] + (values[2300] - values[1500]) * double(i - 1500) / 800.0, 1e-9);
-}
-
-// It may have come back to where it stood: many times as long as any other stretch tells it, and it is one
-// of which nothing is known.
-TEST(ChannelFaults, WhatStoodStillAndCameBackIsFoundByItsLength) {
-  std::mt19937_64 random(11);
-  std::normal_distribution<double> noise(0.0, 0.004);
-  const auto lively = [&](double t) {
-    return std::round(100.0 * (20.0 + 3.0 * std::sin(t / 300.0) + noise(random))) / 100.0;
-  };
-  Logged logged(lively);
-  for (std::size_t i = 1500; i < 1900; ++i) logged.channel[i] = logged.channel[1900];
-  const RepairedRecords repaired = logged.repaired("temperature_degC");
-  ASSERT_EQ(repaired.remarks.size(), 1U);
-  EXPECT_NE(repaired.remarks[0].find("never else for a twentieth as long"), std::string::npos);
-}
-
 TEST(ChannelFaults, WhatOnlyLooksLikeOneIsLeftAlone) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
@@ -196,25 +139,6 @@ TEST(ChannelFaults, ASampleOfTheRateThatLeapsIsMissing) {
   logged.rate[1700] = 2e-5;
   for (std::size_t i = 3000; i < 3010; ++i) logged.rate[i] = 5e-4;
   EXPECT_TRUE(logged.without_knocks().remarks.empty());
-}
-
-TEST(ChannelFaults, AreTheSameHoweverManyChannelsAreLookedAtAtATime) {
-  Logged logged(warming);
-  std::vector<std::vector<double>> columns(6, logged.channel);
-  Record record = logged.record("temperature_degC");
-  record.channels.clear();
-  for (std::size_t c = 0; c < columns.size(); ++c) {
-    for (std::size_t i = 100 * c + 50; i < 100 * c + 55; ++i) columns[c][i] = c == 3 ? columns[c][i] : 85.0;
-    record.channels.push_back({"temperature_" + std::to_string(c) + "_degC", columns[c]});
-  }
-  const RepairedRecords one = repair_channels({record, record}, 1);
-  const RepairedRecords many = repair_channels({record, record}, 4);
-  ASSERT_EQ(one.remarks.size(), 10U);
-  EXPECT_EQ(one.remarks, many.remarks);
-  for (std::size_t r = 0; r < 2; ++r)
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      EXPECT_TRUE(std::ranges::equal(one.records[r].channels[c].values, many.records[r].channels[c].values));
-  EXPECT_EQ(one.records[0].channels[3].values.data(), columns[3].data()) << "without a fault, not copied";
 }
 
 // Without rows for 300 s the channel goes on in a straight line: no step for a derivative to see.

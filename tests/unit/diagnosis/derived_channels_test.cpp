@@ -140,15 +140,6 @@ TEST(DerivedChannels, LikeChannelsAreTakenFromEachOtherAndUnlikeOnesAreNot) {
   EXPECT_EQ(names_in(channels[4].name).less, "outer_degC");
 }
 
-TEST(DerivedChannels, ComponentsOfAVectorDifferInTheirAxisAlone) {
-  EXPECT_TRUE(of_one_vector("magnetic_x_uT", "magnetic_y_uT"));
-  EXPECT_TRUE(of_one_vector("accel_x_mps2", "accel_z_mps2"));
-  EXPECT_FALSE(of_one_vector("magnetic_x_uT", "magnetic_x_uT"));
-  EXPECT_FALSE(of_one_vector("magnetic_x_uT", "accel_y_mps2"));
-  EXPECT_FALSE(of_one_vector("supply_x_V", "supply_x_W"));
-  EXPECT_FALSE(of_one_vector("box_degC", "boy_degC"));
-}
-
 TEST(DerivedChannels, WithoutAReferenceAnotherAxisIsRotationAndNoChannel) {
   const Columns c = columns(100);
   Record record = record_of(c, c.angle);

@@ -63,21 +63,6 @@ std::optional<Hysteresis> found_in(const BlockData& data, const std::vector<Cand
   return find_hysteresis(data, model, noise, 0.01);
 }
 
-// Up by 4, down by 4, up again, with a play of 1 either way: the loop's corners by hand.
-TEST(Hysteresis, LoopIsThatOfThePlayOperator) {
-  BlockData data = quiet(1);
-  for (std::size_t i = 0; i < kBlocks; ++i) {
-    const double phase = static_cast<double>(i % 800) / 100.0;
-    data.channels[0].values[i] = phase < 4.0 ? phase : 8.0 - phase;
-  }
-  const Eigen::VectorXd loop = hysteresis_loop(data, 0, 1.0);
-  EXPECT_NEAR(loop[0], 0.0, 1e-12);
-  EXPECT_NEAR(loop[50], -0.5, 1e-12);   // still inside the play: it has not moved
-  EXPECT_NEAR(loop[400], -1.0, 1e-12);  // dragged along from below
-  EXPECT_NEAR(loop[500], 0.0, 1e-12);   // turned, half way through the play
-  EXPECT_NEAR(loop[790], 1.0, 1e-12);   // dragged along from above
-}
-
 TEST(Hysteresis, IsFoundWithItsWidthAndItsSize) {
   BlockData data = quiet(2);
   add(data, 0.5 * temperature(data) + 0.4 * hysteresis_loop(data, 0, 4.2));

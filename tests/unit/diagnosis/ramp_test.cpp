@@ -59,16 +59,6 @@ TEST(Ramp, WrapsAreRecognised) {
   EXPECT_EQ(wrap_period(std::vector<double>{20.0, 21.0, 22.0, 21.5, 20.0}), 0.0);
 }
 
-TEST(Ramp, WhatIsMissingIsNoCountAndWhatFallsBelowZeroIsNoCounter) {
-  std::vector<double> ramp = loop(9000, 5.4e-5, 0.0).ramp;
-  ramp[10] = std::nan("");
-  ramp[20] = std::numeric_limits<double>::infinity();
-  ramp[5000] = -std::numeric_limits<double>::infinity();
-  EXPECT_EQ(wrap_period(ramp), kPeriod);
-  ramp[8999] = -1.0;
-  EXPECT_EQ(wrap_period(ramp), 0.0);
-}
-
 TEST(Ramp, TheTableIsTheNonlinearity) {
   // 32 knots from 30 000 samples of 1e-7 rad/s leave 0.2 % of the nonlinearity's variance; straight lines
   // between them leave as much of the third harmonic.

@@ -115,46 +115,6 @@ TEST(Blocks, OfSeveralRecordsFollowEachOtherAndAGapIsNotValid) {
   for (std::size_t b = 20; b < 26; ++b) EXPECT_EQ(grid.valid[b], 0);
 }
 
-TEST(Blocks, CentreEveryRecordOnItsOwn) {
-  BlockGrid grid;
-  grid.records = {{0, 2}, {2, 5}};
-  Eigen::VectorXd values(5);
-  values << 1.0, 3.0, 10.0, 20.0, 60.0;
-  centre_records(grid, values);
-  const Eigen::VectorXd expected = (Eigen::VectorXd(5) << -1.0, 1.0, -20.0, -10.0, 30.0).finished();
-  EXPECT_LT((values - expected).norm(), 1e-12);
-}
-
-TEST(Figures, OfSeriesWithAnAnswerByHand) {
-  std::vector<double> error(2000);
-  for (std::size_t i = 0; i < error.size(); ++i) error[i] = i % 2 ? 1.0 : -1.0;
-  const auto figures = error_figures(error, 0.1);
-  EXPECT_NEAR(figures.at("residual_rms_radps"), 1.0, 1e-12);
-  EXPECT_NEAR(figures.at("adev_0.1s_radps"), std::sqrt(2.0), 1e-9);  // differences of 2
-  EXPECT_NEAR(figures.at("rms_1s_radps"), 0.0, 1e-12);
-  EXPECT_EQ(figures.count("rms_100s_radps"), 0U);  // 200 s hold no ten of them
-  // A step after the alignment: 0.5 rad/s for the other nine tenths of 200 s.
-  for (std::size_t i = 0; i < error.size(); ++i) error[i] = i < 200 ? 0.0 : 0.5;
-  EXPECT_NEAR(error_figures(error, 0.1).at("heading_drift_rad"), 0.5 * 180.0, 1e-9);
-}
-
-TEST(Figures, OfSeveralRecordsAreAveragedAsSquares) {
-  const auto both =
-      pooled({{{"rms", 3.0}, {"whiteness", 0.5}}, {{"rms", 4.0}, {"whiteness", -0.5}}}, {1.0, 1.0});
-  EXPECT_DOUBLE_EQ(both.at("rms"), std::sqrt(12.5));
-  EXPECT_DOUBLE_EQ(both.at("whiteness"), 0.0);
-}
-
-// White noise of unit variance with a third of its samples missing: 1 / sqrt m all the same.
-TEST(Figures, AGapDoesNotLowerTheAllanDeviation) {
-  std::mt19937_64 random(7);
-  std::normal_distribution<double> normal;
-  std::vector<double> error(90000);
-  for (std::size_t i = 0; i < error.size(); ++i) error[i] = i / 1000 % 3 == 1 ? kNan : normal(random);
-  const auto figures = error_figures(error, 0.1);
-  EXPECT_NEAR(figures.at("adev_1s_radps"), std::sqrt(0.1), 0.02 * std::sqrt(0.1));
-}
-
 static_assert(!std::is_copy_constructible_v<PreparedRecords> &&
                   !std::is_move_constructible_v<PreparedRecords>,
               "a copy's records would show the first one's columns");

@@ -68,15 +68,6 @@ TEST(ReferenceDelay, IsFoundToAPartOfASampleAndShifted) {
   }
 }
 
-TEST(ReferenceDelay, IsSaidInOneLine) {
-  const Logged late(3, 0.31), early(4, -0.31);
-  const std::string said = align_references({late.record}).remarks.at(0);
-  EXPECT_EQ(said.find("reference_rate_radps logged 0.31"), 0U) << said;
-  EXPECT_NE(said.find(" s late (+-"), std::string::npos) << said;
-  EXPECT_NE(align_references({early.record}).remarks.at(0).find(" s early, or the rate late (+-"),
-            std::string::npos);
-}
-
 // Errors of the delay over its standard error: of unit variance, also beside a scale factor error that
 // depends on the temperature.
 TEST(ReferenceDelay, StandardErrorIsHonest) {
@@ -105,13 +96,6 @@ TEST(ReferenceDelay, WhatIsNotLateIsLeftAsItIs) {
     EXPECT_TRUE(left.delays.empty()) << seed;
     EXPECT_EQ(left.records[0].reference_radps.data(), resting.reference.data());
   }
-}
-
-// An hour of dwells is no time series, and a clock that is not even has no steps to shift by.
-TEST(ReferenceDelay, DwellsAreLeftAsTheyAre) {
-  Logged logged(5, 0.31);
-  for (std::size_t i = 0; i < kSamples; ++i) logged.time[i] = 3.0 * static_cast<double>(i);
-  EXPECT_TRUE(align_references({logged.record}).delays.empty());
 }
 
 TEST(ReferenceDelay, TheDiagnosisIsThatOfTheShiftedReference) {
@@ -176,18 +160,6 @@ TEST(ReferenceDelay, WhatIsFastButSmoothIsNotLeftOut) {
   const AlignedRecords aligned = align_references({logged.record});
   ASSERT_EQ(aligned.delays.size(), 1U);
   EXPECT_EQ(aligned.remarks[0].find("jumps"), std::string::npos) << aligned.remarks[0];
-}
-
-TEST(FractionalShift, MovesASineAsTheClosedFormDoes) {
-  std::vector<double> sine;
-  for (int k = 0; k < 400; ++k) sine.push_back(std::sin(0.9 * k));
-  for (const double steps : {0.0, 0.5, -3.3, 7.25}) {
-    const Samples moved = shifted(sine, steps);
-    for (int k = 30; k < 370; ++k)
-      EXPECT_NEAR(moved[static_cast<std::size_t>(k)], std::sin(0.9 * (k + steps)), 2e-3) << steps;
-  }
-  EXPECT_TRUE(std::isnan(shifted(sine, 7.25).back()));
-  EXPECT_TRUE(std::isnan(shifted(sine, -3.3).front()));
 }
 
 }  // namespace

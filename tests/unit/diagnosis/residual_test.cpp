@@ -57,61 +57,12 @@ TEST(Lines, WhiteNoiseHasNoneAndItsSpectrumIsFlat) {
   EXPECT_NEAR(spectrum.density.back(), 2.0 * kPeriod, 0.05 * 2.0 * kPeriod);
 }
 
-// exp(-ratio/2) times half the samples against the significance: 2 log(0.5 n / p) is the least ratio.
-TEST(RecordLines, AreProvenBesideTheEffects) {
-  SearchResult found;
-  const double least = 2.0 * std::log(0.5 * 10000.0 / 0.01);
-  Candidate line;
-  line.form = Form::kLine;
-  found.chosen = {{line, least - 0.01, 1.0}, {line, least + 0.01, 1.0}};
-  Lines lines;
-  lines.slow = {line, line};
-  lines.slow[1].frequency_hz = 0.5;
-  keep_proven(found, 10000, 0.01, lines);
-  ASSERT_EQ(lines.slow.size(), 1U);
-  EXPECT_EQ(lines.slow[0].frequency_hz, 0.5);
-}
-
-TEST(RecordLines, AFastLineIsTakenOutOfItsRecord) {
-  std::vector<EvenError> errors(2);
-  errors[1].start_s = 5.0;
-  for (EvenError& error : errors) {
-    for (std::size_t i = 0; i < 500; ++i)
-      error.rest.own().push_back(
-          0.2 * std::sin(2.0 * M_PI * 12.0 * (error.start_s + kPeriod * static_cast<double>(i))));
-    error.rest_held_out = error.rest;
-  }
-  SpectralLine line;
-  line.frequency_hz = 12.0;
-  line.sine = 0.2;
-  take_out({{1, line}}, kPeriod, errors);
-  EXPECT_LT(variance_of(errors[1].rest), 1e-20);
-  EXPECT_NEAR(variance_of(errors[1].rest_held_out), 0.02, 1e-3);  // no line is corrected online
-  EXPECT_NEAR(variance_of(errors[0].rest), 0.02, 1e-3);
-}
-
 Unexplained of(const std::vector<double>& left, const std::vector<SpectralLine>& peaks = {}) {
   BlockGrid grid;
   grid.block_s = 1.0;
   NoiseFit noise;
   noise.white_variance = kPeriod;  // of a mean of one second of unit noise
   return describe_unexplained(left, left, 0.0, kPeriod, noise, grid, peaks);
-}
-
-// Holes of every length and place against the minutes in which the usual energy is taken.
-TEST(Unexplained, AHoleInWhiteNoiseMakesNoBursts) {
-  std::uint64_t seed = 100;
-  for (const std::size_t hole : {700U, 2990U, 4000U, 5003U, 5990U, 8000U})
-    for (const std::size_t from : {0U, 1511U, 5000U, 14000U, 19999U - 700U}) {
-      std::vector<double> holed = white(20000, ++seed);
-      for (std::size_t i = from; i < std::min(from + hole, holed.size()); ++i) holed[i] = kMissing;
-      EXPECT_NE(of(holed).kind, "bursts") << hole << " from " << from;
-      EXPECT_NE(of(holed).kind, "changing_variance") << hole << " from " << from;
-      // And a knock beside the hole stays one.
-      for (std::size_t i = 10500; i < 10530; ++i) holed[i] += i % 2 ? 15.0 : -15.0;
-      const bool measured = 10500 > from + hole || 10530 < from;
-      EXPECT_EQ(of(holed).kind == "bursts", measured) << hole << " from " << from;
-    }
 }
 
 // Of a piece with a hole few differences are left, and they scatter more than all would.
@@ -152,63 +103,10 @@ TEST(Unexplained, SaysWhatTheRestLooksLike) {
   EXPECT_EQ(slow.kind, "slow");
   EXPECT_GT(slow.fraction, 0.5);
 
-  // By definition: the means of 1, 4, 16 … samples that scatter most beyond what neighbours differ by.
-  drifting.resize(59999);
-  for (std::size_t i = 20000; i < 20500; ++i) drifting[i] = std::nan("");
-  double most = 0.0, share = 0.0, over_s = 0.0;
-  for (std::size_t count = 1; drifting.size() / count >= 16; count *= 4) {
-    std::vector<double> means;
-    for (std::size_t from = 0; from + count <= drifting.size(); from += count) {
-      double sum = 0.0, n = 0.0;
-      for (std::size_t i = from; i < from + count; ++i)
-        if (std::isfinite(drifting[i])) sum += drifting[i], n += 1.0;
-      means.push_back(2.0 * n >= static_cast<double>(count) ? sum / n : std::nan(""));
-    }
-    double mean = 0.0, there = 0.0, square = 0.0, differences = 0.0, pairs = 0.0;
-    for (const double each : means)
-      if (std::isfinite(each)) mean += each, there += 1.0;
-    mean /= there;
-    for (std::size_t i = 0; i < means.size(); ++i) {
-      if (std::isfinite(means[i])) square += (means[i] - mean) * (means[i] - mean);
-      if (i == 0 || !std::isfinite(means[i]) || !std::isfinite(means[i - 1])) continue;
-      differences += (means[i] - means[i - 1]) * (means[i] - means[i - 1]);
-      pairs += 1.0;
-    }
-    const double ratio = 2.0 * square / there / (differences / pairs);
-    if (pairs < 16.0 || (ratio - 1.0) * std::sqrt(pairs) <= most) continue;
-    most = (ratio - 1.0) * std::sqrt(pairs);
-    share = 100.0 * (1.0 - 1.0 / ratio);
-    over_s = static_cast<double>(count) * kPeriod;
-  }
-  std::array<char, 80> words{};
-  std::snprintf(words.data(), words.size(), "%.0f %% of what %.3g s means", share, over_s);
-  EXPECT_NE(of(drifting).hint.find(words.data()), std::string::npos) << of(drifting).hint << words.data();
-
   SpectralLine peak;
   peak.frequency_hz = 3.3;
   EXPECT_EQ(of(noise, {peak}).kind, "line");
   EXPECT_EQ(of(noise, {peak}).frequency_hz, 3.3);
-}
-
-TEST(Unexplained, OfTheLongestRecordAndALoopTakesThePlace) {
-  std::vector<EvenError> errors(2);
-  errors[0].before = errors[0].after = white(2000, 31);
-  errors[1].before = errors[1].after = white(60000, 32);
-  for (std::size_t i = 30000; i < 60000; ++i) errors[1].after.own()[i] *= 3.0;
-  BlockGrid grid;
-  grid.block_s = 1.0;
-  grid.sample_s = kPeriod;
-  NoiseFit noise;
-  noise.white_variance = kPeriod;
-  Unexplained found = describe_rest(errors, noise, grid, 0.01);
-  EXPECT_EQ(found.kind, "changing_variance");
-  Hysteresis loop;
-  loop.channel = "temperature_degC";
-  loop.half_width = 2.0;
-  loop.coefficient = M_PI / 180.0 / 3600.0;  // 1 °/h per kelvin: 4 °/h high
-  describe_hysteresis(loop, found);
-  EXPECT_EQ(found.kind, "hysteresis");
-  EXPECT_NE(found.hint.find("4 °/h high"), std::string::npos) << found.hint;
 }
 
 }  // namespace

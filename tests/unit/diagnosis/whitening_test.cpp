@@ -58,15 +58,6 @@ TEST(Whitening, LeastSquaresOfInnovationsIsGeneralisedLeastSquares) {
   EXPECT_NEAR(found[1], expected[1], 1e-3 * std::abs(expected[1]));
 }
 
-// Scalar Riccati equation of walk and white: P = (q + sqrt(q^2 + 4 q)) / 2.
-TEST(Whitening, InnovationVarianceOfAWalkIsTheClosedForm) {
-  const BlockGrid grid = even_grid(64);
-  for (const double q : {1e-6, 1e-3, 1.0, 30.0}) {
-    const double p = 0.5 * (q + std::sqrt(q * q + 4.0 * q));
-    EXPECT_NEAR(Whitening(grid, {q, 0.0, 0.0, 0.0}).innovation_variance(), 1.0 + p, 1e-9 * (1.0 + p)) << q;
-  }
-}
-
 TEST(NoiseFit, FindsTheWalkItWasGiven) {
   constexpr std::size_t n = 4000;
   const BlockGrid grid = even_grid(n);
