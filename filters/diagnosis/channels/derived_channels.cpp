@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -20,10 +19,6 @@ constexpr double kWholeTurn = 0.9;  // of the period, that a wrap jumps and the 
 constexpr double kInside = 0.95;    // share of the values that lie within the turn
 constexpr double kRounding = 1e-3;  // of the period, beyond its ends
 constexpr double kUnsure = 0.01;    // share of steps too long to say which way the angle went
-// What the reference turned by and the table's angle have one slope within this; their correlation.
-constexpr double kSameSlope = 0.1;
-constexpr double kSameCourse = 0.95;
-constexpr double kStray = 1.0;  // of the reference's arc, that an angle may lie beyond it: others are faults
 
 double period_by_unit(const std::string& channel) {
   const std::string unit = unit_of(channel);
@@ -129,60 +124,6 @@ bool of_one_vector(const std::string& one, const std::string& other) {
 
 namespace {
 
-// The reference's integral at each sample, in radians; holes go on at the rates of their ends.
-Samples angle_turned(const Record& record) {
-  SamplesWriter turned(record.time_s.size());
-  double sum = 0.0;
-  double before = 0.0;
-  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-    const double rate = std::isfinite(record.reference_radps[i]) ? record.reference_radps[i] : before;
-    if (i > 0) sum += 0.5 * (before + rate) * (record.time_s[i] - record.time_s[i - 1]);
-    before = rate;
-    turned.add(sum);
-  }
-  return std::move(turned).done();
-}
-
-double median_of_finite(std::span<const double> values) {
-  std::vector<double> finite;
-  std::copy_if(values.begin(), values.end(), std::back_inserter(finite),
-               [](double v) { return std::isfinite(v); });
-  if (finite.empty()) return std::nan("");
-  return median(finite);
-}
-
-}  // namespace
-
-double angle_period_by_reference(const std::string& channel, const Record& record) {
-  const double period = period_by_unit(channel);
-  const std::span<const double> values = values_of(record, channel);
-  if (!(period > 0.0) || values.empty() || !moves(record.reference_radps)) return 0.0;
-  const Samples turned = angle_turned(record);
-  const auto [low, high] = std::minmax_element(turned.begin(), turned.end());
-  const double unit = period / (2.0 * std::numbers::pi);
-  const double middle = median_of_finite(values);
-  const double farthest = (1.0 + kStray) * (*high - *low) * unit;
-  double n = 0.0, finite = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (!std::isfinite(values[i])) continue;
-    finite += 1.0;
-    if (!(std::abs(values[i] - middle) <= farthest)) continue;
-    n += 1.0;
-    const double dx = unit * turned[i] - x;
-    const double dy = values[i] - middle - y;
-    x += dx / n;
-    y += dy / n;
-    xx += dx * (unit * turned[i] - x);
-    xy += dx * (values[i] - middle - y);
-    yy += dy * (values[i] - middle - y);
-  }
-  if (!(n >= kInside * finite) || !(xx > 0.0) || !(yy > 0.0)) return 0.0;
-  const bool same_slope = std::abs(std::abs(xy) / xx - 1.0) < kSameSlope;
-  return same_slope && xy * xy > kSameCourse * kSameCourse * xx * yy ? period : 0.0;
-}
-
-namespace {
-
 std::string outside_in_words(const std::string& channel, std::size_t samples, double first) {
   return channel +
          printed(" is outside the turn in %zu sample(s), first %.6g: no angle, dropped", samples, first);
@@ -196,8 +137,7 @@ DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
   for (const RecordChannel& channel : records.front().channels) {
     double period = 0.0;
     for (const Record& record : records)
-      period = std::max({period, angle_period(channel.name, values_of(record, channel.name)),
-                         angle_period_by_reference(channel.name, record)});
+      period = std::max(period, angle_period(channel.name, values_of(record, channel.name)));
     if (!(period > 0.0)) continue;
     for (Record& record : derived.records) {
       for (RecordChannel& mine : record.channels) {

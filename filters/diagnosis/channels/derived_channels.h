@@ -23,11 +23,6 @@ struct DerivedRecords {
 // wraps by a whole one; 0 otherwise.
 double angle_period(const std::string& channel, std::span<const double> values);
 
-// The same of one that has not come round: its unit's turn where it goes as the record's reference turns, one
-// way or the other. What is a function of a table's angle repeats with the turn, however little of it was
-// seen.
-double angle_period_by_reference(const std::string& channel, const Record& record);
-
 // Components of one vector, as "magnetic_x_uT" and "magnetic_y_uT": names that differ in their axis alone.
 bool of_one_vector(const std::string& one, const std::string& other);
 

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/cleaning/other_axes.h"
 
-#include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 #include <utility>
 
 #include "filters/diagnosis/cleaning/reference_delay.h"
-#include "filters/linear/normal_equations.h"
+#include "filters/diagnosis/cleaning/series_fit.h"
 
 namespace ifog {
 namespace {
@@ -16,21 +14,12 @@ namespace {
 // there is nothing to tell them by.
 Eigen::VectorXd shares_of(std::span<const double> measured, std::span<const double> reference,
                           const std::vector<std::span<const double>>& along) {
-  const auto p = static_cast<Eigen::Index>(along.size()) + 1;
-  Eigen::MatrixXd gram = Eigen::MatrixXd::Zero(p + 1, p + 1);
-  Eigen::VectorXd row(p + 1);
-  row[1] = 1.0;
-  double rows = 0.0;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    row[0] = measured[i] - reference[i];
-    for (std::size_t a = 0; a < along.size(); ++a) row[2 + static_cast<Eigen::Index>(a)] = along[a][i];
-    if (!row.allFinite()) continue;
-    gram.selfadjointView<Eigen::Lower>().rankUpdate(row);
-    ++rows;
-  }
-  if (rows < 10.0 * static_cast<double>(p)) return {};
-  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
-  return NormalEquations::of_measured_first(gram).coefficients().tail(p - 1);
+  std::vector<std::vector<double>> columns(2, std::vector<double>(measured.size(), 1.0));
+  for (std::size_t i = 0; i < measured.size(); ++i) columns[0][i] = measured[i] - reference[i];
+  for (const std::span<const double> each : along) columns.emplace_back(each.begin(), each.end());
+  const SeriesFit fit = least_squares(columns, complete_rows(columns));
+  if (fit.rows < 10 * columns.size()) return {};
+  return fit.coefficients.tail(static_cast<Eigen::Index>(along.size()));
 }
 
 Samples less_its_own(std::span<const double> measured, std::span<const double> reference,

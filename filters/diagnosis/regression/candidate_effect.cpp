@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A candidate as an effect of the model, and the other way; what its form costs, and which harmonics an angle
-// has.
+// A candidate as columns of the regression, as an effect of the model and the other way; what its form costs.
 #include <cmath>
+#include <numbers>
+#include <stdexcept>
 
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/effects/meaning.h"
@@ -10,14 +11,17 @@
 namespace ifog {
 namespace {
 
-// Of a turn. A shorter arc tells no harmonics apart, and then it is the first that a field or a tilt makes.
-// Of a still shorter one a straight line is nearly all that is seen, and what swings over it evenly has an
-// angle that is its acceleration as well, by which a late reference errs.
-constexpr double kSeenTurn = 0.5;
-constexpr double kSeenArc = 0.15;
-constexpr double kLeastArc = 0.03;
-constexpr double kPictureOfAcceleration = 0.8;  // correlation
-constexpr int kHarmonics = 2;  // of a turn: once, as a field does, and twice, as what bends does
+ShapeSettings settings_of(const BlockData& data, Form form, std::size_t channel, double first, double second,
+                          double period = 0.0) {
+  ShapeSettings settings;
+  settings.form = form;
+  settings.period = period;
+  settings.reference = channel == Candidate::kNone ? 0.0 : reference_of(data.channels[channel].name);
+  settings.time_constant_s = first;
+  settings.second_time_constant_s = second;
+  settings.begins_at_mean = true;
+  return settings;
+}
 
 double complexity_of_form(const Candidate& candidate) {
   switch (candidate.form) {
@@ -47,34 +51,55 @@ double complexity_of_form(const Candidate& candidate) {
   }
 }
 
-// Whether an angle is a picture of what the reference changes by; so it is taken where there is none.
-bool follows_acceleration(const BlockData& data, std::size_t channel) {
-  if (data.reference < 0) return true;
-  const auto reference = static_cast<std::size_t>(data.reference);
-  Eigen::VectorXd angle = column(data, ShapeSettings{}, channel);
-  ShapeSettings change;
-  change.form = Form::kRate;
-  Eigen::VectorXd acceleration = column(data, change, reference);
-  centre_records(data.grid, angle);
-  centre_records(data.grid, acceleration);
-  const double both = angle.norm() * acceleration.norm();
-  return !(both > 0.0) || std::abs(angle.dot(acceleration)) > kPictureOfAcceleration * both;
-}
-
 }  // namespace
 
-int harmonics_told_apart(const BlockData& data, std::size_t channel) {
-  const FineChannel& angle = data.channels[channel];
-  const double seen = (angle.high - angle.low) / angle.period;
-  if (seen < kSeenArc) return 0;
-  return seen < kSeenTurn ? 1 : kHarmonics;
-}
-
-int harmonics_tried(const BlockData& data, std::size_t channel) {
-  const FineChannel& angle = data.channels[channel];
-  const bool arc = angle.high - angle.low > kLeastArc * angle.period;
-  const int told = harmonics_told_apart(data, channel);
-  return told == 0 && arc && !follows_acceleration(data, channel) ? 1 : told;
+Columns regressors(const BlockData& data, const Candidate& candidate) {
+  const BlockGrid& grid = data.grid;
+  const auto n = static_cast<Eigen::Index>(grid.size());
+  if (candidate.channel != Candidate::kNone) {
+    if (candidate.form == Form::kProduct) {
+      return column(
+          data, settings_of(data, Form::kLinear, candidate.channel, 0.0, 0.0), candidate.channel,
+          settings_of(data, candidate.with_form, candidate.with_channel, candidate.time_constant_s, 0.0),
+          candidate.with_channel);
+    }
+    ShapeSettings settings = settings_of(data, candidate.form, candidate.channel, candidate.time_constant_s,
+                                         candidate.second_time_constant_s, candidate.period);
+    settings.half_width = candidate.half_width;
+    if (candidate.is_transition()) settings.reference = candidate.centre;
+    return column(data, settings, candidate.channel);
+  }
+  Columns columns = Columns::Zero(n, candidate.width());
+  for (std::size_t r = 0; r < grid.records.size(); ++r) {
+    const double start = grid.time_s[grid.records[r].first];
+    for (std::size_t b = grid.records[r].first; b < grid.records[r].end; ++b) {
+      const auto row = static_cast<Eigen::Index>(b);
+      const double t = grid.time_s[b] - start;
+      switch (candidate.form) {
+        case Form::kRateRamp:
+          columns(row, 0) = t;
+          break;
+        case Form::kWarmUp:
+          columns(row, 0) = std::exp(-t / candidate.time_constant_s);
+          break;
+        case Form::kStep:
+          columns(row, 0) = r == candidate.record && grid.time_s[b] > candidate.time_s ? 1.0 : 0.0;
+          break;
+        case Form::kLine: {
+          if (r != candidate.record) break;
+          const double phase = 2.0 * std::numbers::pi * candidate.frequency_hz * grid.time_s[b];
+          const double half = std::numbers::pi * candidate.frequency_hz * grid.block_s;
+          const double kept = half < 1e-9 ? 1.0 : std::sin(half) / half;  // of a line, averaged over a block
+          columns(row, 0) = kept * std::cos(phase);
+          columns(row, 1) = kept * std::sin(phase);
+          break;
+        }
+        default:
+          throw std::logic_error("no column is made of " + std::string(name_of(candidate.form)));
+      }
+    }
+  }
+  return columns;
 }
 
 double complexity(const Candidate& candidate) { return complexity_of_form(candidate) + candidate.of_channel; }

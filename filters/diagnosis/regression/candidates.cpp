@@ -3,8 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <stdexcept>
 
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/effects/meaning.h"
@@ -26,18 +24,6 @@ constexpr double kOfComponents = 4.0;
 // Another axis was turned when it moved by this share of the own; what runs with it this closely is a picture of it.
 constexpr double kTurned = 0.05;
 constexpr double kPicture = 0.9;
-
-ShapeSettings settings_of(const BlockData& data, Form form, std::size_t channel, double first, double second,
-                          double period = 0.0) {
-  ShapeSettings settings;
-  settings.form = form;
-  settings.period = period;
-  settings.reference = channel == Candidate::kNone ? 0.0 : reference_of(data.channels[channel].name);
-  settings.time_constant_s = first;
-  settings.second_time_constant_s = second;
-  settings.begins_at_mean = true;
-  return settings;
-}
 
 Candidate candidate_of(Form form, std::size_t channel, double tau = 0.0) {
   Candidate candidate;
@@ -67,8 +53,9 @@ void add_difference(const BlockData& data, std::size_t channel, std::vector<Cand
     for (const double tau : time_constants(data.grid, form)) add(form, tau);
 }
 
+// Once a turn, as a field does, and twice, as what bends does.
 void add_angle(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
-  for (int times = 1; times <= harmonics_tried(data, channel); ++times) {
+  for (const double times : {1.0, 2.0}) {
     for (const Form form : {Form::kCosine, Form::kSine}) {
       found.push_back(candidate_of(form, channel));
       found.back().period = data.channels[channel].period / times;
@@ -281,6 +268,8 @@ std::vector<Candidate> library(const BlockData& data) {
     const FineChannel& source = data.channels[channel];
     if (source.moves && !source.held)
       add_vibration(data, channel, found);
+    else if (data.reference >= 0 && source.period == 0.0 && motion_of(source.name) == Motion::kAngle)
+      continue;  // of a part of the turn: what the reference turned, again
     else if (source.of_axis)
       add_other_axis(data, channel, found);
     else if (source.period > 0.0)
@@ -367,52 +356,4 @@ std::vector<Candidate> products_of(const BlockData& data, std::size_t channel) {
   return found;
 }
 
-Columns regressors(const BlockData& data, const Candidate& candidate) {
-  const BlockGrid& grid = data.grid;
-  const auto n = static_cast<Eigen::Index>(grid.size());
-  if (candidate.channel != Candidate::kNone) {
-    if (candidate.form == Form::kProduct) {
-      return column(
-          data, settings_of(data, Form::kLinear, candidate.channel, 0.0, 0.0), candidate.channel,
-          settings_of(data, candidate.with_form, candidate.with_channel, candidate.time_constant_s, 0.0),
-          candidate.with_channel);
-    }
-    ShapeSettings settings = settings_of(data, candidate.form, candidate.channel, candidate.time_constant_s,
-                                         candidate.second_time_constant_s, candidate.period);
-    settings.half_width = candidate.half_width;
-    if (candidate.is_transition()) settings.reference = candidate.centre;
-    return column(data, settings, candidate.channel);
-  }
-  Columns columns = Columns::Zero(n, candidate.width());
-  for (std::size_t r = 0; r < grid.records.size(); ++r) {
-    const double start = grid.time_s[grid.records[r].first];
-    for (std::size_t b = grid.records[r].first; b < grid.records[r].end; ++b) {
-      const auto row = static_cast<Eigen::Index>(b);
-      const double t = grid.time_s[b] - start;
-      switch (candidate.form) {
-        case Form::kRateRamp:
-          columns(row, 0) = t;
-          break;
-        case Form::kWarmUp:
-          columns(row, 0) = std::exp(-t / candidate.time_constant_s);
-          break;
-        case Form::kStep:
-          columns(row, 0) = r == candidate.record && grid.time_s[b] > candidate.time_s ? 1.0 : 0.0;
-          break;
-        case Form::kLine: {
-          if (r != candidate.record) break;
-          const double phase = 2.0 * std::numbers::pi * candidate.frequency_hz * grid.time_s[b];
-          const double half = std::numbers::pi * candidate.frequency_hz * grid.block_s;
-          const double kept = half < 1e-9 ? 1.0 : std::sin(half) / half;  // of a line, averaged over a block
-          columns(row, 0) = kept * std::cos(phase);
-          columns(row, 1) = kept * std::sin(phase);
-          break;
-        }
-        default:
-          throw std::logic_error("no column is made of " + std::string(name_of(candidate.form)));
-      }
-    }
-  }
-  return columns;
-}
 }  // namespace ifog

@@ -74,12 +74,6 @@ std::vector<Candidate> library(const BlockData& data);
 inline constexpr double kStepOfFringes = 0.5;  // of fringes within the range: neighbours correlate by 0.7
 bool is_fringe(const BlockData& data, const Candidate& candidate);
 
-// Of an angle: harmonics of the turn that the arc on which it was seen tells apart, 0 on a short one.
-int harmonics_told_apart(const BlockData& data, std::size_t channel);
-// Those that are tried: on a short arc the first, where the angle is not its own acceleration as well, with
-// which a late reference goes.
-int harmonics_tried(const BlockData& data, std::size_t channel);
-
 // Two effects that are one law together, each of which may be hidden while the other is missing: a law about
 // a point that nobody knows, k (c - c0)^2, k g (c - c0) while a switch g is on, or k w (c - c0) of a scale
 // factor, a swing of unknown phase, a fringe, and the power of vibration in one band.

@@ -21,9 +21,6 @@ namespace {
 constexpr double kFarthest = 0.3;
 // Standard errors a curvature has to be from zero before it is followed beyond the range that showed it.
 constexpr double kWellKnown = 5.0;
-constexpr int kTermsOfSwing = 4;     // once and twice a turn
-constexpr double kKnownRound = 0.2;  // error of a harmonic of an arc, of its size
-constexpr double kDoubtOfLaw = 1.5;  // of all four together
 constexpr int kHighestFollowed = 3;  // higher powers stand for a law that is none
 
 std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& values) {
@@ -262,31 +259,6 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
   return covariance;
 }
 
-// Whether what repeats with the angle is known all round: it was seen all round, or over an arc from which
-// the circle follows. Of a complete law it does while its coefficients, which are no larger than was to be
-// expected, are not much smaller than their doubt: all four are at right angles round the circle, so that
-// their squares add up. An arc too short to tell a harmonic knows the law within and nothing of the rest,
-// whatever four coefficients make of it: its nearer end is held there.
-bool known_all_round(const FineChannel& angle, int harmonics_told, const std::vector<FoundEffect>& effects) {
-  if (angle.high - angle.low >= angle.period) return true;
-  if (harmonics_told == 0) return false;
-  double size = 0.0, doubt = 0.0;
-  int halves = 0;
-  int terms = 0;
-  for (const FoundEffect& found : effects) {
-    if (found.effect.channel != angle.name) continue;
-    ++terms;
-    if (found.effect.form != name_of(Form::kCosine) && found.effect.form != name_of(Form::kSine))
-      return false;
-    const ModelParameter& coefficient = found.effect.parameters.front();
-    halves += found.effect.form == name_of(Form::kCosine) ? 1 : -1;
-    size += coefficient.value * coefficient.value;
-    doubt += coefficient.std_error * coefficient.std_error;
-  }
-  const double most = terms == kTermsOfSwing ? kDoubtOfLaw : kKnownRound;
-  return halves == 0 && doubt < most * most * size;
-}
-
 std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects) {
   std::vector<ChannelRange> ranges;
   const bool ramp = std::any_of(effects.begin(), effects.end(), [](const FoundEffect& found) {
@@ -297,10 +269,9 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
         {std::string(kTimeRange), 0.0, static_cast<double>(data.grid.longest()) * data.grid.block_s});
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     const FineChannel& channel = data.channels[c];
-    const bool everywhere =
-        channel.period > 0.0 && known_all_round(channel, harmonics_told_apart(data, c), effects);
+    if (channel.period > 0.0) continue;  // an angle, seen all round
     const auto uses = [&](const FoundEffect& found) {
-      if (found.effect.shown_only || everywhere) return false;
+      if (found.effect.shown_only) return false;
       return found.effect.channel == channel.name || found.effect.with_channel == channel.name;
     };
     if (std::any_of(effects.begin(), effects.end(), uses))

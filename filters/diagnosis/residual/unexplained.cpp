@@ -61,6 +61,35 @@ std::size_t measured_of(std::span<const double> energy) {
       std::count_if(energy.begin(), energy.end(), [](double value) { return std::isfinite(value); }));
 }
 
+// By piece, over the median of its minute: where traffic comes and goes, a knock stands out of its own time.
+// A minute of which little was measured has no usual energy of its own. 0 where nothing was measured.
+std::vector<double> over_usual(const std::vector<double>& energy, double piece_s) {
+  const double of_all = usual_of(energy);
+  const auto minute = std::max<std::size_t>(16, static_cast<std::size_t>(60.0 / piece_s));
+  const std::size_t parts = std::max<std::size_t>(1, energy.size() / minute);
+  std::vector<double> over;
+  for (std::size_t p = 0; p < parts; ++p) {
+    const std::size_t from = p * minute;
+    const std::size_t to = p + 1 == parts ? energy.size() : from + minute;
+    const std::span<const double> mine(energy.data() + from, to - from);
+    const double usual = measured_of(mine) >= 16 ? usual_of({mine.begin(), mine.end()}) : of_all;
+    for (const double each : mine) over.push_back(usual > 0.0 && std::isfinite(each) ? each / usual : 0.0);
+  }
+  return over;
+}
+
+// Where more than a tenth of the pieces is above the level of white noise, the strongest hundredth counts, if
+// it is far above the rest. over: 0 where nothing was measured.
+double heavy_level(std::vector<double> over, double level) {
+  std::erase(over, 0.0);
+  const auto count = static_cast<std::size_t>(
+      std::count_if(over.begin(), over.end(), [&](double value) { return value >= level; }));
+  if (count * 10 < over.size()) return level;
+  const auto at = over.begin() + static_cast<std::ptrdiff_t>(over.size() - over.size() / 100 - 1);
+  std::nth_element(over.begin(), at, over.end());
+  return *at > 5.0 * level ? *at : level;
+}
+
 struct SlowRest {
   double over_s = 0.0;  // length of the means that show it best; 0: nothing slow
   double share = 0.0;   // of their variance that neighbours do not see
@@ -101,16 +130,20 @@ void describe_peak(const SpectralLine& peak, Unexplained& found) {
 // energy: of pieces of so many samples. False when there are none, or so many that they are the noise.
 bool describe_bursts(const std::vector<double>& energy, std::size_t piece, double start_s, double period_s,
                      Unexplained& found) {
-  const double level = burst_level(piece, energy.size()) * usual_of(energy);
-  std::size_t bursts = 0, strongest = 0;
+  const std::vector<double> over = over_usual(energy, static_cast<double>(piece) * period_s);
+  const std::size_t measured = measured_of(energy);
+  const double level = heavy_level(over, burst_level(piece, energy.size()));
+  std::size_t bursts = 0;
+  std::size_t strongest = 0;
   std::vector<double> times;
   const auto time_of = [&](std::size_t i) { return start_s + static_cast<double>(i * piece) * period_s; };
-  for (std::size_t i = 0; i < energy.size(); ++i) {
-    if (!(energy[i] >= level)) continue;
-    if (bursts++ == 0 || energy[i] > energy[strongest]) strongest = i;
+  for (std::size_t i = 0; i < over.size(); ++i) {
+    if (over[i] < level) continue;
+    ++bursts;
+    if (over[i] > over[strongest]) strongest = i;
     if (times.empty() || time_of(i) - times.back() > 2.0) times.push_back(time_of(i));
   }
-  if (bursts == 0 || bursts * 10 >= measured_of(energy)) return false;
+  if (bursts == 0 || bursts * 10 >= measured) return false;
   found.kind = "bursts";
   found.hint = printed(
       "%zu bursts, the first at %s s, the strongest at %s s: knocks, radio keying or supply dips. "

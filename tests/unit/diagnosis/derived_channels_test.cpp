@@ -68,27 +68,6 @@ TEST(DerivedChannels, AnAngleIsToldByItsUnitAndItsWraps) {
   EXPECT_EQ(angle_period("tilt_rad", tilt), 0.0) << "a part of a turn";
 }
 
-// A table that swings to one side of where its angle wraps.
-TEST(DerivedChannels, AnAngleThatDoesNotComeRoundIsToldByTheReference) {
-  Columns c = columns(5000);
-  for (double& rate : c.reference) rate *= 0.03;
-  std::vector<double> angle;
-  for (const double a : c.angle) angle.push_back(kTurn - 1e-3 - 0.03 * a);  // the other way round
-  angle[1000] = 1e30;
-  angle[1001] = std::nan("");
-  ASSERT_EQ(angle_period("table_rad", angle), 0.0) << "0.15 of a turn";
-  const Record record = record_of(c, angle);
-  EXPECT_DOUBLE_EQ(angle_period_by_reference("table_rad", record), kTurn);
-  EXPECT_EQ(with_unwrapped_angles({record}).records[0].channels[3].period, kTurn);
-  EXPECT_EQ(angle_period_by_reference("supply_V", record), 0.0) << "no unit of an angle";
-  for (double& a : angle) a *= 360.0 / kTurn;
-  EXPECT_EQ(angle_period_by_reference("table_rad", record_of(c, angle)), 0.0) << "not by its own unit";
-  EXPECT_EQ(angle_period_by_reference("table_rad", record_of(c, c.turned)), 0.0) << "goes another way";
-  Record still = record_of(c, c.angle);
-  still.reference_radps = {};
-  EXPECT_EQ(angle_period_by_reference("table_rad", still), 0.0) << "without a reference nothing tells";
-}
-
 TEST(DerivedChannels, UnwrappedItIsTheAngleTurned) {
   const Columns c = columns(5000);
   std::vector<double> inside = wrapped(c.angle, kTurn);

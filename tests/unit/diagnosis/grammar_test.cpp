@@ -252,31 +252,6 @@ TEST(Grammar, OnceATurnIsTracedToTheTablesAngle) {
   EXPECT_TRUE(found.ranges.empty()) << "an angle leaves no range";
 }
 
-// A quarter of a turn, in unlike swings, through the place where the angle wraps. A late reference would do
-// much the same.
-TEST(Grammar, OnceATurnIsSeenOverAnArc) {
-  Sensor s(9);
-  const auto turned = [](double t) {
-    return 6.2 + 0.45 * std::sin(2.0 * M_PI * t / 210.0) + 0.33 * std::sin(2.0 * M_PI * t / 83.0);
-  };
-  once_a_turn(s, turned, 4e-6, -3e-6);
-  const Diagnosis found = diagnosed(s.record());
-  EXPECT_EQ(found.effects.size(), 2U) << all_in_words(found);
-  expect_coefficient(effect_of(found, "cosine", "table_rad"), 4e-6);
-  expect_coefficient(effect_of(found, "sine", "table_rad"), -3e-6);
-  EXPECT_TRUE(found.ranges.empty()) << "known so well, it goes on round the circle";
-}
-
-// A tenth of a turn, back and forth: whatever follows the angle there says nothing of the rest of the circle.
-TEST(Grammar, OfAnArcNothingIsSaidOfTheTurn) {
-  Sensor s(9);
-  once_a_turn(
-      s, [](double t) { return 6.0 + 0.318 * std::sin(2.0 * M_PI * t / 200.0); }, 4e-6, 0.0);
-  const Diagnosis found = diagnosed(s.record());
-  EXPECT_EQ(effect_of(found, "cosine", "table_rad"), nullptr) << all_in_words(found);
-  EXPECT_EQ(effect_of(found, "sine", "table_rad"), nullptr) << all_in_words(found);
-}
-
 TEST(Grammar, ATurningPointFarFromTheReferenceIsALineAndAParabola) {
   Sensor s(10);
   const auto temperature = [](double t) { return -5.0 + 4.0 * std::sin(2.0 * M_PI * t / 610.0); };
