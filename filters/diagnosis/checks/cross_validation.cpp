@@ -196,7 +196,6 @@ bool predicts_held_out(const BlockData& data, const Claimed& claimed) {
   Eigen::VectorXd x = white.col(last);
   others.take_out_of(y);
   others.take_out_of(x);
-  constexpr int kFolds = 4;
   const std::vector<int> fold = folds_of(data.grid, kFolds);
   std::array<double, kFolds> xy{};
   std::array<double, kFolds> xx{};

@@ -30,17 +30,13 @@ constexpr double kJump = 8.0;           // usual changes
 constexpr double kPlaceholder = 30.0;   // interquartile ranges from the median
 constexpr std::size_t kFewValues = 5;
 
-// The first i in [from, to) with test(i); `to` if none is. Where it seldom is, without a branch.
+// The first i in [from, to) with test(i); `to` if none is.
 template <typename Test>
 std::size_t first_where(ReadingAhead& ahead, std::size_t from, std::size_t to, const Test& test) {
-  constexpr std::size_t kTogether = 64;
-  for (; from + kTogether <= to; from += kTogether) {
+  for (; from < to; ++from) {
     ahead.at(from);
-    bool any = false;
-    for (std::size_t k = 0; k < kTogether; ++k) any |= test(from + k);
-    if (any) break;
+    if (test(from)) break;
   }
-  while (from < to && !test(from)) ++from;
   return from;
 }
 

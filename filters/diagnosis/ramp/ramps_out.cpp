@@ -80,8 +80,8 @@ std::string too_slow_in_words(const UnbrokenPart& part) {
          printed("%.2g", needed / kDegreePerHour) + " degrees an hour on";
 }
 
-// The phase against k times the angle, piece by piece, to first order: how far it walks, and what that and the
-// noise leave uncertain of k.
+// The phase against k times the angle, piece by piece, to first order: how far it walks, and how uncertain
+// that and the noise leave k.
 struct Phase {
   double walk = 0.0, walk_error = 0.0;  // cycles/sqrt(s)
   double cycles_error = 0.0;            // of k
@@ -115,7 +115,7 @@ Phase phase_of(const UnbrokenPart& part, const RampComb& comb) {
     walk += apart * apart - variance / square[p] - variance / square[p - 1];
   }
   walk /= 2.0 / 3.0 * span_s * static_cast<double>(kPieces - 1) / static_cast<double>(kPieces);
-  // A smaller one than this part of the phase that blurs the table is not told.
+  // A walk below this part of the phase that blurs the table cannot be detected.
   constexpr double kWalkSeen = 0.1;
   const double least = kWalkSeen / (std::numbers::pi * static_cast<double>(angle.size()));
   Phase phase;
@@ -127,8 +127,8 @@ Phase phase_of(const UnbrokenPart& part, const RampComb& comb) {
   return phase;
 }
 
-// One cycle about its mean, twice as fine as the table and between its steps, where straight lines through noise scatter
-// least.
+// One cycle about its mean, twice as fine as the table and between its steps, where straight lines through
+// noise scatter least.
 std::vector<double> cycle_of(const Eigen::VectorXd& angle_rad) {
   const Eigen::Index values = 2 * angle_rad.size();
   Eigen::VectorXd cycle(values);

@@ -9,18 +9,24 @@
 namespace ifog {
 namespace {
 
+// Of the variance of the errors, what a part of it by record and sample explains.
+template <class PartOf>
+double share_of(const std::vector<EvenError>& errors, const PartOf& part_of) {
+  double explained = 0.0, total = 0.0;
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    explained += variance_of(part_of(r));
+    total += variance_of(errors[r].before);
+  }
+  return total > 0.0 ? std::min(1.0, explained / total) : 0.0;
+}
+
 FoundEffect ramp_effect(const RampFit& ramp, const std::vector<EvenError>& errors) {
   FoundEffect found;
   found.effect = ramp.effect;
   found.p_value = ramp.p_value;
   found.likelihood_ratio = ramp.ratio;
-  double explained = 0.0;
-  double total = 0.0;
-  for (std::size_t r = 0; r < errors.size(); ++r) {
-    explained += variance_of(ramp.correction[r]);
-    total += variance_of(errors[r].before);
-  }
-  found.variance_explained = total > 0.0 ? std::min(1.0, explained / total) : 0.0;
+  found.variance_explained =
+      share_of(errors, [&](std::size_t r) -> const Samples& { return ramp.correction[r]; });
   return found;
 }
 
@@ -35,13 +41,7 @@ FoundEffect zone_effect(const FoundZone& of, const std::vector<EvenError>& error
   effect.meaning = meaning_of(effect);
   found.p_value = zone.p_value;
   found.likelihood_ratio = zone.ratio;
-  double explained = 0.0;
-  double total = 0.0;
-  for (std::size_t r = 0; r < errors.size(); ++r) {
-    explained += variance_of(hidden_by(zone, of.rates[r]));
-    total += variance_of(errors[r].before);
-  }
-  found.variance_explained = total > 0.0 ? std::min(1.0, explained / total) : 0.0;
+  found.variance_explained = share_of(errors, [&](std::size_t r) { return hidden_by(zone, of.rates[r]); });
   return found;
 }
 

@@ -17,7 +17,7 @@ constexpr double kWithoutOne = 12.0;  // twice the log-likelihood that all passa
 constexpr double kNearlyWhole = 0.1;  // of a coefficient of -1, and three standard errors
 constexpr std::size_t kWindow = 64;   // samples of the mean that a slow error is taken out by
 
-// A sample whose rate is small.
+// A sample whose rate is small. Its error is what is left about the mean of those around it.
 struct Slow {
   double rate, bend;    // bend: second difference of the rate
   double gain;          // in the square of the error, where the sensor sees nothing of the rate
@@ -38,6 +38,7 @@ std::vector<Slow> slow_samples(const std::vector<EvenError>& errors, const std::
         continue;
       }
       const auto [sum, there] = finite_sum({error.begin() + i - kWindow / 2, kWindow + 1});
+      if (there < 0.5 * kWindow) continue;
       const double left = error[i] - (sum - error[i]) / (there - 1.0);
       found.push_back({rate, bend, -rate * (2.0 * left + rate), rate * left, passage});
     }
@@ -45,8 +46,8 @@ std::vector<Slow> slow_samples(const std::vector<EvenError>& errors, const std::
   return found;
 }
 
-// At rest the error is less the reference's own noise, as if rotation as small as that were not seen: what lies
-// within the noise says nothing.
+// At rest the error is the reference's own noise with its sign changed, as if rotation as small as that were
+// not seen: what lies within the noise says nothing.
 void leave_out_noise(std::vector<Slow>& slow) {
   constexpr double kOwnNoise = 5.0;  // standard deviations
   std::vector<double> bends;

@@ -28,6 +28,12 @@ bool has(const std::vector<Candidate>& model, const Candidate& wanted) {
                      [&](const Candidate& each) { return each.same_shape(wanted); });
 }
 
+// Half a fringe alone is no law: with a free period it stands in for the other half.
+bool swings(const std::vector<Candidate>& model, const Candidate& half) {
+  return std::any_of(model.begin(), model.end(),
+                     [&](const Candidate& each) { return each.swings_with(half); });
+}
+
 std::vector<Candidate> without(std::vector<Candidate> model, std::size_t at) {
   model.erase(model.begin() + static_cast<std::ptrdiff_t>(at));
   return model;
@@ -106,6 +112,7 @@ class EffectSearch {
     const auto n = static_cast<double>(data_.grid.used());
     double sum = 2.0 * noise.log_likelihood;
     for (std::size_t i = first_; i < model.size(); ++i) {
+      if (is_fringe(data_, model[i]) && !swings(model, model[i])) return -1e300;
       const bool law = completes_a_law(model[i], std::span(model).first(i));
       sum -= complexity(model[i]) + (law ? std::log(n) : threshold(model[i]));
     }
@@ -247,7 +254,9 @@ class EffectSearch {
   // Effects chosen early were chosen without the later ones: each one's removal, replacement and shape.
   void revise() {
     for (std::size_t i = first_; i < model_.size() && model_.size() > first_ + 1;) {
-      const std::vector<Candidate> rest = without(model_, i);
+      std::vector<Candidate> rest = without(model_, i);
+      if (is_fringe(data_, model_[i]))
+        std::erase_if(rest, [&](const Candidate& each) { return each.swings_with(model_[i]); });
       const NoiseFit noise = fit_noise(data_.grid, design(data_, rest), noise_.shape);
       if (take({rest, noise, score(rest, noise)})) continue;
       Trial other = best_addition(rest, noise, false);
