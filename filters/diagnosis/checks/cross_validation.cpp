@@ -160,30 +160,10 @@ void subtract_effects(const BlockData& data, const std::vector<Candidate>& effec
 
 namespace {
 
-constexpr double kGradual = 4.0;  // twice the log-likelihood
 // Of a step's size, what the means before and after have to differ by, all of them and the halves farther
 // from it.
 constexpr double kLasting = 0.4;
 constexpr double kLastingFar = 0.25;
-
-// Whether a change spread over some time around the step explains more than the step itself.
-bool gradual(const BlockData& data, const Claimed& claimed) {
-  const BlockGrid& grid = data.grid;
-  const Candidate& step = claimed.model.back();
-  Columns columns = design(data, claimed.model);
-  const double sudden = fit_whitened(grid, claimed.noise.shape, columns).log_likelihood;
-  const BlockRange& record = grid.records[step.record];
-  for (const double share : {0.005, 0.02, 0.06}) {
-    const double width_s = std::max(4.0, share * static_cast<double>(record.size())) * grid.block_s;
-    for (std::size_t b = record.first; b < record.end; ++b) {
-      columns(static_cast<Eigen::Index>(b), columns.cols() - 1) =
-          std::clamp(0.5 + (grid.time_s[b] - step.time_s) / width_s, 0.0, 1.0);
-    }
-    const double spread = fit_whitened(grid, claimed.noise.shape, columns).log_likelihood;
-    if (2.0 * (spread - sudden) > kGradual) return true;
-  }
-  return false;
-}
 
 }  // namespace
 
@@ -216,7 +196,6 @@ bool predicts_held_out(const BlockData& data, const Claimed& claimed) {
 }
 
 bool step_persists(const BlockData& data, const Claimed& claimed) {
-  if (gradual(data, claimed)) return false;
   const BlockGrid& grid = data.grid;
   const Candidate& step = claimed.model.back();
   const Columns columns = design(data, claimed.model);

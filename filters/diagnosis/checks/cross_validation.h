@@ -34,8 +34,7 @@ struct Claimed {
 bool predicts_held_out(const BlockData& data, const Claimed& claimed);
 
 // A knock makes innovations like a step's, and what goes away and comes back those of two. A step is still
-// there later: the means before and after differ by it, whatever other steps there are. And it is sudden: a
-// change spread over a part of the record must not explain more.
+// there later: the means before and after differ by it, whatever other steps there are.
 bool step_persists(const BlockData& data, const Claimed& claimed);
 
 }  // namespace ifog

@@ -44,16 +44,6 @@ bool is_earth_rate(const BlockData& data, const EarthRateOptions& options, const
   return std::abs(coefficient) - kWithin * error <= most && may_be_tilt(data, candidate.channel);
 }
 
-// What a straight line leaves of the Earth's rate, where several headings share one coefficient or tilts are
-// wide, is picked up by powers and products of the same accelerations: no larger than the line itself may be.
-bool is_left_by_the_line(const BlockData& data, const Candidate& candidate, double coefficient) {
-  if (order_of(data, candidate) == 0 || !may_be_tilt(data, candidate.channel)) return false;
-  const FineChannel& channel = data.channels[candidate.channel];
-  const Eigen::VectorXd column = regressors(data, candidate).col(0);
-  const double swing = std::abs(coefficient) * (column.maxCoeff() - column.minCoeff());
-  return swing <= kEarth / gravity_in(channel.name) * (channel.high - channel.low);
-}
-
 }  // namespace
 
 bool may_be_tilt(const BlockData& data, std::size_t channel) {
@@ -96,20 +86,13 @@ double largest_earth_rate(const std::string& channel, const EarthRateOptions& op
 void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, SearchResult& found) {
   const FirstReading reading =
       options.subtract ? FirstReading::kEarthRateSubtracted : FirstReading::kEarthRateShown;
-  bool line = false;
-  for (const bool first : {true, false}) {
-    Eigen::Index at = data.grid.constants();
-    for (std::size_t i = 0; i < found.chosen.size(); ++i) {
-      Candidate& mine = found.chosen[i].candidate;
-      const double coefficient = found.coefficients[at];
-      const double error = std::sqrt(std::max(0.0, found.covariance(at, at)));
-      at += mine.width();
-      if (first ? !is_earth_rate(data, options, mine, coefficient, error)
-                : !line || !is_left_by_the_line(data, mine, coefficient))
-        continue;
-      line |= order_of(data, mine) == 1;
-      mine.first_reading = reading;
-    }
+  Eigen::Index at = data.grid.constants();
+  for (Chosen& chosen : found.chosen) {
+    Candidate& mine = chosen.candidate;
+    const double coefficient = found.coefficients[at];
+    const double error = std::sqrt(std::max(0.0, found.covariance(at, at)));
+    at += mine.width();
+    if (is_earth_rate(data, options, mine, coefficient, error)) mine.first_reading = reading;
   }
 }
 
