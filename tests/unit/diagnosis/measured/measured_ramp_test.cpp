@@ -14,7 +14,7 @@
 #include "filters/diagnosis/diagnose.h"
 #include "filters/effects/compensator.h"
 #include "filters/units/field_units.h"
-#include "tests/unit/diagnosis/by_definition.h"
+#include "tests/unit/diagnosis/measured/by_definition.h"
 
 namespace ifog {
 namespace {
