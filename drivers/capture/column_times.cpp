@@ -111,7 +111,7 @@ int rank_of(const std::string& name, const Words& words) {
 }
 
 std::string time_unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
-  if (place < table.units.size() && time_unit(table.units[place])) return table.units[place];
+  if (time_unit(table.unit_beside(place))) return table.unit_beside(place);
   const std::string named = unit_in_name(table.names[place]);
   if (time_unit(named)) return named;
   if (words.has("sample") && words.has("time") && words.has("fine"))

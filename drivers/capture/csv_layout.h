@@ -64,9 +64,10 @@ std::string other_unit(const CsvColumn& column);
 std::string other_unit(const CsvTime& time);
 // A text that is a unit of anything known here.
 bool is_unit(const std::string& text);
-// The name of a column of which a row below the header says the unit: as it is where it says the same, or the
-// row says none ("-", "1"), "T_degC" or "gyro_x [deg/s]" where it says none; nothing where the two contradict
-// each other.
+// "deg/s" of "[deg/s]" and "(deg/s)".
+std::string without_brackets(const std::string& unit);
+// The name of a column whose unit stands apart: as it is where it says the same, or the unit is "";
+// "T_degC" or "gyro_x [deg/s]" where it says none; nothing where the two contradict each other.
 std::optional<std::string> name_with_unit(const std::string& header, const std::string& unit);
 
 }  // namespace ifog

@@ -245,8 +245,7 @@ class Rows {
     if (std::isnan(since))
       fail_at(path_, line, printable(header_.cells[place].name) + " is missing, expected a time");
     if (!to_[place].range.holds(since + stamps_.absolute(0.0)))
-      fail_at(path_, line,
-              what_no_sensor_measures(header_.cells[place].name, in_quotes(text), to_[place].range));
+      fail_at(path_, line, what_no_sensor_measures(header_.cells[place].name, text, to_[place].range));
     if (rows_ == 0) piece_.decimals = text.find('.') != std::string_view::npos || digits.is_date();
     piece_.rows.time_s.push_back(since);
   }

@@ -92,8 +92,12 @@ class CsvRows {
  public:
   // were_rows: hears of bytes that were.
   using WereRows = std::function<void(std::size_t)>;
-  CsvRows(const std::string& path, const CsvLayout& layout, RowSink& sink, WereRows were_rows)
-      : path_(path), layout_(layout), sink_(sink), were_rows_(std::move(were_rows)) {}
+  CsvRows(const std::string& path, const CsvLayout& layout, RowSink& sink, RowsAre rows, WereRows were_rows)
+      : path_(path),
+        layout_(layout),
+        sink_(sink),
+        has_lines_(rows == RowsAre::lines),
+        were_rows_(std::move(were_rows)) {}
 
   RowNotes read(TextPieces pieces) {
     in_order(pieces, begin(pieces));
@@ -119,6 +123,7 @@ class CsvRows {
   const std::string& path_;
   const CsvLayout& layout_;
   RowSink& sink_;
+  const bool has_lines_;
   const WereRows were_rows_;
   CsvHeader header_;
   RowNotes notes_;
@@ -150,13 +155,14 @@ TextRoom CsvRows::begin(TextPieces& pieces) {
     head += text;
     if (!text.starts_with('#')) plain += text.size();
   }
-  header_ = read_csv_header(head, path_, layout_);
+  header_ = read_csv_header(head, path_, layout_, has_lines_);
   Lines lines(head);
   for (std::string_view line; lines.number() < header_.last_line && lines.next(line);) continue;
-  lines_ = lines.number();
+  lines_ = has_lines_ ? lines.number() : 0;
   piece.assign(lines.rest());
   notes_.comments = std::move(header_.comments);
-  notes_.header_line = header_.last_line;
+  notes_.header_line = lines_;
+  notes_.first_line = lines_ + 1;
   notes_.notices = std::move(header_.notices);
   impossible_.resize(header_.names.size());
   std::vector<FileColumn> columns(header_.names.size());
@@ -252,7 +258,7 @@ void CsvRows::merge(const CsvPiece& piece) {
     const ImpossibleValues& found = piece.impossible[i];
     if (found.count == 0 || header_.cells[i].column >= impossible_.size()) continue;
     ImpossibleValues& all = impossible_[header_.cells[i].column];
-    if (all.count == 0) all = {0, 0, lines_ + found.line, found.first};
+    if (all.count == 0) all = {0, lines_ + found.line, found.first};
     all.count += found.count;
   }
 }
@@ -263,19 +269,20 @@ void CsvRows::finish() {
     notes_.notices.push_back(path_ + ": " + std::to_string(untimed_) + " rows without " +
                              in_quotes(header_.cells[header_.time_place].name) +
                              " are of another sensor and dropped");
-  checks_->finish(impossible_, decimals_, ExactSteps(most_decimals_, unit_s()));
+  checks_->finish(impossible_, decimals_ || header_.time_unit_known, ExactSteps(most_decimals_, unit_s()));
 }
 
 }  // namespace
 
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
-                       std::size_t piece) {
-  return CsvRows(path, layout, sink, [](std::size_t) {}).read(TextPieces(read, piece));
+                       std::size_t piece, RowsAre rows) {
+  return CsvRows(path, layout, sink, rows, [](std::size_t) {}).read(TextPieces(read, piece));
 }
 
 RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink) {
   const ReadBytes read = [&file](char* to, std::size_t most) { return file.read(to, most); };
-  return CsvRows(file.path(), layout, sink, [&file](std::size_t bytes) { file.were_rows(bytes); })
+  return CsvRows(file.path(), layout, sink, RowsAre::lines,
+                 [&file](std::size_t bytes) { file.were_rows(bytes); })
       .read(TextPieces(read, kCsvPiece));
 }
 

@@ -73,10 +73,10 @@ std::size_t RowNotes::line_of_row(std::size_t row) const {
 }
 
 std::size_t RowNotes::line_of_raw_row(std::size_t row) const {
-  if (header_line == 0) return 0;
+  if (first_line == 0) return 0;
   const auto behind = std::upper_bound(skipped.begin(), skipped.end(), row,
                                        [](std::size_t wanted, const Skipped& s) { return wanted < s.row; });
-  return header_line + 1 + row + (behind == skipped.begin() ? 0 : std::prev(behind)->lines);
+  return first_line + row + (behind == skipped.begin() ? 0 : std::prev(behind)->lines);
 }
 
 }  // namespace ifog

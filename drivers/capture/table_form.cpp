@@ -169,23 +169,17 @@ Header header_of(const std::vector<Line>& lines, char separator, const CsvLayout
   return {};
 }
 
-// A row below the names that says their units joins them, where it is one: each cell a text, at least one of
-// them a unit.
-bool join_units(const Line& line, char separator, const std::string& path, std::vector<std::string>& names) {
-  const std::vector<std::string> units = cells_of(without_mark(line.text), separator);
-  if (units.size() != names.size()) return false;
+// The units that a row below the names says, where it is one: each cell a text, at least one of them a unit.
+std::vector<std::string> units_in(const Line& line, char separator, std::size_t names) {
+  std::vector<std::string> units = cells_of(without_mark(line.text), separator);
+  if (units.size() != names) return {};
   const auto value = [&](const std::string& cell) { return cell != "1" && is_value(cell, separator != ','); };
+  for (std::string& unit : units) unit = without_brackets(unit);
   if (std::any_of(units.begin(), units.end(), value) || std::none_of(units.begin(), units.end(), is_unit))
-    return false;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto joined = name_with_unit(names[i], units[i]);
-    if (!joined)
-      fail_at(path, line.number,
-              "the row of units says " + in_quotes(units[i]) + " of " + in_quotes(names[i]) +
-                  ", expected the unit of its name");
-    names[i] = *joined;
-  }
-  return true;
+    return {};
+  for (std::string& unit : units)
+    if (unit == "-" || unit == "1") unit.clear();
+  return units;
 }
 
 std::vector<Line> first_lines(std::string_view text, const std::string& path) {
@@ -296,11 +290,11 @@ TableForm table_form(std::string_view text, const std::string& path, const CsvLa
   const Header header = header_of(lines, form.separator, layout);
   std::size_t first = 0;  // row
   if (header.at) {
-    sample.names = form.as_written = header.names;
+    sample.names = header.names;
     form.header_line = form.last_line = lines[*header.at].number;
     first = *header.at + 1;
-    if (first < lines.size() && join_units(lines[first], form.separator, path, sample.names))
-      form.last_line = lines[first++].number;
+    if (first < lines.size()) sample.units = units_in(lines[first], form.separator, sample.names.size());
+    if (!sample.units.empty()) form.last_line = lines[first++].number;
   } else if (const auto row = first_row(lines, form.separator)) {
     sample.named = false;
     for (std::size_t i = 0; i < row_of(lines[*row].text, form.separator).cells; ++i)
