@@ -113,7 +113,8 @@ std::string unit_of(const TableSample& table, std::size_t place) {
   return angle_unit(last, false, false) ? last : "";
 }
 
-// Three columns as long together as gravity, in m/s² or g, are an accelerometer at rest.
+// Three columns as long together as gravity are an accelerometer at rest: in m/s², g, mg or, of 16 bits and a
+// range of 2, 4, 8 or 16 g, counts.
 bool is_gravity(const TableSample& table, const std::vector<Candidate>& columns) {
   std::vector<double> lengths;
   for (std::size_t row = 0; row < table.cells[columns[0].place].size(); ++row) {
@@ -131,8 +132,10 @@ bool is_gravity(const TableSample& table, const std::vector<Candidate>& columns)
     return lengths[static_cast<std::size_t>(share * static_cast<double>(lengths.size() - 1))];
   };
   const double middle = at(0.5);
+  constexpr std::array<double, 7> kGravities{kGravity_mps2, 1.0, 1000.0, 16384.0, 8192.0, 4096.0, 2048.0};
   return at(0.75) - at(0.25) < 0.05 * middle &&
-         (std::abs(middle / kGravity_mps2 - 1.0) < 0.05 || std::abs(middle - 1.0) < 0.05);
+         std::any_of(kGravities.begin(), kGravities.end(),
+                     [&](double gravity) { return std::abs(middle / gravity - 1.0) < 0.05; });
 }
 
 // p, q and r together are body rates; x, y and z without another word are the axes of a file that holds one

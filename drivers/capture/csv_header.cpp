@@ -192,13 +192,18 @@ class Chooser {
       fail("no rate column among " + listed(names_) +
            ", expected 'rate_radps' or 'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of "
            "these names");
-    fail((form_.sample.named
-              ? ""
-              : "no header line; " +
-                    (names_.size() == 1 ? std::string("its column is #1")
-                                        : "its columns are #1 to #" + std::to_string(names_.size())) +
-                    "; ") +
-         found.why + options_in_words(found));
+    fail(
+        (form_.sample.named
+             ? ""
+             : "no header line; " +
+                   (names_.size() == 1 ? std::string("its column is #1")
+                                       : "its columns are #1 to #" + std::to_string(names_.size())) +
+                   "; ") +
+        found.why + options_in_words(found) +
+        (found.ways.empty()
+             ? "; --column 'rate_x_radps=#2:deg/s' and --time '#1:s' or --sample-rate HZ say which they are, "
+               "with the numbers and units of this file"
+             : ""));
   }
 
   void take_time(CsvTime time) {
@@ -264,9 +269,9 @@ std::string options_in_words(const Readings& readings) {
   return text;
 }
 
-CsvHeader read_csv_header(std::string_view text, const std::string& path, const CsvLayout& layout,
-                          bool has_lines) {
-  return Chooser(table_form(text, path, layout), path, layout, has_lines).choose();
+CsvHeader read_csv_header(std::string_view text, const std::vector<std::string>& given,
+                          const std::string& path, const CsvLayout& layout, bool has_lines) {
+  return Chooser(table_form(text, given, path, layout), path, layout, has_lines).choose();
 }
 
 }  // namespace ifog

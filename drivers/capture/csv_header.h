@@ -45,9 +45,9 @@ struct CsvHeader {
 
 // text: whole lines, the file's beginning with at least its first rows. Throws std::runtime_error with one
 // line: no time, a name twice, a column that is not there, what is ambiguous, with the options that read it.
-// has_lines: a message says in which.
-CsvHeader read_csv_header(std::string_view text, const std::string& path, const CsvLayout& layout,
-                          bool has_lines);
+// given: names that the lines themselves have, where they do. has_lines: a message says in which.
+CsvHeader read_csv_header(std::string_view text, const std::vector<std::string>& given,
+                          const std::string& path, const CsvLayout& layout, bool has_lines);
 
 // What readings of a foreign table say to the user where none of them is taken: the options of each.
 [[nodiscard]] std::string options_in_words(const Readings& readings);

@@ -16,6 +16,7 @@
 
 #include "drivers/capture/csv_header.h"
 #include "drivers/capture/csv_piece.h"
+#include "drivers/capture/line_form.h"
 #include "drivers/capture/name_ending.h"
 #include "drivers/capture/row_checks.h"
 
@@ -59,6 +60,22 @@ class TextPieces {
 
   // False at the end. A line longer than any may be comes out without its end, to be refused.
   bool next(TextRoom& to) {
+    if (!next_as_it_is(to)) return false;
+    if (!std::exchange(begun_, true)) {
+      if (to.text().starts_with("\xEF\xBB\xBF"))
+        to.assign(std::string(to.text().substr(3)));  // the byte-order mark
+      form_ = LineForm(to.text().substr(0, kShowsForm));
+    }
+    if (!form_.is_plain()) to.assign(form_.rows_of(to.text()));
+    return true;
+  }
+  // Of the lines, once the first piece was handed out.
+  [[nodiscard]] const LineForm& form() const { return form_; }
+
+ private:
+  static constexpr std::size_t kShowsForm = 1U << 16U;  // bytes
+
+  bool next_as_it_is(TextRoom& to) {
     // With room for what follows, or the beginning of a line is moved for it.
     to.end_at(0);
     (void)to.behind(tail_.size() + piece_);
@@ -81,11 +98,11 @@ class TextPieces {
     return !to.text().empty();
   }
 
- private:
   const ReadBytes& read_;
   std::size_t piece_;
   std::string tail_;
-  bool ended_ = false;
+  LineForm form_;
+  bool begun_ = false, ended_ = false;
 };
 
 class CsvRows {
@@ -147,15 +164,14 @@ TextRoom CsvRows::begin(TextPieces& pieces) {
   std::size_t plain = 0;
   TextRoom piece;
   while (plain < kHead && pieces.next(piece)) {
-    std::string_view text = piece.text();
+    const std::string_view text = piece.text();
     if (head.empty() && begins_as_utf16(text))
       throw std::runtime_error(path_ +
                                ": is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
-    if (head.empty() && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte-order mark
     head += text;
     if (!text.starts_with('#')) plain += text.size();
   }
-  header_ = read_csv_header(head, path_, layout_, has_lines_);
+  header_ = read_csv_header(head, pieces.form().names(), path_, layout_, has_lines_);
   Lines lines(head);
   for (std::string_view line; lines.number() < header_.last_line && lines.next(line);) continue;
   lines_ = has_lines_ ? lines.number() : 0;

@@ -45,6 +45,8 @@ struct TableForm {
 // for. A header that begins with time_s is that of a capture, and the first such line is it; so is the first
 // line that has all the names which the layout asks for. Else the header is the line above the first rows of
 // as many cells, mostly numbers.
-TableForm table_form(std::string_view text, const std::string& path, const CsvLayout& layout);
+// given: the names of the columns where the lines themselves have them; then there is no header.
+TableForm table_form(std::string_view text, const std::vector<std::string>& given, const std::string& path,
+                     const CsvLayout& layout);
 
 }  // namespace ifog

@@ -116,8 +116,9 @@ std::string one_line(std::string text) {
 
 std::string as_cell(const std::string& name) {
   if (name.find_first_of(",\"\n\r") != std::string::npos || name.front() == ' ' || name.back() == ' ')
-    throw std::runtime_error("a dataset is called " + in_quotes(name) +
-                             ", expected a name as a CSV file's header has it, without comma, quote or line end");
+    throw std::runtime_error(
+        "a dataset is called " + in_quotes(name) +
+        ", expected a name as a CSV file's header has it, without comma, quote or line end");
   return name;
 }
 

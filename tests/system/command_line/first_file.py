@@ -122,6 +122,20 @@ class Checks:
                                      *self.rows(lambda i, x, y, z: (f"{1727992974 + i / RATE_HZ:.6f}", 5000 * i, 0, x * RAD, y * RAD, z * RAD, 9.8, 0, 40, 1))])
         self.reads("rates.csv", ["time_s,p,q,r", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, y, z))], unasked=False)
 
+    def check_lines_as_sketches_print_them(self):
+        """Names before the values, a terminal's time before the line or above it; what else is printed is passed over."""
+        self.reads("colon.txt", self.rows(lambda i, x, y, z: (f"gx:{x} gy:{y} gz:{z}",)), hz=RATE_HZ, says=("--sample-rate HZ",))
+        self.reads("equals.log", ["\x1b[0;32mI (24) boot: 0x68 found\x1b[0m", *self.rows(lambda i, x, y, z: (f"RAW 0x68: acc=(1, 2, -9) gyro=({x}, {y}, {z}) T=25.5",))], hz=RATE_HZ)
+        self.reads("json_lines.txt", self.rows(lambda i, x, y, z: (f'{{"time": {i / RATE_HZ}, "gyro_x_dps": {x}, "gyro_y_dps": {y}, "gyro_z_dps": {z}}}',)), unasked=True)
+
+        def at(i):
+            return (datetime.datetime(2026, 11, 27, 11, 59, 50) + datetime.timedelta(seconds=i / RATE_HZ)).strftime("%H:%M:%S.%f")[:-3]
+        self.reads("monitor.txt", [f"{at(0)} -> gyro_x_dps,gyro_y_dps,gyro_z_dps", *self.rows(lambda i, x, y, z: (f"{at(i)} -> {x},{y},{z}",))], unasked=True)
+        self.reads("seconds.txt", ["11:59:49 -> MPU-6050 ready", *self.rows(lambda i, x, y, z: (f"{at(i)[:8]} -> {x}\t{y}\t{z}",))], says=("no header line",))
+        self.reads("between.txt", [line for i, row in enumerate(self.rows(lambda i, x, y, z: (x, y, z), "  "))
+                                   for line in ([f"2026-11-27   {at(i)[:8]}"] if i % RATE_HZ == 0 else []) + [row]], says=("no header line",))
+        self.reads("other_separator.txt", ["A_Z [mg] G_X [dps] G_Y [dps] G_Z [dps] ", *self.rows(lambda i, x, y, z: (1000, x, y, z), "\t")], hz=RATE_HZ, says=("G_X [dps]",))
+
     def check_dates_as_people_write_them(self):
         """Spreadsheets in German and American, MATLAB, a maker's program; each begins just before noon."""
         def rows(stamp):
