@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "drivers/capture/candump.h"
-#include "drivers/capture/text_lines.h"
+#include "drivers/capture/text_pieces.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -126,13 +126,20 @@ std::string first_interface(std::string_view beginning,
 
 CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink) {
   Frames frames(file.path(), interface, times_are_differences(file.head()));
-  TextLines lines(file);
-  std::string_view line;
-  for (bool ended = false; lines.next(line, ended);) {
-    const Frames::Is is = frames.take(line, ended);
-    if (is == Frames::Is::end) break;
-    if (is == Frames::Is::frame) sink(frames.entry().frame, frames.entry().interface);
-  }
+  constexpr std::size_t kPiece = std::size_t{1} << 18U;  // bytes
+  TextPieces pieces([&file](char* to, std::size_t most) { return file.read(to, most); }, kPiece);
+  std::size_t number = 0;
+  for (TextRoom room; pieces.next(room);)
+    for (std::string_view text = room.text(); !text.empty();) {
+      const std::size_t end = std::min(text.find('\n'), text.size());
+      const bool ended = end < text.size();
+      ++number;
+      if (end > kLongestLine) refuse_long_line(file.path(), number, text.substr(0, end));
+      const Frames::Is is = frames.take(text.substr(0, end), ended);
+      if (is == Frames::Is::end) return frames.losses();
+      if (is == Frames::Is::frame) sink(frames.entry().frame, frames.entry().interface);
+      text.remove_prefix(end + (ended ? 1 : 0));
+    }
   return frames.losses();
 }
 

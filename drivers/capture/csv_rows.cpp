@@ -2,11 +2,9 @@
 #include "drivers/capture/csv_rows.h"
 
 #include <algorithm>
-#include <cstring>
 #include <deque>
 #include <functional>
 #include <future>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -19,48 +17,20 @@
 #include "drivers/capture/line_form.h"
 #include "drivers/capture/name_ending.h"
 #include "drivers/capture/row_checks.h"
+#include "drivers/capture/text_pieces.h"
 
 namespace ifog {
 namespace {
 
 constexpr std::size_t kWorthAThread = std::size_t{1} << 17U;  // bytes
 
-// Bytes of a text in memory that is used again for the next: nothing is written there but what is read.
-class TextRoom {
+// Pieces of a text whose lines are rows of cells, or become such.
+class CsvText {
  public:
-  [[nodiscard]] std::string_view text() const { return {room_.get(), size_}; }
-  // Room for so many behind the text, of which took() says how many there are now.
-  [[nodiscard]] char* behind(std::size_t most) {
-    if (size_ + most > capacity_) {
-      capacity_ = std::max(size_ + most, capacity_ + capacity_ / 2);
-      auto larger = std::make_unique_for_overwrite<char[]>(capacity_);
-      if (size_ > 0) std::memcpy(larger.get(), room_.get(), size_);
-      room_ = std::move(larger);
-    }
-    return room_.get() + size_;
-  }
-  void took(std::size_t bytes) { size_ += bytes; }
-  void assign(std::string_view text) {
-    size_ = 0;
-    if (!text.empty()) std::memcpy(behind(text.size()), text.data(), text.size());
-    size_ = text.size();
-  }
-  void end_at(std::size_t size) { size_ = size; }
+  CsvText(const ReadBytes& read, std::size_t piece) : pieces_(read, piece) {}
 
- private:
-  std::unique_ptr<char[]> room_;
-  std::size_t capacity_ = 0, size_ = 0;
-};
-
-// A text cut behind lines.
-class TextPieces {
- public:
-  TextPieces(const ReadBytes& read, std::size_t piece)
-      : read_(read), piece_(std::max<std::size_t>(1, piece)) {}
-
-  // False at the end. A line longer than any may be comes out without its end, to be refused.
   bool next(TextRoom& to) {
-    if (!next_as_it_is(to)) return false;
+    if (!pieces_.next(to)) return false;
     if (!std::exchange(begun_, true)) {
       if (to.text().starts_with("\xEF\xBB\xBF"))
         to.assign(std::string(to.text().substr(3)));  // the byte-order mark
@@ -75,34 +45,9 @@ class TextPieces {
  private:
   static constexpr std::size_t kShowsForm = 1U << 16U;  // bytes
 
-  bool next_as_it_is(TextRoom& to) {
-    // With room for what follows, or the beginning of a line is moved for it.
-    to.end_at(0);
-    (void)to.behind(tail_.size() + piece_);
-    to.assign(tail_);
-    tail_.clear();
-    while (!ended_) {
-      const std::size_t before = to.text().size();
-      const std::size_t n = read_(to.behind(piece_), piece_);
-      to.took(n);
-      ended_ = n < piece_;
-      const std::size_t last = to.text().rfind('\n');
-      if (last == std::string_view::npos || last < before) {
-        if (to.text().size() > kLongestLine) return true;
-        continue;
-      }
-      tail_ = to.text().substr(last + 1);
-      to.end_at(last + 1);
-      return true;
-    }
-    return !to.text().empty();
-  }
-
-  const ReadBytes& read_;
-  std::size_t piece_;
-  std::string tail_;
+  TextPieces pieces_;
   LineForm form_;
-  bool begun_ = false, ended_ = false;
+  bool begun_ = false;
 };
 
 class CsvRows {
@@ -116,7 +61,7 @@ class CsvRows {
         has_lines_(rows == RowsAre::lines),
         were_rows_(std::move(were_rows)) {}
 
-  RowNotes read(TextPieces pieces) {
+  RowNotes read(CsvText pieces) {
     in_order(pieces, begin(pieces));
     finish();
     return std::move(notes_);
@@ -129,8 +74,8 @@ class CsvRows {
     std::future<std::optional<CsvPiece>> parsed;  // nothing: refused, with lines counted from its own first
   };
 
-  TextRoom begin(TextPieces& pieces);
-  void in_order(TextPieces& pieces, TextRoom text);
+  TextRoom begin(CsvText& pieces);
+  void in_order(CsvText& pieces, TextRoom text);
   [[nodiscard]] std::future<std::optional<CsvPiece>> parse(Piece& piece);
   void deliver(Piece& piece);
   void merge(const CsvPiece& piece);
@@ -157,7 +102,7 @@ class CsvRows {
 };
 
 // What follows the header.
-TextRoom CsvRows::begin(TextPieces& pieces) {
+TextRoom CsvRows::begin(CsvText& pieces) {
   constexpr std::size_t kHead = std::size_t{256}
                                 << 10U;  // bytes of lines that are no comments, to find the table in
   std::string head;
@@ -192,7 +137,7 @@ TextRoom CsvRows::begin(TextPieces& pieces) {
   return piece;
 }
 
-void CsvRows::in_order(TextPieces& pieces, TextRoom text) {
+void CsvRows::in_order(CsvText& pieces, TextRoom text) {
   // Each holds its text and its numbers. One more than there are processors, so that none waits while this
   // thread hands over.
   const std::size_t at_once = std::clamp(std::thread::hardware_concurrency() + 1, 2U, 8U);
@@ -292,14 +237,14 @@ void CsvRows::finish() {
 
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
                        std::size_t piece, RowsAre rows) {
-  return CsvRows(path, layout, sink, rows, [](std::size_t) {}).read(TextPieces(read, piece));
+  return CsvRows(path, layout, sink, rows, [](std::size_t) {}).read(CsvText(read, piece));
 }
 
 RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink) {
   const ReadBytes read = [&file](char* to, std::size_t most) { return file.read(to, most); };
   return CsvRows(file.path(), layout, sink, RowsAre::lines,
                  [&file](std::size_t bytes) { file.were_rows(bytes); })
-      .read(TextPieces(read, kCsvPiece));
+      .read(CsvText(read, kCsvPiece));
 }
 
 }  // namespace ifog

@@ -4,17 +4,14 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <string>
 
 #include "drivers/capture/csv_layout.h"
 #include "drivers/capture/input_file.h"
 #include "drivers/capture/row_sink.h"
+#include "drivers/capture/text_pieces.h"
 
 namespace ifog {
-
-// Up to `most` further bytes, fewer only at the end, 0 there, as InputFile::read.
-using ReadBytes = std::function<std::size_t(char* to, std::size_t most)>;
 
 inline constexpr std::size_t kCsvPiece = std::size_t{4} << 20U;  // bytes of text, some ten thousand rows
 

@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::string_view kArrow = " -> ";
 constexpr const char* kStampName = "stamp_time";
-constexpr std::size_t kAlike = 3;         // lines of one form, in the file's beginning
+constexpr std::size_t kAlike = 3;          // lines of one form, in the file's beginning
 constexpr std::size_t kMostLooked = 1000;  // lines
 
 bool is_decimal(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
