@@ -18,7 +18,8 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kMostWays = 4;  // more than a message can show
+constexpr std::size_t kMostWays = 4;    // more than a message can show
+constexpr std::size_t kMostShown = 16;  // columns, likewise
 constexpr double kGravity_mps2 = 9.80665;
 
 // A column that may be a rate.
@@ -264,7 +265,10 @@ Reading reading_by(const TableSample& table, const CsvLayout& asked, const std::
   for (const Candidate& rate : rates) {
     way.layout.columns.push_back({capture_name(rate), table.names[rate.place], rate.unit});
   }
+  const std::size_t rates_only = way.layout.columns.size();
   add_others(table, rates, way.layout.columns);
+  // More than a line can show is left to who asks for it.
+  if (way.layout.columns.size() > kMostShown) way.layout.columns.resize(rates_only);
   for (const CsvColumn& column : way.layout.columns) add(option_for(column, column.unit));
   return way;
 }

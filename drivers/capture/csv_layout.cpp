@@ -60,6 +60,11 @@ CsvColumn CsvColumn::parse(const std::string& text) {
   CsvColumn out;
   out.name = text.substr(0, equals);
   std::tie(out.header, out.unit) = header_and_unit(text.substr(equals + 1));
+  const auto [end, error] = std::from_chars(out.unit.data(), out.unit.data() + out.unit.size(), out.scale);
+  if (error == std::errc() && out.scale != 0.0 && std::isfinite(out.scale))
+    out.unit.erase(0, static_cast<std::size_t>(end - out.unit.data()));
+  else
+    out.scale = 1.0;
   const std::string wanted = unit_of_name(out.name);
   if (out.name == "time_s") refuse(text, "another name; --time says which column is the time");
   if (wanted.empty() || out.header.empty()) refuse(text, form);

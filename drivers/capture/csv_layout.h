@@ -13,9 +13,11 @@ struct CsvColumn {
   std::string name;    // of the capture: rate_x_radps, temperature_degC, …
   std::string header;  // in the file, or "#3": the third column
   std::string unit;    // of its values; "": that of `name`
+  double scale = 1.0;  // units in one, as of "0.00763deg/s", the counts of a converter
 
   // "rate_x_radps=GyroX:deg/s" or "supply_V=Supply". A rate in a unit of angle is an angle, whose differences
-  // become the rate; in one "per sample" (arcsec/sample) the turn within each sample. Throws
+  // become the rate; in one "per sample" (arcsec/sample) the turn within each sample. A number before the unit
+  // is the scale of counts. Throws
   // std::runtime_error with one line: the text and what was expected.
   static CsvColumn parse(const std::string& text);
   [[nodiscard]] bool is_rate() const;

@@ -31,11 +31,7 @@ class CsvText {
 
   bool next(TextRoom& to) {
     if (!pieces_.next(to)) return false;
-    if (!std::exchange(begun_, true)) {
-      if (to.text().starts_with("\xEF\xBB\xBF"))
-        to.assign(std::string(to.text().substr(3)));  // the byte-order mark
-      form_ = LineForm(to.text().substr(0, kShowsForm));
-    }
+    if (!std::exchange(begun_, true)) begin(to);
     if (!form_.is_plain()) to.assign(form_.rows_of(to.text()));
     return true;
   }
@@ -44,6 +40,15 @@ class CsvText {
 
  private:
   static constexpr std::size_t kShowsForm = 1U << 16U;  // bytes
+
+  // However the text is cut, the same of it shows the form.
+  void begin(TextRoom& to) {
+    std::string first(to.text());
+    while (first.size() < kShowsForm && pieces_.next(to)) first += to.text();
+    if (first.starts_with("\xEF\xBB\xBF")) first.erase(0, 3);  // the byte-order mark
+    form_ = LineForm(std::string_view(first).substr(0, kShowsForm));
+    to.assign(first);
+  }
 
   TextPieces pieces_;
   LineForm form_;

@@ -105,9 +105,11 @@ void RowChecks::tell_impossible(const FileColumn& column, const ImpossibleValues
   const bool few =
       found.count == 1 || static_cast<double>(found.count) <= kMostImpossible * static_cast<double>(rows_);
   if (column.rate && (rows_ == 1 || !few))
-    fail_at(
-        path_, found.line,
-        what + (found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its cells" : ""));
+    fail_at(path_, found.line,
+            what +
+                (found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its cells" : "") +
+                "; counts are read by their scale: --column 'rate_x_radps=" + printable(column.name) +
+                ":0.00763deg/s'");
   notes_.faults.push_back(at(path_, found.line) + what + taken_for_missing(found.count));
 }
 

@@ -96,6 +96,15 @@ class Checks:
         self.reads("bias.csv", ["Date,Time (s),gyro_range_dps,gyro_bias_x_dps,gyro_x_dps,gyro_temp_degC",
                                 *self.rows(lambda i, x, y, z: ("2026-05-01", i / RATE_HZ, 250, 0.3, x, 24))], axes="x", unasked=True)
 
+    def check_counts_are_read_by_their_scale(self):
+        path = self.file("counts.csv", ["t_ms,GyX,GyY,GyZ", *self.rows(lambda i, x, y, z: (5 * i, *(round(v * 13100) for v in (x, y, z))))])
+        scale = ["--time", "t_ms:ms", *(word for a in "xyz" for word in ("--column", f"rate_{a}_radps=Gy{a.upper()}:{1 / 13100}deg/s"))]
+        densities, said = typed(path, *scale)
+        assert densities and all(abs(densities[a] / N - 1) < 0.05 for a in "xyz"), (densities, said)
+        loud = self.file("loud.csv", ["t_ms,GyX", *self.rows(lambda i, x, y, z: (5 * i, round(x * 131000)))])
+        said = typed(loud, "--time", "t_ms:ms", "--column", "rate_x_radps=GyX:rad/s")[1]
+        assert "counts are read by their scale: --column 'rate_x_radps=GyX:0.00763deg/s'" in said, said
+
     def check_what_has_a_preamble(self):
         self.reads("maker.txt", ["// General information:", "//  Version: 2022.2.0", "//  Filter Profile: human(46.1)",
                                  "PacketCounter\tSampleTimeFine\tAcc_X\tGyr_X\tGyr_Y\tGyr_Z",
