@@ -275,37 +275,22 @@ Reading reading_by(const TableSample& table, const CsvLayout& asked, const std::
 
 // A reading for each unit that may be meant, where names and values do not tell: what is printed is what can
 // be typed.
-template <typename Item, typename Units>
-std::vector<Item> in_every_unit(const Item& item, bool known, const Units& units,
-                                void (*set)(Item&, std::string_view)) {
-  if (known) return {item};
-  std::vector<Item> all;
-  for (const std::string_view unit : units) {
-    all.push_back(item);
-    set(all.back(), unit);
-  }
+std::vector<Rates> in_every_unit(const Rates& rates) {
+  if (std::none_of(rates.begin(), rates.end(), [](const Candidate& rate) { return rate.unit.empty(); }))
+    return {rates};
+  std::vector<Rates> all;
+  for (const char* angle : {"rad", "deg"})
+    for (Candidate& rate : all.emplace_back(rates))
+      if (rate.unit.empty()) rate.unit = std::string(angle) + (rate.increment ? "/sample" : "/s");
   return all;
 }
 
-using Rates = std::vector<Candidate>;
-std::vector<Rates> in_every_unit(const Rates& rates) {
-  const bool known =
-      std::all_of(rates.begin(), rates.end(), [](const Candidate& rate) { return !rate.unit.empty(); });
-  return in_every_unit<Rates>(rates, known, std::array<std::string_view, 2>{"rad", "deg"},
-                              [](Rates& all, std::string_view angle) {
-                                for (Candidate& rate : all)
-                                  if (rate.unit.empty())
-                                    rate.unit = std::string(angle) + (rate.increment ? "/sample" : "/s");
-                              });
-}
-
 std::vector<TimeCandidate> in_every_unit(const TimeCandidate& time) {
-  return in_every_unit<TimeCandidate>(time, !time.unit.empty(),
-                                      std::array<std::string_view, 4>{"s", "ms", "us", "ns"},
-                                      [](TimeCandidate& one, std::string_view unit) {
-                                        one.unit = unit;
-                                        one.time = CsvTime::parse(one.time.header + ":" + one.unit);
-                                      });
+  if (!time.unit.empty()) return {time};
+  std::vector<TimeCandidate> all;
+  for (const char* unit : {"s", "ms", "us", "ns"})
+    all.push_back({CsvTime::parse(time.time.header + ":" + unit), unit});
+  return all;
 }
 
 // Columns that have no names, behind those of the time: one of numbers is the rate, each three may be its

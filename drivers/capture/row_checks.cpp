@@ -104,12 +104,14 @@ void RowChecks::tell_impossible(const FileColumn& column, const ImpossibleValues
   const std::string what = what_no_sensor_measures(column.name, found.first, column.range);
   const bool few =
       found.count == 1 || static_cast<double>(found.count) <= kMostImpossible * static_cast<double>(rows_);
-  if (column.rate && (rows_ == 1 || !few))
-    fail_at(path_, found.line,
-            what +
-                (found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its cells" : "") +
-                "; counts are read by their scale: --column 'rate_x_radps=" + printable(column.name) +
-                ":0.00763deg/s'");
+  if (column.rate && (rows_ == 1 || !few)) {
+    std::string more =
+        found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its cells" : "";
+    if (found.first.find_first_not_of("+-0123456789") == std::string::npos)
+      more += "; counts are read by their scale: --column 'rate_x_radps=" + printable(column.name) +
+              ":0.00763deg/s'";
+    fail_at(path_, found.line, what + more);
+  }
   notes_.faults.push_back(at(path_, found.line) + what + taken_for_missing(found.count));
 }
 

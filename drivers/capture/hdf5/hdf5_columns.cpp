@@ -68,29 +68,6 @@ Hdf5Id one_member(const std::string& name, hid_t number) {
   return one;
 }
 
-// "gyro" of the matrix's column "gyro[1]".
-std::string without_index(const std::string& name) {
-  const std::size_t open = name.rfind('[');
-  return open != std::string::npos && name.back() == ']' ? name.substr(0, open) : name;
-}
-
-// The columns that are asked for; "sec+nsec" is two where no column is called so.
-template <typename Has>
-std::vector<std::string> asked_for(const std::vector<std::string>& names, Has has) {
-  std::vector<std::string> out;
-  const auto add = [&](const std::string& name) {
-    if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
-  };
-  for (const std::string& name : names) {
-    std::size_t plus = has(name) ? std::string::npos : name.find('+');
-    while (plus != std::string::npos && !(has(name.substr(0, plus)) && has(name.substr(plus + 1))))
-      plus = name.find('+', plus + 1);
-    add(name.substr(0, plus));
-    if (plus != std::string::npos) add(name.substr(plus + 1));
-  }
-  return out;
-}
-
 }  // namespace
 
 Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
