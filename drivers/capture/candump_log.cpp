@@ -126,8 +126,7 @@ std::string first_interface(std::string_view beginning,
 
 CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink) {
   Frames frames(file.path(), interface, times_are_differences(file.head()));
-  constexpr std::size_t kPiece = std::size_t{1} << 18U;  // bytes
-  TextPieces pieces([&file](char* to, std::size_t most) { return file.read(to, most); }, kPiece);
+  TextPieces pieces([&file](char* to, std::size_t most) { return file.read(to, most); });
   std::size_t number = 0;
   for (TextRoom room; pieces.next(room);)
     for (std::string_view text = room.text(); !text.empty();) {

@@ -23,6 +23,8 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kWorthAThread = std::size_t{1} << 17U;  // bytes
+// Bytes of lines that are no comments, to find the table and the form of its lines in.
+constexpr std::size_t kHead = std::size_t{256} << 10U;
 
 // Pieces of a text whose lines are rows of cells, or become such.
 class CsvText {
@@ -39,14 +41,12 @@ class CsvText {
   [[nodiscard]] const LineForm& form() const { return form_; }
 
  private:
-  static constexpr std::size_t kShowsForm = 1U << 16U;  // bytes
-
   // However the text is cut, the same of it shows the form.
   void begin(TextRoom& to) {
     std::string first(to.text());
-    while (first.size() < kShowsForm && pieces_.next(to)) first += to.text();
+    while (first.size() < kHead && pieces_.next(to)) first += to.text();
     if (first.starts_with("\xEF\xBB\xBF")) first.erase(0, 3);  // the byte-order mark
-    form_ = LineForm(std::string_view(first).substr(0, kShowsForm));
+    form_ = LineForm(std::string_view(first).substr(0, kHead));
     to.assign(first);
   }
 
@@ -108,8 +108,6 @@ class CsvRows {
 
 // What follows the header.
 TextRoom CsvRows::begin(CsvText& pieces) {
-  constexpr std::size_t kHead = std::size_t{256}
-                                << 10U;  // bytes of lines that are no comments, to find the table in
   std::string head;
   std::size_t plain = 0;
   TextRoom piece;
@@ -249,7 +247,7 @@ RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink) 
   const ReadBytes read = [&file](char* to, std::size_t most) { return file.read(to, most); };
   return CsvRows(file.path(), layout, sink, RowsAre::lines,
                  [&file](std::size_t bytes) { file.were_rows(bytes); })
-      .read(CsvText(read, kCsvPiece));
+      .read(CsvText(read, kTextPiece));
 }
 
 }  // namespace ifog

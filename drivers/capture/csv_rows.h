@@ -13,8 +13,6 @@
 
 namespace ifog {
 
-inline constexpr std::size_t kCsvPiece = std::size_t{4} << 20U;  // bytes of text, some ten thousand rows
-
 // What the number in a message about a row is: its line, or of a format that has none, counted from 1, the row.
 enum class RowsAre { lines, numbered };
 
@@ -22,7 +20,7 @@ enum class RowsAre { lines, numbered };
 // what is wrong further down may be found when rows were taken. An angle that is to become a rate is the one
 // thing that needs all rows at once: then they come as one block. `path` stands for the file in messages.
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
-                       std::size_t piece = kCsvPiece, RowsAre rows = RowsAre::lines);
+                       std::size_t piece = kTextPiece, RowsAre rows = RowsAre::lines);
 // What a file has still to give, which hears how much of it were rows.
 RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink);
 

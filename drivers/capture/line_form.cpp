@@ -13,8 +13,7 @@ namespace {
 
 constexpr std::string_view kArrow = " -> ";
 constexpr const char* kStampName = "stamp_time";
-constexpr std::size_t kAlike = 3;          // lines of one form, in the file's beginning
-constexpr std::size_t kMostLooked = 1000;  // lines
+constexpr std::size_t kAlike = 3;  // lines of one form, in the file's beginning
 
 bool is_decimal(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_alphabetic(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
@@ -113,7 +112,7 @@ LineForm::LineForm(std::string_view beginning) {
   Lines lines(beginning);
   std::size_t before = 0, alone = 0, looked = 0, alike = 0;
   std::vector<std::string> labels;
-  for (std::string_view line; looked < kMostLooked && lines.next(line);) {
+  for (std::string_view line; lines.next(line);) {
     if (trimmed(line).empty()) continue;
     ++looked;
     if (const std::string_view stamp = stamp_before(line); !stamp.empty()) {

@@ -28,10 +28,12 @@ class TextRoom {
   std::size_t capacity_ = 0, size_ = 0;
 };
 
+inline constexpr std::size_t kTextPiece = std::size_t{4} << 20U;  // bytes, some ten thousand rows
+
 class TextPieces {
  public:
   // piece: bytes, about so many at once.
-  TextPieces(ReadBytes read, std::size_t piece);
+  explicit TextPieces(ReadBytes read, std::size_t piece = kTextPiece);
 
   // False at the end. Only the last line may have no end, and one longer than any may be, to be refused.
   bool next(TextRoom& to);

@@ -27,7 +27,7 @@ RowNotes read_hdf5_rows(InputFile& file, const std::string& group, const CsvLayo
   ask(layout.only_header);
   Hdf5Text text(file, wanted);
   RowNotes notes = read_csv_rows([&](char* to, std::size_t most) { return text.read(to, most); }, file.path(),
-                                 layout, sink, kCsvPiece, RowsAre::numbered);
+                                 layout, sink, kTextPiece, RowsAre::numbered);
   for (const std::string& notice : text.notices()) notes.notices.push_back(file.path() + ": " + notice);
   return notes;
 }

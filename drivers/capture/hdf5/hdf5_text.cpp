@@ -19,6 +19,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <ratio>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
@@ -141,12 +142,12 @@ char* print(char* at, char* end, std::uint64_t bits, Hdf5Value value) {
   if (value == Hdf5Value::real) return std::to_chars(at, end, std::bit_cast<double>(bits)).ptr;
   if (value == Hdf5Value::natural) return std::to_chars(at, end, bits).ptr;
   if (value == Hdf5Value::whole) return std::to_chars(at, end, whole).ptr;
-  constexpr std::uint64_t kSecond = 1'000'000'000;
   const std::uint64_t ns = whole < 0 ? 0 - bits : bits;
   if (whole < 0) *at++ = '-';
-  at = std::to_chars(at, end, ns / kSecond).ptr;
+  at = std::to_chars(at, end, ns / std::nano::den).ptr;
   char* const point = at;
-  at = std::to_chars(at, end, kSecond + ns % kSecond).ptr;  // a one that becomes the point, and nine digits
+  at = std::to_chars(at, end, std::nano::den + ns % std::nano::den)
+           .ptr;  // a one that becomes the point, and nine digits
   *point = '.';
   return at;
 }
