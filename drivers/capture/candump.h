@@ -17,7 +17,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "drivers/capture/input_file.h"
 #include "drivers/ifog/driver.h"
@@ -55,14 +54,15 @@ inline constexpr std::size_t kCandumpLineMax = 224;
 // holds kCandumpLineMax bytes. Does not allocate.
 std::size_t format_candump_line(const ifog_can_frame& frame, std::string_view interface, char* out) noexcept;
 
-// Turns the times on the lines into increasing times. Lines without one get 0. Short ones are read as times
-// since the first frame until one is smaller than that before, which such times never are: from there on they
-// add up.
+// Turns the times on the lines into increasing times. Lines without one get 0. Short ones are times since the
+// first frame, or differences that add up: from where one is smaller than that before, which times since the
+// first never are.
 class CandumpClock {
  public:
+  CandumpClock() = default;
+  // differences: known from a log's beginning.
+  explicit CandumpClock(bool differences) : differences_(differences) {}
   std::int64_t time_ns(const CandumpEntry& entry) noexcept;
-  // Known from the start, by who has seen the whole log.
-  void assume_differences() noexcept { differences_ = true; }
   [[nodiscard]] bool differences() const { return differences_; }
 
  private:
@@ -70,6 +70,9 @@ class CandumpClock {
   std::int64_t last_stamp_ns_ = 0;
   std::int64_t now_ns_ = 0;
 };
+
+// Whether a log that begins so has differences for times: one is smaller than that before, or all are the same.
+bool times_are_differences(std::string_view beginning) noexcept;
 
 // On which interface each id was seen first: the same id on another is another device's. Of the first 64 ids;
 // names as far as an interface's goes.
@@ -97,24 +100,12 @@ struct CandumpLosses {
   bool cut_off = false;  // the last line has no end and is no whole frame: it was left out
 };
 
-struct Candump : CandumpLosses {
-  std::vector<ifog_can_frame> frames;  // data frames, as in the log; arrival_ns 0 where lines have no time
-  std::vector<std::uint16_t> on;       // of each frame, which of the interfaces
-  std::vector<std::string> interfaces;
-};
-
-// Reads a whole log, plain or gzip, frames of one interface only unless `interface` is empty. Short times are
-// differences if one is smaller than that before or all are the same. Throws std::runtime_error with one
-// line: file, line, what was expected.
-Candump read_candump(const std::string& path, std::string_view interface = {});
-// The same of a text already at hand; `path` stands for the file in messages.
-Candump parse_candump(std::string_view text, const std::string& path, std::string_view interface = {});
-
 // A frame, and the interface on which it was received.
 using CandumpSink = std::function<void(const ifog_can_frame&, std::string_view)>;
 
-// The same of a log of any length, frame by frame, none of it kept; a log with short times is read twice, or
-// held in memory where it cannot be opened again. What is thrown may come behind frames that were handed on.
+// Reads a log of any length, plain or gzip, frames of one interface only unless `interface` is empty. Throws
+// std::runtime_error with one line: file, line, what was expected. It may come behind frames that were handed
+// on.
 CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink);
 
 // The arrival time, ns, that frames of a log that begins so have at a stamp of zero; nothing where its lines

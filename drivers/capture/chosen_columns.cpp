@@ -81,9 +81,13 @@ double period_of(const std::vector<double>& time_s, const ExactSteps& steps) {
 }  // namespace
 
 UnitConversion conversion_of(const CsvColumn& column) {
-  if (column.unit.empty()) return {};
-  if (const auto angle_rad = column.angle_rad()) return {*angle_rad};
-  return convert_unit(column.unit, unit_of(column.name)).value_or(UnitConversion{});
+  UnitConversion conversion;
+  if (const auto angle_rad = column.angle_rad())
+    conversion = {*angle_rad};
+  else if (!column.unit.empty())
+    conversion = convert_unit(column.unit, unit_of(column.name)).value_or(UnitConversion{});
+  conversion.scale *= column.scale;
+  return conversion;
 }
 
 void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps) {

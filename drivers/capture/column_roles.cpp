@@ -18,7 +18,8 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kMostWays = 4;  // more than a message can show
+constexpr std::size_t kMostWays = 4;    // more than a message can show
+constexpr std::size_t kMostShown = 16;  // columns, likewise
 constexpr double kGravity_mps2 = 9.80665;
 
 // A column that may be a rate.
@@ -106,14 +107,15 @@ std::optional<Candidate> candidate_of(const Words& words, const std::string& uni
 }
 
 std::string unit_of(const TableSample& table, std::size_t place) {
-  if (place < table.units.size() && !table.units[place].empty()) return table.units[place];
+  if (std::string beside = table.unit_beside(place); !beside.empty()) return beside;
   if (const std::string unit = unit_in_name(table.names[place]); !unit.empty()) return unit;
   const std::string& text = Words(table.names[place]).text;  // gyro_rad[0]
   const std::string last = text.substr(text.rfind('_') + 1);
   return angle_unit(last, false, false) ? last : "";
 }
 
-// Three columns as long together as gravity, in m/s² or g, are an accelerometer at rest.
+// Three columns as long together as gravity are an accelerometer at rest: in m/s², g, mg or, of 16 bits and a
+// range of 2, 4, 8 or 16 g, counts.
 bool is_gravity(const TableSample& table, const std::vector<Candidate>& columns) {
   std::vector<double> lengths;
   for (std::size_t row = 0; row < table.cells[columns[0].place].size(); ++row) {
@@ -131,8 +133,10 @@ bool is_gravity(const TableSample& table, const std::vector<Candidate>& columns)
     return lengths[static_cast<std::size_t>(share * static_cast<double>(lengths.size() - 1))];
   };
   const double middle = at(0.5);
+  constexpr std::array<double, 7> kGravities{kGravity_mps2, 1.0, 1000.0, 16384.0, 8192.0, 4096.0, 2048.0};
   return at(0.75) - at(0.25) < 0.05 * middle &&
-         (std::abs(middle / kGravity_mps2 - 1.0) < 0.05 || std::abs(middle - 1.0) < 0.05);
+         std::any_of(kGravities.begin(), kGravities.end(),
+                     [&](double gravity) { return std::abs(middle / gravity - 1.0) < 0.05; });
 }
 
 // p, q and r together are body rates; x, y and z without another word are the axes of a file that holds one
@@ -261,44 +265,32 @@ Reading reading_by(const TableSample& table, const CsvLayout& asked, const std::
   for (const Candidate& rate : rates) {
     way.layout.columns.push_back({capture_name(rate), table.names[rate.place], rate.unit});
   }
+  const std::size_t rates_only = way.layout.columns.size();
   add_others(table, rates, way.layout.columns);
+  // More than a line can show is left to who asks for it.
+  if (way.layout.columns.size() > kMostShown) way.layout.columns.resize(rates_only);
   for (const CsvColumn& column : way.layout.columns) add(option_for(column, column.unit));
   return way;
 }
 
 // A reading for each unit that may be meant, where names and values do not tell: what is printed is what can
 // be typed.
-template <typename Item, typename Units>
-std::vector<Item> in_every_unit(const Item& item, bool known, const Units& units,
-                                void (*set)(Item&, std::string_view)) {
-  if (known) return {item};
-  std::vector<Item> all;
-  for (const std::string_view unit : units) {
-    all.push_back(item);
-    set(all.back(), unit);
-  }
+std::vector<Rates> in_every_unit(const Rates& rates) {
+  if (std::none_of(rates.begin(), rates.end(), [](const Candidate& rate) { return rate.unit.empty(); }))
+    return {rates};
+  std::vector<Rates> all;
+  for (const char* angle : {"rad", "deg"})
+    for (Candidate& rate : all.emplace_back(rates))
+      if (rate.unit.empty()) rate.unit = std::string(angle) + (rate.increment ? "/sample" : "/s");
   return all;
 }
 
-using Rates = std::vector<Candidate>;
-std::vector<Rates> in_every_unit(const Rates& rates) {
-  const bool known =
-      std::all_of(rates.begin(), rates.end(), [](const Candidate& rate) { return !rate.unit.empty(); });
-  return in_every_unit<Rates>(rates, known, std::array<std::string_view, 2>{"rad", "deg"},
-                              [](Rates& all, std::string_view angle) {
-                                for (Candidate& rate : all)
-                                  if (rate.unit.empty())
-                                    rate.unit = std::string(angle) + (rate.increment ? "/sample" : "/s");
-                              });
-}
-
 std::vector<TimeCandidate> in_every_unit(const TimeCandidate& time) {
-  return in_every_unit<TimeCandidate>(time, !time.unit.empty(),
-                                      std::array<std::string_view, 4>{"s", "ms", "us", "ns"},
-                                      [](TimeCandidate& one, std::string_view unit) {
-                                        one.unit = unit;
-                                        one.time = CsvTime::parse(one.time.header + ":" + one.unit);
-                                      });
+  if (!time.unit.empty()) return {time};
+  std::vector<TimeCandidate> all;
+  for (const char* unit : {"s", "ms", "us", "ns"})
+    all.push_back({CsvTime::parse(time.time.header + ":" + unit), unit});
+  return all;
 }
 
 // Columns that have no names, behind those of the time: one of numbers is the rate, each three may be its

@@ -16,9 +16,12 @@ namespace ifog {
 struct TableSample {
   std::vector<std::string> names;               // of the columns; "#1", "#2", … where no header names them
   std::vector<std::vector<std::string>> cells;  // by column: those of the first rows
-  std::vector<std::string> units;               // of each column where the file keeps them apart, or empty
-  std::vector<std::string> comments;            // lines above the header, which may state the sample rate
+  std::vector<std::string> units;     // of each, by a row below the names; empty where there is none
+  std::vector<std::string> comments;  // lines above the header, which may state the sample rate
   bool named = true;
+
+  // What the row of units says of a column; "" for nothing.
+  [[nodiscard]] std::string unit_beside(std::size_t place) const { return units.empty() ? "" : units[place]; }
 };
 
 // One way to read the table.

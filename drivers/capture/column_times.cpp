@@ -94,9 +94,15 @@ std::string unit_by_values(const std::vector<double>& values) {
 int rank_of(const std::string& name, const Words& words) {
   if (name == "time_s") return 5;
   for (const std::string_view not_time :
-       {"dt", "relative", "period", "delta", "integral", "id", "status", "valid", "offset", "zone", "delay",
-        "age", "exposure", "week", "accuracy", "interval", "flags", "tflags"})
+       {"dt",     "relative", "period", "delta",  "integral", "id",    "status",   "valid",
+        "offset", "zone",     "delay",  "age",    "exposure", "week",  "accuracy", "interval",
+        "flags",  "tflags",   "hour",   "minute", "year",     "month", "nano"})
     if (words.has(not_time)) return 0;
+  // UTC_Day, UTC_Hour, UTC_Second: a part of a date that is in no column alone.
+  if (words.first() == "utc" &&
+      (words.has("day") || name.find("our") != std::string::npos || name.find("econd") != std::string::npos ||
+       name.find("inute") != std::string::npos))
+    return 0;
   constexpr std::array<std::string_view, 18> kTimes{
       "time",           "timestamp", "stamp",   "t",       "utc",    "datetime",
       "date",           "zeit",      "seconds", "elapsed", "tow",    "sow",
@@ -111,7 +117,7 @@ int rank_of(const std::string& name, const Words& words) {
 }
 
 std::string time_unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
-  if (place < table.units.size() && time_unit(table.units[place])) return table.units[place];
+  if (time_unit(table.unit_beside(place))) return table.unit_beside(place);
   const std::string named = unit_in_name(table.names[place]);
   if (time_unit(named)) return named;
   if (words.has("sample") && words.has("time") && words.has("fine"))
@@ -122,21 +128,27 @@ std::string time_unit_by_name(const TableSample& table, std::size_t place, const
   return "";
 }
 
-// Both have counted the same seconds from the first row to the last.
+// Both have counted the same seconds from the first row to the last, within a step of the coarser clock.
 bool go_together(const std::vector<double>& a, const TimeCandidate& one, const std::vector<double>& b,
                  const TimeCandidate& other) {
   if (one.unit.empty() || other.unit.empty() || a.size() != b.size() || a.size() < kFewRows) return false;
   const double s = (a.back() - a.front()) * one.time.unit_s, t = (b.back() - b.front()) * other.time.unit_s;
-  return std::abs(s - t) < 0.1 * std::abs(s) / static_cast<double>(a.size());
+  double step = 0.1 * std::abs(s) / static_cast<double>(a.size());
+  for (std::size_t i = 1; i < a.size(); ++i)
+    step = std::max({step, (a[i] - a[i - 1]) * one.time.unit_s, (b[i] - b[i - 1]) * other.time.unit_s});
+  return std::abs(s - t) <= step;
 }
 
 std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
   TimeCandidate out;
   out.time.header = table.names[place];
   const std::vector<std::string> cells = filled(table.cells[place]);
+  if (cells.empty() && !table.cells[place].empty()) return std::nullopt;
   const bool dated = !cells.empty() && std::all_of(cells.begin(), cells.end(),
                                                    [](const std::string& cell) { return is_date(cell); });
-  if (dated && cells.size() > 1 && cells.front() == cells.back()) return std::nullopt;  // the day of all rows
+  // The day of all rows is no time of them; a time of day in whole seconds may be that of all rows looked at.
+  if (dated && cells.size() > 1 && cells.front() == cells.back() && cells[0].find(':') == std::string::npos)
+    return std::nullopt;
   const std::vector<double> values = numbers_in(cells);
   out.unit = dated ? "s" : time_unit_by_name(table, place, words);
   if (!dated && (values.size() != cells.size() || !goes_on(values) || (out.unit.empty() && counts(values))))
@@ -211,6 +223,15 @@ std::optional<TimeCandidate> joined(const TableSample& table, std::size_t first,
 
 }  // namespace
 
+// In how many rows a time is another than in the row before.
+std::size_t changes(const TableSample& table, const TimeCandidate& time) {
+  const auto at = std::find(table.names.begin(), table.names.end(), time.time.header) - table.names.begin();
+  const std::vector<std::string>& cells = table.cells[static_cast<std::size_t>(at)];
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < cells.size(); ++i) count += cells[i] != cells[i - 1] ? 1 : 0;
+  return count;
+}
+
 std::vector<TimeCandidate> times_of(const TableSample& table) {
   std::vector<TimeCandidate> best;
   int rank = 1;
@@ -233,7 +254,11 @@ std::vector<TimeCandidate> times_of(const TableSample& table) {
       return cells == table.cells[i] ||
              go_together(numbers_in(cells), other, numbers_in(table.cells[i]), *found);
     };
-    if (std::none_of(best.begin(), best.end(), same)) best.push_back(*found);
+    const auto twin = std::find_if(best.begin(), best.end(), same);
+    if (twin == best.end())
+      best.push_back(*found);
+    else if (changes(table, *found) > changes(table, *twin))
+      *twin = *found;  // the finer clock
   }
   return best;
 }

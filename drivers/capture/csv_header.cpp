@@ -16,6 +16,7 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 #include "drivers/system/shell_word.h"
+#include "drivers/units/units.h"
 
 namespace ifog {
 namespace {
@@ -51,8 +52,13 @@ std::set<std::string>::const_iterator the_gyro(const std::set<std::string>& name
 
 class Chooser {
  public:
-  Chooser(TableForm form, const std::string& path, const CsvLayout& layout)
-      : form_(std::move(form)), names_(form_.sample.names), path_(path) {
+  Chooser(TableForm form, const std::string& path, const CsvLayout& layout, bool has_lines)
+      : form_(std::move(form)),
+        names_(form_.sample.names),
+        path_(path),
+        line_(!has_lines              ? 0
+              : form_.header_line > 0 ? form_.header_line
+                                      : form_.last_line + 1) {
     header_.layout = layout;
     header_.separator = form_.separator;
     header_.last_line = form_.last_line;
@@ -75,11 +81,9 @@ class Chooser {
 
  private:
   [[nodiscard]] std::size_t place(const std::string& wanted) const {
-    return place_of(wanted, names_, path_, form_.header_line);
+    return place_of(wanted, names_, path_, line_);
   }
-  [[noreturn]] void fail(const std::string& what) const {
-    fail_at(path_, form_.header_line > 0 ? form_.header_line : form_.last_line + 1, what);
-  }
+  [[noreturn]] void fail(const std::string& what) const { fail_at(path_, line_, what); }
 
   // Rows of several sensors in turn, which a column numbers or names.
   void say_what_alternates() {
@@ -120,8 +124,21 @@ class Chooser {
       if (name.empty()) fail("a column has no name");
       if (!seen.insert(name).second) fail("column " + in_quotes(name) + " stands twice");
     }
+    (void)under_own_name(0);
     take_time(CsvTime{});
-    for (std::size_t i = 1; i < names_.size(); ++i) take(i, {names_[i], names_[i], ""});
+    for (std::size_t i = 1; i < names_.size(); ++i) take(i, under_own_name(i));
+  }
+
+  // A row of units says what the name leaves out.
+  [[nodiscard]] CsvColumn under_own_name(std::size_t i) const {
+    const std::string unit = form_.sample.unit_beside(i);
+    const auto name = name_with_unit(names_[i], unit);
+    if (!name)
+      fail("the unit of " + in_quotes(names_[i]) + " is given as " + in_quotes(unit) +
+           ", expected that of its name; to read it so: " +
+           (names_[i] == CsvTime{}.header ? option_for(CsvTime{}, unit)
+                                          : option_for(CsvColumn{names_[i], names_[i], ""}, unit)));
+    return {*name, names_[i], ""};
   }
 
   void choose_as_asked() {
@@ -132,8 +149,8 @@ class Chooser {
     if (!timed && !layout.sample_rate_hz && std::count(names_.begin(), names_.end(), "time_s") == 1)
       layout.time = CsvTime{};
     if (timed && own_names) {
-      for (const std::string& name : names_)  // --time alone: the others stand under their own names
-        if (name != layout.time->header) layout.columns.push_back({name, name, ""});
+      for (std::size_t i = 0; i < names_.size(); ++i)  // --time alone: the others stand under their own names
+        if (names_[i] != layout.time->header) layout.columns.push_back(under_own_name(i));
     } else if (layout.columns.empty() || (!layout.time && !layout.sample_rate_hz)) {
       take_reading();
     }
@@ -143,14 +160,24 @@ class Chooser {
       take_time(*layout.time);
     if (layout.other_rates)
       for (const CsvColumn& other : rates_not_chosen(form_.sample, layout)) layout.columns.push_back(other);
-    for (const CsvColumn& column : layout.columns) {
+    for (CsvColumn& column : layout.columns) {
       const std::size_t at = place(column.header);
+      if (column.unit.empty()) column.unit = unit_beside(column, at);
       if (const std::string unit = other_unit(column); !unit.empty())
         fail(unit_by_name(column.header, unit, option_for(column, unit)));
       if (header_.cells[at].column != CsvCell::kPassedOver)
         fail("column " + in_quotes(column.header) + " is chosen twice");
       take(at, column);
     }
+  }
+
+  // What the row of units says of a column that was chosen without one, where that becomes the capture's.
+  [[nodiscard]] std::string unit_beside(const CsvColumn& chosen, std::size_t at) const {
+    CsvColumn column = chosen;
+    column.unit = form_.sample.unit_beside(at);
+    return column.angle_rad() || convert_unit(column.unit, column.name.substr(column.name.rfind('_') + 1))
+               ? column.unit
+               : "";
   }
 
   // What was not asked for, as the names have it.
@@ -165,16 +192,30 @@ class Chooser {
       fail("no rate column among " + listed(names_) +
            ", expected 'rate_radps' or 'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of "
            "these names");
-    fail((form_.sample.named
-              ? ""
-              : "no header line; " +
-                    (names_.size() == 1 ? std::string("its column is #1")
-                                        : "its columns are #1 to #" + std::to_string(names_.size())) +
-                    "; ") +
-         found.why + options_in_words(found));
+    fail(
+        (form_.sample.named
+             ? ""
+             : "no header line; " +
+                   (names_.size() == 1 ? std::string("its column is #1")
+                                       : "its columns are #1 to #" + std::to_string(names_.size())) +
+                   "; ") +
+        found.why + options_in_words(found) +
+        (found.ways.empty()
+             ? "; --column 'rate_x_radps=#2:deg/s' and --time '#1:s' or --sample-rate HZ say which they are, "
+               "with the numbers and units of this file"
+             : ""));
   }
 
-  void take_time(const CsvTime& time) {
+  void take_time(CsvTime time) {
+    const auto named =
+        static_cast<std::size_t>(std::find(names_.begin(), names_.end(), time.header) - names_.begin());
+    if (named < names_.size() && !time.told)
+      if (const auto unit_s = time_unit(form_.sample.unit_beside(named))) {
+        time.unit_s = *unit_s;
+        time.told = true;
+        if (header_.layout.time) header_.layout.time = time;
+        header_.time_unit_known = true;
+      }
     if (const std::string unit = other_unit(time); !unit.empty())
       fail(unit_by_name(time.header, unit, option_for(time, unit)));
     // "sec+nsec": a name may hold a plus itself.
@@ -215,6 +256,7 @@ class Chooser {
   TableForm form_;
   const std::vector<std::string>& names_;
   const std::string& path_;
+  const std::size_t line_;  // of the header; 0: it has none
   CsvHeader header_;
   std::size_t rates_ = 0;
 };
@@ -227,17 +269,9 @@ std::string options_in_words(const Readings& readings) {
   return text;
 }
 
-CsvHeader read_csv_header(std::string_view text, const std::string& path, const CsvLayout& layout) {
-  TableForm form = table_form(text, path, layout);
-  // A row of units has joined the names that were asked for without it.
-  CsvLayout joined = layout;
-  const auto join = [&](std::string& header) {
-    for (std::size_t i = 0; i < form.as_written.size(); ++i)
-      if (form.as_written[i] == header) header = form.sample.names[i];
-  };
-  for (CsvColumn& column : joined.columns) join(column.header);
-  if (joined.time) join(joined.time->header);
-  return Chooser(std::move(form), path, joined).choose();
+CsvHeader read_csv_header(std::string_view text, const std::vector<std::string>& given,
+                          const std::string& path, const CsvLayout& layout, bool has_lines) {
+  return Chooser(table_form(text, given, path, layout), path, layout, has_lines).choose();
 }
 
 }  // namespace ifog

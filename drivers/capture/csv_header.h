@@ -38,13 +38,16 @@ struct CsvHeader {
   std::size_t time_place = kNone;    // which cell is the time; kNone where rows are even
   std::size_t time_part = kNone;     // a second cell of the time: digits behind the point, or a time of day
   int part_digits = 0;               // of it; 0: a time of day
+  bool time_unit_known = false;      // by a row of units
   std::size_t only_place = kNone;    // which cell says whether a row is read
   std::vector<std::string> notices;  // how a foreign header was read, and what rows are in turn
 };
 
 // text: whole lines, the file's beginning with at least its first rows. Throws std::runtime_error with one
 // line: no time, a name twice, a column that is not there, what is ambiguous, with the options that read it.
-CsvHeader read_csv_header(std::string_view text, const std::string& path, const CsvLayout& layout);
+// given: names that the lines themselves have, where they do. has_lines: a message says in which.
+CsvHeader read_csv_header(std::string_view text, const std::vector<std::string>& given,
+                          const std::string& path, const CsvLayout& layout, bool has_lines);
 
 // What readings of a foreign table say to the user where none of them is taken: the options of each.
 [[nodiscard]] std::string options_in_words(const Readings& readings);

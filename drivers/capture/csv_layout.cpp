@@ -60,6 +60,11 @@ CsvColumn CsvColumn::parse(const std::string& text) {
   CsvColumn out;
   out.name = text.substr(0, equals);
   std::tie(out.header, out.unit) = header_and_unit(text.substr(equals + 1));
+  const auto [end, error] = std::from_chars(out.unit.data(), out.unit.data() + out.unit.size(), out.scale);
+  if (error == std::errc() && out.scale != 0.0 && std::isfinite(out.scale))
+    out.unit.erase(0, static_cast<std::size_t>(end - out.unit.data()));
+  else
+    out.scale = 1.0;
   const std::string wanted = unit_of_name(out.name);
   if (out.name == "time_s") refuse(text, "another name; --time says which column is the time");
   if (wanted.empty() || out.header.empty()) refuse(text, form);
@@ -175,20 +180,23 @@ bool is_unit(const std::string& text) {
          !units_beside(text).empty();
 }
 
-std::optional<std::string> name_with_unit(const std::string& header, const std::string& unit) {
-  std::string bare = unit;
+std::string without_brackets(const std::string& unit) {
   for (const auto& [open, close] : {std::pair{'(', ')'}, {'[', ']'}})
-    if (bare.size() >= 2 && bare.front() == open && bare.back() == close)
-      bare = bare.substr(1, bare.size() - 2);
-  if (bare.empty() || bare == "-" || bare == "1") return header;
+    if (unit.size() >= 2 && unit.front() == open && unit.back() == close)
+      return unit.substr(1, unit.size() - 2);
+  return unit;
+}
+
+std::optional<std::string> name_with_unit(const std::string& header, const std::string& unit) {
+  if (unit.empty()) return header;
   std::string own = unit_in_name(header);
-  if (own.empty() && (convert_unit(unit_of_name(header), bare) || unit_of_name(header) == bare))
+  if (own.empty() && (convert_unit(unit_of_name(header), unit) || unit_of_name(header) == unit))
     own = unit_of_name(header);
   const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
   if (own.empty())
-    return std::all_of(bare.begin(), bare.end(), is_word) ? header + "_" + bare : header + " [" + bare + "]";
-  const auto by = convert_unit(bare, own);
-  if (bare == own || (by && by->scale == 1.0 && by->offset == 0.0)) return header;
+    return std::all_of(unit.begin(), unit.end(), is_word) ? header + "_" + unit : header + " [" + unit + "]";
+  const auto by = convert_unit(unit, own);
+  if (unit == own || (by && by->scale == 1.0 && by->offset == 0.0)) return header;
   return std::nullopt;
 }
 

@@ -13,9 +13,11 @@ struct CsvColumn {
   std::string name;    // of the capture: rate_x_radps, temperature_degC, …
   std::string header;  // in the file, or "#3": the third column
   std::string unit;    // of its values; "": that of `name`
+  double scale = 1.0;  // units in one, as of "0.00763deg/s", the counts of a converter
 
   // "rate_x_radps=GyroX:deg/s" or "supply_V=Supply". A rate in a unit of angle is an angle, whose differences
-  // become the rate; in one "per sample" (arcsec/sample) the turn within each sample. Throws
+  // become the rate; in one "per sample" (arcsec/sample) the turn within each sample. A number before the unit
+  // is the scale of counts. Throws
   // std::runtime_error with one line: the text and what was expected.
   static CsvColumn parse(const std::string& text);
   [[nodiscard]] bool is_rate() const;
@@ -64,9 +66,10 @@ std::string other_unit(const CsvColumn& column);
 std::string other_unit(const CsvTime& time);
 // A text that is a unit of anything known here.
 bool is_unit(const std::string& text);
-// The name of a column of which a row below the header says the unit: as it is where it says the same, or the
-// row says none ("-", "1"), "T_degC" or "gyro_x [deg/s]" where it says none; nothing where the two contradict
-// each other.
+// "deg/s" of "[deg/s]" and "(deg/s)".
+std::string without_brackets(const std::string& unit);
+// The name of a column whose unit stands apart: as it is where it says the same, or the unit is "";
+// "T_degC" or "gyro_x [deg/s]" where it says none; nothing where the two contradict each other.
 std::optional<std::string> name_with_unit(const std::string& header, const std::string& unit);
 
 }  // namespace ifog

@@ -82,26 +82,6 @@ std::string_view cell_at(std::string_view line, std::size_t place, char separato
   return unquoted(line.substr(0, cell_end(line, separator)));
 }
 
-// What a cell says, a decimal comma as a point.
-class CsvDigits {
- public:
-  CsvDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {
-    if (!decimal_comma || cell.size() > with_point_.size()) return;
-    const std::size_t comma = cell.find(',');
-    if (comma == std::string_view::npos) return;
-    std::copy(cell.begin(), cell.end(), with_point_.begin());
-    with_point_[comma] = '.';
-    digits_ = {with_point_.data(), cell.size()};
-  }
-  CsvDigits(const CsvDigits&) = delete;
-  CsvDigits& operator=(const CsvDigits&) = delete;
-  operator std::string_view() const { return digits_; }
-
- private:
-  std::array<char, 64> with_point_;
-  std::string_view digits_;
-};
-
 // One row after the other, into the columns of a piece.
 class Rows {
  public:
@@ -200,9 +180,9 @@ class Rows {
     else if (to.means == Meaning::kPartOfTime)
       joined_.put(place == header_.time_part, text);
     else if (to.means == Meaning::kOther)
-      keep_other(to, CsvDigits(text, separator_ != ','));
+      keep_other(to, PointDigits(text, separator_ != ','));
     else
-      keep(place, number(path_, line, header_.cells[place].name, text, CsvDigits(text, separator_ != ',')),
+      keep(place, number(path_, line, header_.cells[place].name, text, PointDigits(text, separator_ != ',')),
            0.0, text, line);
     return behind;
   }
@@ -245,8 +225,7 @@ class Rows {
     if (std::isnan(since))
       fail_at(path_, line, printable(header_.cells[place].name) + " is missing, expected a time");
     if (!to_[place].range.holds(since + stamps_.absolute(0.0)))
-      fail_at(path_, line,
-              what_no_sensor_measures(header_.cells[place].name, in_quotes(text), to_[place].range));
+      fail_at(path_, line, what_no_sensor_measures(header_.cells[place].name, text, to_[place].range));
     if (rows_ == 0) piece_.decimals = text.find('.') != std::string_view::npos || digits.is_date();
     piece_.rows.time_s.push_back(since);
   }

@@ -2,11 +2,9 @@
 #include "drivers/capture/csv_rows.h"
 
 #include <algorithm>
-#include <cstring>
 #include <deque>
 #include <functional>
 #include <future>
-#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string_view>
@@ -16,86 +14,59 @@
 
 #include "drivers/capture/csv_header.h"
 #include "drivers/capture/csv_piece.h"
+#include "drivers/capture/line_form.h"
 #include "drivers/capture/name_ending.h"
 #include "drivers/capture/row_checks.h"
+#include "drivers/capture/text_pieces.h"
 
 namespace ifog {
 namespace {
 
 constexpr std::size_t kWorthAThread = std::size_t{1} << 17U;  // bytes
+// Bytes of lines that are no comments, to find the table and the form of its lines in.
+constexpr std::size_t kHead = std::size_t{256} << 10U;
 
-// Bytes of a text in memory that is used again for the next: nothing is written there but what is read.
-class TextRoom {
+// Pieces of a text whose lines are rows of cells, or become such.
+class CsvText {
  public:
-  [[nodiscard]] std::string_view text() const { return {room_.get(), size_}; }
-  // Room for so many behind the text, of which took() says how many there are now.
-  [[nodiscard]] char* behind(std::size_t most) {
-    if (size_ + most > capacity_) {
-      capacity_ = std::max(size_ + most, capacity_ + capacity_ / 2);
-      auto larger = std::make_unique_for_overwrite<char[]>(capacity_);
-      if (size_ > 0) std::memcpy(larger.get(), room_.get(), size_);
-      room_ = std::move(larger);
-    }
-    return room_.get() + size_;
-  }
-  void took(std::size_t bytes) { size_ += bytes; }
-  void assign(std::string_view text) {
-    size_ = 0;
-    if (!text.empty()) std::memcpy(behind(text.size()), text.data(), text.size());
-    size_ = text.size();
-  }
-  void end_at(std::size_t size) { size_ = size; }
+  CsvText(const ReadBytes& read, std::size_t piece) : pieces_(read, piece) {}
 
- private:
-  std::unique_ptr<char[]> room_;
-  std::size_t capacity_ = 0, size_ = 0;
-};
-
-// A text cut behind lines.
-class TextPieces {
- public:
-  TextPieces(const ReadBytes& read, std::size_t piece)
-      : read_(read), piece_(std::max<std::size_t>(1, piece)) {}
-
-  // False at the end. A line longer than any may be comes out without its end, to be refused.
   bool next(TextRoom& to) {
-    // With room for what follows, or the beginning of a line is moved for it.
-    to.end_at(0);
-    (void)to.behind(tail_.size() + piece_);
-    to.assign(tail_);
-    tail_.clear();
-    while (!ended_) {
-      const std::size_t before = to.text().size();
-      const std::size_t n = read_(to.behind(piece_), piece_);
-      to.took(n);
-      ended_ = n < piece_;
-      const std::size_t last = to.text().rfind('\n');
-      if (last == std::string_view::npos || last < before) {
-        if (to.text().size() > kLongestLine) return true;
-        continue;
-      }
-      tail_ = to.text().substr(last + 1);
-      to.end_at(last + 1);
-      return true;
-    }
-    return !to.text().empty();
+    if (!pieces_.next(to)) return false;
+    if (!std::exchange(begun_, true)) begin(to);
+    if (!form_.is_plain()) to.assign(form_.rows_of(to.text()));
+    return true;
   }
+  // Of the lines, once the first piece was handed out.
+  [[nodiscard]] const LineForm& form() const { return form_; }
 
  private:
-  const ReadBytes& read_;
-  std::size_t piece_;
-  std::string tail_;
-  bool ended_ = false;
+  // However the text is cut, the same of it shows the form.
+  void begin(TextRoom& to) {
+    std::string first(to.text());
+    while (first.size() < kHead && pieces_.next(to)) first += to.text();
+    if (first.starts_with("\xEF\xBB\xBF")) first.erase(0, 3);  // the byte-order mark
+    form_ = LineForm(std::string_view(first).substr(0, kHead));
+    to.assign(first);
+  }
+
+  TextPieces pieces_;
+  LineForm form_;
+  bool begun_ = false;
 };
 
 class CsvRows {
  public:
   // were_rows: hears of bytes that were.
   using WereRows = std::function<void(std::size_t)>;
-  CsvRows(const std::string& path, const CsvLayout& layout, RowSink& sink, WereRows were_rows)
-      : path_(path), layout_(layout), sink_(sink), were_rows_(std::move(were_rows)) {}
+  CsvRows(const std::string& path, const CsvLayout& layout, RowSink& sink, RowsAre rows, WereRows were_rows)
+      : path_(path),
+        layout_(layout),
+        sink_(sink),
+        has_lines_(rows == RowsAre::lines),
+        were_rows_(std::move(were_rows)) {}
 
-  RowNotes read(TextPieces pieces) {
+  RowNotes read(CsvText pieces) {
     in_order(pieces, begin(pieces));
     finish();
     return std::move(notes_);
@@ -108,8 +79,8 @@ class CsvRows {
     std::future<std::optional<CsvPiece>> parsed;  // nothing: refused, with lines counted from its own first
   };
 
-  TextRoom begin(TextPieces& pieces);
-  void in_order(TextPieces& pieces, TextRoom text);
+  TextRoom begin(CsvText& pieces);
+  void in_order(CsvText& pieces, TextRoom text);
   [[nodiscard]] std::future<std::optional<CsvPiece>> parse(Piece& piece);
   void deliver(Piece& piece);
   void merge(const CsvPiece& piece);
@@ -119,6 +90,7 @@ class CsvRows {
   const std::string& path_;
   const CsvLayout& layout_;
   RowSink& sink_;
+  const bool has_lines_;
   const WereRows were_rows_;
   CsvHeader header_;
   RowNotes notes_;
@@ -135,28 +107,26 @@ class CsvRows {
 };
 
 // What follows the header.
-TextRoom CsvRows::begin(TextPieces& pieces) {
-  constexpr std::size_t kHead = std::size_t{256}
-                                << 10U;  // bytes of lines that are no comments, to find the table in
+TextRoom CsvRows::begin(CsvText& pieces) {
   std::string head;
   std::size_t plain = 0;
   TextRoom piece;
   while (plain < kHead && pieces.next(piece)) {
-    std::string_view text = piece.text();
+    const std::string_view text = piece.text();
     if (head.empty() && begins_as_utf16(text))
       throw std::runtime_error(path_ +
                                ": is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
-    if (head.empty() && text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);  // the byte-order mark
     head += text;
     if (!text.starts_with('#')) plain += text.size();
   }
-  header_ = read_csv_header(head, path_, layout_);
+  header_ = read_csv_header(head, pieces.form().names(), path_, layout_, has_lines_);
   Lines lines(head);
   for (std::string_view line; lines.number() < header_.last_line && lines.next(line);) continue;
-  lines_ = lines.number();
+  lines_ = has_lines_ ? lines.number() : 0;
   piece.assign(lines.rest());
   notes_.comments = std::move(header_.comments);
-  notes_.header_line = header_.last_line;
+  notes_.header_line = lines_;
+  notes_.first_line = lines_ + 1;
   notes_.notices = std::move(header_.notices);
   impossible_.resize(header_.names.size());
   std::vector<FileColumn> columns(header_.names.size());
@@ -170,7 +140,7 @@ TextRoom CsvRows::begin(TextPieces& pieces) {
   return piece;
 }
 
-void CsvRows::in_order(TextPieces& pieces, TextRoom text) {
+void CsvRows::in_order(CsvText& pieces, TextRoom text) {
   // Each holds its text and its numbers. One more than there are processors, so that none waits while this
   // thread hands over.
   const std::size_t at_once = std::clamp(std::thread::hardware_concurrency() + 1, 2U, 8U);
@@ -252,7 +222,7 @@ void CsvRows::merge(const CsvPiece& piece) {
     const ImpossibleValues& found = piece.impossible[i];
     if (found.count == 0 || header_.cells[i].column >= impossible_.size()) continue;
     ImpossibleValues& all = impossible_[header_.cells[i].column];
-    if (all.count == 0) all = {0, 0, lines_ + found.line, found.first};
+    if (all.count == 0) all = {0, lines_ + found.line, found.first};
     all.count += found.count;
   }
 }
@@ -263,20 +233,21 @@ void CsvRows::finish() {
     notes_.notices.push_back(path_ + ": " + std::to_string(untimed_) + " rows without " +
                              in_quotes(header_.cells[header_.time_place].name) +
                              " are of another sensor and dropped");
-  checks_->finish(impossible_, decimals_, ExactSteps(most_decimals_, unit_s()));
+  checks_->finish(impossible_, decimals_ || header_.time_unit_known, ExactSteps(most_decimals_, unit_s()));
 }
 
 }  // namespace
 
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
-                       std::size_t piece) {
-  return CsvRows(path, layout, sink, [](std::size_t) {}).read(TextPieces(read, piece));
+                       std::size_t piece, RowsAre rows) {
+  return CsvRows(path, layout, sink, rows, [](std::size_t) {}).read(CsvText(read, piece));
 }
 
 RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink) {
   const ReadBytes read = [&file](char* to, std::size_t most) { return file.read(to, most); };
-  return CsvRows(file.path(), layout, sink, [&file](std::size_t bytes) { file.were_rows(bytes); })
-      .read(TextPieces(read, kCsvPiece));
+  return CsvRows(file.path(), layout, sink, RowsAre::lines,
+                 [&file](std::size_t bytes) { file.were_rows(bytes); })
+      .read(CsvText(read, kTextPiece));
 }
 
 }  // namespace ifog

@@ -4,25 +4,23 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <string>
 
 #include "drivers/capture/csv_layout.h"
 #include "drivers/capture/input_file.h"
 #include "drivers/capture/row_sink.h"
+#include "drivers/capture/text_pieces.h"
 
 namespace ifog {
 
-// Up to `most` further bytes, fewer only at the end, 0 there, as InputFile::read.
-using ReadBytes = std::function<std::size_t(char* to, std::size_t most)>;
-
-inline constexpr std::size_t kCsvPiece = std::size_t{4} << 20U;  // bytes of text, some ten thousand rows
+// What the number in a message about a row is: its line, or of a format that has none, counted from 1, the row.
+enum class RowsAre { lines, numbered };
 
 // Refuses what read_capture refuses, with the same words, but for what a capture has to have besides a time;
 // what is wrong further down may be found when rows were taken. An angle that is to become a rate is the one
 // thing that needs all rows at once: then they come as one block. `path` stands for the file in messages.
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
-                       std::size_t piece = kCsvPiece);
+                       std::size_t piece = kTextPiece, RowsAre rows = RowsAre::lines);
 // What a file has still to give, which hears how much of it were rows.
 RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink);
 

@@ -64,8 +64,8 @@ struct Moment {
 // hh:mm, hh:mm:ss or hh:mm:ss.f…, of twelve hours with AM or PM behind it
 bool time_of_day(Rest& rest, bool seconds_needed, Moment& moment) {
   int hours = 0, minutes = 0, seconds = 0;
-  if (!rest.number(1, 2, hours) || !rest.one_of(":") || !rest.number(2, minutes)) return false;
-  const bool told = rest.one_of(":");
+  if (!rest.number(1, 2, hours) || !rest.one_of(":_") || !rest.number(2, minutes)) return false;
+  const bool told = rest.one_of(":_");
   if (told ? !rest.number(2, seconds) : seconds_needed) return false;
   if (hours > 23 || minutes > 59 || seconds > 60) return false;
   if (told && rest.one_of(".,")) {
@@ -93,13 +93,17 @@ std::optional<std::chrono::sys_days> valid_day(int year, int month, int day) {
 std::optional<std::chrono::sys_days> day_of(Rest& rest) {
   int first = 0, second = 0, third = 0;
   if (!rest.number(1, 4, first)) return std::nullopt;
-  const char* const between = rest.word("-") ? "-" : rest.word("/") ? "/" : rest.word(".") ? "." : nullptr;
+  const char* const between = rest.word("-")   ? "-"
+                              : rest.word("/") ? "/"
+                              : rest.word(".") ? "."
+                              : rest.word("_") ? "_"
+                                               : nullptr;
   if (between == nullptr) return std::nullopt;
   const bool named = rest.month(second);
   if ((!named && !rest.number(1, 2, second)) || !rest.one_of(between) || !rest.number(1, 4, third))
     return std::nullopt;
   if (first > 31) return *between == '.' ? std::nullopt : valid_day(first, second, third);
-  if (third < 1000 || (*between == '-' && !named)) return std::nullopt;
+  if (third < 1000 || (*between == '-' && !named) || *between == '_') return std::nullopt;
   if (*between == '/')
     if (const auto month_first = valid_day(third, first, second)) return month_first;
   return valid_day(third, second, first);
@@ -127,7 +131,7 @@ std::optional<Moment> moment_of(std::string_view text) {
   if (!day) return std::nullopt;
   moment.s = std::chrono::sys_seconds(*day).time_since_epoch().count();
   if (rest.ended()) return moment;
-  if (!rest.one_of("Tt ") || !time_of_day(rest, false, moment)) return std::nullopt;
+  if (!rest.one_of("Tt _") || !time_of_day(rest, false, moment)) return std::nullopt;
   const auto ahead_s = offset_s(rest);
   if (!ahead_s || !rest.ended()) return std::nullopt;
   moment.s -= *ahead_s;
@@ -142,7 +146,7 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
   // more is asked.
   const std::string_view begin = text.substr(0, 6);
   if (text.size() < 5 ||
-      (begin.find_first_of(":/-", 1) == std::string_view::npos && begin.find('.') == begin.rfind('.')))
+      (begin.find_first_of(":/-_", 1) == std::string_view::npos && begin.find('.') == begin.rfind('.')))
     return {};
   auto moment = moment_of(text);
   if (!moment || moment->fraction.size() > to.size() - kWhole) return {};
@@ -156,17 +160,18 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
   return {to.data(), static_cast<std::size_t>(end - to.data())};
 }
 
-TimeDigits::TimeDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {
-  if (const std::string_view date = date_in_digits(cell, made_); !date.empty()) {
-    digits_ = date;
-    date_ = true;
-    return;
-  }
+PointDigits::PointDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {
   const std::size_t comma = decimal_comma ? cell.find(',') : std::string_view::npos;
   if (comma == std::string_view::npos || cell.size() > made_.size()) return;
   std::copy(cell.begin(), cell.end(), made_.begin());
   made_[comma] = '.';
   digits_ = {made_.data(), cell.size()};
+}
+
+TimeDigits::TimeDigits(std::string_view cell, bool decimal_comma) : PointDigits(cell, decimal_comma) {
+  const std::string_view date = date_in_digits(cell, made_);
+  date_ = !date.empty();
+  if (date_) digits_ = date;
 }
 
 }  // namespace ifog

@@ -12,11 +12,12 @@ namespace ifog {
 
 inline constexpr std::size_t kLongestDate = 64;
 
-// The seconds since 1970 of "2026-05-01T12:00:00.25Z": date and time of day, or a day alone; "/" for "-", the
-// year last as in "1.5.2026" (the day first) and "5/1/2026" (the month first, where that is a date), a month's
-// name as in "01-May-2026", a space for "T", AM or PM, seconds missing, a comma for the point, an offset of "+02:00", "+0200", "+02", "UTC";
-// without one it is UTC. Of a time of day alone, "12:00:00.25", those since midnight. A leap second is the
-// second behind it. `to` takes the digits; the text is empty for what is no such date.
+// The seconds since 1970 of "2026-05-01T12:00:00.25Z": date and time of day, or a day alone; "/" or "_" for
+// "-", the year last as in "1.5.2026" (the day first) and "5/1/2026" (the month first, where that is a date), a
+// month's name as in "01-May-2026", a space or "_" for "T", "_" for ":", AM or PM, seconds missing, a comma for
+// the point, an offset of "+02:00", "+0200", "+02", "UTC"; without one it is UTC. Of a time of day alone,
+// "12:00:00.25", those since midnight. A leap second is the second behind it. `to` takes the digits; the text is
+// empty for what is no such date.
 std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to);
 
 [[nodiscard]] inline bool is_date(std::string_view text) {
@@ -24,18 +25,26 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
   return !date_in_digits(text, digits).empty();
 }
 
-// A cell of a time: the digits of a date, or what stands there, a decimal comma as a point.
-class TimeDigits {
+// What a cell says, a decimal comma as a point.
+class PointDigits {
+ public:
+  PointDigits(std::string_view cell, bool decimal_comma);
+  PointDigits(const PointDigits&) = delete;
+  PointDigits& operator=(const PointDigits&) = delete;
+  operator std::string_view() const { return digits_; }
+
+ protected:
+  std::array<char, kLongestDate> made_;
+  std::string_view digits_;
+};
+
+// A cell of a time: the digits of a date, or of a number.
+class TimeDigits : public PointDigits {
  public:
   TimeDigits(std::string_view cell, bool decimal_comma);
-  TimeDigits(const TimeDigits&) = delete;
-  TimeDigits& operator=(const TimeDigits&) = delete;
-  operator std::string_view() const { return digits_; }
   [[nodiscard]] bool is_date() const { return date_; }
 
  private:
-  std::array<char, kLongestDate> made_;
-  std::string_view digits_;
   bool date_ = false;
 };
 

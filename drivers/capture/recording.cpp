@@ -53,11 +53,11 @@ bool has_candump_frame(std::string_view head) {
   return false;
 }
 
-// Text has no control characters but the ends of its lines and tabs.
+// Text has no control characters but the ends of its lines, tabs and what colours a terminal.
 bool is_text(std::string_view head) {
   return std::all_of(head.begin(), head.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
-    return (byte >= 0x20 && byte != 0x7F) || (byte >= '\t' && byte <= '\r');
+    return (byte >= 0x20 && byte != 0x7F) || (byte >= '\t' && byte <= '\r') || byte == 0x1B;
   });
 }
 

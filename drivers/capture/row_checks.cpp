@@ -21,20 +21,18 @@ std::vector<std::size_t> rates_of(const std::vector<FileColumn>& columns) {
   return rates;
 }
 
-// "; 3 such cells taken for missing"
-std::string taken_for_missing(std::size_t count, const std::string& thing) {
-  return "; " + std::to_string(count) + " such " + thing + (count == 1 ? "" : "s") + " taken for missing";
+std::string taken_for_missing(std::size_t count) {
+  return "; " + std::to_string(count) + (count == 1 ? " such cell" : " such cells") + " taken for missing";
 }
+
+std::string at(const std::string& path, std::size_t line) { return path + ":" + std::to_string(line) + ": "; }
 
 }  // namespace
 
-std::string what_no_sensor_measures(const std::string& name, const std::string& said,
-                                    const Measurable& range) {
-  return printable(name) + " is " + said + ", which no sensor measures, expected " + shortest(range.least) +
-         " to " + shortest(range.most);
+std::string what_no_sensor_measures(const std::string& name, std::string_view cell, const Measurable& range) {
+  return printable(name) + " is " + in_quotes(cell) + ", which no sensor measures, expected " +
+         shortest(range.least) + " to " + shortest(range.most);
 }
-
-std::string in_row(std::size_t row) { return " in row " + std::to_string(row + 1); }
 
 RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns,
                      RowSink& sink, RowNotes& notes)
@@ -94,47 +92,36 @@ void RowChecks::look_for_set_clock(const std::vector<double>& time_s) {
 
 void RowChecks::tell_set_clock() {
   if (!clock_set_) return;
-  const std::size_t line = notes_.line_of_row(*clock_set_);
   notes_.notices.push_back(
-      path_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": its time goes on " +
-      std::to_string(std::llround(clock_set_by_s_)) + " s later" + (line == 0 ? in_row(*clock_set_) : "") +
-      ", as where a clock is set or recordings of two are put together: taken for a hole, "
-      "behind which times are coarser");
-}
-
-void RowChecks::told(std::size_t row, const std::string& what) {
-  const std::size_t line = notes_.line_of_row(row);
-  notes_.faults.push_back(path_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + what);
+      at(path_, notes_.line_of_row(*clock_set_)) + "its time goes on " +
+      std::to_string(std::llround(clock_set_by_s_)) +
+      " s later, as where a clock is set or recordings of two are put together: taken for "
+      "a hole, behind which times are coarser");
 }
 
 void RowChecks::tell_impossible(const FileColumn& column, const ImpossibleValues& found) {
   if (found.count == 0) return;
-  // A text file's message names the line and what stands in it.
-  const std::size_t line = found.line;
-  const std::string thing = line == 0 ? "value" : "cell";
-  const std::string what = what_no_sensor_measures(
-      column.name, line == 0 ? found.first + in_row(found.first_row) : in_quotes(found.first), column.range);
+  const std::string what = what_no_sensor_measures(column.name, found.first, column.range);
   const bool few =
       found.count == 1 || static_cast<double>(found.count) <= kMostImpossible * static_cast<double>(rows_);
-  if (column.rate && (rows_ == 1 || !few))
-    fail_at(
-        path_, line,
-        what + (found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its " + thing + "s"
-                                : ""));
-  notes_.faults.push_back(path_ + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + what +
-                          taken_for_missing(found.count, thing));
+  if (column.rate && (rows_ == 1 || !few)) {
+    std::string more =
+        found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its cells" : "";
+    if (found.first.find_first_not_of("+-0123456789") == std::string::npos)
+      more += "; counts are read by their scale: --column 'rate_x_radps=" + printable(column.name) +
+              ":0.00763deg/s'";
+    fail_at(path_, found.line, what + more);
+  }
+  notes_.faults.push_back(at(path_, found.line) + what + taken_for_missing(found.count));
 }
 
 void RowChecks::tell_leaps() {
-  for (std::size_t r = 0; r < rates_.size(); ++r) {
-    const Leaps::Found& found = leaps_.found()[r];
-    if (found.count == 0) continue;
-    const bool text = notes_.line_of_row(found.first_row) != 0;
-    told(found.first_row, printable(columns_[rates_[r]].name) +
+  for (std::size_t r = 0; r < rates_.size(); ++r)
+    if (const Leaps::Found& found = leaps_.found()[r]; found.count > 0)
+      notes_.faults.push_back(at(path_, notes_.line_of_row(found.first_row)) +
+                              printable(columns_[rates_[r]].name) +
                               " says more than half a turn within one sample, from standstill to standstill" +
-                              (text ? "" : ", first" + in_row(found.first_row)) +
-                              taken_for_missing(found.count, text ? "cell" : "value"));
-  }
+                              taken_for_missing(found.count));
 }
 
 }  // namespace ifog

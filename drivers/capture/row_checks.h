@@ -28,16 +28,13 @@ struct FileColumn {
 // Values of a column that no sensor measures, read as missing.
 struct ImpossibleValues {
   std::size_t count = 0;
-  std::size_t first_row = 0;  // counted from 0, of what has no lines
-  std::size_t line = 0;       // of a text
-  std::string first;          // as it stands there
+  std::size_t line = 0;
+  std::string first;  // as it stands there
 };
 
-// "rate_radps is '1e9', which no sensor measures, expected …"; said: the value, as it is to be shown.
-std::string what_no_sensor_measures(const std::string& name, const std::string& said,
-                                    const Measurable& range);
-// " in row 3", of a file that has no lines.
-std::string in_row(std::size_t row);
+// "rate_radps is '1e9', which no sensor measures, expected …".
+std::string what_no_sensor_measures(const std::string& name, std::string_view cell, const Measurable& range);
+
 class RowChecks {
  public:
   // columns: in the order of the names that the sink was given. The path, the layout, the sink and the notes
@@ -63,7 +60,6 @@ class RowChecks {
   void behind_clock(RowBlock& rows);
   void look_for_set_clock(const std::vector<double>& time_s);
   void tell_set_clock();
-  void told(std::size_t row, const std::string& what);
 
   const std::string& path_;
   const CsvLayout& layout_;

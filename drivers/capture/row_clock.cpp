@@ -158,20 +158,17 @@ void RowClock::roll_over(RowBlock& rows) {
     const auto found = std::find_if(kRollovers.begin(), kRollovers.end(), [&](const Rollover& each) {
       return now_s + each.length_s > last_s && now_s + each.length_s <= last_s + kLate_s;
     });
-    const std::string where =
-        path_ + (line > 0 ? ":" + std::to_string(line) : ": row " + std::to_string(raw_rows_ + i + 1));
-    std::string now;
-    append_time(now, rows.origin, now_s - offset_s_);
-    if (found == kRollovers.end())
-      fail_at(path_, line,
-              printable(time_) + " is " + now + " s" +
-                  (line > 0 ? "" : " in row " + std::to_string(raw_rows_ + i + 1)) +
-                  ", expected more than in the row before");
+    if (found == kRollovers.end()) {
+      std::string now;
+      append_time(now, rows.origin, now_s - offset_s_);
+      fail_at(path_, line, printable(time_) + " is " + now + " s, expected more than in the row before");
+    }
     offset_s_ += found->length_s;
     now_s += found->length_s;
     last_s = now_s;
-    notes_.notices.push_back(where + ": " + printable(time_) + " rolls over, as " + found->what +
-                             " does: " + shortest(found->length_s) + " s are added from there on");
+    notes_.notices.push_back(path_ + ":" + std::to_string(line) + ": " + printable(time_) +
+                             " rolls over, as " + found->what + " does: " + shortest(found->length_s) +
+                             " s are added from there on");
   }
 }
 

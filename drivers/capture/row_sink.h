@@ -56,13 +56,14 @@ struct RowNotes {
 
   std::string comments;         // without the '#', each with a line's end behind it
   std::size_t header_line = 0;  // 0: not read from a text
+  std::size_t first_line = 0;   // of the first row; 0: rows have no lines. Of HDF5 rows are counted from 1
   std::vector<Skipped> skipped;
   std::vector<Repeated> repeated;
   std::vector<std::string> notices;        // of the reading: what may be meant otherwise
   std::vector<std::string> faults;         // cells read as missing, one line a column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
 
-  // The line of a data row (counted from 0), for messages about its values; 0 when there was no text.
+  // The line of a data row (counted from 0), for messages about its values; 0 where rows have none.
   [[nodiscard]] std::size_t line_of_row(std::size_t row) const;
   // The same for a row in the file, repeated ones counted.
   [[nodiscard]] std::size_t line_of_raw_row(std::size_t row) const;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cstring>
 #include <iterator>
 #include <string_view>
 #include <utility>
@@ -41,19 +40,13 @@ Table table_of(const std::function<RowNotes(RowSink&)>& read) {
   return table;
 }
 
-Table parse_table(std::string_view text, const std::string& path, const CsvLayout& layout) {
-  std::string_view rest = text;
-  const auto read = [&rest](char* to, std::size_t most) {
-    const std::size_t n = std::min(most, rest.size());
-    std::memcpy(to, rest.data(), n);
-    rest.remove_prefix(n);
-    return n;
-  };
-  return table_of([&](RowSink& sink) { return read_csv_rows(read, path, layout, sink); });
-}
-
 Table read_table(InputFile& file, const CsvLayout& layout) {
   return table_of([&](RowSink& sink) { return read_csv_rows(file, layout, sink); });
+}
+
+Table parse_table(std::string_view text, const std::string& path, const CsvLayout& layout) {
+  InputFile file(path, std::string(text));
+  return read_table(file, layout);
 }
 
 void RowBlock::append(RowBlock& rows) {
@@ -73,10 +66,10 @@ std::size_t RowNotes::line_of_row(std::size_t row) const {
 }
 
 std::size_t RowNotes::line_of_raw_row(std::size_t row) const {
-  if (header_line == 0) return 0;
+  if (first_line == 0) return 0;
   const auto behind = std::upper_bound(skipped.begin(), skipped.end(), row,
                                        [](std::size_t wanted, const Skipped& s) { return wanted < s.row; });
-  return header_line + 1 + row + (behind == skipped.begin() ? 0 : std::prev(behind)->lines);
+  return first_line + row + (behind == skipped.begin() ? 0 : std::prev(behind)->lines);
 }
 
 }  // namespace ifog

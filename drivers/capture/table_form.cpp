@@ -146,6 +146,23 @@ struct Header {
   std::vector<std::string> names;
 };
 
+// The cells of a line above rows that are so wide. Some programs separate the names otherwise than the values:
+// "A_X [mg] A_Y [mg]" above tabs, where a unit belongs to the name before it.
+std::vector<std::string> names_in(std::string_view line, char separator, const Row& rows) {
+  const std::vector<std::string> names = cells_of(without_mark(line), separator);
+  if (rows.is_as_wide(names.size())) return names;
+  for (const char other : {',', ';', '\t', ' '}) {
+    std::vector<std::string> cells;
+    for (std::string& cell : cells_of(without_mark(line), other))
+      if (other == ' ' && !cells.empty() && (cell.starts_with('[') || cell.starts_with('(')))
+        cells.back() += ' ' + cell;
+      else
+        cells.push_back(std::move(cell));
+    if (cells.size() > 1 && rows.is_as_wide(cells.size())) return cells;
+  }
+  return names;
+}
+
 Header header_of(const std::vector<Line>& lines, char separator, const CsvLayout& layout) {
   const std::vector<std::string> wanted = wanted_names(layout);
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -159,7 +176,7 @@ Header header_of(const std::vector<Line>& lines, char separator, const CsvLayout
   const Row first = row_of(lines[*row].text, separator);
   // A row of units may stand between.
   for (std::size_t back = 1; back <= 2 && back <= *row; ++back) {
-    std::vector<std::string> cells = cells_of(without_mark(lines[*row - back].text), separator);
+    std::vector<std::string> cells = names_in(lines[*row - back].text, separator, first);
     const bool units = back == 1 && std::any_of(cells.begin(), cells.end(), is_unit) && *row >= 2 &&
                        first.is_as_wide(cells_of(without_mark(lines[*row - 2].text), separator).size());
     if (first.is_as_wide(cells.size()) && !units && !row_of(lines[*row - back].text, separator).is_row())
@@ -169,23 +186,17 @@ Header header_of(const std::vector<Line>& lines, char separator, const CsvLayout
   return {};
 }
 
-// A row below the names that says their units joins them, where it is one: each cell a text, at least one of
-// them a unit.
-bool join_units(const Line& line, char separator, const std::string& path, std::vector<std::string>& names) {
-  const std::vector<std::string> units = cells_of(without_mark(line.text), separator);
-  if (units.size() != names.size()) return false;
+// The units that a row below the names says, where it is one: each cell a text, at least one of them a unit.
+std::vector<std::string> units_in(const Line& line, char separator, std::size_t names) {
+  std::vector<std::string> units = cells_of(without_mark(line.text), separator);
+  if (units.size() != names) return {};
   const auto value = [&](const std::string& cell) { return cell != "1" && is_value(cell, separator != ','); };
+  for (std::string& unit : units) unit = without_brackets(unit);
   if (std::any_of(units.begin(), units.end(), value) || std::none_of(units.begin(), units.end(), is_unit))
-    return false;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto joined = name_with_unit(names[i], units[i]);
-    if (!joined)
-      fail_at(path, line.number,
-              "the row of units says " + in_quotes(units[i]) + " of " + in_quotes(names[i]) +
-                  ", expected the unit of its name");
-    names[i] = *joined;
-  }
-  return true;
+    return {};
+  for (std::string& unit : units)
+    if (unit == "-" || unit == "1") unit.clear();
+  return units;
 }
 
 std::vector<Line> first_lines(std::string_view text, const std::string& path) {
@@ -269,12 +280,14 @@ bool Lines::next(std::string_view& line) {
   return true;
 }
 
-TableForm table_form(std::string_view text, const std::string& path, const CsvLayout& layout) {
+TableForm table_form(std::string_view text, const std::vector<std::string>& given, const std::string& path,
+                     const CsvLayout& layout) {
   std::vector<Line> lines = first_lines(text, path);
   TableForm form;
   TableSample& sample = form.sample;
   std::optional<char> separator;
   if (layout.separator != '\0') separator = layout.separator;
+  if (!given.empty()) separator = ',';
   // What spreadsheets write above the header.
   if (!lines.empty() && lines[0].text.size() == 5 &&
       (lines[0].text.starts_with("sep=") || lines[0].text.starts_with("SEP="))) {
@@ -293,17 +306,18 @@ TableForm table_form(std::string_view text, const std::string& path, const CsvLa
       fail_at(path, line.number,
               "more than " + std::to_string(kInputLimits.csv_columns) +
                   " columns, expected at most that (cut -d, -f1-9 takes some)");
-  const Header header = header_of(lines, form.separator, layout);
+  const Header header = given.empty() ? header_of(lines, form.separator, layout) : Header();
   std::size_t first = 0;  // row
   if (header.at) {
-    sample.names = form.as_written = header.names;
+    sample.names = header.names;
     form.header_line = form.last_line = lines[*header.at].number;
     first = *header.at + 1;
-    if (first < lines.size() && join_units(lines[first], form.separator, path, sample.names))
-      form.last_line = lines[first++].number;
+    if (first < lines.size()) sample.units = units_in(lines[first], form.separator, sample.names.size());
+    if (!sample.units.empty()) form.last_line = lines[first++].number;
   } else if (const auto row = first_row(lines, form.separator)) {
-    sample.named = false;
-    for (std::size_t i = 0; i < row_of(lines[*row].text, form.separator).cells; ++i)
+    sample.named = !given.empty();
+    sample.names = given;
+    for (std::size_t i = 0; given.empty() && i < row_of(lines[*row].text, form.separator).cells; ++i)
       sample.names.push_back("#" + std::to_string(i + 1));
     first = *row;
     form.last_line = lines[*row].number - 1;

@@ -29,24 +29,24 @@ class Lines {
 
 [[nodiscard]] std::string_view trimmed(std::string_view cell);
 [[nodiscard]] std::string_view unquoted(std::string_view cell);
+// Where the first cell of a row ends: at a separator outside of quotes, or with the row.
+[[nodiscard]] std::size_t cell_end(std::string_view row, char separator);
 // The cells of a line, without blanks and quotes around. Between blanks, several are one separator.
-[[nodiscard]]  // Where the first cell of a row ends: at a separator outside of quotes, or with the row.
-[[nodiscard]] std::size_t
-cell_end(std::string_view row, char separator);
-std::vector<std::string> cells_of(std::string_view line, char separator);
+[[nodiscard]] std::vector<std::string> cells_of(std::string_view line, char separator);
 
 struct TableForm {
   char separator = ',';
-  std::size_t header_line = 0;          // its number, from 1; 0 where there is none
-  std::size_t last_line = 0;            // the line above the first row
-  TableSample sample;                   // names, the first rows, what stands above
-  std::vector<std::string> as_written;  // the names before a row of units joined them
+  std::size_t header_line = 0;  // its number, from 1; 0 where there is none
+  std::size_t last_line = 0;    // the line above the first row: the header, or the row of units below it
+  TableSample sample;           // names, units, the first rows, what stands above
 };
 
 // text: the file's beginning, whole lines. Throws std::runtime_error with one line: PATH, what was looked
 // for. A header that begins with time_s is that of a capture, and the first such line is it; so is the first
 // line that has all the names which the layout asks for. Else the header is the line above the first rows of
 // as many cells, mostly numbers.
-TableForm table_form(std::string_view text, const std::string& path, const CsvLayout& layout);
+// given: the names of the columns where the lines themselves have them; then there is no header.
+TableForm table_form(std::string_view text, const std::vector<std::string>& given, const std::string& path,
+                     const CsvLayout& layout);
 
 }  // namespace ifog

@@ -49,6 +49,17 @@ void demand_readable(hid_t properties, const std::string& name) {
   }
 }
 
+// Integers stay what they are, as a double may not hold a time in ns.
+Hdf5Value value_of(hid_t type) {
+  if (H5Tget_class(type) != H5T_INTEGER) return Hdf5Value::real;
+  return H5Tget_sign(type) == H5T_SGN_NONE ? Hdf5Value::natural : Hdf5Value::whole;
+}
+
+hid_t in_memory(Hdf5Value value) {
+  if (value == Hdf5Value::real) return H5T_NATIVE_DOUBLE;
+  return value == Hdf5Value::natural ? H5T_NATIVE_UINT64 : H5T_NATIVE_INT64;
+}
+
 // What reads one member of a record.
 Hdf5Id one_member(const std::string& name, hid_t number) {
   Hdf5Id one(H5Tcreate(H5T_COMPOUND, H5Tget_size(number)));
@@ -77,27 +88,6 @@ Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
   if (header_.comments.empty() && H5Aexists(place_, kHdf5Comments) > 0)
     header_.notices.push_back("not read: its comments, expected an attribute of texts");
   check_size(wanted);
-  time_ = header_.exact_time ? kHdf5ExactTime : wanted.time;
-}
-
-// A time of 64 bits without a sign has room in one with, until the year 2262.
-void Hdf5Columns::count_times_from_first() {
-  const auto found = std::find(header_.names.begin(), header_.names.end(), time_);
-  if (found == header_.names.end()) return;
-  const auto column = static_cast<std::size_t>(found - header_.names.begin());
-  Column& of = columns_[column];
-  const Hdf5Id stored(H5Dget_type(of.dataset));
-  const bool member = H5Tget_class(stored) == H5T_COMPOUND;
-  const Hdf5Id kind(
-      member ? H5Tget_member_type(stored, static_cast<unsigned>(H5Tget_member_index(stored, time_.c_str())))
-             : H5Tcopy(stored));
-  hdf5_demand(kind.good(), in_quotes(time_) + " cannot be read");
-  if (H5Tget_class(kind) != H5T_INTEGER) return;
-  of.in_memory = member ? one_member(time_, H5T_NATIVE_INT64) : Hdf5Id(H5Tcopy(H5T_NATIVE_INT64));
-  whole_time_ = column;
-  std::int64_t first = 0;
-  read_as_they_are(column, 0, 1, &first);
-  header_.time_from = first;
 }
 
 void Hdf5Columns::open(const Hdf5Source& source) {
@@ -158,6 +148,13 @@ std::vector<std::string> Hdf5Columns::datasets_of_group() {
   return names;
 }
 
+bool Hdf5Columns::has(const std::string& name) const {
+  const auto is_there = [&](const std::string& path) {
+    return !path.empty() && Hdf5Id(H5Oopen(place_, path.c_str(), access_)).good();
+  };
+  return is_there(name) || is_there(without_index(name));
+}
+
 // As Hdf5Writer leaves it.
 bool Hdf5Columns::has_exact_time() {
   if (H5Lexists(place_, kHdf5ExactTime, access_) <= 0) return false;
@@ -167,28 +164,32 @@ bool Hdf5Columns::has_exact_time() {
 }
 
 void Hdf5Columns::read_group(const Hdf5Wanted& wanted) {
-  std::vector<std::string> names = wanted.names.empty() ? datasets_of_group() : wanted.names;
-  const auto time = std::find(names.begin(), names.end(), kHdf5Time);
-  if (wanted.time == kHdf5Time && time != names.end() && has_exact_time()) {
-    header_.exact_time = true;
-    if (wanted.names.empty()) std::erase(names, kHdf5ExactTime);
-    *std::find(names.begin(), names.end(), kHdf5Time) = kHdf5ExactTime;
+  const std::vector<std::string> asked =
+      asked_for(wanted.names, [&](const std::string& name) { return has(name); });
+  std::vector<std::string> others = wanted.others ? datasets_of_group() : std::vector<std::string>();
+  std::erase_if(others, [&](const std::string& name) {
+    return std::find(asked.begin(), asked.end(), name) != asked.end();
+  });
+  const bool capture = asked.empty() && std::count(others.begin(), others.end(), kHdf5Time) > 0;
+  if (has_exact_time()) std::erase(others, kHdf5ExactTime);
+  keep_unpacked(std::clamp(kKeptOfAll / (asked.size() + others.size() + 1), kLeastKept, kMostKept));
+  for (const std::string& name : asked) add_dataset(name, true);
+  if (capture) {
+    const auto time = std::find(others.begin(), others.end(), kHdf5Time);
+    std::rotate(others.begin(), time, time + 1);  // as a CSV file begins
+    for (const std::string& name : others) add_dataset(name, false);
+  } else {
+    add_what_is_a_column(others);
   }
-  if (!names.empty()) keep_unpacked(std::clamp(kKeptOfAll / names.size(), kLeastKept, kMostKept));
-  if (wanted.names.empty() && time == names.end())
-    add_what_is_a_column(names);
-  else
-    for (const std::string& name : names) add_dataset(name, !wanted.names.empty());
   if (!groups_.empty() && !columns_.empty())
     header_.notices.push_back("not read: the groups " + list_of(groups_) + "; --group reads one");
 }
 
 // one: of a matrix a column is asked for, "name[1]".
 void Hdf5Columns::add_dataset(const std::string& name, bool one) {
-  const std::size_t open = name.rfind('[');
-  const bool of_matrix =
-      open != std::string::npos && name.back() == ']' && H5Lexists(place_, name.c_str(), access_) <= 0;
-  const std::string dataset = of_matrix ? name.substr(0, open) : name;
+  const bool of_matrix = without_index(name) != name && H5Lexists(place_, name.c_str(), access_) <= 0;
+  const bool exact = name == kHdf5Time && has_exact_time();
+  const std::string dataset = exact ? kHdf5ExactTime : of_matrix ? without_index(name) : name;
   Hdf5Id found(H5Oopen(place_, dataset.c_str(), access_));
   if (!found.good()) {
     H5L_info_t link{};
@@ -206,23 +207,28 @@ void Hdf5Columns::add_dataset(const std::string& name, bool one) {
     refuse(in_quotes(name) + " is a matrix, expected one of its columns: " + name + "[0] to " + name + "[" +
            std::to_string(parts.size() - 1) + "]");
   const std::size_t before = columns_.size(), value_bytes = H5Tget_size(type);
-  const std::string unit = hdf5_unit(found);
+  const std::string unit = exact ? "s" : hdf5_unit(found);
+  const Hdf5Value value = exact ? Hdf5Value::ns : value_of(type);
   found = {};  // how it is opened first says how much of it is kept
   const std::size_t every = kept_;
   keep_unpacked(std::max(every, chunk_of_last_));
   for (const Part& part : parts) {
-    const std::string column = parts.size() == 1 ? dataset : dataset + "[" + std::to_string(part.index) + "]";
-    if (dataset != name && column != name) continue;
+    const std::string column = exact               ? name
+                               : parts.size() == 1 ? dataset
+                                                   : dataset + "[" + std::to_string(part.index) + "]";
+    const bool is_asked = column == name || (parts.size() == 1 && name == dataset + "[0]");
+    if (of_matrix && !is_asked) continue;
+    if (!one && std::count(header_.names.begin(), header_.names.end(), column) > 0) continue;
     if (header_.names.size() == kInputLimits.hdf5_columns)
       refuse("more than " + std::to_string(kInputLimits.hdf5_columns) + " columns, expected at most that");
     stored_ += header_.rows * value_bytes;
-    header_.names.push_back(column);
+    header_.names.push_back(one ? name : column);
     header_.units.push_back(unit);
     columns_.push_back(
-        {Hdf5Id(H5Dopen2(place_, dataset.c_str(), access_)), Hdf5Id(H5Tcopy(H5T_NATIVE_DOUBLE)), part});
+        {Hdf5Id(H5Dopen2(place_, dataset.c_str(), access_)), Hdf5Id(H5Tcopy(in_memory(value))), value, part});
   }
   keep_unpacked(every);
-  if (columns_.size() == before)
+  if (columns_.size() == before && one)
     refuse("no column " + in_quotes(name) + ", " + in_quotes(dataset) + " has " +
            std::to_string(parts.size()));
 }
@@ -285,7 +291,7 @@ std::vector<Hdf5Columns::Part> Hdf5Columns::take_rows(hid_t dataset, const std::
   return parts;
 }
 
-// Takes from a foreign group the datasets of numbers that are as long as most of them.
+// Takes of a group's datasets of numbers those as long as the columns so far, or as most of them.
 void Hdf5Columns::add_what_is_a_column(const std::vector<std::string>& names) {
   std::map<hsize_t, std::vector<std::string>> by_rows;
   for (const std::string& name : names) {
@@ -303,7 +309,9 @@ void Hdf5Columns::add_what_is_a_column(const std::vector<std::string>& names) {
   }
   std::pair<hsize_t, std::vector<std::string>> most;
   for (const auto& each : by_rows)
-    if (each.first > 1 && each.second.size() >= most.second.size()) most = each;
+    if (columns_.empty() ? each.first > 1 && each.second.size() >= most.second.size()
+                         : each.first == header_.rows)
+      most = each;
   for (const std::string& name : names)
     if (std::find(most.second.begin(), most.second.end(), name) != most.second.end())
       add_dataset(name, false);
@@ -327,18 +335,28 @@ void Hdf5Columns::read_members(const Hdf5Wanted& wanted) {
   if (there.size() > kInputLimits.hdf5_columns)
     refuse("a table of " + std::to_string(there.size()) + " columns, expected at most " +
            std::to_string(kInputLimits.hdf5_columns));
-  for (const std::string& name : wanted.names.empty() ? there : wanted.names) {
+  const auto add = [&](const std::string& name, bool asked) {
     const int member = H5Tget_member_index(type, name.c_str());
     if (member < 0) refuse("no column " + in_quotes(name) + ", the table has " + list_of(there));
     const Hdf5Id kind(H5Tget_member_type(type, static_cast<unsigned>(member)));
+    const H5T_class_t is = H5Tget_class(kind);
+    if (!asked && is != H5T_INTEGER && is != H5T_FLOAT) return;
     demand_numbers(kind, name);
     stored_ += header_.rows * H5Tget_size(kind);
     Hdf5Id dataset(H5Dopen2(place_, ".", access_));
     hdf5_demand(dataset.good(), in_quotes(wanted.group) + " cannot be read");
     header_.names.push_back(name);
     header_.units.emplace_back();
-    columns_.push_back({std::move(dataset), one_member(name, H5T_NATIVE_DOUBLE)});
-  }
+    const Hdf5Value value = value_of(kind);
+    columns_.push_back({std::move(dataset), one_member(name, in_memory(value)), value, {}});
+  };
+  const std::vector<std::string> asked = asked_for(wanted.names, [&](const std::string& name) {
+    return std::find(there.begin(), there.end(), name) != there.end();
+  });
+  for (const std::string& name : asked) add(name, true);
+  if (!wanted.others) return;
+  for (const std::string& name : there)
+    if (std::find(asked.begin(), asked.end(), name) == asked.end()) add(name, false);
 }
 
 void Hdf5Columns::check_size(const Hdf5Wanted& wanted) const {
@@ -352,30 +370,18 @@ void Hdf5Columns::check_size(const Hdf5Wanted& wanted) const {
            " times its size, when unpacked, expected a recording");
 }
 
-void Hdf5Columns::read(std::size_t column, std::uint64_t first, std::span<double> to) {
-  if (column != whole_time_) return read_as_they_are(column, first, to.size(), to.data());
-  whole_.resize(to.size());
-  read_as_they_are(column, first, to.size(), whole_.data());
-  std::transform(whole_.begin(), whole_.end(), to.begin(), [from = *header_.time_from](std::int64_t value) {
-    std::int64_t since = 0;
-    return __builtin_sub_overflow(value, from, &since)
-               ? static_cast<double>(value) - static_cast<double>(from)
-               : static_cast<double>(since);
-  });
-}
-
-void Hdf5Columns::read_as_they_are(std::size_t column, std::uint64_t first, std::size_t many, void* to) {
+void Hdf5Columns::read(std::size_t column, std::uint64_t first, std::span<std::uint64_t> to) {
   const Column& from = columns_[column];
   const auto along = static_cast<std::size_t>(from.part.along);
   std::array<hsize_t, 2> start{from.part.index, from.part.index}, count{1, 1};
   start[along] = first;
-  count[along] = many;
-  const hsize_t all = many;
+  count[along] = to.size();
+  const hsize_t all = to.size();
   const Hdf5Id space(H5Dget_space(from.dataset)), memory(H5Screate_simple(1, &all, nullptr));
   hdf5_demand(
       space.good() && memory.good() &&
           H5Sselect_hyperslab(space, H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr) >= 0 &&
-          H5Dread(from.dataset, from.in_memory, memory, space, H5P_DEFAULT, to) >= 0,
+          H5Dread(from.dataset, from.in_memory, memory, space, H5P_DEFAULT, to.data()) >= 0,
       in_quotes(header_.names[column]) + " cannot be read from row " + std::to_string(first + 1) + " on");
 }
 

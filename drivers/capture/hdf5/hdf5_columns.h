@@ -2,12 +2,11 @@
 // The columns of an HDF5 file, read in this process: datasets of a group, each one column, or "name[0]",
 // "name[1]", … where it is a matrix of a few columns (N × 3, or 3 × N as MATLAB stores it; 1 × N is one
 // column); or the members of a one-dimensional dataset of records (a table of PyTables or pandas). The
-// library trusts what it reads, so this runs behind the barrier of hdf5_input.h and nowhere else.
+// library trusts what it reads, so this runs in the process of hdf5_text.h and nowhere else.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,22 +24,21 @@ struct Hdf5Source {
 
 struct Hdf5Wanted {
   std::string group;               // path of the group or table; "": the file's root
-  std::vector<std::string> names;  // datasets as paths from there, or members; empty: every dataset of it
-  std::string time;                // which of them is the time
+  std::vector<std::string> names;  // datasets as paths from there, or members; "sec+nsec": two of them
+  bool others = true;              // what else there is that is a column is read, too
   std::uint64_t file_bytes = 0;
 };
 
 struct Hdf5Header {
-  std::vector<std::string> names;  // of the columns, in the file's order where it keeps one, else sorted
+  std::vector<std::string> names;  // of the columns: those asked for, then in the file's order or else sorted
   std::vector<std::string> units;  // of each, as its attribute `units` says, or ""
   std::vector<std::string> comments;
   std::vector<std::string> notices;
   std::uint64_t rows = 0;
-  // For a time in integers, which a double may not hold: the first of them, that all of its values are counted
-  // from.
-  std::optional<std::int64_t> time_from;
-  bool exact_time = false;  // the time is time_ns, which replaces time_s
 };
+
+// What a value is in memory, 8 bytes each: integers keep all their digits.
+enum class Hdf5Value { real, whole, natural, ns };  // ns: whole, seconds in the text
 
 inline constexpr std::size_t kLongestHdf5Name = 1000;      // bytes
 inline constexpr std::size_t kMostHdf5Comments = 100'000;  // lines
@@ -52,15 +50,13 @@ class Hdf5Columns {
   Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted);
 
   [[nodiscard]] const Hdf5Header& header() const { return header_; }
-  // Looks at the first time, which unpacks a chunk; the header says then what the times are counted from.
-  // Before anything is read. Throws likewise.
-  void count_times_from_first();
   // Rows to read at once: whole chunks of the file, within reason.
   [[nodiscard]] std::size_t block_rows() const { return block_rows_; }
   // Bytes of the largest chunk, unpacked.
   [[nodiscard]] std::size_t chunk_bytes() const { return chunk_bytes_; }
-  // Rows from `first` on of a column, as double; a time in integers from its first on. Throws likewise.
-  void read(std::size_t column, std::uint64_t first, std::span<double> to);
+  [[nodiscard]] Hdf5Value value(std::size_t column) const { return columns_[column].value; }
+  // Rows from `first` on of a column, as its value is: double, int64 or uint64. Throws likewise.
+  void read(std::size_t column, std::uint64_t first, std::span<std::uint64_t> to);
 
  private:
   // Which part of a dataset a column is.
@@ -70,13 +66,14 @@ class Hdf5Columns {
   };
   struct Column {
     Hdf5Id dataset, in_memory;  // what one value becomes
+    Hdf5Value value = Hdf5Value::real;
     Part part{};
   };
-  void read_as_they_are(std::size_t column, std::uint64_t first, std::size_t count, void* to);
   void open(const Hdf5Source& source);
   void read_group(const Hdf5Wanted& wanted);
   void read_members(const Hdf5Wanted& wanted);
   std::vector<std::string> datasets_of_group();
+  [[nodiscard]] bool has(const std::string& name) const;
   bool has_exact_time();
   void add_dataset(const std::string& name, bool one);
   void add_what_is_a_column(const std::vector<std::string>& names);
@@ -95,9 +92,6 @@ class Hdf5Columns {
   std::size_t chunk_of_last_ = 0;           // bytes, unpacked, of the dataset checked last
   std::size_t kept_ = 0, kept_of_all_ = 0;  // bytes of unpacked chunks, of a dataset at least and of all
   std::uint64_t stored_ = 0;                // bytes of all values as the file has them, unpacked
-  std::string time_;                        // the column's name
-  std::optional<std::size_t> whole_time_;   // which that is, where it holds integers
-  std::vector<std::int64_t> whole_;         // of it, on their way
 };
 
 }  // namespace ifog

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/hdf5/hdf5_places.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "drivers/capture/column_names.h"
@@ -64,6 +65,27 @@ std::vector<std::string> members_of(hid_t type) {
     H5free_memory(name);
   }
   return names;
+}
+
+std::string without_index(const std::string& name) {
+  const std::size_t open = name.rfind('[');
+  return open != std::string::npos && name.back() == ']' ? name.substr(0, open) : name;
+}
+
+std::vector<std::string> asked_for(const std::vector<std::string>& names,
+                                   const std::function<bool(const std::string&)>& has) {
+  std::vector<std::string> out;
+  const auto add = [&](const std::string& name) {
+    if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
+  };
+  for (const std::string& name : names) {
+    std::size_t plus = has(name) ? std::string::npos : name.find('+');
+    while (plus != std::string::npos && !(has(name.substr(0, plus)) && has(name.substr(plus + 1))))
+      plus = name.find('+', plus + 1);
+    add(name.substr(0, plus));
+    if (plus != std::string::npos) add(name.substr(plus + 1));
+  }
+  return out;
 }
 
 }  // namespace ifog

@@ -96,6 +96,15 @@ class Checks:
         self.reads("bias.csv", ["Date,Time (s),gyro_range_dps,gyro_bias_x_dps,gyro_x_dps,gyro_temp_degC",
                                 *self.rows(lambda i, x, y, z: ("2026-05-01", i / RATE_HZ, 250, 0.3, x, 24))], axes="x", unasked=True)
 
+    def check_counts_are_read_by_their_scale(self):
+        path = self.file("counts.csv", ["t_ms,GyX,GyY,GyZ", *self.rows(lambda i, x, y, z: (5 * i, *(round(v * 13100) for v in (x, y, z))))])
+        scale = ["--time", "t_ms:ms", *(word for a in "xyz" for word in ("--column", f"rate_{a}_radps=Gy{a.upper()}:{1 / 13100}deg/s"))]
+        densities, said = typed(path, *scale)
+        assert densities and all(abs(densities[a] / N - 1) < 0.05 for a in "xyz"), (densities, said)
+        loud = self.file("loud.csv", ["t_ms,GyX", *self.rows(lambda i, x, y, z: (5 * i, round(x * 131000)))])
+        said = typed(loud, "--time", "t_ms:ms", "--column", "rate_x_radps=GyX:rad/s")[1]
+        assert "counts are read by their scale: --column 'rate_x_radps=GyX:0.00763deg/s'" in said, said
+
     def check_what_has_a_preamble(self):
         self.reads("maker.txt", ["// General information:", "//  Version: 2022.2.0", "//  Filter Profile: human(46.1)",
                                  "PacketCounter\tSampleTimeFine\tAcc_X\tGyr_X\tGyr_Y\tGyr_Z",
@@ -121,6 +130,20 @@ class Checks:
         self.reads("ardupilot.csv", ["timestamp,TimeUS,I,GyrX,GyrY,GyrZ,AccX,EG,T,GH",
                                      *self.rows(lambda i, x, y, z: (f"{1727992974 + i / RATE_HZ:.6f}", 5000 * i, 0, x * RAD, y * RAD, z * RAD, 9.8, 0, 40, 1))])
         self.reads("rates.csv", ["time_s,p,q,r", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, y, z))], unasked=False)
+
+    def check_lines_as_sketches_print_them(self):
+        """Names before the values, a terminal's time before the line or above it; what else is printed is passed over."""
+        self.reads("colon.txt", self.rows(lambda i, x, y, z: (f"gx:{x} gy:{y} gz:{z}",)), hz=RATE_HZ, says=("--sample-rate HZ",))
+        self.reads("equals.log", ["\x1b[0;32mI (24) boot: 0x68 found\x1b[0m", *self.rows(lambda i, x, y, z: (f"RAW 0x68: acc=(1, 2, -9) gyro=({x}, {y}, {z}) T=25.5",))], hz=RATE_HZ)
+        self.reads("json_lines.txt", self.rows(lambda i, x, y, z: (f'{{"time": {i / RATE_HZ}, "gyro_x_dps": {x}, "gyro_y_dps": {y}, "gyro_z_dps": {z}}}',)), unasked=True)
+
+        def at(i):
+            return (datetime.datetime(2026, 11, 27, 11, 59, 50) + datetime.timedelta(seconds=i / RATE_HZ)).strftime("%H:%M:%S.%f")[:-3]
+        self.reads("monitor.txt", [f"{at(0)} -> gyro_x_dps,gyro_y_dps,gyro_z_dps", *self.rows(lambda i, x, y, z: (f"{at(i)} -> {x},{y},{z}",))], unasked=True)
+        self.reads("seconds.txt", ["11:59:49 -> MPU-6050 ready", *self.rows(lambda i, x, y, z: (f"{at(i)[:8]} -> {x}\t{y}\t{z}",))], says=("no header line",))
+        self.reads("between.txt", [line for i, row in enumerate(self.rows(lambda i, x, y, z: (x, y, z), "  "))
+                                   for line in ([f"2026-11-27   {at(i)[:8]}"] if i % RATE_HZ == 0 else []) + [row]], says=("no header line",))
+        self.reads("other_separator.txt", ["A_Z [mg] G_X [dps] G_Y [dps] G_Z [dps] ", *self.rows(lambda i, x, y, z: (1000, x, y, z), "\t")], hz=RATE_HZ, says=("G_X [dps]",))
 
     def check_dates_as_people_write_them(self):
         """Spreadsheets in German and American, MATLAB, a maker's program; each begins just before noon."""

@@ -218,7 +218,7 @@ class Checks:
         file = write(self.folder / "units.h5", {"time_s": numpy.arange(3.0), "rate_radps": numpy.array([1.0, 2, 3])})
         with h5py.File(file, "a") as inside:
             inside["rate_radps"].attrs["units"] = "deg/s"
-        self.refused(file, "'rate_radps' is in 'deg/s' by its attribute", "--column rate_radps=rate_radps:deg/s")
+        self.refused(file, "the unit of 'rate_radps' is given as 'deg/s'", "--column rate_radps=rate_radps:deg/s")
         for options in (["--column", "rate_radps=rate_radps"], ["--column", "rate_radps=rate_radps:deg/s"]):
             assert abs(self.converted(file, *options)["rate_radps"][0] - numpy.radians(1)) < 1e-16, options
         named = write(self.folder / "named.h5", {"time_s": numpy.arange(3.0), "rate_dps": numpy.array([1.0, 2, 3])})
@@ -247,19 +247,19 @@ class Checks:
         for name, extra, parts in [
                 ("rank", {"rate_radps": numpy.zeros((4, 2, 2))}, ["'rate_radps' has 3 dimensions, expected one"]),
                 ("scalar", {"rate_radps": 5.0}, ["'rate_radps' has 0 dimensions, expected one"]),
-                ("short", {"rate_radps": numpy.zeros(3)}, ["'time_s' has 4 rows, expected the 3 of 'rate_radps'"]),
+                ("short", {"rate_radps": numpy.zeros(3)}, ["'rate_radps' has 3 rows, expected the 4 of 'time_s'"]),
                 ("text", {"rate_radps": numpy.array([b"a"] * 4)}, ["'rate_radps' holds text, expected numbers"]),
                 ("words", {"rate_radps": numpy.array(["a"] * 4, dtype=h5py.string_dtype())}, ["'rate_radps' holds text"]),
                 ("truth", {"rate_radps": numpy.array([True] * 4)}, ["holds an enumeration"]),
                 ("complex", {"rate_radps": numpy.zeros(4, dtype=complex)}, ["holds records"]),
                 ("none", {}, ["no rate column"]),
-                ("infinite", {"rate_radps": numpy.array([0, 1, numpy.inf, 0])}, ["rate_radps is infinite in row 3"]),
+                ("infinite", {"rate_radps": numpy.array([0, 1, numpy.inf, 0])}, [":3: rate_radps is infinite"]),
                 ("comma", {"rate_radps": numpy.zeros(4), "a,b_V": numpy.zeros(4)}, ["a dataset is called 'a,b_V'"]),
         ]:
             self.refused(write(self.folder / f"{name}.h5", {"time_s": time, **extra}), *parts)
         still = {"rate_radps": numpy.zeros(4)}
-        self.refused(write(self.folder / "t.h5", {"time_s": [0.0, 1, 0.5, 2], **still}), "time_s is 0.5 s in row 3, expected more than in the row before")
-        self.refused(write(self.folder / "t.h5", {"time_s": [0.0, 1, numpy.nan, 2], **still}), "time_s is nan in row 3, expected a time")
+        self.refused(write(self.folder / "t.h5", {"time_s": [0.0, 1, 0.5, 2], **still}), ":3: time_s is 0.5 s, expected more than in the row before")
+        self.refused(write(self.folder / "t.h5", {"time_s": [0.0, 1, numpy.nan, 2], **still}), ":3: time_s is missing, expected a time")
         self.refused(write(self.folder / "t.h5", {"time_s": numpy.zeros(0), "rate_radps": numpy.zeros(0)}), "no rows")
         self.refused(write(self.folder / "t.h5", {"Time": time, "GyroX": time}), "the unit of the time is not named", "--time Time:s", "GyroX:rad/s")
         self.refused(write(self.folder / "t.h5", {"time_s": time, "rate_radps": time * 1e9}), "which no sensor measures")

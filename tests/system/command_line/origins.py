@@ -321,7 +321,7 @@ class Checks:
                 refused(1, command[0], path, *command[1:], says=[f"back.csv:{line}: time_s is ", " s, expected more than in the row before", *says])
             if h5py is not None:
                 path, options = self.hdf5("back.h5", times, "even", "<i8")
-                refused(1, "allan", path, *options, says=["t is ", f" s in row {line - 1}, expected more", *says])
+                refused(1, "allan", path, *options, says=["t is ", f"{path}:{line - 1}: ", " s, expected more", *says])
             assert not (self.folder / "never.csv").exists(), what
 
     def check_holes_are_counted(self):

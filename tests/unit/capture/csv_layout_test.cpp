@@ -146,7 +146,7 @@ TEST(CsvLayout, SaysWhatIsWrongWithAFile) {
             "a.csv: is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
 }
 
-TEST(CsvLayout, ARowOfUnitsBelowTheNamesJoinsThem) {
+TEST(CsvLayout, ARowBelowTheNamesSaysTheUnits) {
   const Capture plain = parse_capture(
       "time_s,rate_radps,T,ramp_counts,flag\ns,[rad/s],degC,counts,-\n0,1,20,5,0\n1,2,21,6,1\n", "a.csv");
   EXPECT_EQ(plain.time_s, (std::vector<double>{0, 1}));
@@ -161,22 +161,19 @@ TEST(CsvLayout, ARowOfUnitsBelowTheNamesJoinsThem) {
   };
   const char* const logger = "t,GyroX,Temp\nms,deg/s,degF\n0,90,32\n10,180,212\n";
   EXPECT_EQ(parse_capture(logger, "a.csv").notices.front(),
-            "a.csv: read as: time 't_ms' in ms, rate_x 'GyroX [deg/s]' in deg/s, temp 'Temp_degF' in degF");
-  // By the names as they were written, and as they are told.
-  for (const auto& [rate, time] : {std::pair{"rate_x_radps=GyroX:deg/s", "t:ms"},
-                                   std::pair{"rate_x_radps=GyroX [deg/s]:deg/s", "t_ms:ms"}}) {
-    const Capture chosen = parse_capture(logger, "a.csv", layout({rate, "temperature_degC=Temp:degF"}, time));
+            "a.csv: read as: time 't' in ms, rate_x 'GyroX' in deg/s, temp 'Temp' in degF");
+  // Who chooses a column without a unit gets that of the row.
+  for (const auto& [rate, time] :
+       {std::pair{"rate_x_radps=GyroX:deg/s", "t:ms"}, std::pair{"rate_x_radps=GyroX", "t"}}) {
+    const Capture chosen = parse_capture(logger, "a.csv", layout({rate, "temperature_degC=Temp"}, time));
     EXPECT_EQ(chosen.time_s, (std::vector<double>{0, 0.01}));
     EXPECT_NEAR(chosen.rate_radps[0][1], 180 * kDegree, 1e-12);
     EXPECT_NEAR(chosen.channels[0].values[1], 100, 1e-9);
   }
-  // Its unit is asked for, not guessed.
   EXPECT_EQ(
-      refused(logger, layout({"rate_x_radps=GyroX"}, "t:ms")),
-      "a.csv:1: 'GyroX [deg/s]' is in 'deg/s' by its name, and no unit was told; to read it so: --column "
-      "'rate_x_radps=GyroX [deg/s]:deg/s'");
-  EXPECT_EQ(refused("time_s,rate_radps,temperature_degC\ns,rad/s,K\n0,1,293\n"),
-            "a.csv:2: the row of units says 'K' of 'temperature_degC', expected the unit of its name");
+      refused("time_s,rate_radps,temperature_degC\ns,rad/s,K\n0,1,293\n"),
+      "a.csv:1: the unit of 'temperature_degC' is given as 'K', expected that of its name; to read it so: "
+      "--column temperature_degC=temperature_degC:K");
   // Lines count on, and what is no row of units is a row.
   EXPECT_EQ(refused("time_s,rate_radps\ns,rad/s\n1,1\n0,2\n"),
             "a.csv:4: time_s is 0 s, expected more than in the row before");

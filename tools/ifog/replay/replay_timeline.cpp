@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 #include <stdexcept>
 
 #include "drivers/capture/candump.h"
@@ -42,23 +43,26 @@ FileKind kind_of(const ReplaySource& source, const InputFile& file) {
 }
 
 ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
-  Candump log = parse_candump(file.text(), source.path, source.input.channel);
-  if (log.remote + log.error + log.xl > 0)
-    warn("%s: %zu remote, %zu error and %zu CAN XL frames are not sent\n", source.path.c_str(), log.remote,
-         log.error, log.xl);
-  if (log.cut_off) warn("%s: the last line is no whole frame and is not sent\n", source.path.c_str());
   ReplayTimeline timeline;
-  if (source.prefer_can && log.interfaces.size() > 1) {
-    CandumpBuses buses;
-    for (std::size_t i = 0; i < log.frames.size(); ++i)
-      if (const std::string& interface = log.interfaces[log.on[i]];
-          !buses.other(log.frames[i], interface).empty())
-        throw std::runtime_error(
-            two_interfaces(source.path, buses.other(log.frames[i], interface), interface));
-  }
-  timeline.frames = std::move(log.frames);
-  timeline.on = std::move(log.on);
-  timeline.interfaces = std::move(log.interfaces);
+  CandumpBuses buses;
+  std::string two;  // interfaces with frames of one id
+  const CandumpLosses lost = for_each_candump_frame(
+      file, source.input.channel, [&](const ifog_can_frame& frame, std::string_view from) {
+        auto found = std::find(timeline.interfaces.begin(), timeline.interfaces.end(), from);
+        if (found == timeline.interfaces.end()) found = timeline.interfaces.emplace(found, from);
+        const auto number = found - timeline.interfaces.begin();
+        if (number > std::numeric_limits<std::uint16_t>::max())
+          throw std::runtime_error("more than 65535 interfaces, this is no candump log");
+        timeline.frames.push_back(frame);
+        timeline.on.push_back(static_cast<std::uint16_t>(number));
+        if (const std::string_view other = buses.other(frame, from); two.empty() && !other.empty())
+          two = two_interfaces(source.path, other, from);
+      });
+  if (lost.remote + lost.error + lost.xl > 0)
+    warn("%s: %zu remote, %zu error and %zu CAN XL frames are not sent\n", source.path.c_str(), lost.remote,
+         lost.error, lost.xl);
+  if (lost.cut_off) warn("%s: the last line is no whole frame and is not sent\n", source.path.c_str());
+  if (source.prefer_can && !two.empty()) throw std::runtime_error(two);
   return timeline;
 }
 

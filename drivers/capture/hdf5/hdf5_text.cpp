@@ -1,0 +1,282 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/hdf5/hdf5_text.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/time.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cerrno>
+#include <charconv>
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <ratio>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+#include "drivers/capture/csv_layout.h"
+#include "drivers/capture/date_time.h"
+#include "drivers/capture/text_file.h"
+
+namespace ifog {
+
+// What the reading process says besides the text.
+struct Hdf5Text::Said {
+  std::atomic<std::uint64_t> rows_done{0}, rows{0};
+  std::array<char, 4096> refusal{}, notices{};  // texts that end with a zero; notices: each with a line's end
+};
+
+namespace {
+
+constexpr rlim_t kMostMemory = 2ULL << 30U;  // bytes, beside what the program had and a copy of the file
+// Processor time from one block to the next, and how slowly a chunk may be unpacked besides.
+constexpr std::size_t kMostSeconds = 5, kLeastUnpacked = 32U << 20U;  // s, bytes/s
+constexpr std::size_t kMostValues = 2U << 20U;                        // of a block, all columns together
+constexpr std::size_t kPiece = 1U << 16U;                             // bytes of text, as a pipe holds
+
+std::string reason() { return std::generic_category().message(errno); }
+
+// Bytes that this process may change by itself, as RLIMIT_DATA counts them.
+rlim_t memory_in_use() {
+  unsigned long pages = 0;
+  if (std::FILE* const file = std::fopen("/proc/self/statm", "re")) {
+    if (std::fscanf(file, "%*u %*u %*u %*u %*u %lu", &pages) != 1) pages = 0;
+    std::fclose(file);
+  }
+  return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
+}
+
+// From here on this process can do no more than read the file: it dies with its parent, leaves no image of
+// itself, and says nothing but by its pipe.
+void shut_in(std::size_t image) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  prctl(PR_SET_DUMPABLE, 0);
+  prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
+  for (const int signal : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGPROF, SIGINT, SIGTERM})
+    ::signal(signal, SIG_DFL);
+  ::signal(SIGPIPE, SIG_IGN);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  const rlim_t most = memory_in_use() + image + kMostMemory;
+  const rlimit nothing{0, 0}, memory{most, most};
+  setrlimit(RLIMIT_CORE, &nothing);
+  setrlimit(RLIMIT_FSIZE, &nothing);
+  setrlimit(RLIMIT_DATA, &memory);
+  // A library that finds its heap damaged says so on standard error.
+  const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (nowhere >= 0)
+    for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, fd);
+}
+
+void allow_seconds(std::size_t chunk = 0) {
+  const itimerval timer{{0, 0}, {static_cast<time_t>(kMostSeconds + chunk / kLeastUnpacked), 0}};
+  setitimer(ITIMER_PROF, &timer, nullptr);
+}
+
+// Text on its way into the pipe.
+class Pipe {
+ public:
+  explicit Pipe(int fd) : fd_(fd) { text_.reserve(2 * kPiece); }
+  void add(std::string_view text) {
+    text_ += text;
+    if (text_.size() >= kPiece) flush();
+  }
+  void flush() {
+    for (std::string_view left = text_; !left.empty();) {
+      const ssize_t n = ::write(fd_, left.data(), left.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) throw std::runtime_error("nobody listens");
+      left.remove_prefix(static_cast<std::size_t>(n));
+    }
+    text_.clear();
+  }
+
+ private:
+  int fd_;
+  std::string text_;
+};
+
+// As a comment of a CSV file is.
+std::string one_line(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  return text;
+}
+
+std::string as_cell(const std::string& name) {
+  if (name.find_first_of(",\"\n\r") != std::string::npos || name.front() == ' ' || name.back() == ' ')
+    throw std::runtime_error(
+        "a dataset is called " + in_quotes(name) +
+        ", expected a name as a CSV file's header has it, without comma, quote or line end");
+  return name;
+}
+
+void print_head(const Hdf5Header& header, Pipe& out) {
+  for (const std::string& comment : header.comments) out.add("# " + one_line(comment) + "\n");
+  const auto line = [&](const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) out.add((i == 0 ? "" : ",") + cells[i]);
+    out.add("\n");
+  };
+  std::vector<std::string> names, units;
+  for (const std::string& name : header.names) names.push_back(as_cell(name));
+  line(names);
+  // What is no unit known here is nothing that a row of numbers could be taken for.
+  for (const std::string& unit : header.units) units.push_back(is_unit(unit) ? as_cell(unit) : "-");
+  if (std::any_of(header.units.begin(), header.units.end(), is_unit)) line(units);
+}
+
+char* print(char* at, char* end, std::uint64_t bits, Hdf5Value value) {
+  const auto whole = static_cast<std::int64_t>(bits);
+  if (value == Hdf5Value::real) return std::to_chars(at, end, std::bit_cast<double>(bits)).ptr;
+  if (value == Hdf5Value::natural) return std::to_chars(at, end, bits).ptr;
+  if (value == Hdf5Value::whole) return std::to_chars(at, end, whole).ptr;
+  const std::uint64_t ns = whole < 0 ? 0 - bits : bits;
+  if (whole < 0) *at++ = '-';
+  at = std::to_chars(at, end, ns / std::nano::den).ptr;
+  char* const point = at;
+  at = std::to_chars(at, end, std::nano::den + ns % std::nano::den)
+           .ptr;  // a one that becomes the point, and nine digits
+  *point = '.';
+  return at;
+}
+
+void print_rows(Hdf5Columns& columns, Pipe& out, std::atomic<std::uint64_t>& done) {
+  const std::size_t count = columns.header().names.size();
+  const std::uint64_t all = columns.header().rows;
+  const std::uint64_t most =
+      std::min<std::uint64_t>(columns.block_rows(), std::max<std::size_t>(1, kMostValues / count));
+  std::vector<std::vector<std::uint64_t>> values(count);
+  std::array<char, 32> text{};  // the longest double has 24 characters
+  for (std::uint64_t first = 0; first < all; first += most) {
+    for (std::size_t c = 0; c < count; ++c) {
+      values[c].resize(std::min(most, all - first));
+      allow_seconds(columns.chunk_bytes());
+      columns.read(c, first, values[c]);
+    }
+    for (std::size_t row = 0; row < values[0].size(); ++row)
+      for (std::size_t c = 0; c < count; ++c) {
+        char* const end = print(text.data(), text.data() + text.size() - 1, values[c][row], columns.value(c));
+        *end = c + 1 == count ? '\n' : ',';
+        out.add({text.data(), end + 1});
+      }
+    done = first + values[0].size();
+  }
+}
+
+void keep(std::string_view text, std::array<char, 4096>& to) {
+  text = text.substr(0, to.size() - 1);
+  std::copy(text.begin(), text.end(), to.begin());
+}
+
+std::string kept(const std::array<char, 4096>& text) {
+  return {text.begin(), std::find(text.begin(), text.end(), '\0')};
+}
+
+}  // namespace
+
+Hdf5Text::Hdf5Text(InputFile& file, Hdf5Wanted wanted) : file_(file) {
+  struct stat info {};
+  if (file.reopens() && stat(file.path().c_str(), &info) == 0) {
+    wanted.file_bytes = static_cast<std::uint64_t>(info.st_size);
+  } else {
+    image_ = file.bytes();
+    wanted.file_bytes = image_.size();
+  }
+  try {
+    begin({file.path(), image_}, wanted);
+  } catch (...) {
+    end();
+    throw;
+  }
+}
+
+void Hdf5Text::begin(const Hdf5Source& source, const Hdf5Wanted& wanted) {
+  void* const shared = mmap(nullptr, sizeof(Said), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+  int ends[2];
+  if (shared == MAP_FAILED) throw std::runtime_error(file_.path() + ": no memory: " + reason());
+  said_ = new (shared) Said;
+  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(file_.path() + ": no pipe: " + reason());
+  pipe_ = ends[0];
+  reader_ = fork();
+  if (reader_ == 0) {
+    // Never returns: nothing of the parent is ended here, no buffer of it written a second time.
+    shut_in(source.image.size());
+    allow_seconds();
+    try {
+      Hdf5Columns columns(source, wanted);
+      said_->rows = columns.header().rows;
+      std::string notices;
+      for (const std::string& notice : columns.header().notices) notices += one_line(notice) + '\n';
+      keep(notices, said_->notices);
+      Pipe out(ends[1]);
+      print_head(columns.header(), out);
+      print_rows(columns, out, said_->rows_done);
+      out.flush();
+    } catch (const std::exception& error) {
+      keep(error.what(), said_->refusal);
+      _exit(1);
+    }
+    _exit(0);
+  }
+  ::close(ends[1]);
+  if (reader_ < 0) throw std::runtime_error(file_.path() + ": no process to read it: " + reason());
+}
+
+std::size_t Hdf5Text::read(char* to, std::size_t most) {
+  std::size_t done = 0;
+  while (done < most && reader_ > 0) {
+    const ssize_t n = ::read(pipe_, to + done, most - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n <= 0) break;
+    done += static_cast<std::size_t>(n);
+  }
+  file_.told(said_->rows_done, said_->rows);
+  if (done == most || reader_ <= 0) return done;
+  int status = 0;
+  while (waitpid(reader_, &status, 0) < 0 && errno == EINTR) continue;
+  reader_ = -1;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return done;
+  if (WIFEXITED(status) && said_->refusal[0] != '\0')
+    throw std::runtime_error(file_.path() + ": " + printable(kept(said_->refusal), said_->refusal.size()));
+  const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF;
+  throw std::runtime_error(file_.path() + ": is damaged: the HDF5 library " +
+                           (slow ? "comes to no end with it" : "breaks down over it"));
+}
+
+std::vector<std::string> Hdf5Text::notices() const {
+  std::vector<std::string> out;
+  for (std::string rest = kept(said_->notices); !rest.empty();) {
+    const std::size_t end = std::min(rest.find('\n'), rest.size());
+    out.push_back(printable(rest.substr(0, end), rest.size()));
+    rest.erase(0, end + 1);
+  }
+  return out;
+}
+
+void Hdf5Text::end() {
+  if (pipe_ >= 0) ::close(pipe_);
+  pipe_ = -1;
+  if (reader_ > 0) {
+    ::kill(reader_, SIGKILL);
+    while (waitpid(reader_, nullptr, 0) < 0 && errno == EINTR) continue;
+  }
+  reader_ = -1;
+  if (said_ != nullptr) munmap(said_, sizeof(Said));
+  said_ = nullptr;
+}
+
+Hdf5Text::~Hdf5Text() { end(); }
+
+}  // namespace ifog

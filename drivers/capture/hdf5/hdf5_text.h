@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// An HDF5 file as the text of a CSV file: comments, names, units, rows, with all digits. So what reads CSV
+// reads HDF5 by the same rules.
+//
+// The library that reads HDF5 was made for files that it can trust: a damaged one can end the program or keep
+// it busy for ever. So it runs in a process of its own, with bounded memory and processor time, without the
+// right to load code or to open other files by links, and what comes from there is text that is read as any
+// other. When it dies the file is refused with one line.
+#pragma once
+
+#include <sys/types.h>
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/hdf5/hdf5_columns.h"
+#include "drivers/capture/input_file.h"
+
+namespace ifog {
+
+class Hdf5Text {
+ public:
+  // wanted.file_bytes is set here. The file stays where it is while this is used. Throws std::runtime_error
+  // with one line.
+  Hdf5Text(InputFile& file, Hdf5Wanted wanted);
+  ~Hdf5Text();
+  Hdf5Text(const Hdf5Text&) = delete;
+  Hdf5Text& operator=(const Hdf5Text&) = delete;
+
+  // As InputFile::read. Throws std::runtime_error with one line: what is not as a capture needs it, a damaged
+  // file.
+  std::size_t read(char* to, std::size_t most);
+  // What is not read; known at the end.
+  [[nodiscard]] std::vector<std::string> notices() const;
+
+ private:
+  struct Said;
+  void begin(const Hdf5Source& source, const Hdf5Wanted& wanted);
+  void end();
+
+  InputFile& file_;
+  std::string image_;     // a file that cannot be opened by its name
+  Said* said_ = nullptr;  // in memory of both processes
+  int pipe_ = -1;
+  pid_t reader_ = -1;
+};
+
+}  // namespace ifog
