@@ -8,8 +8,8 @@
 
 #include "daemon/config/lcm_field_name.h"
 #include "daemon/config/table_reader.h"
-#include "drivers/capture/column_names.h"
-#include "drivers/capture/measurable.h"
+#include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/columns/measurable.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/chain/plausibility.h"
 

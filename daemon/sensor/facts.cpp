@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "daemon/config/config.h"
-#include "drivers/capture/measurable.h"
+#include "drivers/capture/columns/measurable.h"
 #include "filters/chain/plausibility.h"
 
 namespace ifog {

@@ -10,7 +10,7 @@
 #include "daemon/sensor/noise_memory.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/state_folder.h"
-#include "drivers/capture/candump.h"
+#include "drivers/capture/candump/candump.h"
 #include "drivers/capture/recording.h"
 #include "drivers/system/input_limits.h"
 

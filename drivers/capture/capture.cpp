@@ -6,8 +6,8 @@
 #include <string_view>
 #include <utility>
 
-#include "drivers/capture/column_names.h"
-#include "drivers/capture/csv_writer.h"
+#include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/csv/csv_writer.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {

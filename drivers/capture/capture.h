@@ -11,10 +11,10 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/capture/csv_layout.h"
-#include "drivers/capture/input_file.h"
-#include "drivers/capture/row_sink.h"
-#include "drivers/capture/time_stamps.h"
+#include "drivers/capture/columns/csv_layout.h"
+#include "drivers/capture/files/input_file.h"
+#include "drivers/capture/times/row_sink.h"
+#include "drivers/capture/times/time_stamps.h"
 
 namespace ifog {
 

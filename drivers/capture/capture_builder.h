@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
-#include "drivers/capture/measurable.h"
-#include "drivers/capture/row_sink.h"
-#include "drivers/capture/sample_times.h"
+#include "drivers/capture/columns/measurable.h"
+#include "drivers/capture/times/row_sink.h"
+#include "drivers/capture/times/sample_times.h"
 #include "drivers/ifog/driver.h"
 
 namespace ifog {

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "drivers/capture/candump.h"
-#include "drivers/capture/column_names.h"
-#include "drivers/capture/name_ending.h"
+#include "drivers/capture/candump/candump.h"
+#include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/files/name_ending.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {

@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "drivers/host/driver_instance.h"
 
 namespace ifog {

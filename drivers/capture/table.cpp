@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "drivers/capture/capture.h"
-#include "drivers/capture/csv_rows.h"
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/csv/csv_rows.h"
+#include "drivers/capture/files/input_file.h"
 
 namespace ifog {
 namespace {

@@ -3,7 +3,7 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "drivers/capture/candump.h"
+#include "drivers/capture/candump/candump.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace ifog;

@@ -63,7 +63,7 @@ def self_test():
     good = {
         "daemon/state/state_folder.cpp": 'int a = ::openat(folder, "ifogd.lock");\n',
         "drivers/flight/folder.cpp": "int a = ::open(path);\n",
-        "drivers/capture/input_file.cpp": "int a = ::open(path);\n",
+        "drivers/capture/files/input_file.cpp": "int a = ::open(path);\n",
         "tools/ifog/field/history.cpp": 'write_state_file(path + ".history.json", text);\nbool b = socket.is_open();\nreopen(x);\n',
         "daemon/sensor/facts.cpp": "std::ifstream file(path);\n",
     }

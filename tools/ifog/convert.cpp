@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "drivers/capture/output_file.h"
+#include "drivers/capture/files/output_file.h"
 #include "drivers/system/shell_word.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"

@@ -6,10 +6,10 @@
 #include <stdexcept>
 #include <string>
 
-#include "drivers/capture/name_ending.h"
-#include "drivers/capture/output_file.h"
+#include "drivers/capture/files/name_ending.h"
+#include "drivers/capture/files/output_file.h"
+#include "drivers/capture/files/text_file.h"
 #include "drivers/capture/recording.h"
-#include "drivers/capture/text_file.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/table/whole_table.h"

@@ -9,8 +9,8 @@
 #include <memory>
 #include <stdexcept>
 
-#include "drivers/capture/name_ending.h"
-#include "drivers/capture/output_file.h"
+#include "drivers/capture/files/name_ending.h"
+#include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "tools/report/style.h"
 #include "tools/report/text.h"

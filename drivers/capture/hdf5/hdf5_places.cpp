@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "drivers/capture/column_names.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {

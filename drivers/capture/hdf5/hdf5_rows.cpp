@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/csv_rows.h"
+#include "drivers/capture/csv/csv_rows.h"
 #include "drivers/capture/hdf5/hdf5_text.h"
 
 namespace ifog {

@@ -4,9 +4,9 @@
 
 #include <string>
 
-#include "drivers/capture/csv_layout.h"
-#include "drivers/capture/input_file.h"
-#include "drivers/capture/row_sink.h"
+#include "drivers/capture/columns/csv_layout.h"
+#include "drivers/capture/files/input_file.h"
+#include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
 

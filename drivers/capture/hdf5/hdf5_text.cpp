@@ -25,9 +25,9 @@
 #include <system_error>
 #include <utility>
 
-#include "drivers/capture/csv_layout.h"
-#include "drivers/capture/date_time.h"
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/columns/csv_layout.h"
+#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/times/date_time.h"
 
 namespace ifog {
 

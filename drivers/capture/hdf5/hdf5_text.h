@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/capture/files/input_file.h"
 #include "drivers/capture/hdf5/hdf5_columns.h"
-#include "drivers/capture/input_file.h"
 
 namespace ifog {
 

@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "drivers/capture/files/text_file.h"
 #include "drivers/capture/hdf5/hdf5_id.h"
-#include "drivers/capture/text_file.h"
-#include "drivers/capture/time_stamps.h"
+#include "drivers/capture/times/time_stamps.h"
 
 namespace ifog {
 

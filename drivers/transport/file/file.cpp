@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "drivers/capture/candump.h"
+#include "drivers/capture/candump/candump.h"
 #include "drivers/transport/file/byte_file.h"
 #include "drivers/transport/file/pace.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/text_file.h"
 #include "tests/bench/undeclared/sensor.h"
 
 int main(int argc, char** argv) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/candump.h"
+#include "drivers/capture/candump/candump.h"
 
 #include <gtest/gtest.h>
 

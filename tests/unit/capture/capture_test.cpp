@@ -9,7 +9,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/text_file.h"
 
 namespace {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // CSV files of other makers: their columns, units, separators, and what a header that is nearly right is
 // told.
-#include "drivers/capture/csv_layout.h"
+#include "drivers/capture/columns/csv_layout.h"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/csv_rows.h"
+#include "drivers/capture/csv/csv_rows.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <random>
 
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/files/input_file.h"
 
 namespace {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/date_time.h"
+#include "drivers/capture/times/date_time.h"
 
 #include <gtest/gtest.h>
 

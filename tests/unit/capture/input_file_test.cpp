@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Read once, from the start: the same text from a file, a packed file, a pipe, and a packed file in a pipe.
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/files/input_file.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/text_file.h"
 
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // One cell that no sensor can have measured is missing; it neither refuses the capture nor stays in it.
-#include "drivers/capture/measurable.h"
+#include "drivers/capture/columns/measurable.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/capture.h"
-#include "drivers/capture/leaps.h"
+#include "drivers/capture/checks/leaps.h"
 
 namespace ifog {
 namespace {

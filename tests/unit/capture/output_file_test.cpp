@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is written is there whole or not at all, and nothing that is not a regular file is ever replaced.
-#include "drivers/capture/output_file.h"
+#include "drivers/capture/files/output_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

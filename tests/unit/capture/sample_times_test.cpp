@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/sample_times.h"
+#include "drivers/capture/times/sample_times.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a hostile file may cost: a line, a cell, a name or an unpacked stream of any size is refused with one
 // short line.
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/text_file.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>

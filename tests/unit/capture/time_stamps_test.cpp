@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The same series with its times begun at any moment and in any unit is the same series. Times are made of
 // whole numbers here, so that what they should be is known to the last digit.
-#include "drivers/capture/time_stamps.h"
+#include "drivers/capture/times/time_stamps.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/csv_rows.h"
+#include "drivers/capture/csv/csv_rows.h"
 
 namespace {
 

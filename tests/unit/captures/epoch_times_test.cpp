@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/text_file.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 

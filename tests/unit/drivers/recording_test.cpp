@@ -13,7 +13,7 @@
 #include <numbers>
 #include <vector>
 
-#include "drivers/capture/candump.h"
+#include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture_builder.h"
 #include "drivers/capture/capture_encoder.h"
 

@@ -15,7 +15,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/text_file.h"
 
 namespace ifog::tools {
 namespace {

@@ -16,7 +16,7 @@
 #include <functional>
 #include <thread>
 
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/text_file.h"
 #include "drivers/transport/file/byte_file.h"
 #include "drivers/transport/sole_reader.h"
 #include "tests/unit/transport/forever.h"

@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/capture/column_names.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/rest/rest.h"
 #include "filters/threads/share_out.h"

@@ -5,13 +5,13 @@
 #include <stdexcept>
 #include <utility>
 
-#include "drivers/capture/candump.h"
+#include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture_builder.h"
-#include "drivers/capture/column_names.h"
-#include "drivers/capture/csv_rows.h"
-#include "drivers/capture/foreign_file.h"
+#include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/csv/csv_rows.h"
+#include "drivers/capture/files/foreign_file.h"
+#include "drivers/capture/files/name_ending.h"
 #include "drivers/capture/hdf5/hdf5_rows.h"
-#include "drivers/capture/name_ending.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/sha256.h"

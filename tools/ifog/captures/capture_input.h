@@ -10,7 +10,7 @@
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/recording.h"
-#include "drivers/capture/row_sink.h"
+#include "drivers/capture/times/row_sink.h"
 #include "drivers/host/driver_instance.h"
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/long_table.h"

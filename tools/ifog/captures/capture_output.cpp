@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/candump.h"
+#include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture_encoder.h"
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/text_file.h"
 #include "filters/series/series_view.h"
 #include "tools/ifog/captures/table/column_writer.h"
 #include "tools/ifog/console/command_files.h"

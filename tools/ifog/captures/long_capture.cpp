@@ -4,7 +4,7 @@
 #include <string_view>
 #include <utility>
 
-#include "drivers/capture/column_names.h"
+#include "drivers/capture/columns/column_names.h"
 #include "tools/ifog/captures/compensated_rates.h"
 
 namespace ifog::tools {

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "tools/ifog/console/progress.h"
 
 namespace ifog::tools {

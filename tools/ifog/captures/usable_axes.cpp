@@ -7,7 +7,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "drivers/capture/column_names.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/series/series_view.h"
 #include "filters/units/told_time.h"

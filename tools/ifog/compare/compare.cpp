@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/column_names.h"
+#include "drivers/capture/columns/column_names.h"
 #include "filters/allan/stretches.h"
 #include "filters/estimator/walk.h"
 #include "filters/model_file/model.h"

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/name_ending.h"
-#include "drivers/capture/output_file.h"
+#include "drivers/capture/files/name_ending.h"
+#include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/say.h"

@@ -5,7 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/text_file.h"
 
 namespace ifog::tools {
 

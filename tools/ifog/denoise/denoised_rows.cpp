@@ -6,7 +6,7 @@
 #include <span>
 #include <utility>
 
-#include "drivers/capture/row_sink.h"
+#include "drivers/capture/times/row_sink.h"
 #include "tools/ifog/captures/usable_axes.h"
 
 namespace ifog::tools {

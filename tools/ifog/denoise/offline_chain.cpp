@@ -10,7 +10,7 @@
 
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
-#include "drivers/capture/candump.h"
+#include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture.h"
 #include "filters/allan/row_times.h"
 #include "filters/model_file/channel_names.h"

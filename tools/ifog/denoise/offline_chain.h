@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "drivers/capture/sample_times.h"
+#include "drivers/capture/times/sample_times.h"
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
 #include "tools/ifog/captures/capture_input.h"

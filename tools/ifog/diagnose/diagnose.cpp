@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/output_file.h"
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/output_file.h"
+#include "drivers/capture/files/text_file.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/model_axes.h"

@@ -17,7 +17,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 #include "filters/model_file/sha256.h"

@@ -13,7 +13,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "tools/ifog/captures/compensated_rates.h"
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/reading_progress.h"

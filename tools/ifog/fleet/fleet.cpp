@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/output_file.h"
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/output_file.h"
+#include "drivers/capture/files/text_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 #include "filters/units/field_units.h"

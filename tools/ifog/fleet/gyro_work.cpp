@@ -9,8 +9,8 @@
 #include <optional>
 #include <stdexcept>
 
-#include "drivers/capture/output_file.h"
-#include "drivers/capture/text_file.h"
+#include "drivers/capture/files/output_file.h"
+#include "drivers/capture/files/text_file.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/json_file.h"

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/output_file.h"
+#include "drivers/capture/files/output_file.h"
 #include "tools/ifog/captures/lcm/lcm_listener.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/monitor/known_here.h"

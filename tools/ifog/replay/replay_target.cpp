@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/candump.h"
-#include "drivers/capture/output_file.h"
+#include "drivers/capture/candump/candump.h"
+#include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/network/ip_socket.h"

@@ -7,10 +7,10 @@
 #include <limits>
 #include <stdexcept>
 
-#include "drivers/capture/candump.h"
+#include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture.h"
 #include "drivers/capture/capture_encoder.h"
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/host/timeline_frame.h"
 #include "drivers/timeline/timeline.h"

@@ -11,8 +11,8 @@
 #include <optional>
 #include <utility>
 
-#include "drivers/capture/column_names.h"
-#include "drivers/capture/output_file.h"
+#include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "drivers/transport/utc_now.h"

@@ -11,7 +11,7 @@
 #include "daemon/config/config.h"
 #include "drivers/capture/capture.h"
 #include "drivers/capture/capture_builder.h"
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/flight/decode.h"
 #include "drivers/host/driver_instance.h"

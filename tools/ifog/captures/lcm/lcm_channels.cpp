@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "drivers/capture/column_names.h"
+#include "drivers/capture/columns/column_names.h"
 
 namespace ifog::tools {
 namespace {

@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/time_stamps.h"
+#include "drivers/capture/times/time_stamps.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/utc_now.h"
 #include "msgs/channel_name.h"

@@ -6,8 +6,8 @@
 #include <string>
 
 #include "drivers/capture/capture.h"
-#include "drivers/capture/input_file.h"
-#include "drivers/capture/row_sink.h"
+#include "drivers/capture/files/input_file.h"
+#include "drivers/capture/times/row_sink.h"
 
 namespace ifog::tools {
 

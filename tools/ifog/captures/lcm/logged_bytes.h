@@ -8,7 +8,7 @@
 #include <span>
 #include <string>
 
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/host/driver_instance.h"
 

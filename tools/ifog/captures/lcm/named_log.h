@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "drivers/capture/input_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "drivers/system/unnamed_file.h"
 
 namespace ifog::tools {

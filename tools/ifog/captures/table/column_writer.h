@@ -8,7 +8,7 @@
 #include <variant>
 #include <vector>
 
-#include "drivers/capture/csv_writer.h"
+#include "drivers/capture/csv/csv_writer.h"
 #include "drivers/capture/hdf5/hdf5_writer.h"
 #include "drivers/capture/recording.h"
 

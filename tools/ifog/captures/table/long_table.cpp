@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "drivers/capture/column_names.h"
+#include "drivers/capture/columns/column_names.h"
 #include "filters/threads/share_out.h"
 
 namespace ifog::tools {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
-#include "drivers/capture/row_sink.h"
+#include "drivers/capture/times/row_sink.h"
 #include "filters/rest/channel_outline.h"
 #include "filters/series/long_series.h"
 #include "filters/series/series_view.h"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/column_names.h"
+#include "drivers/capture/columns/column_names.h"
 #include "filters/series/series_view.h"
 
 namespace ifog::tools {

@@ -1,0 +1,321 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/candump/candump.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <span>
+
+#include "drivers/capture/times/date_time.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::uint32_t kExtendedFlag = 0x80000000U,
+                        kErrorFlag = 0x20000000U;  // linux/can.h, as candump prints them
+constexpr std::size_t kClassicBytes = 8, kFdBytes = 64;
+constexpr std::size_t kEpochDigits = 10;
+
+// Reads a line from its left, a token at a time.
+class Cursor {
+ public:
+  explicit Cursor(std::string_view text) : rest_(text) {}
+
+  bool literal(char c) {
+    if (rest_.empty() || rest_.front() != c) return false;
+    rest_.remove_prefix(1);
+    return true;
+  }
+  // Blanks, at least one.
+  bool blanks() {
+    const std::size_t before = rest_.size();
+    while (!rest_.empty() && (rest_.front() == ' ' || rest_.front() == '\t')) rest_.remove_prefix(1);
+    return rest_.size() < before;
+  }
+  std::string_view word() {
+    const std::size_t end = std::min(rest_.find_first_of(" \t"), rest_.size());
+    const std::string_view found = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    return found;
+  }
+  // Decimal digits, as many as there are; false for none or an overflow.
+  bool decimal(std::uint64_t& value, std::size_t& digits) {
+    value = 0;
+    digits = 0;
+    while (!rest_.empty() && rest_.front() >= '0' && rest_.front() <= '9') {
+      if (value > (std::numeric_limits<std::int64_t>::max() - 9) / 10) return false;
+      value = value * 10 + static_cast<std::uint64_t>(rest_.front() - '0');
+      rest_.remove_prefix(1);
+      ++digits;
+    }
+    return digits > 0;
+  }
+  bool hex(std::uint32_t& digit) {
+    if (rest_.empty()) return false;
+    const char c = rest_.front();
+    if (c >= '0' && c <= '9')
+      digit = static_cast<std::uint32_t>(c - '0');
+    else if (c >= 'A' && c <= 'F')
+      digit = static_cast<std::uint32_t>(c - 'A' + 10);
+    else if (c >= 'a' && c <= 'f')
+      digit = static_cast<std::uint32_t>(c - 'a' + 10);
+    else
+      return false;
+    rest_.remove_prefix(1);
+    return true;
+  }
+  // What is before that, or nothing where it does not come.
+  std::string_view until(char c) {
+    const std::size_t end = rest_.find(c);
+    if (end == std::string_view::npos) return {};
+    const std::string_view found = rest_.substr(0, end);
+    rest_.remove_prefix(end);
+    return found;
+  }
+  bool text(std::string_view what) {
+    if (!rest_.starts_with(what)) return false;
+    rest_.remove_prefix(what.size());
+    return true;
+  }
+  [[nodiscard]] bool has(std::size_t at, char c) const { return rest_.size() > at && rest_[at] == c; }
+  [[nodiscard]] bool at(char c) const { return !rest_.empty() && rest_.front() == c; }
+  [[nodiscard]] bool done() const { return rest_.empty(); }
+
+ private:
+  std::string_view rest_;
+};
+
+// "2026-05-01 12:00:00.123456)" of candump -t A.
+bool parse_date(Cursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
+  std::array<char, kLongestDate> digits{};
+  Cursor date(date_in_digits(in.until(')'), digits));
+  std::uint64_t seconds = 0, fraction = 0;
+  std::size_t places = 0;
+  if (!date.decimal(seconds, second_digits) || !date.literal('.') || !date.decimal(fraction, places) ||
+      places > 9 || !date.done() || !in.literal(')'))
+    return false;
+  for (; places < 9; ++places) fraction *= 10;
+  second_digits = kEpochDigits;
+  time_ns = static_cast<std::int64_t>(seconds * 1'000'000'000 + fraction);
+  return true;
+}
+
+bool parse_time(Cursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
+  std::uint64_t seconds = 0, fraction = 0;
+  std::size_t digits = 0;
+  constexpr std::uint64_t kMostSeconds = 9'000'000'000;  // what an int64 of nanoseconds holds
+  if (!in.literal('(')) return false;
+  if (in.has(4, '-')) return parse_date(in, time_ns, second_digits);
+  if (!in.decimal(seconds, second_digits) || seconds > kMostSeconds) return false;
+  if (!in.literal('.') || !in.decimal(fraction, digits) || digits > 9 || !in.literal(')')) return false;
+  for (; digits < 9; ++digits) fraction *= 10;
+  time_ns = static_cast<std::int64_t>(seconds * 1'000'000'000 + fraction);
+  return true;
+}
+
+bool parse_data(Cursor& in, std::size_t most, ifog_can_frame& frame) {
+  std::size_t n = 0;
+  std::uint32_t high = 0, low = 0;
+  while (in.hex(high)) {
+    if (n == most || !in.hex(low)) return false;
+    frame.data[n++] = static_cast<std::uint8_t>(high << 4U | low);
+    in.literal('.');  // cansend's notation
+  }
+  frame.length = static_cast<std::uint8_t>(n);
+  return true;
+}
+
+bool parse_id(Cursor& in, ifog_can_frame& frame, bool& error) {
+  std::uint32_t id = 0, digit = 0;
+  std::size_t digits = 0;
+  for (; digits < 8 && in.hex(digit); ++digits) id = id << 4U | digit;
+  if (digits != 3 && digits != 8) return false;
+  error = digits == 8 && (id & kErrorFlag) != 0;
+  if (digits == 3 ? id > 0x7FFU : (id & ~(kErrorFlag | kExtendedFlag)) > 0x1FFFFFFFU) return false;
+  frame.id = id & 0x1FFFFFFFU;
+  if (digits == 8) frame.flags |= IFOG_CAN_EXTENDED;
+  return true;
+}
+
+// Behind "#" of a line of the log.
+CandumpLine parse_log(Cursor& in, ifog_can_frame& frame) {
+  std::uint32_t digit = 0;
+  bool remote = false;
+  if (in.literal('#')) {
+    if (!in.hex(digit)) return CandumpLine::malformed;
+    frame.flags =
+        static_cast<std::uint8_t>(frame.flags | IFOG_CAN_FD | ((digit & 1U) != 0 ? IFOG_CAN_BRS : 0));
+    if (!parse_data(in, kFdBytes, frame)) return CandumpLine::malformed;
+  } else if (in.literal('R') || in.literal('r')) {
+    remote = true;
+    in.hex(digit);
+  } else if (!parse_data(in, kClassicBytes, frame)) {
+    return CandumpLine::malformed;
+  }
+  if (in.literal('_') && !in.hex(digit)) return CandumpLine::malformed;  // the raw DLC of newer can-utils
+  // Newer can-utils end the line with the direction, T or R.
+  if (!in.done() && (!in.blanks() || in.word().size() != 1 || !in.done())) return CandumpLine::malformed;
+  return remote ? CandumpLine::remote : CandumpLine::frame;
+}
+
+constexpr char kSwapped = '`';  // between the bytes, last first, of candump -S
+
+// Two digits, or eight of candump -i.
+bool parse_byte(Cursor& in, std::uint8_t& byte) {
+  std::uint32_t value = 0, bits = 0, digit = 0;
+  int n = 0;
+  for (bool binary = true; in.hex(digit); ++n) {
+    binary = binary && digit <= 1;
+    if (n == 8 || (n >= 2 && !binary)) return false;
+    value = value << 4U | digit;
+    bits = bits << 1U | digit;
+  }
+  byte = static_cast<std::uint8_t>(n == 8 ? bits : value);
+  return n == 2 || n == 8;
+}
+
+// Behind the id of a line of the screen: "[8]  11 22 …", the raw DLC as "{8}", 9 … F for a length of 8.
+CandumpLine parse_screen(Cursor& in, ifog_can_frame& frame) {
+  std::uint64_t length = 0;
+  std::size_t digits = 0;
+  std::uint32_t raw = 0;
+  if (in.literal('{')) {
+    if (!in.hex(raw) || !in.literal('}')) return CandumpLine::malformed;
+    length = std::min<std::uint64_t>(raw, kClassicBytes);
+  } else if (!in.literal('[') || !in.decimal(length, digits) || !in.literal(']')) {
+    return CandumpLine::malformed;
+  }
+  if (digits == 2) frame.flags |= IFOG_CAN_FD;
+  if (digits > 2 || length > (digits == 2 ? kFdBytes : kClassicBytes)) return CandumpLine::malformed;
+  (void)in.blanks();
+  if (in.at('r')) {
+    const bool remote = in.word() == "remote" && in.blanks() && in.word() == "request";
+    return remote ? CandumpLine::remote : CandumpLine::malformed;
+  }
+  const std::span data(frame.data, static_cast<std::size_t>(length));
+  bool swapped = false;
+  for (std::size_t i = 0; i < data.size(); ++i) {
+    if (i == 1) swapped = in.at(kSwapped);
+    if ((i > 0 && !(swapped ? in.literal(kSwapped) : in.blanks())) || !parse_byte(in, data[i]))
+      return CandumpLine::malformed;
+  }
+  if (swapped) std::reverse(data.begin(), data.end());
+  frame.length = static_cast<std::uint8_t>(length);
+  if (in.done()) return CandumpLine::frame;
+  if (length > 0 && !in.blanks()) return CandumpLine::malformed;
+  const bool characters = in.at('\'') || in.at(kSwapped);
+  return characters || in.word() == "ERRORFRAME" ? CandumpLine::frame : CandumpLine::malformed;
+}
+
+// "DROPCOUNT: dropped 5 CAN frames on 'can0' socket (total drops 12)" of candump -d.
+bool parse_drops(Cursor in, CandumpEntry& entry) {
+  std::size_t digits = 0;
+  if (!in.text("DROPCOUNT: dropped ") || !in.decimal(entry.dropped, digits) || !in.text(" CAN frame"))
+    return false;
+  in.literal('s');
+  if (!in.text(" on '")) return false;
+  entry.interface = in.until('\'');
+  return in.text("' socket (total drops ");
+}
+
+// Behind the interface: "123 [0016] (00|81:00:12345678) …" on the screen, "00123#81:00:12345678#…" in a log.
+bool is_xl(Cursor in) {
+  std::uint32_t digit = 0;
+  std::uint64_t length = 0;
+  std::size_t ids = 0, digits = 0;
+  while (in.hex(digit)) ++ids;
+  if (ids == 5 && in.literal('#')) return in.hex(digit) && in.hex(digit) && in.at(':');
+  return ids == 3 && in.blanks() && in.literal('[') && in.decimal(length, digits) && digits == 4 &&
+         in.text("] (");
+}
+
+// "RX - -" or "TX B E" of candump -x.
+bool pass_direction(Cursor& in) {
+  Cursor ahead = in;
+  const std::string_view direction = ahead.word();
+  if (direction != "RX" && direction != "TX") return true;
+  for (int i = 0; i < 2; ++i)
+    if (!ahead.blanks() || ahead.word().size() != 1) return false;
+  in = ahead;
+  return in.blanks();
+}
+
+}  // namespace
+
+CandumpLine parse_candump_line(std::string_view line, CandumpEntry& entry) noexcept {
+  while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t'))
+    line.remove_suffix(1);
+  // A tab begins what candump -e says of the error frame on the line before.
+  if (line.empty() || line.front() == '#' || line.front() == '\t') return CandumpLine::blank;
+
+  ifog_can_frame& frame = entry.frame;
+  frame = ifog_can_frame{};
+  entry.stamp = CandumpStamp::none;
+  entry.dropped = 0;
+  Cursor in(line);
+  if (in.at('D') && parse_drops(in, entry)) return CandumpLine::drops;
+  (void)in.blanks();
+  std::size_t digits = 0;
+  const bool timed = in.at('(');
+  if (timed && (!parse_time(in, frame.arrival_ns, digits) || !in.blanks())) return CandumpLine::malformed;
+  entry.interface = in.word();
+  if (entry.interface.empty() || !in.blanks() || !pass_direction(in)) return CandumpLine::malformed;
+
+  if (is_xl(in)) {
+    if (timed) entry.stamp = digits >= kEpochDigits ? CandumpStamp::absolute : CandumpStamp::since;
+    return CandumpLine::xl;
+  }
+  bool error = false;
+  if (!parse_id(in, frame, error)) return CandumpLine::malformed;
+  CandumpLine kind = CandumpLine::malformed;
+  if (in.literal('#')) {
+    if (!timed) return CandumpLine::malformed;
+    entry.stamp = CandumpStamp::absolute;
+    kind = parse_log(in, frame);
+  } else if (in.blanks()) {
+    if (timed) entry.stamp = digits >= kEpochDigits ? CandumpStamp::absolute : CandumpStamp::since;
+    kind = parse_screen(in, frame);
+  }
+  return error && kind != CandumpLine::malformed ? CandumpLine::error : kind;
+}
+
+std::int64_t CandumpClock::time_ns(const CandumpEntry& entry) noexcept {
+  const std::int64_t stamp = entry.frame.arrival_ns;
+  if (entry.stamp != CandumpStamp::since) return stamp;
+  if (stamp < last_stamp_ns_) differences_ = true;
+  last_stamp_ns_ = stamp;
+  now_ns_ = differences_ ? now_ns_ + stamp : stamp;
+  return now_ns_ + kShortStampsFrom_ns;
+}
+
+std::size_t format_candump_line(const ifog_can_frame& frame, std::string_view interface, char* out) noexcept {
+  constexpr const char* kHex = "0123456789ABCDEF";
+  char* at = out;
+  const auto digits = [&](std::uint64_t value, int width, std::uint64_t base) {
+    for (int i = width - 1; i >= 0; --i, value /= base) at[i] = kHex[value % base];
+    at += width;
+  };
+  const auto micros = static_cast<std::uint64_t>(std::max<std::int64_t>(0, frame.arrival_ns) / 1000);
+  *at++ = '(';
+  digits(micros / 1'000'000, 10, 10);
+  *at++ = '.';
+  digits(micros % 1'000'000, 6, 10);
+  *at++ = ')';
+  *at++ = ' ';
+  interface = interface.substr(0, 15);
+  at = std::copy(interface.begin(), interface.end(), at);
+  *at++ = ' ';
+  digits(frame.id, (frame.flags & IFOG_CAN_EXTENDED) != 0 ? 8 : 3, 16);
+  *at++ = '#';
+  const bool fd = (frame.flags & IFOG_CAN_FD) != 0;
+  if (fd) {
+    *at++ = '#';
+    *at++ = (frame.flags & IFOG_CAN_BRS) != 0 ? '1' : '0';
+  }
+  const std::size_t length = std::min<std::size_t>(frame.length, fd ? kFdBytes : kClassicBytes);
+  for (std::size_t i = 0; i < length; ++i) digits(frame.data[i], 2, 16);
+  *at++ = '\n';
+  return static_cast<std::size_t>(at - out);
+}
+
+}  // namespace ifog

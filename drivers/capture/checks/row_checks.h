@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the rows of every format go through on their way to whom they are for: chosen columns are converted,
+// angles become rates, and what no sensor measures becomes missing and is reported, or is refused.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/checks/leaps.h"
+#include "drivers/capture/checks/row_clock.h"
+#include "drivers/capture/columns/chosen_columns.h"
+#include "drivers/capture/columns/csv_layout.h"
+#include "drivers/capture/columns/measurable.h"
+#include "drivers/capture/times/row_sink.h"
+
+namespace ifog {
+
+// A column of the file, not the time.
+struct FileColumn {
+  std::string name;   // in the file
+  Measurable range;   // in the file's unit
+  bool rate = false;  // of the capture: a rate or its reference
+};
+
+// Values of a column that no sensor measures, read as missing.
+struct ImpossibleValues {
+  std::size_t count = 0;
+  std::size_t line = 0;
+  std::string first;  // as it stands there
+};
+
+// "rate_radps is '1e9', which no sensor measures, expected …".
+std::string what_no_sensor_measures(const std::string& name, std::string_view cell, const Measurable& range);
+
+class RowChecks {
+ public:
+  // columns: in the order of the names that the sink was given. The path, the layout, the sink and the notes
+  // stay where they are while this is used.
+  RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns, RowSink& sink,
+            RowNotes& notes);
+
+  // The next rows in the file's units, at least one. steps: between their times. Throws std::runtime_error
+  // with one line, as finish().
+  void take(RowBlock& rows, const ExactSteps& steps = {});
+  // found: of each column. A value here and there is a fault of the logger, and is missing; where many are, a
+  // rate is not what its name says, and is refused. A channel is only missing then: a broken thermometer is
+  // no reason to know nothing of the rate. unit_known: the time says its unit by more than its name.
+  // steps: between all times.
+  void finish(std::span<const ImpossibleValues> found, bool unit_known, const ExactSteps& steps = {});
+
+  // Rows received, repeated ones included.
+  [[nodiscard]] std::size_t rows() const { return rows_; }
+
+ private:
+  void tell_impossible(const FileColumn& column, const ImpossibleValues& found);
+  void tell_leaps();
+  void behind_clock(RowBlock& rows);
+  void look_for_set_clock(const std::vector<double>& time_s);
+  void tell_set_clock();
+
+  const std::string& path_;
+  const CsvLayout& layout_;
+  const std::vector<FileColumn> columns_;
+  RowNotes& notes_;
+  const std::vector<std::size_t> rates_;  // columns
+  Leaps leaps_;
+  RowClock clock_;
+  std::optional<RowBlock> all_;  // where angles become rates
+  WholeTimes times_;
+  std::size_t rows_ = 0;
+  std::size_t given_ = 0;                 // rows behind the clock
+  double last_s_ = 0.0;                   // time of the last of them, once there is one
+  std::optional<std::size_t> clock_set_;  // the first row behind a step that no recording has
+  double clock_set_by_s_ = 0.0;
+};
+
+}  // namespace ifog

@@ -1,0 +1,239 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/checks/row_clock.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "drivers/capture/columns/column_names.h"
+#include "drivers/ifog/quoted.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kFewBursts = 8;
+constexpr double kHole = 1.5;    // times the usual step: a hole, not a longer step
+constexpr double kLate_s = 2.0;  // a rollover comes within it
+
+struct Rollover {
+  double length_s;
+  const char* what;
+};
+constexpr double kTwo32 = 4294967296.0;
+constexpr std::array<Rollover, 5> kRollovers{{{604'800.0, "a GPS week"},
+                                              {86'400.0, "a day"},
+                                              {kTwo32 * 1e-6, "a count of µs in 32 bits"},
+                                              {kTwo32 * 1e-4, "a count of 100 µs in 32 bits"},
+                                              {kTwo32 * 1e-3, "a count of ms in 32 bits"}}};
+
+// The usual of some values.
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// Four in five are within a fifth of the usual: packets come evenly, holes and jitter do not.
+bool are_even(const std::vector<double>& values) {
+  const double usual = median(values);
+  const auto near = std::count_if(values.begin(), values.end(),
+                                  [&](double v) { return std::abs(v - usual) <= 0.2 * usual; });
+  return 5 * static_cast<std::size_t>(near) >= 4 * values.size();
+}
+
+// The longest step within a burst, where rows come in bursts; 0 where they do not.
+double step_within_bursts(const std::vector<double>& time_s) {
+  if (time_s.size() < 2) return 0.0;
+  const double mean_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
+  std::vector<double> within, between, rows;
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < time_s.size(); ++i) {
+    const double step_s = time_s[i] - time_s[i - 1];
+    if (step_s <= mean_s) {
+      within.push_back(step_s);
+      continue;
+    }
+    between.push_back(time_s[i] - time_s[begin]);
+    rows.push_back(static_cast<double>(i - begin));
+    begin = i;
+  }
+  if (between.size() < kFewBursts || within.size() < between.size()) return 0.0;
+  return median(within) < 0.25 * mean_s && are_even(between) && are_even(rows) ? mean_s : 0.0;
+}
+
+bool same_values(const RowBlock& rows, std::size_t a, std::size_t b) {
+  bool any = false;
+  for (const std::vector<double>& column : rows.columns) {
+    if (column.empty()) continue;
+    any = true;
+    if (column[a] != column[b] && !(std::isnan(column[a]) && std::isnan(column[b]))) return false;
+  }
+  return any;
+}
+
+// f(column) for the time and every column that is there.
+template <typename Use>
+void for_each_column(RowBlock& rows, Use use) {
+  for (std::vector<double>& column : rows.columns)
+    if (!column.empty()) use(column);
+  use(rows.time_s);
+}
+
+// The rows held before those that came.
+void put_before(RowBlock& held, RowBlock& rows) {
+  if (held.size() == 0) return;
+  for (std::size_t c = 0; c < rows.columns.size(); ++c)
+    if (!rows.columns[c].empty())
+      rows.columns[c].insert(rows.columns[c].begin(), held.columns[c].begin(), held.columns[c].end());
+  rows.time_s.insert(rows.time_s.begin(), held.time_s.begin(), held.time_s.end());
+}
+
+void hold_from(RowBlock& rows, std::size_t from, RowBlock& held) {
+  held.origin = rows.origin;
+  held.columns.resize(rows.columns.size());
+  const auto at = static_cast<std::ptrdiff_t>(from);
+  for (std::size_t c = 0; c < rows.columns.size(); ++c)
+    if (!rows.columns[c].empty()) held.columns[c].assign(rows.columns[c].begin() + at, rows.columns[c].end());
+  held.time_s.assign(rows.time_s.begin() + at, rows.time_s.end());
+  for_each_column(rows, [&](std::vector<double>& column) { column.resize(from); });
+}
+
+}  // namespace
+
+RowClock::RowClock(const std::string& path, std::string time, bool keep_repeats, RowNotes& notes, Next next)
+    : path_(path),
+      time_(std::move(time)),
+      keep_repeats_(keep_repeats),
+      notes_(notes),
+      next_(std::move(next)) {}
+
+void RowClock::take(RowBlock& rows) {
+  const std::size_t came = rows.size(), before = held_.size();
+  roll_over(rows);
+  put_before(held_, rows);
+  const std::vector<double>& time = rows.time_s;
+  raw_rows_ += came;
+  // Nearly every file's steps are all longer than 0.
+  bool plain = within_s_ == 0.0;
+  if (!begun_) {
+    within_s_ = step_within_bursts(time);
+    plain = within_s_ == 0.0;
+    begun_ = true;
+  }
+  if (plain)
+    plain = std::adjacent_find(time.begin() + (before > 0 ? static_cast<std::ptrdiff_t>(before - 1) : 0),
+                               time.end(), [](double a, double b) { return b <= a; }) == time.end() &&
+            before <= 1;
+  if (plain) {
+    if (rows.size() > 1) period_s_ = time.back() - time[time.size() - 2];
+    hold_from(rows, rows.size() - 1, held_);
+    if (rows.size() > 0) next_(rows);
+    return;
+  }
+  drop_repeats(rows);
+  std::size_t begin = 0;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    // The first of rows that were spread keeps its stamp.
+    const double since_s = rows.time_s[i] - rows.time_s[i - 1];
+    if (since_s <= within_s_) continue;
+    spread(rows, begin, i, rows.time_s[i]);
+    begin = i;
+  }
+  hold_from(rows, begin, held_);
+  if (rows.size() > 0) next_(rows);
+}
+
+void RowClock::roll_over(RowBlock& rows) {
+  double last_s = held_.size() > 0 ? held_.time_s.back() : rows.time_s.front() + offset_s_;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    double& now_s = rows.time_s[i];
+    now_s += offset_s_;
+    if (now_s >= last_s) {
+      last_s = now_s;
+      continue;
+    }
+    const std::size_t line = notes_.line_of_raw_row(raw_rows_ + i);
+    const auto found = std::find_if(kRollovers.begin(), kRollovers.end(), [&](const Rollover& each) {
+      return now_s + each.length_s > last_s && now_s + each.length_s <= last_s + kLate_s;
+    });
+    if (found == kRollovers.end()) {
+      std::string now;
+      append_time(now, rows.origin, now_s - offset_s_);
+      fail_at(path_, line, printable(time_) + " is " + now + " s, expected more than in the row before");
+    }
+    offset_s_ += found->length_s;
+    now_s += found->length_s;
+    last_s = now_s;
+    notes_.notices.push_back(path_ + ":" + std::to_string(line) + ": " + printable(time_) +
+                             " rolls over, as " + found->what + " does: " + shortest(found->length_s) +
+                             " s are added from there on");
+  }
+}
+
+void RowClock::drop_repeats(RowBlock& rows) {
+  if (keep_repeats_) return;
+  const std::size_t first_raw = raw_rows_ - rows.size();
+  std::size_t kept = 1;
+  for (std::size_t i = 1; i < rows.size(); ++i) {
+    if (rows.time_s[i] == rows.time_s[kept - 1] && same_values(rows, i, kept - 1)) {
+      if (notes_.repeated.empty() ||
+          notes_.repeated.back().row + notes_.repeated.back().rows != first_raw + i)
+        notes_.repeated.push_back({first_raw + i, 0});
+      ++notes_.repeated.back().rows;
+      continue;
+    }
+    if (kept != i) for_each_column(rows, [&](std::vector<double>& column) { column[kept] = column[i]; });
+    ++kept;
+  }
+  if (kept < rows.size()) for_each_column(rows, [&](std::vector<double>& column) { column.resize(kept); });
+}
+
+void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double next_s) {
+  const auto count = static_cast<double>(end - begin);
+  const double first_s = rows.time_s[begin];
+  double step_s = (next_s - first_s) / count;
+  if (period_s_ > 0.0 && step_s > kHole * period_s_)
+    step_s = period_s_;
+  else {
+    period_s_ = step_s;
+    bursts_s_ += next_s - first_s;
+    burst_rows_ += end - begin;
+  }
+  for (std::size_t i = begin + 1; i < end; ++i) {
+    spread_ += 1;
+    rows.time_s[i] = first_s + static_cast<double>(i - begin) * step_s;
+  }
+}
+
+void RowClock::finish() {
+  const std::size_t rows = held_.size();
+  if (rows > 1) {
+    if (!(period_s_ > 0.0))
+      fail_at(path_, 0, printable(time_) + " is the same in all rows, expected times, or --sample-rate HZ");
+    spread(held_, 0, rows, held_.time_s.front() + static_cast<double>(rows) * period_s_);
+  }
+  if (rows > 0) next_(held_);
+  say();
+}
+
+void RowClock::say() {
+  std::size_t repeated = 0;
+  for (const RowNotes::Repeated& each : notes_.repeated) repeated += each.rows;
+  if (repeated > 0)
+    notes_.notices.push_back(path_ + ": " + std::to_string(repeated) +
+                             (repeated == 1 ? " row repeats" : " rows repeat") + " the row before and " +
+                             (repeated == 1 ? "is" : "are") +
+                             " left out; --repeats keep reads them as samples");
+  if (spread_ == 0) return;
+  const double rate_hz = static_cast<double>(burst_rows_) / bursts_s_;
+  std::array<char, 32> rate{};
+  std::snprintf(rate.data(), rate.size(), "%.6g", rate_hz);
+  notes_.notices.push_back(path_ + ": " + std::to_string(spread_) + " rows " +
+                           (within_s_ > 0.0 ? "come in bursts" : "have the time of the row before") +
+                           " and are spread evenly up to the next time, at " + rate.data() +
+                           " Hz; --sample-rate HZ reads all rows as even");
+}
+
+}  // namespace ifog

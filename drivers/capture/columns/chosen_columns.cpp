@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/columns/chosen_columns.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <string_view>
+
+#include "drivers/capture/columns/column_names.h"
+#include "drivers/ifog/driver.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/system/shell_word.h"
+#include "drivers/units/turn.h"
+
+namespace ifog {
+namespace {
+
+// The unit that the column's name ends in.
+std::string_view unit_of(const std::string& name) {
+  return std::string_view(name).substr(name.rfind('_') + 1);
+}
+
+// Differences of an angle, by the time between: the mean rate since the row before; of the first row nothing
+// is known. An angle that stays within one turn begins again where it has turned that far, and steps by less
+// than half a turn, or behind a gap by nobody knows what.
+void differentiate(std::vector<double>& angle_rad, const std::vector<double>& time_s,
+                   const ExactSteps& steps) {
+  const auto known = [](double value) { return !std::isnan(value); };
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const double angle : angle_rad) {
+    if (!known(angle)) continue;
+    least = std::min(least, angle);
+    most = std::max(most, angle);
+  }
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const bool wraps = most - least <= kTurn * (1.0 + 1e-9);
+  constexpr double kGap = 1.5;  // of the shortest step
+  double before = kMissing, since_s = 0.0, rate_before = 0.0,
+         shortest_s = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < angle_rad.size(); ++i) {
+    const double angle = angle_rad[i];
+    const double turned = wraps ? std::remainder(angle - before, kTurn) : angle - before;
+    const double step_s = steps.between(since_s, time_s[i]);
+    if (known(before)) shortest_s = std::min(shortest_s, step_s);
+    const bool told = !wraps || step_s <= kGap * shortest_s || turn_is_known(rate_before, step_s, kTurn);
+    angle_rad[i] = told ? turned / step_s : kMissing;
+    if (!known(angle)) continue;
+    rate_before = known(angle_rad[i]) ? angle_rad[i] : 0.0;
+    before = angle;
+    since_s = time_s[i];
+  }
+}
+
+// The correlation of neighbours is that of the differences of white values, -1/2, within a tenth: what an
+// angle turned is lost in what each value has for itself.
+bool undo_each_other(const std::vector<double>& rate) {
+  constexpr std::size_t kFew = 100;
+  double squares = 0.0, products = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < rate.size(); ++i) {
+    if (std::isnan(rate[i]) || std::isnan(rate[i - 1])) continue;
+    squares += rate[i] * rate[i];
+    products += rate[i] * rate[i - 1];
+    ++count;
+  }
+  return count >= kFew && products < -0.45 * squares;
+}
+
+// In which the sensor collects an increment, whenever its rows came: the median of the steps between them.
+double period_of(const std::vector<double>& time_s, const ExactSteps& steps) {
+  std::vector<double> between;
+  between.reserve(time_s.size());
+  for (std::size_t i = 1; i < time_s.size(); ++i) between.push_back(steps.between(time_s[i - 1], time_s[i]));
+  if (between.empty()) return kMissing;
+  const auto middle = between.begin() + static_cast<std::ptrdiff_t>(between.size() / 2);
+  std::nth_element(between.begin(), middle, between.end());
+  return *middle;
+}
+
+}  // namespace
+
+UnitConversion conversion_of(const CsvColumn& column) {
+  UnitConversion conversion;
+  if (const auto angle_rad = column.angle_rad())
+    conversion = {*angle_rad};
+  else if (!column.unit.empty())
+    conversion = convert_unit(column.unit, unit_of(column.name)).value_or(UnitConversion{});
+  conversion.scale *= column.scale;
+  return conversion;
+}
+
+void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps) {
+  const double unit_s = layout.time.value_or(CsvTime{}).unit_s;
+  const double units_a_second = std::round(1.0 / unit_s);
+  if (unit_s != 1.0)
+    for (double& now : rows.time_s)
+      // What is 0.01 s in every unit comes out so.
+      now = units_a_second > 1.0 ? steps.nearest(now / units_a_second) : now * unit_s;
+  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
+    const UnitConversion conversion = conversion_of(layout.columns[i]);
+    for (double& value : rows.columns[i]) value = value * conversion.scale + conversion.offset;
+  }
+}
+
+void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, RowNotes& notes,
+              const std::string& path) {
+  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
+    const CsvColumn& column = layout.columns[i];
+    if (!column.angle_rad()) continue;
+    std::vector<double>& values = all.columns[i];
+    if (column.is_increment()) {
+      const double period_s = period_of(all.time_s, steps);
+      for (double& value : values) value /= period_s;
+    } else {
+      differentiate(values, all.time_s, steps);
+      if (undo_each_other(values))
+        notes.notices.push_back(
+            path + ": differences of " + printable(column.header) +
+            " undo each other, as those of increments do; if each value is the turn within a sample: " +
+            option_for(column, column.unit + "/sample"));
+    }
+    // A glitch of an angle is two leaps, and which cell was wrong the differences do not say.
+    for (std::size_t row = 0; row < values.size(); ++row)
+      if (std::abs(values[row]) > IFOG_MAX_RATE)
+        fail_at(path, notes.line_of_row(row),
+                printable(column.header) + " has turned at " + shortest(values[row]) +
+                    " rad/s since the row before, which no sensor measures");
+  }
+}
+
+void WholeTimes::take(const std::vector<double>& time_s) {
+  if (rows == 0) first_s = time_s.front();
+  rows += time_s.size();
+  last_s = time_s.back();
+  whole = whole && std::all_of(time_s.begin(), time_s.end(), [](double t) { return t == std::floor(t); });
+}
+
+std::optional<std::string> WholeTimes::notice(const std::string& path, const CsvTime& time,
+                                              bool unit_known) const {
+  constexpr std::size_t kFew = 10;
+  if (rows < kFew || !whole || (time.unit_s != 1.0)) return std::nullopt;
+  const double step = (last_s - first_s) / static_cast<double>(rows - 1);
+  const std::string name = printable(time.header);
+  if (step == 1.0 && (time.header != "time_s" || !unit_known))
+    return path + ": " + name +
+           " is whole numbers one apart, as a count of the rows is, and is read as seconds; if it is a "
+           "count: --sample-rate HZ";
+  if (unit_known || time.told) return std::nullopt;
+  return path + ": " + name + " is whole numbers, " + shortest(step) +
+         " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms");
+}
+
+}  // namespace ifog

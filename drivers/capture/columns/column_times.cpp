@@ -1,0 +1,314 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/columns/column_times.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
+#include <optional>
+#include <string_view>
+
+#include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/columns/column_words.h"
+#include "drivers/capture/times/date_time.h"
+#include "drivers/ifog/decimal.h"
+#include "drivers/units/units.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kSlowest_hz = 1.0, kFastest_hz = 10'000.0;  // at which gyros are logged
+constexpr std::size_t kFewRows = 8;                          // too few to say what a column is
+
+std::optional<double> number_in(const std::string& cell) {
+  double value = 0.0;
+  const char* const end = cell.data() + cell.size();
+  const auto [at, error] = read_decimal(cell.data(), end, value);
+  return error == std::errc() && at == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
+
+// Without the rows of another sensor, which leave this one's columns empty.
+std::vector<std::string> filled(const std::vector<std::string>& cells) {
+  std::vector<std::string> out;
+  std::copy_if(cells.begin(), cells.end(), std::back_inserter(out),
+               [](const std::string& cell) { return !cell.empty(); });
+  return out;
+}
+
+std::vector<double> numbers_in(const std::vector<std::string>& cells) {
+  std::vector<double> values;
+  for (const std::string& cell : cells)
+    if (const auto value = number_in(cell)) values.push_back(*value);
+  return values;
+}
+
+// Goes on from row to row, but for a rollover or two.
+bool goes_on(const std::vector<double>& values) {
+  std::size_t back = 0, on = 0;
+  for (std::size_t i = 1; i < values.size(); ++i) {
+    if (values[i] < values[i - 1]) ++back;
+    if (values[i] > values[i - 1]) ++on;
+  }
+  return values.size() < 2 || (on > 0 && back <= 1);
+}
+
+bool counts(const std::vector<double>& values) {
+  if (values.size() < kFewRows) return false;
+  std::size_t other = 0;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] - values[i - 1] != 1.0) ++other;
+  return other <= 1 && std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
+}
+
+struct UnitOfTime {
+  std::string_view name;
+  double s, since_1970;  // of the year 2000 in it
+};
+constexpr std::array<UnitOfTime, 4> kTimeUnits{
+    {{"s", 1.0, 9.4e8}, {"ms", 1e-3, 9.4e11}, {"us", 1e-6, 9.4e14}, {"ns", 1e-9, 9.4e17}}};
+
+// The unit in which the values are times since 1970, or else that in which alone the rows come as fast as a
+// gyro's.
+std::string unit_by_values(const std::vector<double>& values) {
+  if (values.size() < 2) return "";
+  // A rollover steps back, and what comes in bursts has many short steps.
+  double forward = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) forward += std::max(0.0, values[i] - values[i - 1]);
+  const double step = forward / static_cast<double>(values.size() - 1);
+  std::string found;
+  for (const UnitOfTime& unit : kTimeUnits) {
+    const double rate_hz = 1.0 / (step * unit.s);
+    if (values.front() >= unit.since_1970 && values.front() < 5.0 * unit.since_1970 &&
+        rate_hz > 1e-2 * kSlowest_hz && rate_hz < 10.0 * kFastest_hz)
+      return std::string(unit.name);
+    if (!(rate_hz >= kSlowest_hz && rate_hz <= kFastest_hz)) continue;
+    if (!found.empty()) return "";
+    found = unit.name;
+  }
+  return found;
+}
+
+// How well a name says that a column is the time of the rows; 0: not at all.
+int rank_of(const std::string& name, const Words& words) {
+  if (name == "time_s") return 5;
+  for (const std::string_view not_time :
+       {"dt",     "relative", "period", "delta",  "integral", "id",    "status",   "valid",
+        "offset", "zone",     "delay",  "age",    "exposure", "week",  "accuracy", "interval",
+        "flags",  "tflags",   "hour",   "minute", "year",     "month", "nano"})
+    if (words.has(not_time)) return 0;
+  // UTC_Day, UTC_Hour, UTC_Second: a part of a date that is in no column alone.
+  if (words.first() == "utc" &&
+      (words.has("day") || name.find("our") != std::string::npos || name.find("econd") != std::string::npos ||
+       name.find("inute") != std::string::npos))
+    return 0;
+  constexpr std::array<std::string_view, 18> kTimes{
+      "time",           "timestamp", "stamp",   "t",       "utc",    "datetime",
+      "date",           "zeit",      "seconds", "elapsed", "tow",    "sow",
+      "sampletimefine", "timeusec",  "secs",    "millis",  "micros", "gpst"};
+  const auto is_time = [&](const std::string& word) {
+    return word.ends_with("time") || word.ends_with("stamp") ||
+           std::find(kTimes.begin(), kTimes.end(), word) != kTimes.end();
+  };
+  if (words.has("header") && words.has("stamp")) return 4;  // when it was measured, as ROS has it
+  if (!words.words.empty() && std::all_of(words.words.begin(), words.words.end(), is_time)) return 3;
+  return std::any_of(words.words.begin(), words.words.end(), is_time) ? 2 : 0;
+}
+
+std::string time_unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
+  if (time_unit(table.unit_beside(place))) return table.unit_beside(place);
+  const std::string named = unit_in_name(table.names[place]);
+  if (time_unit(named)) return named;
+  if (words.has("sample") && words.has("time") && words.has("fine"))
+    return "100us";  // Xsens: a clock of 10 kHz
+  if (words.has("millis")) return "ms";
+  if (words.has("micros")) return "us";
+  if (words.has("sec") || words.has("secs") || words.has("seconds")) return "s";
+  return "";
+}
+
+// Both have counted the same seconds from the first row to the last, within a step of the coarser clock.
+bool go_together(const std::vector<double>& a, const TimeCandidate& one, const std::vector<double>& b,
+                 const TimeCandidate& other) {
+  if (one.unit.empty() || other.unit.empty() || a.size() != b.size() || a.size() < kFewRows) return false;
+  const double s = (a.back() - a.front()) * one.time.unit_s, t = (b.back() - b.front()) * other.time.unit_s;
+  double step = 0.1 * std::abs(s) / static_cast<double>(a.size());
+  for (std::size_t i = 1; i < a.size(); ++i)
+    step = std::max({step, (a[i] - a[i - 1]) * one.time.unit_s, (b[i] - b[i - 1]) * other.time.unit_s});
+  return std::abs(s - t) <= step;
+}
+
+std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
+  TimeCandidate out;
+  out.time.header = table.names[place];
+  const std::vector<std::string> cells = filled(table.cells[place]);
+  if (cells.empty() && !table.cells[place].empty()) return std::nullopt;
+  const bool dated = !cells.empty() && std::all_of(cells.begin(), cells.end(),
+                                                   [](const std::string& cell) { return is_date(cell); });
+  // The day of all rows is no time of them; a time of day in whole seconds may be that of all rows looked at.
+  if (dated && cells.size() > 1 && cells.front() == cells.back() && cells[0].find(':') == std::string::npos)
+    return std::nullopt;
+  const std::vector<double> values = numbers_in(cells);
+  out.unit = dated ? "s" : time_unit_by_name(table, place, words);
+  if (!dated && (values.size() != cells.size() || !goes_on(values) || (out.unit.empty() && counts(values))))
+    return std::nullopt;
+  if (out.unit.empty()) out.unit = unit_by_values(values);
+  if (!out.unit.empty()) out.time = CsvTime::parse(out.time.header + ":" + out.unit);
+  return out;
+}
+
+constexpr std::array<std::pair<std::string_view, int>, 14> kParts{{{"nsec", 9},
+                                                                   {"nsecs", 9},
+                                                                   {"nanosec", 9},
+                                                                   {"nanosecs", 9},
+                                                                   {"nanosecond", 9},
+                                                                   {"nanoseconds", 9},
+                                                                   {"ns", 9},
+                                                                   {"usec", 6},
+                                                                   {"usecs", 6},
+                                                                   {"us", 6},
+                                                                   {"microsec", 6},
+                                                                   {"microseconds", 6},
+                                                                   {"ms", 3},
+                                                                   {"msec", 3}}};
+
+// Digits behind the point of a word that names a part of a second; 0 for any other word.
+int digits_of(const std::string& word) {
+  const auto found =
+      std::find_if(kParts.begin(), kParts.end(), [&](const auto& each) { return each.first == word; });
+  return found == kParts.end() ? 0 : found->second;
+}
+
+std::vector<std::string> words_of(const std::string& name) {
+  std::vector<std::string> words(1);
+  for (const char c : name)
+    if (std::isalnum(static_cast<unsigned char>(c)) == 0)
+      words.emplace_back();
+    else
+      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return words;
+}
+
+// stamp.sec and stamp.nanosec, time_sec_imu and time_nanosec_imu: the same but for one word.
+bool names_a_second_and_its_part(const std::string& whole, const std::string& part) {
+  const std::vector<std::string> a = words_of(whole), b = words_of(part);
+  if (a.size() != b.size()) return false;
+  const auto [at, there] = std::mismatch(a.begin(), a.end(), b.begin());
+  if (at == a.end() || !std::equal(at + 1, a.end(), there + 1)) return false;
+  return (*at == "sec" || *at == "secs" || *at == "s" || *at == "seconds") && digits_of(*there) > 0;
+}
+
+// Two columns that are one time: seconds and a part of one, or a date and a time of day.
+std::optional<TimeCandidate> joined(const TableSample& table, std::size_t first, std::size_t second) {
+  const std::vector<std::string> a = filled(table.cells[first]), b = filled(table.cells[second]);
+  if (a.empty() || b.empty()) return std::nullopt;
+  TimeCandidate out;
+  out.time.header = table.names[first] + "+" + table.names[second];
+  out.time.told = true;
+  out.unit = "s";
+  const bool day = is_date(a[0]) && a[0].find(':') == std::string::npos;
+  if (day && is_date(b[0]) && b[0].find(':') != std::string::npos && b[0].find(':') < 3) return out;
+  const bool named = names_a_second_and_its_part(table.names[first], table.names[second]);
+  const std::vector<double> whole = numbers_in(a), parts = numbers_in(b);
+  const auto is_whole = [](double v) { return v == std::floor(v); };
+  const bool by_values = !table.named && whole.size() == a.size() && parts.size() == b.size() &&
+                         whole.size() > 1 && whole.front() >= 9.4e8 && whole.back() < 5e9 &&
+                         std::all_of(whole.begin(), whole.end(), is_whole) &&
+                         std::all_of(parts.begin(), parts.end(), is_whole) &&
+                         *std::max_element(parts.begin(), parts.end()) > 1e6 &&
+                         *std::max_element(parts.begin(), parts.end()) < 1e9;
+  return named || by_values ? std::optional(out) : std::nullopt;
+}
+
+}  // namespace
+
+// In how many rows a time is another than in the row before.
+std::size_t changes(const TableSample& table, const TimeCandidate& time) {
+  const auto at = std::find(table.names.begin(), table.names.end(), time.time.header) - table.names.begin();
+  const std::vector<std::string>& cells = table.cells[static_cast<std::size_t>(at)];
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < cells.size(); ++i) count += cells[i] != cells[i - 1] ? 1 : 0;
+  return count;
+}
+
+std::vector<TimeCandidate> times_of(const TableSample& table) {
+  std::vector<TimeCandidate> best;
+  int rank = 1;
+  for (std::size_t i = 0; i + 1 < table.names.size(); ++i)
+    if (const auto two = joined(table, i, i + 1)) best.push_back(*two);
+  if (!best.empty()) return best;
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const Words words(table.names[i]);
+    const int here = table.named ? rank_of(table.names[i], words) : 1;
+    if (here < rank) continue;
+    const auto found = candidate_at(table, i, words);
+    if (!found || (!table.named && !best.empty())) continue;
+    if (here > rank) best.clear();
+    rank = here;
+    // Twins say the same, as a time of day and the seconds since the start do.
+    const auto same = [&](const TimeCandidate& other) {
+      const auto at =
+          std::find(table.names.begin(), table.names.end(), other.time.header) - table.names.begin();
+      const std::vector<std::string>& cells = table.cells[static_cast<std::size_t>(at)];
+      return cells == table.cells[i] ||
+             go_together(numbers_in(cells), other, numbers_in(table.cells[i]), *found);
+    };
+    const auto twin = std::find_if(best.begin(), best.end(), same);
+    if (twin == best.end())
+      best.push_back(*found);
+    else if (changes(table, *found) > changes(table, *twin))
+      *twin = *found;  // the finer clock
+  }
+  return best;
+}
+
+std::string counting_column(const TableSample& table) {
+  for (std::size_t i = 0; i < table.names.size(); ++i)
+    if (counts(numbers_in(table.cells[i]))) return table.names[i];
+  return "";
+}
+
+bool varies(const std::vector<std::string>& cells) {
+  const std::vector<double> values = numbers_in(cells);
+  return !values.empty() && (values.size() < 2 || std::any_of(values.begin(), values.end(),
+                                                              [&](double v) { return v != values[0]; }));
+}
+
+std::string name_of_seconds(double unit_s) {
+  for (const UnitOfTime& unit : kTimeUnits)
+    if (std::abs(unit_s / unit.s - 1.0) < 1e-9) return std::string(unit.name);
+  if (unit_s == 60.0) return "min";
+  if (unit_s == 3600.0) return "h";
+  return shortest(std::round(unit_s * 1e15) / 1e9) + "us";
+}
+
+int digits_of_second(const std::string& name, const std::vector<std::string>& cells) {
+  if (!cells.empty() && is_date(cells[0])) return 0;
+  for (const std::string& word : words_of(name))
+    if (const int digits = digits_of(word); digits > 0) return digits;
+  double most = 0.0;
+  for (const double value : numbers_in(cells)) most = std::max(most, value);
+  return most >= 1e6 ? 9 : most >= 1e3 ? 6 : 3;
+}
+
+std::optional<double> stated_rate_hz(const std::vector<std::string>& comments) {
+  for (const std::string& comment : comments) {
+    std::string text;
+    for (const char c : comment) text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    std::size_t at = std::string::npos;
+    for (const char* name :
+         {"output rate", "sample rate", "sampling rate", "data rate", "sample frequency",
+          "sampling frequency", "sample_rate", "sampling_rate", "samplerate", "update rate"})
+      if (at == std::string::npos && (at = text.find(name)) != std::string::npos)
+        at += std::string_view(name).size();
+    if (at == std::string::npos) continue;
+    const std::size_t digits = text.find_first_of("0123456789", at);
+    if (digits == std::string::npos || digits > at + 12) continue;
+    const double rate_hz = std::strtod(text.c_str() + digits, nullptr);
+    if (rate_hz > 0.0 && rate_hz <= 1e6) return rate_hz;
+  }
+  return std::nullopt;
+}
+
+}  // namespace ifog

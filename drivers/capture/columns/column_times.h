@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which column of a foreign table is its time, and in what unit: by its name, by its values, by both.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/columns/column_roles.h"
+
+namespace ifog {
+
+struct TimeCandidate {
+  CsvTime time;
+  std::string unit;  // "" where neither name nor values tell it
+};
+
+// The columns that the time may be, most likely alone: one, where one is more likely than all others.
+std::vector<TimeCandidate> times_of(const TableSample& table);
+
+// A column of whole numbers one apart, which no time is: "Sample No."; "" where there is none.
+std::string counting_column(const TableSample& table);
+
+// Not the same in all of these rows, and numbers.
+bool varies(const std::vector<std::string>& cells);
+
+// "ms" of 0.001.
+std::string name_of_seconds(double unit_s);
+
+// Digits behind the point that a whole number in the second column of "sec+nsec" stands for: 9 for
+// nanoseconds, by its name or its values; 0 where the two are a date and a time of day.
+int digits_of_second(const std::string& name, const std::vector<std::string>& cells);
+
+// A stated sample rate, as loggers write it above the table: "Output Rate,200.0"; nothing where none is.
+std::optional<double> stated_rate_hz(const std::vector<std::string>& comments);
+
+}  // namespace ifog

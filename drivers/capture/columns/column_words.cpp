@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/columns/column_words.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <optional>
+#include <utility>
+
+#include "drivers/capture/columns/csv_layout.h"
+
+namespace ifog {
+namespace {
+
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool is_upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
+
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
+// "gyro_rad[0]" is "gyro_rad" and axis x; an index above 2 is no axis.
+std::string without_index(const std::string& header, std::string& axis) {
+  const std::size_t open = header.rfind('[');
+  if (open == std::string::npos || header.size() != open + 3 || header.back() != ']' ||
+      !is_digit(header[open + 1]))
+    return header;
+  if (header[open + 1] <= '2') axis = std::string(1, static_cast<char>('x' + (header[open + 1] - '0')));
+  return header.substr(0, open);
+}
+
+std::string without_unit(const std::string& header) {
+  const std::size_t bracket = header.find_first_of("([");
+  if (bracket != std::string::npos && bracket > 0 && (header.back() == ')' || header.back() == ']'))
+    return header.substr(0, bracket);
+  const std::string unit = unit_in_name(header);
+  return unit.empty() || header.size() <= unit.size() ? header
+                                                      : header.substr(0, header.size() - unit.size() - 1);
+}
+
+// At what is no letter, where a digit follows a letter, and where a capital begins a word.
+std::vector<std::string> split(const std::string& text) {
+  std::vector<std::string> words;
+  std::string word;
+  const auto end_word = [&] {
+    if (!word.empty()) words.push_back(lower(word));
+    word.clear();
+  };
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i], before = i > 0 ? text[i - 1] : ' ',
+               behind = i + 1 < text.size() ? text[i + 1] : ' ';
+    if (!is_letter(c) && !is_digit(c)) {
+      end_word();
+      continue;
+    }
+    const bool begins = is_letter(c) && is_letter(before) && is_upper(c) &&
+                        (!is_upper(before) || (is_letter(behind) && !is_upper(behind)));
+    if (begins || is_digit(c) != is_digit(before)) end_word();
+    word += c;
+  }
+  end_word();
+  // dTheta, dAngle: what turned is one word.
+  for (std::size_t i = 0; i + 1 < words.size(); ++i)
+    if (words[i] == "d" && (words[i + 1] == "theta" || words[i + 1] == "angle" || words[i + 1] == "ang")) {
+      words[i] += words[i + 1];
+      words.erase(words.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+    }
+  return words;
+}
+
+// An axis that is written together with a word of a rate: xgyro, gyrox, wx.
+std::optional<std::string> glued_axis(std::string& word) {
+  constexpr std::array<std::string_view, 14> kWords{
+      "gyro", "gyr", "gyroscope",       "omega",       "rate",         "angvel", "angrate",
+      "w",    "g",   "angularvelocity", "angularrate", "rotationrate", "dtheta", "dangle"};
+  const auto known = [&](const std::string& rest) {
+    return std::find(kWords.begin(), kWords.end(), rest) != kWords.end();
+  };
+  if (word.size() < 2) return std::nullopt;
+  const auto is_axis = [](char c) { return c >= 'x' && c <= 'z'; };
+  std::string rest = word.substr(0, word.size() - 1), axis = word.substr(word.size() - 1);
+  if (!is_axis(axis[0]) || !known(rest)) {
+    axis = word.substr(0, 1), rest = word.substr(1);
+    if (!is_axis(axis[0]) || !known(rest)) return std::nullopt;
+  }
+  word = rest;
+  return axis;
+}
+
+// The roll axis of an aircraft or a vehicle is x. The word is left without it: "rollrate" is "rate".
+std::string axis_of_turn(std::string& word) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 3> kTurns{
+      {{"roll", "x"}, {"pitch", "y"}, {"yaw", "z"}}};
+  for (const auto& [name, axis] : kTurns) {
+    if (!word.starts_with(name)) continue;
+    word.replace(0, name.size(), "turn");
+    return axis;
+  }
+  return "";
+}
+
+}  // namespace
+
+Words::Words(const std::string& header) {
+  const std::string bare = without_unit(without_index(header, axis));
+  for (const char c : bare)
+    text +=
+        is_letter(c) || is_digit(c) ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : '_';
+  while (!text.empty() && text.back() == '_') text.pop_back();
+  std::string turned;
+  for (std::string& word : split(bare)) {
+    const bool axis_alone = word == "x" || word == "y" || word == "z";
+    if (axis_alone && axis.empty()) {
+      axis = word;
+      continue;
+    }
+    if (axis.empty())
+      if (const auto glued = glued_axis(word)) axis = *glued;
+    if (const std::string turn = axis_of_turn(word); !turn.empty()) turned = turn;
+    words.push_back(word);
+    stem += (stem.empty() ? "" : " ") + word;
+  }
+  if (axis.empty()) axis = turned;
+  // gyro_0, gyro_1, gyro_2: a number behind all others counts the axes from 0.
+  if (axis.empty() && words.size() > 1 && words.back().size() == 1 && words.back()[0] >= '0' &&
+      words.back()[0] <= '2') {
+    axis = std::string(1, static_cast<char>('x' + (words.back()[0] - '0')));
+    words.pop_back();
+    stem = stem.substr(0, stem.rfind(' '));
+  }
+}
+
+bool Words::has(std::string_view word) const {
+  return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+}  // namespace ifog

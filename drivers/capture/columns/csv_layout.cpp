@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/columns/csv_layout.h"
+
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+#include "drivers/capture/columns/measurable.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/system/shell_word.h"
+#include "drivers/units/units.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::string_view kRateUnit = "radps";
+constexpr std::string_view kPerSample = "/sample";
+
+[[noreturn]] void refuse(const std::string& text, const std::string& expected) {
+  throw std::runtime_error(in_quotes(text) + ", expected " + expected);
+}
+
+std::string unit_of_name(const std::string& name) {
+  const std::size_t underscore = name.rfind('_');
+  return underscore == std::string::npos ? "" : name.substr(underscore + 1);
+}
+
+// "HEADER:UNIT" or "HEADER". A header may hold colons itself where a unit follows.
+std::pair<std::string, std::string> header_and_unit(const std::string& text) {
+  const std::size_t colon = text.rfind(':');
+  if (colon == std::string::npos) return {text, ""};
+  return {text.substr(0, colon), text.substr(colon + 1)};
+}
+
+// Seconds in "ms" or "100us".
+std::optional<double> seconds_in(const std::string& unit) {
+  double factor = 1.0;
+  const auto [end, error] = std::from_chars(unit.data(), unit.data() + unit.size(), factor);
+  if (error == std::errc::invalid_argument) return time_unit(unit);
+  const auto of = time_unit({end, static_cast<std::size_t>(unit.data() + unit.size() - end)});
+  if (error != std::errc() || !of || !(factor > 0.0) || !std::isfinite(factor)) return std::nullopt;
+  return factor * *of;
+}
+
+bool is_another(const std::string& unit, const std::string& wanted) {
+  const auto by = convert_unit(unit, wanted);
+  return by && (by->scale != 1.0 || by->offset != 0.0);
+}
+
+}  // namespace
+
+CsvColumn CsvColumn::parse(const std::string& text) {
+  const std::string form = "NAME=HEADER:UNIT, rate_x_radps=GyroX:deg/s";
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) refuse(text, form);
+  CsvColumn out;
+  out.name = text.substr(0, equals);
+  std::tie(out.header, out.unit) = header_and_unit(text.substr(equals + 1));
+  const auto [end, error] = std::from_chars(out.unit.data(), out.unit.data() + out.unit.size(), out.scale);
+  if (error == std::errc() && out.scale != 0.0 && std::isfinite(out.scale))
+    out.unit.erase(0, static_cast<std::size_t>(end - out.unit.data()));
+  else
+    out.scale = 1.0;
+  const std::string wanted = unit_of_name(out.name);
+  if (out.name == "time_s") refuse(text, "another name; --time says which column is the time");
+  if (wanted.empty() || out.header.empty()) refuse(text, form);
+  if (out.unit.empty() || out.angle_rad() || convert_unit(out.unit, wanted)) return out;
+  const std::string known = units_beside(wanted);
+  refuse(
+      text,
+      known.empty()
+          ? "the unit " + wanted + ", which is known by its name only"
+          : "a unit that becomes " + wanted + ": " + known +
+                (out.is_rate() ? ", or deg, rad of an angle, deg/sample, rad/sample of its increments" : ""));
+}
+
+bool CsvColumn::is_rate() const {
+  return unit_of_name(name) == kRateUnit &&
+         (name.starts_with("rate_") || name.starts_with("reference_rate_") || is_other_rate(name));
+}
+
+bool CsvColumn::is_angle() const {
+  return is_rate() && !angle_unit(unit, true, false) && angle_unit(unit, false, false).has_value();
+}
+
+bool CsvColumn::is_increment() const {
+  return is_rate() && unit.ends_with(kPerSample) && angle_rad().has_value();
+}
+
+std::optional<double> CsvColumn::angle_rad() const {
+  if (is_angle()) return angle_unit(unit, false, false);
+  if (!is_rate() || !unit.ends_with(kPerSample)) return std::nullopt;
+  return angle_unit(unit.substr(0, unit.size() - kPerSample.size()), false, false);
+}
+
+std::string unit_in_name(const std::string& name) {
+  // gyro_rad[0]: an index, no unit.
+  const bool indexed = name.size() > 3 && name.back() == ']' && name[name.size() - 3] == '[' &&
+                       std::isdigit(static_cast<unsigned char>(name[name.size() - 2])) != 0;
+  const std::string header = indexed ? name.substr(0, name.size() - 3) : name;
+  for (const auto& [open, close] : {std::pair{'(', ')'}, {'[', ']'}}) {
+    const std::size_t at = header.find(open);
+    if (at == std::string::npos || header.back() != close) continue;
+    const std::string inside = header.substr(at + 1, header.size() - at - 2);
+    return is_unit(inside) ? inside : "";
+  }
+  const std::string last = unit_of_name(header);
+  // omega_z_deg_h: a quotient whose stroke a name cannot hold.
+  if (const std::size_t line = header.rfind('_'); line != std::string::npos && line > 0 && !last.empty()) {
+    const std::string angle = unit_of_name(header.substr(0, line));
+    if (angle_unit(angle, false, false) && time_unit(last)) return angle + "/" + last;
+  }
+  if (last == "s" || last == "S") return "s";
+  const bool unit = angle_unit(last, true, false) || time_unit(last) || !units_beside(last).empty();
+  // A lone letter is an axis rather than coulombs.
+  return unit && (last.size() > 1 || !stated_unit(header).empty()) ? last : "";
+}
+
+std::string other_unit(const CsvColumn& column) {
+  if (!column.unit.empty()) return "";
+  CsvColumn told = column;
+  told.unit = unit_in_name(column.header);
+  // A rate that ends in an angle's unit is often one a second: here it is no guess but a question. "rads" is
+  // both.
+  if (told.unit.empty() && column.is_rate() && unit_of_name(column.header) != "rads")
+    told.unit = unit_of_name(column.header);
+  if (told.unit.empty()) return "";
+  return told.angle_rad() || is_another(told.unit, unit_of_name(column.name)) ? told.unit : "";
+}
+
+std::string other_unit(const CsvTime& time) {
+  if (time.told || time.unit_s != 1.0) return "";
+  const std::string stated = unit_in_name(time.header);
+  return time_unit(stated).value_or(1.0) != 1.0 ? stated : "";
+}
+
+CsvTime CsvTime::parse(const std::string& text) {
+  const auto [header, unit] = header_and_unit(text);
+  CsvTime out;
+  out.header = header;
+  const auto seconds = unit.empty() ? std::optional(1.0) : seconds_in(unit);
+  if (header.empty() || !seconds)
+    refuse(text, "HEADER:UNIT with a unit of time: s, ms, us, 100us, ns, min, h");
+  out.unit_s = *seconds;
+  out.told = !unit.empty();
+  return out;
+}
+
+char CsvLayout::parse_separator(const std::string& text) {
+  if (text == "tab" || text == "\\t") return '\t';
+  constexpr std::string_view kNever = "+-.\"'#_\n\r";
+  if (text.size() != 1 || std::isalnum(static_cast<unsigned char>(text[0])) != 0 ||
+      kNever.find(text[0]) != std::string_view::npos)
+    refuse(text, "one character that stands between cells, ';', or the word tab");
+  return text[0];
+}
+
+void CsvLayout::parse_only(const std::string& text) {
+  const std::size_t equals = text.rfind('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    refuse(text, "HEADER=VALUE, sensor_id=0");
+  only_header = text.substr(0, equals);
+  only_value = text.substr(equals + 1);
+}
+
+std::string option_for(const CsvColumn& column, const std::string& unit) {
+  return "--column " + shell_word(column.name + "=" + column.header + (unit.empty() ? "" : ":" + unit));
+}
+
+std::string option_for(const CsvTime& time, const std::string& unit) {
+  return "--time " + shell_word(time.header + ":" + unit);
+}
+
+bool is_unit(const std::string& text) {
+  return angle_unit(text, true, false) || angle_unit(text, false, false) || time_unit(text) ||
+         !units_beside(text).empty();
+}
+
+std::string without_brackets(const std::string& unit) {
+  for (const auto& [open, close] : {std::pair{'(', ')'}, {'[', ']'}})
+    if (unit.size() >= 2 && unit.front() == open && unit.back() == close)
+      return unit.substr(1, unit.size() - 2);
+  return unit;
+}
+
+std::optional<std::string> name_with_unit(const std::string& header, const std::string& unit) {
+  if (unit.empty()) return header;
+  std::string own = unit_in_name(header);
+  if (own.empty() && (convert_unit(unit_of_name(header), unit) || unit_of_name(header) == unit))
+    own = unit_of_name(header);
+  const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
+  if (own.empty())
+    return std::all_of(unit.begin(), unit.end(), is_word) ? header + "_" + unit : header + " [" + unit + "]";
+  const auto by = convert_unit(unit, own);
+  if (unit == own || (by && by->scale == 1.0 && by->offset == 0.0)) return header;
+  return std::nullopt;
+}
+
+}  // namespace ifog

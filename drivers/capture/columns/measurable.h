@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a cell of a capture can mean. Beyond it there is no measurement, whatever wrote the number: one such
+// cell would be all that a fit sees. The one home of it for every command that reads a capture.
+#pragma once
+
+#include <limits>
+#include <string>
+#include <string_view>
+
+#include "drivers/capture/columns/csv_layout.h"
+
+namespace ifog {
+
+struct Measurable {
+  double least = -std::numeric_limits<double>::infinity();
+  double most = std::numeric_limits<double>::infinity();
+
+  [[nodiscard]] bool holds(double value) const { return value >= least && value <= most; }
+};
+
+// The unit that a column's name ends in; empty where it may be no unit at all.
+std::string_view stated_unit(std::string_view column);
+
+// In the unit of the column's name: rates by what the driver interface allows, channels by what their unit
+// can be (no temperature below absolute zero, no field above 100 T), others by the driver interface.
+Measurable measurable(const std::string& column);
+
+// The same of a column as its file has it, in the file's unit. An angle may turn for long.
+Measurable measurable_in_file(const CsvColumn& column);
+Measurable measurable_in_file(const CsvTime& time);
+
+}  // namespace ifog

@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/csv/csv_header.h"
+
+#include <algorithm>
+#include <charconv>
+#include <functional>
+#include <numeric>
+#include <set>
+#include <stdexcept>
+#include <utility>
+
+#include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/columns/column_roles.h"
+#include "drivers/capture/columns/column_times.h"
+#include "drivers/capture/columns/column_words.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/system/input_limits.h"
+#include "drivers/system/shell_word.h"
+#include "drivers/units/units.h"
+
+namespace ifog {
+namespace {
+
+// The place of a column that was asked for by its header or, "#3", by its number.
+std::size_t place_of(const std::string& wanted, const std::vector<std::string>& names,
+                     const std::string& path, std::size_t line) {
+  const auto count = std::count(names.begin(), names.end(), wanted);
+  if (count == 1)
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted) - names.begin());
+  std::size_t number = 0;
+  if (count == 0 && wanted.starts_with('#') &&
+      std::from_chars(wanted.data() + 1, wanted.data() + wanted.size(), number).ptr ==
+          wanted.data() + wanted.size() &&
+      number >= 1 && number <= names.size())
+    return number - 1;
+  fail_at(path, line,
+          (count == 0 ? "no column " : "more than one column ") + in_quotes(wanted) + ", the header has " +
+              listed(names));
+}
+
+bool starts_with_letter(const std::string& cell) {
+  return !cell.empty() && ((cell[0] >= 'a' && cell[0] <= 'z') || (cell[0] >= 'A' && cell[0] <= 'Z'));
+}
+
+// The name that is a gyro's among those of several sensors, else the first.
+std::set<std::string>::const_iterator the_gyro(const std::set<std::string>& names) {
+  const auto found = std::find_if(names.begin(), names.end(), [](const std::string& name) {
+    return name.find("yro") != std::string::npos || name.find("GYR") != std::string::npos;
+  });
+  return found == names.end() ? names.begin() : found;
+}
+
+class Chooser {
+ public:
+  Chooser(TableForm form, const std::string& path, const CsvLayout& layout, bool has_lines)
+      : form_(std::move(form)),
+        names_(form_.sample.names),
+        path_(path),
+        line_(!has_lines              ? 0
+              : form_.header_line > 0 ? form_.header_line
+                                      : form_.last_line + 1) {
+    header_.layout = layout;
+    header_.separator = form_.separator;
+    header_.last_line = form_.last_line;
+    for (const std::string& comment : form_.sample.comments) header_.comments += comment + '\n';
+  }
+
+  CsvHeader choose() {
+    header_.cells.resize(names_.size());
+    for (std::size_t i = 0; i < names_.size(); ++i) header_.cells[i].name = names_[i];
+    if (reads_as_named())
+      choose_as_named();
+    else
+      choose_as_asked();
+    if (!header_.layout.only_header.empty())
+      header_.only_place = place(header_.layout.only_header);
+    else
+      say_what_alternates();
+    return std::move(header_);
+  }
+
+ private:
+  [[nodiscard]] std::size_t place(const std::string& wanted) const {
+    return place_of(wanted, names_, path_, line_);
+  }
+  [[noreturn]] void fail(const std::string& what) const { fail_at(path_, line_, what); }
+
+  // Rows of several sensors in turn, which a column numbers or names.
+  void say_what_alternates() {
+    for (std::size_t i = 0; i < names_.size(); ++i) {
+      const Words words(names_[i]);
+      const std::vector<std::string>& cells = form_.sample.cells[i];
+      const bool is_text = std::all_of(cells.begin(), cells.end(),
+                                       [](const std::string& cell) { return starts_with_letter(cell); });
+      if (!is_text && !words.has("id") && !words.has("sensor") && !words.has("device") &&
+          !words.has("instance") && !words.has("topic") && !words.has("i") && !words.has("imu"))
+        continue;
+      const std::set<std::string> values(cells.begin(), cells.end());
+      const auto changes = std::inner_product(cells.begin(), cells.empty() ? cells.end() : cells.end() - 1,
+                                              cells.empty() ? cells.begin() : cells.begin() + 1,
+                                              std::size_t{0}, std::plus<>(), std::not_equal_to<>());
+      if (values.size() < 2 || values.size() > 8 || 2 * changes < cells.size()) continue;
+      header_.notices.push_back(path_ + ": " + in_quotes(names_[i]) + " is " +
+                                listed({values.begin(), values.end()}) +
+                                " in turn: rows of several sensors; one of them: --only " +
+                                shell_word(names_[i] + "=" + *the_gyro(values)));
+    }
+  }
+
+  // Time first, and a rate, or a table in which nothing looks like one.
+  [[nodiscard]] bool reads_as_named() const {
+    if (header_.layout.chooses() || names_.front() != "time_s") return false;
+    if (std::any_of(names_.begin(), names_.end(),
+                    [](const std::string& name) { return is_rate_column(name) || is_signal_column(name); }))
+      return true;
+    CsvLayout timed = header_.layout;
+    timed.time = CsvTime{};
+    return readings_of(form_.sample, timed).ways.empty();
+  }
+
+  void choose_as_named() {
+    std::set<std::string> seen;
+    for (const std::string& name : names_) {
+      if (name.empty()) fail("a column has no name");
+      if (!seen.insert(name).second) fail("column " + in_quotes(name) + " stands twice");
+    }
+    (void)under_own_name(0);
+    take_time(CsvTime{});
+    for (std::size_t i = 1; i < names_.size(); ++i) take(i, under_own_name(i));
+  }
+
+  // A row of units says what the name leaves out.
+  [[nodiscard]] CsvColumn under_own_name(std::size_t i) const {
+    const std::string unit = form_.sample.unit_beside(i);
+    const auto name = name_with_unit(names_[i], unit);
+    if (!name)
+      fail("the unit of " + in_quotes(names_[i]) + " is given as " + in_quotes(unit) +
+           ", expected that of its name; to read it so: " +
+           (names_[i] == CsvTime{}.header ? option_for(CsvTime{}, unit)
+                                          : option_for(CsvColumn{names_[i], names_[i], ""}, unit)));
+    return {*name, names_[i], ""};
+  }
+
+  void choose_as_asked() {
+    CsvLayout& layout = header_.layout;
+    const bool timed = layout.time.has_value(),
+               own_names =
+                   layout.columns.empty() && std::any_of(names_.begin(), names_.end(), is_rate_column);
+    if (!timed && !layout.sample_rate_hz && std::count(names_.begin(), names_.end(), "time_s") == 1)
+      layout.time = CsvTime{};
+    if (timed && own_names) {
+      for (std::size_t i = 0; i < names_.size(); ++i)  // --time alone: the others stand under their own names
+        if (names_[i] != layout.time->header) layout.columns.push_back(under_own_name(i));
+    } else if (layout.columns.empty() || (!layout.time && !layout.sample_rate_hz)) {
+      take_reading();
+    }
+    if (layout.sample_rate_hz)
+      layout.time.reset();
+    else
+      take_time(*layout.time);
+    if (layout.other_rates)
+      for (const CsvColumn& other : rates_not_chosen(form_.sample, layout)) layout.columns.push_back(other);
+    for (CsvColumn& column : layout.columns) {
+      const std::size_t at = place(column.header);
+      if (column.unit.empty()) column.unit = unit_beside(column, at);
+      if (const std::string unit = other_unit(column); !unit.empty())
+        fail(unit_by_name(column.header, unit, option_for(column, unit)));
+      if (header_.cells[at].column != CsvCell::kPassedOver)
+        fail("column " + in_quotes(column.header) + " is chosen twice");
+      take(at, column);
+    }
+  }
+
+  // What the row of units says of a column that was chosen without one, where that becomes the capture's.
+  [[nodiscard]] std::string unit_beside(const CsvColumn& chosen, std::size_t at) const {
+    CsvColumn column = chosen;
+    column.unit = form_.sample.unit_beside(at);
+    return column.angle_rad() || convert_unit(column.unit, column.name.substr(column.name.rfind('_') + 1))
+               ? column.unit
+               : "";
+  }
+
+  // What was not asked for, as the names have it.
+  void take_reading() {
+    const Readings found = readings_of(form_.sample, header_.layout);
+    if (const Reading* const clear = found.clear()) {
+      header_.layout = clear->layout;
+      header_.notices.push_back(path_ + ": read as: " + in_words(clear->layout));
+      return;
+    }
+    if (found.ways.empty() && form_.sample.named)
+      fail("no rate column among " + listed(names_) +
+           ", expected 'rate_radps' or 'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of "
+           "these names");
+    fail(
+        (form_.sample.named
+             ? ""
+             : "no header line; " +
+                   (names_.size() == 1 ? std::string("its column is #1")
+                                       : "its columns are #1 to #" + std::to_string(names_.size())) +
+                   "; ") +
+        found.why + options_in_words(found) +
+        (found.ways.empty()
+             ? "; --column 'rate_x_radps=#2:deg/s' and --time '#1:s' or --sample-rate HZ say which they are, "
+               "with the numbers and units of this file"
+             : ""));
+  }
+
+  void take_time(CsvTime time) {
+    const auto named =
+        static_cast<std::size_t>(std::find(names_.begin(), names_.end(), time.header) - names_.begin());
+    if (named < names_.size() && !time.told)
+      if (const auto unit_s = time_unit(form_.sample.unit_beside(named))) {
+        time.unit_s = *unit_s;
+        time.told = true;
+        if (header_.layout.time) header_.layout.time = time;
+        header_.time_unit_known = true;
+      }
+    if (const std::string unit = other_unit(time); !unit.empty())
+      fail(unit_by_name(time.header, unit, option_for(time, unit)));
+    // "sec+nsec": a name may hold a plus itself.
+    const auto is_name = [&](const std::string& name) {
+      return name.starts_with('#') || std::count(names_.begin(), names_.end(), name) == 1;
+    };
+    const std::string& header = time.header;
+    std::size_t plus =
+        std::count(names_.begin(), names_.end(), header) > 0 ? std::string::npos : header.find('+');
+    while (plus != std::string::npos &&
+           !(is_name(header.substr(0, plus)) && is_name(header.substr(plus + 1))))
+      plus = header.find('+', plus + 1);
+    header_.time_place = place(header.substr(0, plus));
+    if (plus != std::string::npos) {
+      header_.time_part = place(header.substr(plus + 1));
+      header_.part_digits =
+          digits_of_second(names_[header_.time_part], form_.sample.cells[header_.time_part]);
+      take_time_cell(header_.time_part, {});
+    }
+    take_time_cell(header_.time_place, measurable_in_file(time));
+  }
+
+  void take_time_cell(std::size_t at, const Measurable& range) {
+    header_.cells[at].range = range;
+    header_.cells[at].column = CsvCell::kTime;
+  }
+
+  void take(std::size_t at, const CsvColumn& column) {
+    CsvCell& cell = header_.cells[at];
+    cell.range = measurable_in_file(column);
+    cell.rate = is_rate_column(column.name);
+    if (cell.rate && ++rates_ > kInputLimits.csv_rates)
+      fail("more than " + std::to_string(kInputLimits.csv_rates) + " rates, expected at most that");
+    cell.column = header_.names.size();
+    header_.names.push_back(column.name);
+  }
+
+  TableForm form_;
+  const std::vector<std::string>& names_;
+  const std::string& path_;
+  const std::size_t line_;  // of the header; 0: it has none
+  CsvHeader header_;
+  std::size_t rates_ = 0;
+};
+
+}  // namespace
+
+std::string options_in_words(const Readings& readings) {
+  std::string text;
+  for (const Reading& way : readings.ways) text += (text.empty() ? "; to read it: " : "; or: ") + way.options;
+  return text;
+}
+
+CsvHeader read_csv_header(std::string_view text, const std::vector<std::string>& given,
+                          const std::string& path, const CsvLayout& layout, bool has_lines) {
+  return Chooser(table_form(text, given, path, layout), path, layout, has_lines).choose();
+}
+
+}  // namespace ifog

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// What each column of a table of text is to a capture: as the user chose, or as its names say.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/capture/columns/csv_layout.h"
+#include "drivers/capture/columns/measurable.h"
+#include "drivers/capture/csv/table_form.h"
+
+namespace ifog {
+
+// What the cells below one name of the header mean.
+struct CsvCell {
+  static constexpr std::size_t kPassedOver = std::numeric_limits<std::size_t>::max();
+  static constexpr std::size_t kTime = kPassedOver - 1;
+
+  std::string name;                  // in the file
+  Measurable range;                  // in the file's unit
+  bool rate = false;                 // of the capture: a rate or its reference
+  std::size_t column = kPassedOver;  // of the capture, not counting the time
+  bool kept = true;                  // else it is checked only
+};
+
+struct CsvHeader {
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
+  std::vector<CsvCell> cells;      // in the file's order
+  std::vector<std::string> names;  // of the capture's columns without the time
+  CsvLayout layout;                // that reads it
+  char separator = ',';
+  std::string comments;              // that stood before it, as in RowNotes
+  std::size_t last_line = 0;         // number of the line above the first row
+  std::size_t time_place = kNone;    // which cell is the time; kNone where rows are even
+  std::size_t time_part = kNone;     // a second cell of the time: digits behind the point, or a time of day
+  int part_digits = 0;               // of it; 0: a time of day
+  bool time_unit_known = false;      // by a row of units
+  std::size_t only_place = kNone;    // which cell says whether a row is read
+  std::vector<std::string> notices;  // how a foreign header was read, and what rows are in turn
+};
+
+// text: whole lines, the file's beginning with at least its first rows. Throws std::runtime_error with one
+// line: no time, a name twice, a column that is not there, what is ambiguous, with the options that read it.
+// given: names that the lines themselves have, where they do. has_lines: a message says in which.
+CsvHeader read_csv_header(std::string_view text, const std::vector<std::string>& given,
+                          const std::string& path, const CsvLayout& layout, bool has_lines);
+
+// What readings of a foreign table say to the user where none of them is taken: the options of each.
+[[nodiscard]] std::string options_in_words(const Readings& readings);
+
+}  // namespace ifog

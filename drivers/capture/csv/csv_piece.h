@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of a CSV file's text as numbers, a piece of it at a time: pieces know nothing of one another, so that
+// several are read at once.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "drivers/capture/checks/row_checks.h"
+#include "drivers/capture/csv/csv_header.h"
+#include "drivers/capture/times/row_sink.h"
+#include "drivers/capture/times/time_stamps.h"
+
+namespace ifog {
+
+struct CsvPiece {
+  RowBlock rows;                             // times since the stamps' origin and values in the file's units
+  std::string comments;                      // as in RowNotes
+  std::vector<RowNotes::Skipped> skipped;    // likewise, from the piece's first row on
+  std::vector<ImpossibleValues> impossible;  // by cell of a row; lines of the piece
+  std::size_t lines = 0;
+  std::size_t row_bytes = 0;  // of the lines that are rows
+  std::size_t untimed = 0;    // rows of another sensor, which have no time of this one
+  bool decimals = false;      // in the first time
+  int most_decimals = 0;      // of a time, or kAnyDecimals
+};
+
+// The stamps that count from the text's first time; nothing where it has no row.
+std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& header);
+
+// text: whole lines. stamps: of the whole file's times. lines_before: of the file. Where rows are even, times
+// are the numbers of the rows. used: rows that are done with, whose memory is used again. Throws
+// std::runtime_error with one line: file, line, column, value, what was expected.
+CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const TimeStamps& stamps,
+                         const std::string& path, std::size_t lines_before, RowBlock used = {});
+
+}  // namespace ifog

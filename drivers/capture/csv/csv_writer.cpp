@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/csv/csv_writer.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+namespace ifog {
+namespace {
+
+void append(std::string& out, double value) {
+  if (std::isnan(value)) {
+    out += "nan";
+    return;
+  }
+  std::array<char, 40> text{};
+  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
+  (void)error;  // 40 characters hold any double
+  out.append(text.data(), end);
+}
+
+bool is_large_time(double time_s) {
+  constexpr double kMost = 9e18;  // whole seconds of 64 bits
+  return std::abs(time_s) >= kFineTimes_s && std::abs(time_s) < kMost;
+}
+
+}  // namespace
+
+CsvWriter::CsvWriter(const std::string& path, const std::string& comments,
+                     const std::vector<std::string>& names)
+    : file_(path) {
+  for (std::string_view rest = comments; !rest.empty();) {
+    const std::size_t end = rest.find('\n') + 1;
+    text_.append("# ").append(rest.substr(0, end));
+    rest.remove_prefix(end);
+  }
+  for (std::size_t c = 0; c < names.size(); ++c) text_ += (c == 0 ? "" : ",") + names[c];
+  text_ += '\n';
+  file_.write(text_);
+}
+
+void CsvWriter::rows(std::span<const std::span<const double>> columns, const TimeOrigin& origin) {
+  text_.clear();
+  for (std::size_t row = 0; row < columns.front().size(); ++row) {
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      if (c != 0) text_ += ',';
+      // Large times keep their digits however they came: 1763000000, never 1.763e+09.
+      if (c == 0 && (origin != TimeOrigin{} || is_large_time(columns[c][row])))
+        append_time(text_, origin, columns[c][row]);
+      else
+        append(text_, columns[c][row]);
+    }
+    text_ += '\n';
+  }
+  file_.write(text_);
+}
+
+}  // namespace ifog

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/csv/line_form.h"
+
+#include <algorithm>
+#include <cctype>
+#include <utility>
+
+#include "drivers/capture/csv/table_form.h"
+#include "drivers/capture/times/date_time.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::string_view kArrow = " -> ";
+constexpr const char* kStampName = "stamp_time";
+constexpr std::size_t kAlike = 3;  // lines of one form, in the file's beginning
+
+bool is_decimal(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool is_alphabetic(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+
+// The terminal's time in front of a line, "10:00:00" or "10:00:00.123"; "" where there is none.
+std::string_view stamp_before(std::string_view line) {
+  const std::string_view before = line.substr(0, line.find(kArrow));
+  return before.size() < line.size() && is_date(before) ? before : std::string_view();
+}
+
+// The date or time of day that is all of a line, without blanks; "" where it is another line.
+std::string stamp_alone(std::string_view line) {
+  std::string stamp;
+  for (const char c : trimmed(line))
+    if (c != ' ' && c != '\t')
+      stamp += c;
+    else if (!stamp.empty() && stamp.back() != 'T')
+      stamp += 'T';
+  return stamp.find(':') != std::string::npos && is_date(stamp) ? stamp : std::string();
+}
+
+// Numbers of a line, each with the text before it.
+struct Values {
+  std::vector<std::string> labels;
+  std::vector<std::string_view> numbers;
+};
+
+// Where a number that begins there ends; its begin where none does, as in "gyro2" and "0x68".
+std::size_t end_of_number(std::string_view line, std::size_t at) {
+  const char before = at > 0 ? line[at - 1] : ' ';
+  if (is_alphabetic(before) || is_decimal(before) || before == '_' || before == '.') return at;
+  if (line.substr(at).starts_with("0x")) return at;
+  std::size_t end = at;
+  if (line[end] == '-' || line[end] == '+') ++end;
+  const std::size_t digits = end;
+  while (end < line.size() && (is_decimal(line[end]) || line[end] == '.')) ++end;
+  if (std::none_of(line.begin() + static_cast<std::ptrdiff_t>(digits),
+                   line.begin() + static_cast<std::ptrdiff_t>(end), is_decimal))
+    return at;
+  if (end + 1 < line.size() && (line[end] == 'e' || line[end] == 'E')) {
+    std::size_t power = end + 1;
+    if (line[power] == '-' || line[power] == '+') ++power;
+    if (power < line.size() && is_decimal(line[power])) {
+      end = power;
+      while (end < line.size() && is_decimal(line[end])) ++end;
+    }
+  }
+  return end;
+}
+
+// "gx" of ", gx: "; "" of what names nothing.
+std::string label_in(std::string_view between) {
+  if (between.find_first_of(":=") == std::string_view::npos) return "";
+  constexpr std::string_view kAround = " \t,;|:={}[]()\"'";
+  const std::size_t begin = between.find_first_not_of(kAround);
+  if (begin == std::string_view::npos) return "";
+  std::string_view label = between.substr(begin, between.find_last_not_of(kAround) - begin + 1);
+  if (const std::size_t other = label.find_last_of(",;|:="); other != std::string_view::npos)
+    label.remove_prefix(std::min(label.find_first_not_of(' ', other + 1), label.size()));  // "RAW: gyro"
+  return std::any_of(label.begin(), label.end(), is_alphabetic) ? std::string(label) : "";
+}
+
+Values values_in(std::string_view line) {
+  Values out;
+  std::size_t behind = 0;  // the number before
+  for (std::size_t at = 0; at < line.size();) {
+    const std::size_t end = end_of_number(line, at);
+    if (end == at) {
+      ++at;
+      continue;
+    }
+    out.labels.push_back(label_in(line.substr(behind, at - behind)));
+    out.numbers.push_back(line.substr(at, end - at));
+    at = behind = end;
+  }
+  return out;
+}
+
+// A name a value, or three values for a name, which are its axes; nothing where a value has no name.
+std::vector<std::string> names_by(const std::vector<std::string>& labels) {
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < labels.size();) {
+    std::size_t end = i + 1;
+    while (end < labels.size() && labels[end].empty()) ++end;
+    if (labels[i].empty() || (end - i != 1 && end - i != 3)) return {};
+    for (std::size_t axis = 0; axis < end - i; ++axis)
+      names.push_back(end - i == 1 ? labels[i] : labels[i] + "_" + "xyz"[axis]);
+    i = end;
+  }
+  return names.size() > 1 ? names : std::vector<std::string>();
+}
+
+}  // namespace
+
+LineForm::LineForm(std::string_view beginning) {
+  Lines lines(beginning);
+  std::size_t before = 0, alone = 0, looked = 0, alike = 0;
+  std::vector<std::string> labels;
+  for (std::string_view line; lines.next(line);) {
+    if (trimmed(line).empty()) continue;
+    ++looked;
+    if (const std::string_view stamp = stamp_before(line); !stamp.empty()) {
+      ++before;
+      line.remove_prefix(stamp.size() + kArrow.size());
+    } else if (!stamp_alone(line).empty()) {
+      ++alone;
+    }
+    Values values = values_in(line);
+    if (alike >= kAlike || names_by(values.labels).empty()) continue;
+    alike = values.labels == labels ? alike + 1 : 1;
+    labels = std::move(values.labels);
+  }
+  if (before >= kAlike && 2 * before >= looked) stamps_ = Stamps::before;
+  // A file of times alone has no rows for them.
+  if (alone >= 2 && 10 * alone < 9 * looked) stamps_ = Stamps::above;
+  if (alike < kAlike) return;
+  labels_ = std::move(labels);
+  names_ = names_by(labels_);
+  if (stamps_ != Stamps::none) names_.insert(names_.begin(), kStampName);
+}
+
+std::string LineForm::rows_of(std::string_view text) {
+  std::string out;
+  out.reserve(text.size() + text.size() / 8);
+  Lines lines(text);
+  for (std::string_view line; lines.next(line); out += '\n') append_row(line, out);
+  return out;
+}
+
+void LineForm::append_row(std::string_view line, std::string& out) {
+  if (trimmed(line).empty()) return;
+  const auto append_other = [&] { out.append("# ").append(line); };
+  std::string_view rest = line;
+  if (stamps_ == Stamps::before) {
+    stamp_ = stamp_before(line);
+    if (!stamp_.empty()) rest.remove_prefix(stamp_.size() + kArrow.size());
+  } else if (stamps_ == Stamps::above) {
+    if (std::string stamp = stamp_alone(line); !stamp.empty()) {
+      stamp_ = std::move(stamp);
+      return append_other();
+    }
+  }
+  const Values values = values_in(rest);
+  const bool header = labels_.empty() && values.numbers.empty();
+  if (stamps_ != Stamps::none && stamp_.empty() && !header) return append_other();
+  if (!labels_.empty() && values.labels != labels_) return append_other();
+  if (stamps_ != Stamps::none) out += header ? kStampName : stamp_;
+  if (labels_.empty()) {
+    const std::size_t separator = rest.find_first_of(",;\t");
+    out.append(1, separator == std::string_view::npos ? ' ' : rest[separator]).append(rest);
+    return;
+  }
+  for (const std::string_view number : values.numbers) {
+    if (!out.empty() && out.back() != '\n') out += ',';
+    out += number;
+  }
+}
+
+}  // namespace ifog

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/times/date_time.h"
+
+#include <algorithm>
+#include <charconv>
+#include <chrono>
+#include <cstdint>
+#include <optional>
+
+namespace ifog {
+namespace {
+
+// What is still to be read of a text.
+class Rest {
+ public:
+  explicit Rest(std::string_view text) : text_(text) {}
+
+  // Exactly so many digits.
+  bool number(std::size_t digits, int& value) { return number(digits, digits, value); }
+  bool number(std::size_t fewest, std::size_t most, int& value) {
+    value = 0;
+    std::size_t count = 0;
+    for (; count < most && count < text_.size() && text_[count] >= '0' && text_[count] <= '9'; ++count)
+      value = 10 * value + (text_[count] - '0');
+    text_.remove_prefix(count);
+    return count >= fewest;
+  }
+  bool one_of(std::string_view wanted) {
+    if (text_.empty() || wanted.find(text_.front()) == std::string_view::npos) return false;
+    text_.remove_prefix(1);
+    return true;
+  }
+  bool word(std::string_view wanted) {
+    if (!text_.starts_with(wanted)) return false;
+    text_.remove_prefix(wanted.size());
+    return true;
+  }
+  // An English month's first three letters.
+  bool month(int& value) {
+    constexpr std::string_view kMonths = "JanFebMarAprMayJunJulAugSepOctNovDec";
+    const std::size_t at = text_.size() < 3 ? std::string_view::npos : kMonths.find(text_.substr(0, 3));
+    if (at == std::string_view::npos || at % 3 != 0) return false;
+    value = static_cast<int>(at / 3) + 1;
+    text_.remove_prefix(3);
+    return true;
+  }
+  std::string_view digits() {
+    const std::size_t end = std::min(text_.find_first_not_of("0123456789"), text_.size());
+    const std::string_view found = text_.substr(0, end);
+    text_.remove_prefix(end);
+    return found;
+  }
+  [[nodiscard]] bool ended() const { return text_.empty(); }
+
+ private:
+  std::string_view text_;
+};
+
+struct Moment {
+  std::int64_t s = 0;
+  std::string_view fraction;  // digits behind the point
+};
+
+// hh:mm, hh:mm:ss or hh:mm:ss.f…, of twelve hours with AM or PM behind it
+bool time_of_day(Rest& rest, bool seconds_needed, Moment& moment) {
+  int hours = 0, minutes = 0, seconds = 0;
+  if (!rest.number(1, 2, hours) || !rest.one_of(":_") || !rest.number(2, minutes)) return false;
+  const bool told = rest.one_of(":_");
+  if (told ? !rest.number(2, seconds) : seconds_needed) return false;
+  if (hours > 23 || minutes > 59 || seconds > 60) return false;
+  if (told && rest.one_of(".,")) {
+    moment.fraction = rest.digits();
+    if (moment.fraction.empty()) return false;
+  }
+  const bool after_noon = rest.word(" PM") || rest.word(" pm");
+  if (after_noon || rest.word(" AM") || rest.word(" am")) {
+    if (hours < 1 || hours > 12) return false;
+    hours = hours % 12 + (after_noon ? 12 : 0);
+  }
+  moment.s += (hours * 60 + minutes) * 60 + seconds;
+  return true;
+}
+
+std::optional<std::chrono::sys_days> valid_day(int year, int month, int day) {
+  const std::chrono::year_month_day date{std::chrono::year(year),
+                                         std::chrono::month(static_cast<unsigned>(month)),
+                                         std::chrono::day(static_cast<unsigned>(day))};
+  return date.ok() ? std::optional(std::chrono::sys_days(date)) : std::nullopt;
+}
+
+// "2026-05-01" or "2026/05/01"; as spreadsheets write it "1.5.2026", the day first, and "5/1/2026", the month
+// first unless only the other way is a date; as MATLAB does "01-May-2026".
+std::optional<std::chrono::sys_days> day_of(Rest& rest) {
+  int first = 0, second = 0, third = 0;
+  if (!rest.number(1, 4, first)) return std::nullopt;
+  const char* const between = rest.word("-")   ? "-"
+                              : rest.word("/") ? "/"
+                              : rest.word(".") ? "."
+                              : rest.word("_") ? "_"
+                                               : nullptr;
+  if (between == nullptr) return std::nullopt;
+  const bool named = rest.month(second);
+  if ((!named && !rest.number(1, 2, second)) || !rest.one_of(between) || !rest.number(1, 4, third))
+    return std::nullopt;
+  if (first > 31) return *between == '.' ? std::nullopt : valid_day(first, second, third);
+  if (third < 1000 || (*between == '-' && !named) || *between == '_') return std::nullopt;
+  if (*between == '/')
+    if (const auto month_first = valid_day(third, first, second)) return month_first;
+  return valid_day(third, second, first);
+}
+
+// What local time is ahead of UTC by.
+std::optional<std::int64_t> offset_s(Rest& rest) {
+  rest.one_of(" ");
+  if (rest.ended() || rest.one_of("Zz") || rest.word("UTC")) return 0;
+  const bool behind = rest.one_of("-");
+  int hours = 0, minutes = 0;
+  if ((!behind && !rest.one_of("+")) || !rest.number(2, hours)) return std::nullopt;
+  if (!rest.ended() && ((rest.one_of(":"), !rest.number(2, minutes)))) return std::nullopt;
+  if (hours > 23 || minutes > 59) return std::nullopt;
+  const std::int64_t by_s = (hours * 60 + minutes) * 60;
+  return behind ? -by_s : by_s;
+}
+
+std::optional<Moment> moment_of(std::string_view text) {
+  Moment moment;
+  Rest rest(text);
+  if (text.size() > 2 && (text[1] == ':' || text[2] == ':'))
+    return time_of_day(rest, true, moment) && rest.ended() ? std::optional(moment) : std::nullopt;
+  const auto day = day_of(rest);
+  if (!day) return std::nullopt;
+  moment.s = std::chrono::sys_seconds(*day).time_since_epoch().count();
+  if (rest.ended()) return moment;
+  if (!rest.one_of("Tt _") || !time_of_day(rest, false, moment)) return std::nullopt;
+  const auto ahead_s = offset_s(rest);
+  if (!ahead_s || !rest.ended()) return std::nullopt;
+  moment.s -= *ahead_s;
+  return moment;
+}
+
+}  // namespace
+
+std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to) {
+  constexpr std::size_t kWhole = 24;  // characters of any number of seconds
+  // No number has one of these near its beginning, or two points: of numbers, which most times are, nothing
+  // more is asked.
+  const std::string_view begin = text.substr(0, 6);
+  if (text.size() < 5 ||
+      (begin.find_first_of(":/-_", 1) == std::string_view::npos && begin.find('.') == begin.rfind('.')))
+    return {};
+  auto moment = moment_of(text);
+  if (!moment || moment->fraction.size() > to.size() - kWhole) return {};
+  // Before 1970 the digits behind the point count on, and those of a negative number count back.
+  if (moment->s < 0 && !moment->fraction.empty()) return {};
+  char* end = std::to_chars(to.data(), to.data() + kWhole, moment->s).ptr;
+  if (!moment->fraction.empty()) {
+    *end++ = '.';
+    end = std::copy(moment->fraction.begin(), moment->fraction.end(), end);
+  }
+  return {to.data(), static_cast<std::size_t>(end - to.data())};
+}
+
+PointDigits::PointDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {
+  const std::size_t comma = decimal_comma ? cell.find(',') : std::string_view::npos;
+  if (comma == std::string_view::npos || cell.size() > made_.size()) return;
+  std::copy(cell.begin(), cell.end(), made_.begin());
+  made_[comma] = '.';
+  digits_ = {made_.data(), cell.size()};
+}
+
+TimeDigits::TimeDigits(std::string_view cell, bool decimal_comma) : PointDigits(cell, decimal_comma) {
+  const std::string_view date = date_in_digits(cell, made_);
+  date_ = !date.empty();
+  if (date_) digits_ = date;
+}
+
+}  // namespace ifog

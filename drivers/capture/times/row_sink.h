@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// A capture on its way in pieces: what reads one hands blocks of rows to what works on them, so that no
+// command has to hold the whole. Every format is read through this.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/capture/times/time_stamps.h"
+
+namespace ifog {
+
+// In a column: no value in this row.
+inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Rows that follow one another, by column.
+struct RowBlock {
+  std::vector<double> time_s;  // strictly increasing, within and from block to block; never NaN
+  // In the order of the names, each as long as time_s; or empty, where the sink does not want it.
+  std::vector<std::vector<double>> columns;
+  TimeOrigin origin{};  // what time_s is counted from, the same in all blocks
+
+  [[nodiscard]] std::size_t size() const { return time_s.size(); }
+  // What follows; `rows` is spoilt.
+  void append(RowBlock& rows);
+};
+
+class RowSink {
+ public:
+  virtual ~RowSink() = default;
+  // Once, before the first rows: the columns without the time, as in a capture's header (rate_x_radps, …).
+  virtual void begin(const std::vector<std::string>& names) = 0;
+  // After that: whether it looks at the column. What it does not is checked all the same, and may come or
+  // not.
+  [[nodiscard]] virtual bool wants(std::size_t column) const {
+    (void)column;
+    return true;
+  }
+  // The next rows, at least one; the sink may keep or spoil them.
+  virtual void take(RowBlock& rows) = 0;
+};
+
+// What the reading says besides the rows; whole once the last of them was taken.
+struct RowNotes {
+  // Comment and blank lines behind the header: so many all together before this row and those that follow.
+  // Rows in the file, from `row` on, that repeat the one before and are dropped.
+  struct Repeated {
+    std::size_t row, rows;
+  };
+  struct Skipped {
+    std::size_t row, lines;  // row: in the file
+  };
+
+  std::string comments;         // without the '#', each with a line's end behind it
+  std::size_t header_line = 0;  // 0: not read from a text
+  std::size_t first_line = 0;   // of the first row; 0: rows have no lines. Of HDF5 rows are counted from 1
+  std::vector<Skipped> skipped;
+  std::vector<Repeated> repeated;
+  std::vector<std::string> notices;        // of the reading: what may be meant otherwise
+  std::vector<std::string> faults;         // cells read as missing, one line a column
+  std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
+
+  // The line of a data row (counted from 0), for messages about its values; 0 where rows have none.
+  [[nodiscard]] std::size_t line_of_row(std::size_t row) const;
+  // The same for a row in the file, repeated ones counted.
+  [[nodiscard]] std::size_t line_of_raw_row(std::size_t row) const;
+};
+
+}  // namespace ifog

@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/times/sample_times.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+
+#include "drivers/host/timeline_frame.h"
+
+namespace ifog {
+namespace {
+
+constexpr double kNsPerSecondExact =
+    1e9;  // divided by, so that the result is the double nearest to the decimal time
+
+Timeline timeline_of(const ifog_description& description) {
+  return {description.sequence_modulus, description.nominal_rate_hz};
+}
+
+// Whatever a device says: what has no room wraps, and is a clock that jumps.
+std::int64_t ns_since(const TimeOrigin& origin, std::int64_t time_ns) {
+  return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
+                                   static_cast<std::uint64_t>(origin.s) * 1'000'000'000U -
+                                   static_cast<std::uint64_t>(origin.ns));
+}
+
+}  // namespace
+
+SampleTimes::SampleTimes(const ifog_description& description)
+    : description_(description), timeline_(timeline_of(description)) {}
+
+void SampleTimes::go_on_as(const ifog_description& description) {
+  if (description.sequence_modulus == description_.sequence_modulus &&
+      description.has_device_time == description_.has_device_time &&
+      description.nominal_rate_hz == description_.nominal_rate_hz)
+    return;
+  description_ = description;
+  timeline_ = timeline_of(description);
+  clock_ = Clock::undecided;
+  broken_ = true;
+}
+
+void SampleTimes::choose_clock(const ifog_sample& sample) {
+  first_arrival_ns_ = sample.arrival_ns;
+  const bool rate_known = description_.nominal_rate_hz > 0.0;
+  if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0) {
+    clock_ = Clock::device;
+    device_from_ = TimeOrigin::of(sample.device_time_ns);
+  } else if ((sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 && rate_known) {
+    clock_ = Clock::counter;
+  } else if (sample.arrival_ns != 0 || zero_of_stamps_ns_) {
+    clock_ = Clock::arrival;
+  } else if (rate_known) {
+    clock_ = Clock::number;
+  } else {
+    throw std::runtime_error(
+        "the samples carry no time: expected the option rate_hz with the samples a second of the device");
+  }
+}
+
+void SampleTimes::count_from(const ifog_sample& sample) {
+  if (clock_ == Clock::device) {
+    origin_ = device_from_;
+  } else if (zero_of_stamps_ns_) {
+    const std::int64_t stamp_ns = sample.arrival_ns - *zero_of_stamps_ns_;
+    origin_ = TimeOrigin::of(stamp_ns);
+    const std::int64_t since_ns = ns_since(origin_, stamp_ns);
+    if (clock_ == Clock::arrival) {
+      first_arrival_ns_ -= since_ns;
+      return;
+    }
+    // As samples where it is a whole number of them: then no time is a sum of two that were rounded.
+    const double samples = static_cast<double>(since_ns) / kNsPerSecondExact * description_.nominal_rate_hz;
+    if (samples >= 0.0 && std::abs(samples - std::round(samples)) < 1e-6)
+      count_ = static_cast<std::uint64_t>(std::llround(samples));
+    else
+      offset_s_ = static_cast<double>(since_ns) / kNsPerSecondExact;
+  }
+}
+
+Timeline::Frame SampleTimes::frame_of(const ifog_sample& sample) const {
+  Timeline::Frame frame = timeline_frame(sample, description_.axes);
+  frame.recorded = zero_of_stamps_ns_.has_value();
+  return frame;
+}
+
+double SampleTimes::seconds(const ifog_sample& sample) const {
+  switch (clock_) {
+    case Clock::device:
+      return static_cast<double>(ns_since(device_from_, device_ns_)) / kNsPerSecondExact + offset_s_;
+    case Clock::arrival:
+      return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecondExact + offset_s_;
+    default:
+      return static_cast<double>(count_) / description_.nominal_rate_hz + offset_s_;
+  }
+}
+
+// The sample's clock is set so that it comes as much later than the one before as it arrived later.
+void SampleTimes::begin_anew(const ifog_sample& sample) {
+  broken_ = false;
+  const double later_s = static_cast<double>(sample.arrival_ns - last_arrival_ns_) * 1e-9;
+  const double rate_hz = description_.nominal_rate_hz;
+  const double least_s = rate_hz > 0.0 ? 1.0 / rate_hz : 1e-6;
+  const bool known = zero_of_stamps_ns_ || (sample.arrival_ns != 0 && last_arrival_ns_ != 0);
+  offset_s_ += last_s_ + std::max(known ? later_s : 0.0, least_s) - seconds(sample);
+}
+
+// The time of the next sample of a device with neither counter nor clock, by when it arrived. What comes in
+// one delivery was measured one after the other. How it comes shows in the first few samples.
+double SampleTimes::spread(const ifog_sample& sample, const Timeline::Step& step, double arrived_s) {
+  constexpr double kFollows = 0.02;             // of what a time is beside its arrival, a sample
+  constexpr double kLeast = 0.5, kMost = 1.25;  // periods between two samples
+  constexpr double kEven = 0.85;                // at least, where each comes as it was measured
+  constexpr std::size_t kShows = 16;            // samples
+  constexpr double kResolution_s = 1e-9;        // of times of arrival
+  const double period_s = 1.0 / description_.nominal_rate_hz;
+  const double next_s = last_s_ + period_s, late_s = arrived_s - next_s;
+  const double elapsed_s = static_cast<double>(sample.arrival_ns - last_arrival_ns_) / kNsPerSecondExact;
+  const bool delayed = step.late_s > 0.0;
+  bunched_ = bunched_ || elapsed_s < kEven * period_s || sample.at_once > 1 || delayed;
+  if (delayed) return next_s;
+  if (step.gap || step.clock_moved || std::abs(late_s) < kResolution_s) return arrived_s;
+  // Each by itself: its arrival, without a leap to where the first ones were behind it, or before it where
+  // more come than the rate says.
+  if (!bunched_ && taken_ >= kShows)
+    return std::clamp(arrived_s, last_s_ + elapsed_s / kMost,
+                      last_s_ + kMost * std::max(period_s, elapsed_s));
+  return last_s_ + std::clamp(period_s + kFollows * late_s, kLeast * period_s, kMost * period_s);
+}
+
+void SampleTimes::refuse(double now) const {
+  const auto told = [this](double time_s) {
+    std::string text;
+    append_time(text, origin_, time_s);
+    return text;
+  };
+  throw std::runtime_error("sample " + std::to_string(taken_ + 1) + ": its time is " + told(now) + " s by " +
+                           (clock_ == Clock::device    ? "the device's clock"
+                            : clock_ == Clock::counter ? "its counter"
+                                                       : "its arrival") +
+                           ", expected more than the " + told(last_s_) + " s of the sample before");
+}
+
+std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
+  const bool first = taken_ == 0;
+  if (clock_ == Clock::undecided) choose_clock(sample);
+  if (first) count_from(sample);
+  bool anew = broken_ && !first;
+  Timeline::Step step;
+  if (first || anew)
+    step.time_ns = timeline_.first(frame_of(sample));
+  else
+    step = timeline_.next(frame_of(sample));
+  if (step.out_of_turn) {
+    ++(timeline_.two_devices() ? mixed_ : repeated_);
+    return std::nullopt;
+  }
+  const std::uint64_t steps = first || anew ? 0 : step.samples;
+  const bool timed_anew =
+      step.restarted && (restarts_ || clock_ != Clock::device || sample.device_wrap_ns > 0);
+  count_ += steps;
+  if (steps > 1) missing_ += steps - 1;
+  if (steps > 1 && step.untold) untold_ += steps - 1;
+  if (timed_anew) ++restarted_;
+  device_ns_ = step.time_ns;
+  anew = anew || (timed_anew && clock_ == Clock::device);
+  if (anew) begin_anew(sample);
+  broken_ = false;
+  if (step.clock_set) ++clock_sets_;
+  // Where the device's clock has stood still while it measured, by the sum of its steps; where it was set
+  // while the device counted on, by the counter.
+  if (!first && !anew && clock_ == Clock::device && (timeline_.clock_stood() || step.by_count))
+    offset_s_ += last_s_ + step.dt_s - seconds(sample);
+  double now = seconds(sample);
+  const bool by_arrival =
+      clock_ == Clock::arrival && !zero_of_stamps_ns_ && description_.nominal_rate_hz > 0.0;
+  if (!first && !anew && by_arrival && sample.arrival_ns >= last_arrival_ns_) now = spread(sample, step, now);
+  if (!first && now <= last_s_) {
+    if (!restarts_) refuse(now);
+    if (now == last_s_) {
+      ++repeated_;
+      return std::nullopt;
+    }
+    anew = true;
+    begin_anew(sample);
+    now = seconds(sample);
+  }
+  Taken taken;
+  taken.since_s = now;
+  taken.elapsed_s = first ? std::numeric_limits<double>::quiet_NaN() : now - last_s_;
+  taken.anew = anew;
+  taken.period_s = taken.elapsed_s / static_cast<double>(std::max<std::uint64_t>(steps, 1));
+  if ((first || anew || bunched_) && description_.nominal_rate_hz > 0.0)
+    taken.period_s = 1.0 / description_.nominal_rate_hz;
+  last_s_ = now;
+  last_arrival_ns_ = sample.arrival_ns;
+  ++taken_;
+  return taken;
+}
+
+}  // namespace ifog

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/times/time_stamps.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "drivers/capture/times/date_time.h"
+#include "drivers/ifog/decimal.h"
+
+namespace ifog {
+namespace {
+
+constexpr int kExactPower = 15;  // ten to it, and a whole number below 2^53, are doubles
+constexpr double kWholeDoubles = 9007199254740992.0;
+constexpr std::int64_t kNsPerSecond = 1'000'000'000;
+constexpr std::int64_t kMostWhole = 4'600'000'000'000'000'000;  // the differences of two are 64 bits
+
+constexpr std::array<std::int64_t, 19> kTen = [] {
+  std::array<std::int64_t, 19> powers{1};
+  for (std::size_t i = 1; i < powers.size(); ++i) powers[i] = 10 * powers[i - 1];
+  return powers;
+}();
+std::int64_t ten_to(int decimals) { return kTen[static_cast<std::size_t>(decimals)]; }
+
+// whole + fraction / 10^decimals, both with the number's sign.
+struct Plain {
+  std::int64_t whole = 0, fraction = 0;
+  int decimals = 0;
+};
+
+// The digits that follow, up to `most`; how many there were.
+int take_digits(const char*& at, const char* end, int most, std::int64_t& value) {
+  int digits = 0;
+  for (; at != end && *at >= '0' && *at <= '9' && digits < most; ++at, ++digits)
+    value = 10 * value + (*at - '0');
+  return digits;
+}
+
+bool read_plain(std::string_view text, Plain& out) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  const bool negative = at != end && *at == '-';
+  if (at != end && (*at == '-' || *at == '+')) ++at;
+  int digits = take_digits(at, end, 18, out.whole);
+  if (at != end && *at >= '0' && *at <= '9' && out.whole < kMostWhole / 10)
+    digits += take_digits(at, end, 1, out.whole);
+  if (at != end && *at == '.') digits += out.decimals = take_digits(++at, end, 18, out.fraction);
+  if (at != end || digits == 0) return false;
+  if (negative) out.whole = -out.whole, out.fraction = -out.fraction;
+  return true;
+}
+
+std::int64_t floor_to(std::int64_t value, std::int64_t unit) {
+  const std::int64_t over = value % unit;
+  return value - over - (over < 0 ? unit : 0);
+}
+
+// A whole number of units in a second or of seconds in a unit; 0 where it is none.
+std::int64_t whole(double value) {
+  const double nearest = std::round(value);
+  return nearest >= 1.0 && std::abs(value / nearest - 1.0) < 1e-12 ? static_cast<std::int64_t>(nearest) : 0;
+}
+
+// The digits behind the point of one less what they say: of 0.25 those of 0.75. Not of nothing.
+void complement(std::string& digits) {
+  for (char& digit : digits) digit = static_cast<char>('0' + '9' - digit);
+  digits.back() = static_cast<char>(digits.back() + 1);
+}
+
+// To digits behind the point; whether that makes one before it. No zeros stay at their end.
+bool add_ns(std::string& digits, std::int64_t ns) {
+  constexpr std::size_t kOfNs = 9;
+  if (ns == 0) return false;
+  if (digits.size() < kOfNs) digits.resize(kOfNs, '0');
+  std::int64_t carry = ns;
+  for (std::size_t i = kOfNs; i-- > 0; carry /= 10) {
+    carry += digits[i] - '0';
+    digits[i] = static_cast<char>('0' + carry % 10);
+  }
+  digits.erase(digits.find_last_not_of('0') + 1);
+  return carry > 0;
+}
+
+}  // namespace
+
+TimeOrigin TimeOrigin::of(std::int64_t first_ns) {
+  if (std::abs(static_cast<double>(first_ns)) * 1e-9 < kFineTimes_s) return {};
+  const std::int64_t over = first_ns % kNsPerSecond;
+  return {first_ns / kNsPerSecond - (over < 0 ? 1 : 0), over < 0 ? over + kNsPerSecond : over};
+}
+
+std::optional<SaidTime> SaidTime::parse(std::string_view said) {
+  const TimeDigits digits(said, false);
+  const std::string_view text = digits;
+  if (Plain time; read_plain(text, time))
+    return SaidTime{static_cast<double>(time.whole),
+                    static_cast<double>(time.fraction) / static_cast<double>(ten_to(time.decimals))};
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = read_decimal(text.data(), end, value);
+  if (error != std::errc() || at != end || !std::isfinite(value)) return std::nullopt;
+  return SaidTime{value, 0.0};
+}
+
+TimeStamps::TimeStamps(std::string_view first, double unit_s) {
+  Plain time;
+  if (!read_plain(first, time) || std::abs(static_cast<double>(time.whole)) * unit_s < kFineTimes_s) return;
+  const std::int64_t below = time.whole - (time.fraction < 0 ? 1 : 0);
+  const auto part = std::find(kTen.begin(), kTen.begin() + 10, whole(1.0 / unit_s));  // of a second: a unit
+  if (part != kTen.begin() + 10 && *part > 0) {
+    const std::int64_t of_second = *part, ns_a_unit = kNsPerSecond / of_second;
+    whole_ = below;
+    decimals_ = 9 - static_cast<int>(part - kTen.begin());  // of a ns in this unit
+    const std::int64_t fraction = time.fraction < 0 ? ten_to(time.decimals) + time.fraction : time.fraction;
+    fraction_ = time.decimals > decimals_ ? fraction / ten_to(time.decimals - decimals_)
+                                          : fraction * ten_to(decimals_ - time.decimals);
+    origin_.s = floor_to(below, of_second) / of_second;
+    origin_.ns = (below - floor_to(below, of_second)) * ns_a_unit + fraction_;
+    for (; decimals_ > 0 && fraction_ % 10 == 0; --decimals_) fraction_ /= 10;
+  } else if (const std::int64_t seconds = whole(unit_s);
+             seconds != 0 && std::abs(below) < kMostWhole / seconds) {
+    whole_ = below;
+    origin_.s = below * seconds;
+  }
+}
+
+double TimeStamps::beyond() const {
+  return static_cast<double>(fraction_) / static_cast<double>(ten_to(decimals_));
+}
+
+bool TimeStamps::since(std::string_view text, double& value, int& decimals) const {
+  Plain time;
+  if (!read_plain(text, time)) return false;
+  const int behind = std::max(time.decimals, decimals_);
+  decimals = std::max(decimals, behind);
+  const std::int64_t since = time.whole - whole_;
+  const std::int64_t fraction =
+      time.fraction * ten_to(behind - time.decimals) - fraction_ * ten_to(behind - decimals_);
+  const auto ten = static_cast<double>(ten_to(behind));
+  // Then the one division is all that rounds.
+  if (behind <= kExactPower && std::abs(static_cast<double>(since)) < kWholeDoubles / ten - 2.0) {
+    value = static_cast<double>(since * ten_to(behind) + fraction) / ten;
+    return true;
+  }
+  if (origin_ == TimeOrigin{}) return false;
+  value = static_cast<double>(since) + static_cast<double>(fraction) / ten;
+  return true;
+}
+
+void append_time(std::string& out, const TimeOrigin& origin, double since_s) {
+  const double below_s = std::floor(since_s);
+  std::array<char, 400> text{};
+  // The digits of a number that is not negative, and of one that is turned round.
+  const auto [end, error] =
+      std::to_chars(text.data(), text.data() + text.size(), std::abs(since_s), std::chars_format::fixed);
+  (void)error;  // 400 characters hold any double
+  char* const point = std::find(text.data(), end, '.');
+  std::string fraction(point == end ? end : point + 1, end);
+  if (since_s < 0.0 && !fraction.empty()) complement(fraction);
+  const std::int64_t seconds =
+      origin.s + static_cast<std::int64_t>(below_s) + (add_ns(fraction, origin.ns) ? 1 : 0);
+  if (seconds >= 0 || fraction.empty()) {
+    out += std::to_string(seconds);
+  } else {
+    out += '-' + std::to_string(-(seconds + 1));
+    complement(fraction);
+  }
+  if (!fraction.empty()) (out += '.') += fraction;
+}
+
+ExactSteps::ExactSteps(int decimals, double unit_s) {
+  const std::int64_t of_second = whole(1.0 / unit_s);
+  if (decimals <= kExactPower && of_second != 0)
+    ticks_per_s_ = static_cast<double>(of_second) * static_cast<double>(ten_to(decimals));
+}
+
+// By doubles of that size.
+bool ExactSteps::told_apart(double time_s) const {
+  constexpr double kRounding = std::numeric_limits<double>::epsilon();
+  return ticks_per_s_ > 0.0 && std::abs(time_s) * kRounding * ticks_per_s_ < 0.25;
+}
+
+double ExactSteps::between(double before_s, double now_s) const {
+  const double step = now_s - before_s;
+  if (!told_apart(before_s) || !told_apart(now_s)) return step;
+  return std::round(step * ticks_per_s_) / ticks_per_s_;
+}
+
+double ExactSteps::nearest(double time_s) const {
+  return told_apart(time_s) ? std::round(time_s * ticks_per_s_) / ticks_per_s_ : time_s;
+}
+
+}  // namespace ifog
