@@ -41,10 +41,7 @@ void Engine::expect_noise(const Axes& share) noexcept {
 
 void Engine::learn_walk(double ratio, double samples) noexcept {
   learns_walk_ = true;
-  if (!(samples > 0.0)) return;
-  Axes noise{};
-  for (std::size_t a = 0; a < axes_; ++a) noise[a] = noise_[a].known();
-  walk_.recall(noise, ratio, samples);
+  if (samples > 0.0) walk_.recall(ratio, samples);
 }
 
 LearnedNoise Engine::learned() const noexcept {

@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a stream shows of a sensor's noise: the variance R of the white noise of each axis, and how quickly the
+// What a stream says of a sensor's noise: how strong the white noise of each axis is, and how quickly the
 // rate walks.
 //
-// Both are read from the same figures: second differences of means over 1, 2, 4, ... samples (octaves). For
-// white noise and a random walk of ratio = q dt / R the octave of m samples has the variance R (6 / m + ratio m).
-// A stretch of some thousand samples is noise if every octave agrees within chance: shaking whose angle is
-// bounded falls faster with m, and turns rise. The ratio is that of all stretches that were noise, by
-// the octaves from 64 samples on, which the colour of an output filter does not reach: their mean, each weighted by
-// its likelihood. Where a record is too short to show a walk, that is one that it just hides: a filter that is a
-// little too quick is a little noisier, one that is too slow takes the walk for motion. A motion that passes for rest
-// makes the walk look quicker, never slower. So a stretch that is surely slower replaces what was known.
+// One learner for the start, for rest, and for louder noise. A stretch of some thousand samples is judged as
+// a whole. It is noise if it is white over every octave: the second difference of block means over m samples
+// has the variance R (6 / m + ratio m), ratio = q dt / R <= 1e-3, within chance at each m from one sample to
+// a sixteenth of the stretch. Shaking whose angle is bounded falls faster with m, turns rise, and neither is
+// taken for noise.
+//
+// The walk is found by its likelihood: for each ratio on a grid a Kalman filter runs over means of 64
+// samples, and R is left open. Of ratios nearly as likely as the best the quickest is taken, as a filter that
+// is a little too quick is a little noisier and one that is too slow takes the walk for motion. A motion that
+// passes for rest makes the walk look quicker, never slower: so a stretch that is surely slower replaces what
+// was known, one surely quicker is dropped.
 #pragma once
 
 #include <array>
@@ -21,7 +24,7 @@
 
 namespace ifog {
 
-// Driving noise of a sample over R, at most: ten thousand times any gyro's. What looks quicker is motion.
+// Driving noise of a sample over R, at most: ten thousand times any gyro's. What looks quicker is a motion.
 inline constexpr double kMostRatio = 1e-3;
 
 class Walk {
@@ -33,13 +36,15 @@ class Walk {
     double samples = 0.0;
   };
 
-  // What an earlier run has found counts as so many samples of this one. noise: R of each axis, (rad/s)^2.
-  void recall(const Axes& noise, double ratio, double samples) noexcept;
-  // The next measurements, rad/s. The walk is learned only with `learn`.
+  // A stretch has so many samples.
+  explicit Walk(double stretch = kStretch) noexcept;
+  // The walk as an earlier run has found it, in so many samples. Doubted once stretch after stretch
+  // contradicts it.
+  void recall(double ratio, double samples) noexcept;
+  // The next measurements, rad/s. What is learned of the walk is learned only with `learn`.
   void take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept;
-  // A motion or a gap: the stretch begins again.
+  // A motion or a gap: the stretch begins anew.
   void break_off() noexcept;
-  // Samples that are judged together.
   void set_stretch(double samples) noexcept { stretch_ = samples; }
   // Once, when a stretch was judged to be noise.
   [[nodiscard]] std::optional<Found> take_news() noexcept;
@@ -48,37 +53,49 @@ class Walk {
 
  private:
   static constexpr double kStretch = 4096.0;  // octaves up to 256 samples, and R to 2 %
-  static constexpr std::size_t kOctaves = 16;
+  static constexpr std::size_t kOctaves = 16, kTrials = 33;
 
-  // Sum of squared second differences and their effective number, of each octave.
-  struct Evidence {
-    std::array<double, kOctaves> squares{}, count{};
-    void add(const Evidence& other) noexcept;
-  };
-  // Means of the two blocks before, and of the first half of the next one.
   struct Octave {
     std::array<double, 2> means{};
     double half = 0.0;
     int blocks = 0;
     bool has_half = false;
+    double squares = 0.0, count = 0.0;
+  };
+  struct Level {
+    double value = 0.0, variance = -1.0;  // below 0: not known
+  };
+  struct Likelihood {
+    std::array<double, kTrials> squares{}, logs{};
+    double count = 0.0;
+    void add(const Likelihood& other) noexcept;
+    [[nodiscard]] double misfit(std::size_t k) const noexcept;
   };
   struct Axis {
     std::array<Octave, kOctaves> octaves{};
-    Evidence lately, all;
-    double samples = 0.0;  // of this stretch
+    std::array<Level, kTrials> levels{};
+    double sum = 0.0, mean = 0.0, samples = 0.0;
+    int in_block = 0;
+    std::size_t next = kTrials;  // trial that `mean` is worked into at the next sample
+    Likelihood lately, all;
   };
 
+  void add_octaves(Axis& axis, double rate) noexcept;
+  void add_block(Axis& axis, double rate) noexcept;
+  void work_in(Axis& axis) noexcept;
   void judge() noexcept;
+  [[nodiscard]] double white_noise(const Axis& axis, double ratio, std::size_t first) const noexcept;
   void believe() noexcept;
-  [[nodiscard]] static double misfit(const Evidence& evidence, double ratio) noexcept;
-  [[nodiscard]] double likeliest(Evidence Axis::*of) const noexcept;
-  [[nodiscard]] double mean_ratio() const noexcept;
-  [[nodiscard]] double misfit(Evidence Axis::*of, double ratio) const noexcept;
-  [[nodiscard]] static double white_noise(const Evidence& evidence, double ratio, std::size_t first) noexcept;
+  // nearly: the quickest of those within so much of -2 log-likelihood.
+  [[nodiscard]] std::size_t likeliest(Likelihood Axis::*of, double nearly) const noexcept;
+  [[nodiscard]] double misfit(Likelihood Axis::*of, std::size_t k) const noexcept;
 
+  std::array<double, kTrials> ratios_{};
   std::array<Axis, kMaxAxes> axes_{};
-  double stretch_ = kStretch, in_stretch_ = 0.0, samples_ = 0.0;
+  double stretch_, in_stretch_ = 0.0, samples_ = 0.0;
   double ratio_ = kMostRatio;
+  double recalled_ = 0.0, recalled_samples_ = 0.0;  // 0: not recalled
+  int contradictions_ = 0;
   bool learn_ = true;
   std::optional<Found> news_;
 };
