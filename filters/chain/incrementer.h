@@ -16,7 +16,7 @@
 #include "filters/chain/fitted_clock.h"
 #include "filters/chain/plausibility.h"
 #include "filters/chain/reading.h"
-#include "filters/estimator/sensor_check.h"
+#include "filters/chain/sensor_check.h"
 
 namespace ifog {
 

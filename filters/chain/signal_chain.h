@@ -16,10 +16,10 @@
 #include <string>
 #include <vector>
 
+#include "filters/chain/first_samples.h"
 #include "filters/chain/reading.h"
 #include "filters/effects/compensator.h"
 #include "filters/estimator/estimator.h"
-#include "filters/estimator/first_samples.h"
 #include "filters/estimator/learned_noise.h"
 #include "filters/estimator/walk.h"
 #include "filters/model_file/model.h"

@@ -202,4 +202,16 @@ Comparison compare_rules(const ComparisonInput& in, const ComparisonOptions& opt
   return result;
 }
 
+double third_difference_noise(std::span<const double> rate) {
+  std::vector<double> squares;
+  for (std::size_t i = 3; i < rate.size(); ++i) {
+    const double third = rate[i] - 3.0 * rate[i - 1] + 3.0 * rate[i - 2] - rate[i - 3];
+    if (std::isfinite(third)) squares.push_back(third * third / 20.0);
+  }
+  if (squares.empty()) return 0.0;
+  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
+  std::nth_element(squares.begin(), middle, squares.end());
+  return *middle / 0.4549364;
+}
+
 }  // namespace ifog

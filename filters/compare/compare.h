@@ -75,4 +75,9 @@ struct Comparison {
 // Throws std::invalid_argument: a setting the estimator refuses, columns of unequal length.
 Comparison compare_rules(const ComparisonInput& in, const ComparisonOptions& options);
 
+// Variance of the white noise of a record, whatever smooth motion there is, by the median square of third
+// differences. They have 1 + 9 + 9 + 1 = 20 times its variance, and the median square of a standard normal is 0.455.
+// rate: rad/s, NaN where missing; 0: too short.
+[[nodiscard]] double third_difference_noise(std::span<const double> rate);
+
 }  // namespace ifog

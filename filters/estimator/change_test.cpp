@@ -18,8 +18,8 @@ constexpr double kShakingVariance = 4.0, kHalfLog = 0.6931471805599453;
 constexpr double kLeastRatio = -5.0;
 // A square counts for 20 standard deviations at most.
 constexpr double kMostSquare = 400.0;
-// Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the
-// prior is worth, in horizons.
+// Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
+// worth.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
 // Above a learned width by chance; a single sum counts for four standard deviations.
 constexpr double kWider = 1.25, kMostSum = 16.0;
@@ -29,14 +29,11 @@ constexpr double kRelaxedKept = 0.999;
 constexpr double kUnseenSquare = 6.25;
 // Mean of a change that grows as a parabola over a horizon to its end: (0.8)^-2.
 constexpr double kAtEnd = 1.55;
+
 // Samples over which the fourth moment of the noise is averaged.
 constexpr double kTailMemory = 8192.0;
 
 }  // namespace
-
-Lanes ChangeTest::believed(const Contest& c, const Lanes& prior) noexcept {
-  return (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
-}
 
 // Evidence by the sizes of the errors alone, of so many as are independent by their fourth moment.
 double ChangeTest::same_size(const Contest& c, Eigen::Index a) const noexcept {
@@ -73,14 +70,15 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   evidence_ = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
   c.wide += now.mask * ((square / c.weight.max(1.0)).min(kMostSum * c.wide.max(1.0)) - c.wide) /
             (h * (c.horizons + 1.0));
-  const Lanes prior = (colour > kColoured).select((h * (1.0 - 1.0 / colour)).max(1.0), Lanes::Ones());
-  const Lanes wider = believed(c, prior).max(1.0);
+  // Until it is learned the width is the widest that the known noise allows with its third differences.
+  const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
+  const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
   // Without colour only as far as the filter takes the noise for louder than is known, and is slow by that.
-  const Lanes likely = (colour > kColoured).select(wider, wider.min(now.slow));
-  if (common.coloured) {
-    const Lanes wide = (colour > kColoured).select(kWider * wider, Lanes::Ones());
-    widest_ = widest_.max(wide);
-    evidence_ /= wide;
+  const Lanes likely = (colour > kColoured).select(wide, wide.min(now.slow)).max(1.0);
+  c.divisor = (colour > kColoured).select(kWider * likely, Lanes::Ones());
+  if (coloured_) {
+    widest_ = widest_.max(c.divisor);
+    evidence_ /= c.divisor;
   }
   if (j >= 1 && h <= 2.0 * lag)
     unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * likely * c.weight)
@@ -101,7 +99,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   common.squares = now.surprise.min(kMostSquare);
   common.squares2 = common.squares * common.squares;
   common.rest_evidence = 0.5 * (now.surprise.min(common.cap) + now.log_rest_factor) * now.mask;
-  common.coloured = coloured_ = greatest(colour) > kColoured;
+  coloured_ = greatest(colour) > kColoured;
   unseen_.setZero();
   widest_.setOnes();
   relaxed_ *= kRelaxedKept;
@@ -114,23 +112,20 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
     const double whole = kEvidence - logarithm(trackers.horizon(j) / 5.0);
     if (!(greatest(c.ratio) > 0.5 * (whole - relaxed_))) continue;
     for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-      const Lanes prior = (trackers.horizon(j) * (1.0 - 1.0 / colour)).max(1.0);
-      const double wide = colour[a] > kColoured ? kWider * std::max(1.0, believed(c, prior)[a]) : 1.0;
-      const double same = same_size(c, a) / wide, over = c.ratio[a] - whole + relaxed_;
+      const double same = same_size(c, a) / c.divisor[a], over = c.ratio[a] - whole + relaxed_;
       suspected_ = suspected_ || (c.ratio[a] > 0.5 * whole && same > 0.5 * whole);
       if (over <= most || same <= logarithm(lag)) continue;
       most = over;
       found = j;
     }
   }
-  seen_ = std::min(seen_ + 1.0, kTailMemory);
-  const Lanes capped = now.surprise.min(common.cap);
   // Tails and colour make large innovations come together.
-  const Lanes tails = (fourth_ / 3.0).max(1.0) * widest_;
-  shaking_ =
-      (shaking_ + now.mask * (0.5 * (1.0 - 1.0 / kShakingVariance) * capped - kHalfLog) / tails).max(0.0);
-  short_[kShaking].add(now.short_rad, shaking_, 0.0);
+  seen_ = std::min(seen_ + 1.0, kTailMemory);
+  const Lanes capped = now.surprise.min(common.cap), unlikely = (fourth_ / 3.0).max(1.0) * widest_;
+  const Lanes larger = 0.5 * (1.0 - 1.0 / kShakingVariance) * capped - kHalfLog;
+  shaking_ = (shaking_ + now.mask * larger / unlikely).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
+  short_[kShaking].add(now.short_rad, shaking_, 0.0);
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;
   return found;
 }

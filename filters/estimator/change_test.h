@@ -7,7 +7,7 @@
 // size alone: innovations of variance 4 R against R, which finds shaking.
 //
 // The only thing known about colour is by how much the sums of innovations over each horizon vary at rest. It is
-// learned there, and begins with the widest that the known noise allows with its third differences.
+// learned there.
 #pragma once
 
 #include <array>
@@ -49,7 +49,8 @@ class ChangeTest {
   static constexpr double kRelaxed = 10.0;
   struct Contest {
     Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero();
-    Lanes wide = Lanes::Ones(), horizons = Lanes::Zero();
+    // Variance of a sum over that of white noise, as learned, and what evidence is divided by for it.
+    Lanes wide = Lanes::Ones(), divisor = Lanes::Ones(), horizons = Lanes::Zero();
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   // Summed from where the evidence begins, and fading before it.
@@ -64,17 +65,15 @@ class ChangeTest {
   struct Common {
     Lanes clipped, capped, rest_evidence, squares, squares2;
     double cap;
-    bool coloured;
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
                const Lanes& colour, double lag) noexcept;
-  [[nodiscard]] static Lanes believed(const Contest& c, const Lanes& prior) noexcept;
   [[nodiscard]] double same_size(const Contest& c, Eigen::Index a) const noexcept;
 
   std::array<Contest, Trackers::kMost> contest_{};
   std::array<Shortfall, kShaking + 1> short_{};
-  Lanes shaking_ = Lanes::Zero(), fourth_ = Lanes::Constant(3.0), unseen_ = Lanes::Zero(),
-        widest_ = Lanes::Ones();
+  Lanes shaking_ = Lanes::Zero(), fourth_ = Lanes::Constant(3.0);
+  Lanes unseen_ = Lanes::Zero(), widest_ = Lanes::Ones();
   double relaxed_ = 0.0, seen_ = 64.0;
   Lanes evidence_ = Lanes::Zero();
   bool suspected_ = false, coloured_ = false;

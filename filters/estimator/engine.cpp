@@ -8,8 +8,8 @@
 
 namespace ifog {
 namespace {
-// Standard deviations that an innovation counts for at most where large ones are frequent at rest.
-constexpr double kNeverNoise = 20.0;
+// Failures of the filter at rest that are a motion: 6 nats each, 18 in all.
+constexpr double kSurelyMoves = 3.0;
 Lanes to_lanes(const Axes& axes) noexcept { return {axes[0], axes[1], axes[2], 0.0}; }
 }  // namespace
 
@@ -91,9 +91,9 @@ Lanes Engine::rest_rate() const noexcept {
   return rate;
 }
 
-// Lag of the filter at rest; after a move it is as slow as what it has received since is long.
+// Of the filter at rest, samples; after a move it is as slow as what it has received since is long.
 double Engine::lag() const noexcept {
-  return std::max(1.0, std::min(settled_lag_ > 0.0 ? settled_lag_ : 1e300, follow_.since_moved + 1.0));
+  return std::max(1.0, std::min(settled_lag_, follow_.since_moved + 1.0));
 }
 
 void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
@@ -120,7 +120,8 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
     publish_rest(s);
   }
   if (settings_.guard) guard(s);
-  if (follow_.moving && follow_.known && settings_.follow_manoeuvres && follow_.mix.rest_weight() < 0.5)
+  if (follow_.moving && follow_.failures >= kSurelyMoves && settings_.follow_manoeuvres &&
+      follow_.mix.rest_weight() < 0.5)
     out.flags |= kManoeuvre;
   if (rests(s)) out.flags |= kAtRest;
   learn(s);
@@ -134,7 +135,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
 void Engine::screen(Step& s) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
     if ((s.in.valid_axes >> a & 1U) == 0 || !std::isfinite(s.in.rate_radps[a])) continue;
-    if (s.in.stuck_axes ? (*s.in.stuck_axes >> a & 1U) != 0 : check_.stuck(a, s.in.rate_radps[a])) {
+    if ((s.in.stuck_axes >> a & 1U) != 0) {
       s.out.flags |= kStuck;
       continue;
     }
@@ -149,7 +150,7 @@ void Engine::begin_axes(const Step& s) noexcept {
   // What the rate did in a gap nobody knows: the filter at rest has to stand by what is measured now.
   if (follows && !f.moving && s.sample.valid != 0 && s.dt_s > kShortGap * period_s_) {
     f.moving = true;
-    f.known = false;
+    f.failures = 0.0;
     f.mix.begin_from_rest();
     f.change.begin();
   }
@@ -166,7 +167,7 @@ void Engine::begin_axes(const Step& s) noexcept {
     f.trackers.begin();
     for (std::size_t a = 0; a < axes_; ++a)
       f.trackers.seed(a, (first >> a & 1U) != 0 ? s.in.rate_radps[a] : rest_->rate(a));
-    f.mix.begin(0.0);
+    f.mix.begin(0);
     f.change.begin();
   }
   started_ |= first;
@@ -206,7 +207,6 @@ void Engine::follow(Step& s) noexcept {
       ++health_.gated;
       s.outlier = true;
       rest_->skip();
-      if (follow_.outliers.run() == 1) follow_.trackers.pass_over();
       follow_.moving ? publish_mix(s) : publish_rest(s);
       // Until the next measurement says which, it may be the first of a jump.
       s.variance += s.sample.innovation * s.sample.innovation;
@@ -234,8 +234,7 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
       return Outliers::Verdict::usual;
     }
   Lanes least = s.sample.surprise;
-  // At rest the raw one, a parabola through three measurements, foresees nothing better than others and much
-  // worse.
+  // At rest the raw one, a parabola through three measurements, predicts nothing better than others.
   for (std::size_t j = follow_.moving ? 0 : 1; j < trackers.size(); ++j) {
     if (!trackers.predicts(j)) {
       least.setZero();
@@ -269,10 +268,8 @@ void Engine::jump(Step& s) noexcept {
   rate = (s.sample.mask > 0.0).select(s.sample.rate, rate);
   move_rest(rate, s.sample.scale);
   weigh(s);
-  if (!f.moving) ++health_.manoeuvres;
-  f.moving = f.known = true;
-  s.out.flags |= kManoeuvre;
-  f.mix.begin(0.0);
+  begin_to_move(s);
+  f.mix.begin(0);
   f.change.begin();
 }
 
@@ -293,46 +290,41 @@ void Engine::follow_rest(Step& s) noexcept {
   publish_rest(s);
 }
 
+void Engine::begin_to_move(Step& s) noexcept {
+  s.out.flags |= kManoeuvre;
+  if (!follow_.moving) ++health_.manoeuvres;
+  follow_.moving = true;
+  follow_.failures = kSurelyMoves;
+}
+
 void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   Follower& f = follow_;
-  s.out.flags |= kManoeuvre;
-  ++health_.manoeuvres;
-  const double since = f.since_moved;
-  f.ledger.admit();
+  const bool shaking = tracker == ChangeTest::kShaking;
   const double horizon = f.trackers.horizon(std::min(tracker, f.trackers.size() - 1));
+  f.ledger.admit();
   f.ledger.owe_late(f.change.angle(tracker), std::max(horizon, f.change.span(tracker)), f.settled);
-  if (tracker == ChangeTest::kShaking) {
-    f.mix.begin(0.0);
-  } else {
-    for (std::size_t j = tracker + 1; j < f.trackers.size(); ++j) {
-      f.trackers.begin_from(j, tracker);
-      break;
-    }
-    f.mix.begin(std::min(since, f.trackers.horizon(tracker)), tracker);
-    move_rest(f.trackers.rate(tracker), f.trackers.gains(tracker).output * s.sample.scale);
-    f.ledger.pace(f.trackers.length(tracker));
-  }
-  f.moving = f.known = true;
+  begin_to_move(s);
+  f.mix.begin(shaking ? 0 : tracker);
   f.change.begin();
+  if (shaking) return;
+  if (tracker + 1 < f.trackers.size()) f.trackers.begin_from(tracker + 1, tracker);
+  move_rest(f.trackers.rate(tracker), f.trackers.gains(tracker).output * s.sample.scale);
 }
 
 void Engine::follow_manoeuvre(Step& s) noexcept {
   Follower& f = follow_;
-  const Lanes colours = colour();
-  f.mix.take(f.trackers, s.sample, colours);
+  f.mix.take(f.trackers, s.sample, colour());
   take(s, false);
   publish_mix(s);
-  f.ledger.pace(f.mix.length(f.trackers, lag()));
   if (f.mix.rest_failed()) {
     move_rest(s.rate, s.variance.min(s.sample.scale));
     f.mix.begin_rest();
-    f.known = true;
+    f.failures += 1.0;
   }
   if (f.mix.rest_found()) {
     f.moving = false;
-    f.known = true;
     f.change.begin();
-    f.change.relax();
+    if (f.failures >= kSurelyMoves) f.change.relax();
   }
 }
 
@@ -345,9 +337,7 @@ void Engine::take(Step& s, bool learn) noexcept {
   }
   RestFilter::Measured measured{s.in.rate_radps, m.valid, s.noise_scale, {1.0, 1.0, 1.0}};
   if (settings_.follow_manoeuvres) {
-    // Where large innovations are frequent they are the noise's, and to clip them would shift its mean.
-    const double deviations = follow_.outliers.rare() ? kMostDeviations : kNeverNoise;
-    const Lanes most = deviations * (m.scale * m.rest_factor).sqrt();
+    const Lanes most = kMostDeviations * (m.scale * m.rest_factor).sqrt();
     const Lanes clipped = m.innovation.max(-most).min(most);
     // The mean of all axes, whichever are measured: one gain is for all.
     double mean = 0.0;

@@ -15,7 +15,6 @@
 #include "filters/estimator/outliers.h"
 #include "filters/estimator/rest_filter.h"
 #include "filters/estimator/sample.h"
-#include "filters/estimator/sensor_check.h"
 #include "filters/estimator/trackers.h"
 #include "filters/estimator/unmeasured.h"
 #include "filters/estimator/walk.h"
@@ -25,15 +24,17 @@ namespace ifog {
 // The two ways in which the rate is followed, and the state that belongs to them.
 class Follower {
  public:
-  Follower(std::size_t axes, double period_s) noexcept : trackers(axes), ledger(period_s) { mix.begin(0.0); }
+  Follower(std::size_t axes, double period_s) noexcept : trackers(axes), ledger(period_s) { mix.begin(0); }
 
   Trackers trackers;
   ChangeTest change;
   Outliers outliers;
   Mix mix;
   Ledger ledger;
-  bool moving = true;               // nobody knows at the beginning: rest has to be found
-  bool known = false;               // that it moves, or has rested
+  bool moving = true;  // nobody knows at the beginning: rest has to be found
+  // Of the filter at rest since nothing was known. A start at rest looks like a motion, and is called one only once
+  // there are so many failures (6 nats each) that chance does not explain them (18 nats).
+  double failures = 0.0;
   double since_moved = 0.0;         // samples that the filter at rest has had since it was moved
   double at_rest_for = 0.0;         // samples since rest was found
   bool settled = false;             // the filter at rest gets back by itself what it lags behind by
@@ -77,6 +78,7 @@ class Engine {
   void jump(Step& s) noexcept;
   void follow_rest(Step& s) noexcept;
   void follow_manoeuvre(Step& s) noexcept;
+  void begin_to_move(Step& s) noexcept;
   void begin_manoeuvre(Step& s, std::size_t tracker) noexcept;
   void take(Step& s, bool learn) noexcept;
   void move_rest(const Lanes& rate, const Lanes& variance) noexcept;
@@ -87,7 +89,7 @@ class Engine {
   void learn(const Step& s) noexcept;
   void know_unmeasured(const Step& s, double grown) noexcept;
   void publish(const Step& s) noexcept;
-  void refresh_lag(std::uint64_t sequence) noexcept;
+  void refresh_lag() noexcept;
   [[nodiscard]] bool rests(const Step& s) const noexcept;
   [[nodiscard]] double lag() const noexcept;
   [[nodiscard]] double mean_noise() const noexcept;
@@ -100,7 +102,6 @@ class Engine {
   std::size_t axes_;
   double period_s_;
   std::unique_ptr<RestFilter> rest_;
-  SensorCheck check_;
   std::array<Noise, kMaxAxes> noise_;
   std::optional<Axes> walk_share_;
   Walk walk_;
@@ -111,7 +112,6 @@ class Engine {
   std::uint32_t started_ = 0;  // axes that have had a measurement
   bool learns_walk_ = false;
   double settled_lag_ = 0.0;
-  double rest_stretch_ = 1024.0;  // samples at rest that show the noise; the first are shorter
 };
 
 }  // namespace ifog

@@ -19,6 +19,8 @@ constexpr double kLeastReach = 48.0;
 constexpr double kMostRestRate = 0.02;
 // Lags of rest after which the end of a manoeuvre, and where it moved the filter to, have faded.
 constexpr double kYoungLags = 7.0;
+// Of the standard deviation of the filter at rest, that is paid: a quarter of its variance for as long as it takes.
+constexpr double kMostPaid = 0.5;
 // Known noise is replaced where a stretch differs by this factor.
 constexpr double kOtherNoise = 2.0;
 // Louder noise than is known has to be white for so long, and for two stretches.
@@ -40,7 +42,7 @@ void Engine::publish_rest(Step& s) noexcept {
     // rule.
     if (wide > 1.0) wide *= settings_.measurement_noise / rest_->rule().measurement_noise();
     s.variance[i] *= 0.5 * (walk[i] * (learns_walk_ ? wide : 1.0) + noise[i] * wide);
-    s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding(s.rate[i], rest_->variance() * noise[i]);
+    s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding();
   }
 }
 
@@ -60,23 +62,27 @@ void Engine::publish_mix(Step& s) noexcept {
 // Books what the rate falls short of, and adds the payment of this sample.
 void Engine::pay(Step& s) noexcept {
   using enum Ledger::Account;
-  Ledger& ledger = follow_.ledger;
+  Follower& f = follow_;
+  Ledger& ledger = f.ledger;
   const bool follows = settings_.follow_manoeuvres;
   // Until it has settled nothing that the filter lags behind by returns by itself.
-  follow_.at_rest_for = follow_.moving ? 0.0 : follow_.at_rest_for + 1.0;
-  const bool settled =
-      follows && follow_.at_rest_for >= kYoungLags * std::max(settled_lag_, 1.0 / rest_->gain());
-  if (settled && !follow_.settled) follow_.change.forget_angle();
-  follow_.settled = settled;
-  ledger.book((s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s, s.outlier        ? kDoubt
-                                                                             : follow_.moving ? kDebt
-                                                                             : settled        ? kCarried
-                                                                                              : kTail);
+  f.at_rest_for = f.moving ? 0.0 : f.at_rest_for + 1.0;
+  if (!s.outlier) {
+    const bool settled = follows && f.at_rest_for >= kYoungLags * std::max(settled_lag_, 1.0 / rest_->gain());
+    if (settled && !f.settled) f.change.forget_angle();
+    f.settled = settled;
+  }
+  ledger.book((s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s, s.outlier   ? kDoubt
+                                                                             : f.moving  ? kDebt
+                                                                             : f.settled ? kCarried
+                                                                                         : kTail);
+  if (f.moving) ledger.pace(f.mix.length(f.trackers, lag()));
   ledger.pace_tail(lag());
   // What a gap hides is no angle.
   const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
-  const Lanes paid = ledger.pay(
-      follows ? Ledger::most_of_tail(rest_->variance() * noise_share()) : Lanes::Constant(1e300), dt_s);
+  Lanes most = Lanes::Constant(1e300);
+  if (follows) most = kMostPaid * (rest_->variance() * noise_share()).sqrt();
+  const Lanes paid = ledger.pay(most, dt_s);
   s.rate += paid;
   if (follows) s.variance = s.variance.max(paid * paid);
 }
@@ -97,16 +103,14 @@ void Engine::learn(const Step& s) noexcept {
   const bool rest = (s.out.flags & kAtRest) != 0, gap = s.dt_s > kShortGap * period_s_;
   if (gap || (rest && !follow_.moving && s.noise_scale != 1.0)) walk_.break_off();
   if (s.outlier || (!rest && !follow_.moving)) return;
-  walk_.set_stretch(rest ? rest_stretch_ : std::max(kLouderSamples, kLouder_s / period_s_));
+  walk_.set_stretch(rest ? kStretch : std::max(kLouderSamples, kLouder_s / period_s_));
   walk_.take(s.in.rate_radps, s.sample.valid, rest);
   const std::optional<Walk::Found> found = walk_.take_news();
   if (!found) return;
-  if (rest) rest_stretch_ = std::min(2.0 * rest_stretch_, kStretch);
   bool other = false;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!(found->noise[a] > 0.0) || !found->white) continue;
-    // Below its own steps a converter shows nothing of the noise.
-    const double heard = std::max(found->noise[a], noise_[a].of_steps()), known = noise_[a].known();
+    const double heard = found->noise[a], known = noise_[a].known();
     if (rest ? kOtherNoise * heard < known : heard > kOtherNoise * known) {
       noise_[a].set_known(heard);
       other = true;
@@ -155,18 +159,15 @@ void Engine::publish(const Step& s) noexcept {
     health_.colour[a] = noise_[a].colour();
   }
   health_.floor_hits = rest_->rule().floor_hits();
-  if (s.in.sequence % kLagEvery == 0 || settled_lag_ == 0.0) refresh_lag(s.in.sequence);
+  if (s.in.sequence % kLagEvery == 0 || settled_lag_ == 0.0) refresh_lag();
   health_.group_delay_s = period_s_ * settled_lag_ *
                           (follow_.moving && settings_.follow_manoeuvres ? follow_.mix.rest_weight() : 1.0);
 }
 
 // The lag of the filter at rest once it has settled.
-void Engine::refresh_lag(std::uint64_t) noexcept {
+void Engine::refresh_lag() noexcept {
   const Settled now = rest_->settled();
   if (!std::isfinite(now.lag) || !std::isfinite(now.correlation)) return;
-  if (settings_.follow_manoeuvres && settled_lag_ > 0.0 && now.lag < settled_lag_ &&
-      (follow_.moving || follow_.since_moved < settled_lag_))
-    return;
   settled_lag_ = now.lag;
   health_.correlation_time_s = now.correlation * period_s_;
   if (follow_.since_moved > kReachAfter || !follow_.moving)

@@ -24,8 +24,7 @@ struct EstimatorInput {
   // By axis, of dt the time in which the rate was measured: what a gap hides is no angle, and none is owed
   // for it. 0: all of dt.
   Axes covered_s{};
-  // Axes whose sensor repeats one value, which are only predicted. Not told: those whose rate here does.
-  std::optional<std::uint32_t> stuck_axes{};
+  std::uint32_t stuck_axes = 0;  // whose sensor repeats one value: they are only predicted
   double averaged_s = 0.0;  // time the rate is a mean over (white noise falls with it); 0: the nominal period
 };
 
@@ -95,8 +94,7 @@ class Estimator {
   [[nodiscard]] const EstimatorHealth& health() const noexcept;
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  std::unique_ptr<class Engine> engine_;
 };
 
 }  // namespace ifog

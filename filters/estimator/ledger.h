@@ -20,7 +20,7 @@
 #include <cmath>
 #include <utility>
 
-#include "filters/estimator/lanes.h"
+#include "filters/estimator/sample.h"
 
 namespace ifog {
 
@@ -77,19 +77,13 @@ class Ledger {
     if (!settled) tail_ -= angle_rad;
     late_pace_ = std::max(kQuickest, samples);
   }
-  // Samples that the followers of a manoeuvre look back on.
-  void pace(double samples) noexcept { pace_ = std::max(kQuickest, kShare * samples); }
-  // Lag of the filter at rest.
+  // Samples that the followers of a manoeuvre look back on, and the lag of the filter at rest.
+  void pace(double followers) noexcept { pace_ = std::max(kQuickest, 0.5 * followers); }
   void pace_tail(double lag) noexcept { tail_pace_ = std::max(kQuickestTail, lag); }
-  // Half of its standard deviation: a quarter of its variance, for as long as it takes.
-  [[nodiscard]] static Lanes most_of_tail(const Lanes& variance) noexcept {
-    return kTailShare * variance.sqrt();
-  }
   [[nodiscard]] Lanes owed() const noexcept { return debt_ + late_ + tail_ + doubt_; }
 
  private:
-  static constexpr double kTailShare = 0.5;
-  static constexpr double kQuickest = 16.0, kShare = 0.5;                // samples; of the followers' length
+  static constexpr double kQuickest = 16.0;                              // samples
   static constexpr double kOwedSamples = 1024.0, kQuickestTail = 100.0;  // samples
   // Samples for which an outlier may turn out to have been the edge of a motion.
   static constexpr double kDoubtful = 16.0;

@@ -12,10 +12,8 @@ namespace {
 
 constexpr double kMostNats = 12.5;    // of one measurement: five standard deviations
 constexpr double kLongerPrior = 2.0;  // nats: motions are smooth more often than not
-constexpr double kFoundPrior = 3.0;   // nats for trackers up to one that has found the motion
 constexpr double kRestPrior = 4.0;    // nats that the filter at rest has to be ahead
 constexpr double kMostAhead = 12.0;
-constexpr double kBreaks = 12.0;     // nats by which a longer tracker is surely wrong and begins again
 constexpr double kLeastRest = 64.0;  // samples, before rest is believed
 // Share of the difference of two neighbours' variances that white noise makes in their difference.
 constexpr double kCommon = 0.65;
@@ -34,17 +32,15 @@ double Mix::least(const Lanes& lanes) const noexcept {
   return (seen_ > 0.0).select(lanes, Lanes::Constant(1e300)).minCoeff();
 }
 
-void Mix::begin(double failed, std::size_t found) noexcept {
+void Mix::begin(std::size_t found) noexcept {
   link_.fill(Lanes::Zero());
-  for (std::size_t j = 1; j <= found; ++j) link_[j].setConstant(kFoundPrior);
   bias_.fill(Lanes::Zero());
   weight_ = {};
   compared_ = {};
   weight_[found] = gain_ = 1.0;
   rest_ratio_.setZero();
   seen_.setZero();
-  rest_age_ = rest_weight_ = 0.0;
-  failed_after_ = failed;
+  rest_age_ = rest_weight_ = failed_after_ = 0.0;
 }
 
 void Mix::begin_rest() noexcept {
@@ -74,9 +70,9 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
     output += weight_[j] * (trackers.predicts(j) ? g.output : 1.0);
   }
   mean = all > 1e-9 ? (mean / all).eval() : risk[0];
+  // No follower of a motion in white noise does better than this. In coloured noise it follows the noise, and strongly
+  // coloured noise nearly as the raw measurement does.
   if (all > 1e-9) output /= all;
-  // No follower of a motion in white noise does better than this. In coloured noise it follows the noise, and
-  // strongly coloured noise nearly as the raw measurement does.
   mean = (colour > kColoured).select(mean.max(1.0 + output), mean);
   mean = (colour > kStronglyColoured).select(mean.max(2.0 - (1.0 - output) / colour), mean);
   const Lanes left = (1.0 - now.rest_gain) * now.innovation;
@@ -107,12 +103,6 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
     const Lanes apart = trackers.rate(j) - trackers.rate(j - 1);
     const double common = kCommon * std::max(0.0, trackers.gains(j - 1).output - trackers.gains(j).output);
     bias_[j] += now.mask * (apart * apart - common * now.scale - bias_[j]) / compared_[j];
-  }
-  for (std::size_t j = 1; j < size; ++j) {
-    if (!(least(link_[j]) < -kBreaks) || !(trackers.age(j) > trackers.age(j - 1))) continue;
-    for (std::size_t k = j; k < size; ++k) link_[k].setZero();
-    trackers.begin_from(j, j - 1);
-    break;
   }
 }
 

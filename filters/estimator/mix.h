@@ -25,11 +25,11 @@ class Mix {
     double gain = 0.0;
   };
 
-  // failed: samples after which an earlier rest was left again; found: the tracker that predicts the motion.
-  void begin(double failed, std::size_t found = 0) noexcept;
+  // found: the tracker that predicts the motion.
+  void begin(std::size_t found) noexcept;
   // The filter at rest has been right until now, and is left as soon as a measurement contradicts it.
   void begin_from_rest() noexcept {
-    begin(0.0);
+    begin(0);
     rest_ratio_.setConstant(kFound);
   }
   // Corrects the trackers. coloured: 1 where R is above what third differences say.

@@ -53,8 +53,6 @@ class Noise {
   [[nodiscard]] double tested() const noexcept {
     return digit_ < kNoDigit ? std::max(known_, 0.25 * digit_ * digit_) : known_;
   }
-  // Variance of one of the converter's steps.
-  [[nodiscard]] double of_steps() const noexcept { return digit_ < kNoDigit ? digit_ * digit_ / 12.0 : 0.0; }
   // By which third differences are now above their usual level: 1 unless by more than chance.
   [[nodiscard]] double louder() const noexcept {
     return taken_ > kFast && fast_ > kSurelyLouder * usual() ? fast_ / usual() : 1.0;
@@ -68,33 +66,18 @@ class Noise {
     const double ratio = known_ / usual();
     return taken_ >= kFew && ratio > 1.0 + kSurely * chance ? ratio : 1.0;
   }
-  // Variance by which a mean of coarse steps is off. A level of l steps shows as l - a sin(2 pi l) + b sin(4 pi l),
-  // two harmonics of the converter's sawtooth, a = exp(-2 pi^2 R / d^2) / pi, b = (pi a)^4 / (2 pi) (Widrow and
-  // Kollar, "Quantization Noise", 2008). rate, variance: what shows, solved for l by Newton's method.
-  [[nodiscard]] double rounding(double rate, double variance) const noexcept {
+  // Variance by which a mean of coarse steps is off, over all levels between two of them: that of the first harmonic
+  // of the converter's sawtooth, d / pi exp(-2 pi^2 R / d^2) (Widrow and Kollar, "Quantization Noise", 2008).
+  [[nodiscard]] double rounding() const noexcept {
     if (digit_ >= kNoDigit) return 0.0;
     // R that was learned includes the steps' own d^2 / 12; one that is less than that is of the sensor alone.
     const double d2 = digit_ * digit_, own = of_steps(), white = known_ > 1.2 * own ? known_ - own : known_;
-    const double first = exponential(-std::min(0.5 * kTurn * kTurn * white / d2, 600.0));
-    const double a = 2.0 / kTurn * std::min(first, kDeadZone), b = a * first * first * first / 2.0;
-    if (a < kNoRounding) return 0.0;
-    const double shown = (rate - last_[2]) / digit_, u = shown - std::round(shown);
-    double level = u, off = 0.0, slope = 1.0;
-    for (int i = 0; i < kNewton; ++i) {
-      const double sine = turned(level), cosine = turned(level + (level < 0.25 ? 0.25 : -0.75));
-      off = sine * (a - 2.0 * b * cosine);
-      slope = std::max(kLeastSlope, 1.0 - kTurn * (a * cosine - 2.0 * b * (2.0 * cosine * cosine - 1.0)));
-      level = std::clamp(level - (level - off - u) / slope, -0.5, 0.5);
-    }
-    return d2 * off * off + variance * std::max(0.0, 1.0 / (slope * slope) - 1.0);
+    return d2 / (2.0 * kPiSquared) * exponential(-std::min(4.0 * kPiSquared * white / d2, 600.0));
   }
 
  private:
-  // sin(2 pi x), |x| <= 1/2, to 0.001.
-  [[nodiscard]] static double turned(double x) noexcept {
-    const double bow = 8.0 * x * (1.0 - 2.0 * std::abs(x));
-    return bow * (0.775 + 0.225 * std::abs(bow));
-  }
+  // Variance of one of the converter's steps.
+  [[nodiscard]] double of_steps() const noexcept { return digit_ < kNoDigit ? digit_ * digit_ / 12.0 : 0.0; }
   // R by third differences. A converter at rest between two changes of its last digit shows none.
   [[nodiscard]] double usual() const noexcept { return std::max({slow_, 1e-9 * known_, of_steps()}); }
 
@@ -106,10 +89,7 @@ class Noise {
   // The mean square of 32 overlapping third differences scatters by 0.4: four standard deviations.
   static constexpr double kSurelyLouder = 2.6;
   static constexpr double kNoDigit = 1e300;
-  static constexpr double kTurn = 6.283185307179586;
-  // Steps that nobody sees; the sawtooth's first harmonic, and the slope of what shows, at a dead zone.
-  static constexpr double kNoRounding = 1e-4, kDeadZone = 0.95, kLeastSlope = 0.05;
-  static constexpr int kNewton = 5;
+  static constexpr double kPiSquared = 9.869604401089358;
 
   double known_, slow_, fast_, taken_ = 0.0, digit_ = kNoDigit;
   std::array<double, 3> last_{};

@@ -26,14 +26,13 @@ class Outliers {
                              double lag) noexcept {
     const Lanes& rate = now.rate;
     seen_ = std::min(seen_ + 1.0, kMemory);
-    const bool rare = moving || share_ <= kRare;
-    const double most = !rare ? kNeverNoise : moving ? kFarMoving * std::max(1.0, surprise_) : kFar;
+    // Where they are frequent at rest they may be blows, whose angle counts.
+    const double most = moving ? kFarMoving : share_ > kRare ? kFarFrequent : kFar;
     if (least <= most || seen_ < kYoung) {
-      // A run goes on until its own axis is measured again, if that is soon.
+      // A run lasts until its own axis is measured again, if that is soon.
       if (run_ > 0 && (now.valid >> axis_ & 1U) == 0 && ++waited_ < kLongestWait) return Verdict::usual;
       if (!moving) share_ += ((least > kFar ? 1.0 : 0.0) + static_cast<double>(run_) - share_) / seen_;
       run_ = 0;
-      if (moving) surprise_ += (std::min(least, kMostSurprise) - surprise_) / kSurpriseMemory;
       return Verdict::usual;
     }
     if (run_ == 0) {
@@ -52,15 +51,12 @@ class Outliers {
     // Twice the evidence is no noise's, however far apart they are.
     const double evidence = static_cast<double>(run_) * rarity();
     const bool near = moving || nearness_ >= 0.5 * std::log(lag) || evidence > 2.0 * kEvidence;
-    if (evidence <= kEvidence || !near) return rare || least > kNeverNoise ? Verdict::waits : Verdict::usual;
-    surprise_ = std::max(surprise_, std::min(least, kMostSurprise));
-    return Verdict::jump;
+    return evidence > kEvidence && near ? Verdict::jump : Verdict::waits;
   }
   // Nats by which an outlier at rest is rare.
   [[nodiscard]] double rarity() const noexcept {
     return std::min(kMostRarity, -std::log(std::max(share_, 1e-8)));
   }
-  [[nodiscard]] bool rare() const noexcept { return share_ <= kRare; }
   [[nodiscard]] std::size_t run() const noexcept { return run_; }
   // The i-th of the run's last measurements, oldest first.
   [[nodiscard]] std::size_t kept() const noexcept { return std::min(run_, kKept); }
@@ -69,14 +65,14 @@ class Outliers {
 
  private:
   // Squares of standard deviations.
-  static constexpr double kFar = 25.0, kFarMoving = 30.0, kNeverNoise = 400.0;
-  static constexpr double kMostSurprise = 1e6, kSurpriseMemory = 20.0;
-  static constexpr double kRare = 1e-3, kMostRarity = 12.5, kEvidence = 18.0;
-  static constexpr int kLongestWait = 16;                   // samples
-  static constexpr double kMemory = 8192.0, kYoung = 16.0;  // samples
+  static constexpr double kFar = 25.0, kFarMoving = 30.0, kFarFrequent = 400.0;
+  static constexpr double kMostRarity = 12.5, kEvidence = 18.0;  // nats
+  static constexpr double kRare = 1e-3;                          // share of all measurements
+  static constexpr double kMemory = 8192.0, kYoung = 16.0;       // samples
+  static constexpr int kLongestWait = 16;                        // samples
 
   std::array<Lanes, kKept> kept_{};
-  double seen_ = 0.0, share_ = 1e-8, surprise_ = 1.0, nearness_ = 0.0, squares_ = 0.0;
+  double seen_ = 0.0, share_ = 1e-8, nearness_ = 0.0, squares_ = 0.0;
   std::size_t run_ = 0;
   int waited_ = 0;         // samples of other axes since
   Eigen::Index axis_ = 0;  // of the run's last measurement

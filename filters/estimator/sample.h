@@ -2,11 +2,21 @@
 // One measurement of all axes as the tests of motion see it, in the units of the known noise.
 #pragma once
 
+#include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 
-#include "filters/estimator/lanes.h"
+#include "filters/settings/axes.h"
 
 namespace ifog {
+
+// One number of each axis side by side, so that a step of all axes is one of vector registers. The last has no
+// axis.
+using Lanes = Eigen::Array<double, 4, 1>;
+static_assert(kMaxAxes < Lanes::SizeAtCompileTime);
+
+// The axes that a sensor of so many has, bit i.
+[[nodiscard]] constexpr std::uint32_t axes_of_sensor(std::size_t axes) noexcept { return (1U << axes) - 1U; }
 
 // An innovation counts for five standard deviations at most where it is taken in or summed.
 inline constexpr double kMostDeviations = 5.0;

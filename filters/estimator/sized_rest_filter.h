@@ -39,8 +39,6 @@ class SizedRestFilter final : public RestFilter {
       core.p = start_;
     }
     rule_->restart();
-    weighed_ = 0.0;
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j) mean_weight_[j] = rule_->weight(j);
     refresh();
   }
 
@@ -91,7 +89,6 @@ class SizedRestFilter final : public RestFilter {
       mixture += weight * c;
     }
     covariance_ = mixture;
-    if (learn && hypotheses_.size() > 1) average_weights();
     refresh();
   }
 
@@ -122,17 +119,14 @@ class SizedRestFilter final : public RestFilter {
     refresh();
   }
 
-  // For a bank, the mean over its cores under their long-run weights. Every G(1) is one where the model holds
-  // a constant rate, and the delay of a sum of filters is then the sum of their delays. Not the likeliest
-  // core's: in noise the likeliest changes now and then, between lags that are up to five powers of ten
-  // apart, and no rotation comes with it.
+  // Of a bank the weighted mean: where the model holds a constant rate every G(1) is one, and the delay of a sum of
+  // filters is the sum of their delays.
   Settled settled() const noexcept override {
-    if (hypotheses_.size() == 1) return settled(cores_[0]);
     Settled mean;
     for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      const Settled one = settled(cores_[j]);
-      mean.lag += mean_weight_[j] * one.lag;
-      mean.correlation += mean_weight_[j] * one.correlation;
+      const Settled one = ifog::settled(transition_, cores_[j].h, readout_, cores_[j].gain, cores_[j].p);
+      mean.lag += rule_->weight(j) * one.lag;
+      mean.correlation += rule_->weight(j) * one.correlation;
     }
     return mean;
   }
@@ -147,18 +141,6 @@ class SizedRestFilter final : public RestFilter {
 
  private:
   using Core = KalmanCore<n>;
-  // Samples over which the weights of a bank are averaged for its lag.
-  static constexpr double kWeightMemory = 4096.0;
-
-  Settled settled(const Core& core) const noexcept {
-    return ifog::settled(transition_, core.h, readout_, core.gain, core.p);
-  }
-
-  void average_weights() noexcept {
-    weighed_ = std::min(weighed_ + 1.0, kWeightMemory);
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j)
-      mean_weight_[j] += (rule_->weight(j) - mean_weight_[j]) / weighed_;
-  }
 
   void refresh() noexcept {
     read(readout_, rate_, variance_, gain_);
@@ -223,8 +205,6 @@ class SizedRestFilter final : public RestFilter {
   typename Core::Matrix start_, transition_, driving_;
   double discretised_dt_s_ = -1.0;
   std::uint32_t valid_ = 0;  // axes of the last measurement
-  std::array<double, Rule::kMaxHypotheses> mean_weight_{};
-  double weighed_ = 0.0;  // measurements in that mean, up to kWeightMemory
 };
 
 template <int n>

@@ -169,11 +169,4 @@ void Trackers::seed(std::size_t axis, double rate) noexcept {
   }
 }
 
-void Trackers::pass_over() noexcept {
-  for (std::size_t j = 0; j < size_; ++j) {
-    state_[j].slope *= 0.5;
-    state_[j].curvature.setZero();
-  }
-}
-
 }  // namespace ifog

@@ -15,7 +15,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "filters/estimator/lanes.h"
+#include "filters/estimator/sample.h"
 
 namespace ifog {
 
@@ -48,8 +48,6 @@ class Trackers {
   void correct(const Lanes& rate, std::uint32_t valid_axes) noexcept;
   // The axis' first measurement: it has no slope yet.
   void seed(std::size_t axis, double rate) noexcept;
-  // The measurement is an outlier: time passes, and what the slope points to fades.
-  void pass_over() noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   // After predict() the rate one step ahead, after correct() the filtered one.

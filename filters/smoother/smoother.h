@@ -2,10 +2,9 @@
 // A recording smoothed: the rate at each sample from all measurements, the later ones too.
 //
 // Whether an axis rests or moves is what the estimator finds of it, run over the record forwards and
-// backwards, so that a motion is known from its first sample and not from when it was found. How quickly it
-// moves there the record itself says (motion_pace.h), and with that it is smoothed (motion_smoother.h).
-// Outliers take no part: at rest what the estimator keeps out and does not find to be a jump, in motion what
-// lone_outliers.h finds.
+// backwards, so that a motion is known from its first sample and not from when it was found. The noise is what
+// the estimator knows of it at the end. How quickly the rate moves the record itself says (motion_pace.h), and
+// with that it is smoothed (motion_smoother.h). Outliers, which the estimator rejects, take no part.
 #pragma once
 
 #include <optional>
@@ -20,11 +19,10 @@ namespace ifog {
 
 // What is known of each axis beside FilterSettings.
 struct AxisNoise {
-  // Its noise and its driving noise over the settings'. Not known: the former as it is rough, the latter as
-  // its noise.
+  // Its noise and its driving noise over the settings'. Not known: the former is the same for all axes, the
+  // latter in proportion to the noise.
   std::optional<Axes> noise_share, walk_share;
-  // Nobody told the driving noise: the settings' is what a filter has learned under way, and each axis' is
-  // learned again of all its rest.
+  // The driving noise is not given: the settings' is a first guess, and each axis' is learned at rest.
   bool learn_walk = false;
 };
 

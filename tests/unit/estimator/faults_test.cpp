@@ -85,13 +85,24 @@ TEST(Faults, MergedSamplesInATurnAreFollowed) {
   }
 }
 
-TEST(Faults, AStuckSensorIsFlagged) {
-  Record r = record(6, 6000, 1e-3);
-  for (std::size_t i = 3000; i < 4000; ++i) r.measured[i] = r.measured[2999];
-  const Filtered got = run(told(1e-3), r.measured);
-  EXPECT_FALSE(got.flags[3050] & ifog::kStuck);
-  EXPECT_TRUE(got.flags[3500] & ifog::kStuck);
-  EXPECT_FALSE(got.flags[4001] & ifog::kStuck);
+TEST(Faults, AStuckSensorIsFlaggedAndOnlyPredicted) {
+  ifog::Estimator estimator(told(1e-3), 1, kPeriod);
+  ifog::EstimatorInput in;
+  ifog::EstimatorOutput out;
+  const Record r = record(6, 3001, 1e-3);
+  for (int i = 0; i < 4000; ++i) {
+    const double before = out.denoised_radps[0], variance = out.variance_rad2ps2[0];
+    in.sequence = static_cast<std::uint64_t>(i);
+    in.dt_s = kPeriod;
+    in.valid_axes = 1;
+    in.stuck_axes = i > 3000 ? 1 : 0;
+    in.rate_radps[0] = r.measured[static_cast<std::size_t>(std::min(i, 3000))];
+    estimator.step(in, out);
+    EXPECT_EQ((out.flags & ifog::kStuck) != 0, i > 3000) << i;
+    if (i <= 3001) continue;
+    EXPECT_NEAR(out.denoised_radps[0], before, 0.01) << i;  // but for what is still owed
+    EXPECT_GT(out.variance_rad2ps2[0], variance) << i;
+  }
 }
 
 TEST(Faults, ABrokenCovarianceIsCountedAndTheFilterGoesOn) {

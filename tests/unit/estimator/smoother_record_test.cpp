@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "filters/smoother/rest_likelihood.h"
 #include "tests/unit/estimator/drive.h"
 #include "tests/unit/estimator/smooth_one.h"
 
@@ -76,7 +75,9 @@ TEST(SmoothedRecord, AnAxisWithHalfOfItsSamplesHasItsOwnNoise) {
     settings.process_noise *= mean;
     const std::array<std::span<const double>, 2> rates{quiet.measured, loud.measured};
     const std::vector<double> dt_s(kLength, kPeriod);
-    judged.add(ifog::smooth(settings, {}, rates, dt_s, kPeriod)[0], quiet.truth, 0, kLength);
+    const Axes share{1.0 / mean, kLoud * kLoud / mean, 1.0};
+    judged.add(ifog::smooth(settings, {share, share, false}, rates, dt_s, kPeriod)[0], quiet.truth, 0,
+               kLength);
   }
   EXPECT_LT(std::sqrt(judged.mean_square()), 0.1);
   EXPECT_GT(judged.nees(), 0.3);
@@ -96,49 +97,6 @@ TEST(SmoothedRecord, AnAxisThatIsNotHeardHasTheNoiseDeclared) {
   const std::vector<ifog::Smoothed> got = ifog::smooth(settings, noise, rates, dt_s, kPeriod);
   // The mean of five measurements.
   EXPECT_NEAR(got[1].variance_rad2ps2[2500], 2000.0, 200.0);
-}
-
-// The walk is learned wrong online: the axis is as far off as it says all the same.
-TEST(SmoothedRecord, LearnsTheWalk) {
-  constexpr std::size_t kLength = 60'000;
-  for (const double ratio : {1e-8, 1e-6, 1e-5}) {
-    Judged judged;
-    for (std::uint64_t seed = 80; seed < 88; ++seed) {
-      const Record r = record(seed, kLength, ratio);
-      const ifog::Smoothed got = smooth_one(told(5.0 * ratio), r.measured, {}, {{}, {}, true});
-      judged.add(got, r.truth, 0, kLength);
-    }
-    EXPECT_GT(judged.nees(), 0.6) << ratio;
-    EXPECT_LT(judged.nees(), 1.6) << ratio;
-  }
-}
-
-// A walk that the record shows; where a stretch hides it, one no quicker than that.
-TEST(RestLikelihood, FindsNoiseAndWalk) {
-  for (const double ratio : {1e-12, 1e-6, 1e-4}) {
-    double walk = 0.0, noise = 0.0;
-    constexpr int kSeeds = 8;
-    for (std::uint64_t seed = 93; seed < 93 + kSeeds; ++seed) {
-      const Record r = record(seed, 40'000, ratio);
-      ifog::RestLikelihood rest;
-      for (std::size_t i = 0; i < r.measured.size(); ++i) {
-        if (i % 10'000 == 9'000) rest.break_off();
-        if (i % 10'000 < 9'000) rest.take(r.measured[i]);
-      }
-      rest.finish();
-      const ifog::RestOfRecord found = rest.fit(0.0);
-      walk += std::log(found.walk) / kSeeds;
-      noise += found.noise / kSeeds;
-    }
-    EXPECT_NEAR(noise, 1.0, 0.05) << ratio;
-    const double times = std::exp(walk) / ratio;
-    if (ratio < 1e-9) {
-      EXPECT_LT(std::exp(walk), 10.0 / (9'000.0 * 9'000.0));
-    } else {
-      EXPECT_GT(times, 0.6) << ratio;
-      EXPECT_LT(times, 1.7) << ratio;
-    }
-  }
 }
 
 }  // namespace

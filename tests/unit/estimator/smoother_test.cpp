@@ -251,9 +251,10 @@ TEST(Smoother, EachAxisIsItsOwn) {
     FilterSettings settings = told(kRatio);
     settings.process_noise *= mean;
     settings.measurement_noise *= mean;
+    const Axes share{1.0 / mean, 100.0 / mean, 10'000.0 / mean};
     const std::vector<double> dt(kLength, kPeriod);
     const std::vector<std::span<const double>> all(rates.begin(), rates.end());
-    const std::vector<ifog::Smoothed> got = ifog::smooth(settings, {}, all, dt, kPeriod);
+    const std::vector<ifog::Smoothed> got = ifog::smooth(settings, {share, share, false}, all, dt, kPeriod);
     for (std::size_t a = 0; a < 3; ++a) {
       for (std::size_t i = 0; i < kLength; ++i) {
         if (a == 0 && i > 15'000 && i < 30'000) continue;

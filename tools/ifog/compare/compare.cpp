@@ -21,7 +21,6 @@
 #include "filters/rest/rest.h"
 #include "filters/rules/rule.h"
 #include "filters/settings/filter_table.h"
-#include "filters/smoother/roughness.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/time_part.h"
@@ -110,8 +109,8 @@ void fill_noise(FilterSettings& settings, const CaptureView& capture, const std:
   for (const Stretch& part : at_rest) take(std::min(part.begin, rows), std::min(part.end, rows));
   if (quietest == 0.0)
     for (const auto& axis : capture.rate_radps)
-      quietest +=
-          roughness(axis.first(std::min(axis.size(), kMost))) / static_cast<double>(capture.axes.size());
+      quietest += third_difference_noise(axis.first(std::min(axis.size(), kMost))) /
+                  static_cast<double>(capture.axes.size());
   if (!(quietest > 0.0 && std::isfinite(quietest)))
     throw std::runtime_error("the record shows no noise; expected --process-noise and --measurement-noise");
   if (settings.measurement_noise <= 0.0) settings.measurement_noise = quietest;
