@@ -8,7 +8,7 @@
 
 namespace ifog {
 
-// Instantiated in two files of their own, so that they compile side by side.
+// Instantiated in a file of their own, so that they compile beside the rest.
 extern template class SizedRestFilter<1>;
 extern template class SizedRestFilter<2>;
 extern template class SizedRestFilter<3>;
