@@ -9,6 +9,7 @@
 #include <tuple>
 #include <utility>
 
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/measurable.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"

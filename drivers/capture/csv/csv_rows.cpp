@@ -18,6 +18,7 @@
 #include "drivers/capture/csv/line_form.h"
 #include "drivers/capture/files/name_ending.h"
 #include "drivers/capture/files/text_pieces.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {

@@ -50,9 +50,9 @@ bool may_be_tilt(const BlockData& data, std::size_t channel) {
   const FineChannel& mine = data.channels[channel];
   const double g = gravity_in(mine.name);
   if (std::max(std::abs(mine.low), std::abs(mine.high)) > (1.0 + kOfGravity) * g) return false;
-  const auto squares_of = [](const FineChannel& channel) {
-    const auto n = static_cast<Eigen::Index>(channel.values.size());
-    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(channel.values.data(), n).array().square());
+  const auto squares_of = [](const FineChannel& one) {
+    const auto n = static_cast<Eigen::Index>(one.values.size());
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(one.values.data(), n).array().square());
   };
   Eigen::VectorXd own = squares_of(mine), all = Eigen::VectorXd::Zero(own.size());
   std::size_t count = 0;
