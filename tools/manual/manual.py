@@ -115,7 +115,7 @@ def command_examples(text, name):
                 line = line.replace(here, "/usr/share/ifogd/" + installed)
             lines += line.replace("\0", "\\\n").split("\n")
         if lines:
-            what = re.sub(r" See \[[^\]]*\]\(#[^)]*\)\.", "", " ".join(found.group(1).split()))
+            what = re.sub(r" See \[[^\]]*\]\([^)]*\)\.", "", " ".join(found.group(1).split()))
             out.append((less_of_the_source(what), lines))
     return out
 
