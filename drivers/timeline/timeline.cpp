@@ -126,6 +126,9 @@ void Timeline::look_at_arrival(const Frame& frame, Look& now) const noexcept {
   now.elapsed_s = seconds(ns_between(due_ns_, frame.arrival_ns));
   now.quiet_s = seen_ns_ > 0 ? seconds(ns_between(seen_ns_, frame.arrival_ns)) : now.elapsed_s;
   now.silent = std::min(now.quiet_s, now.elapsed_s) > kSilence_s + 2.0 * period_s;
+  // The first of many that were read at once was delayed by as much as those behind it took.
+  if (now.silent && frame.at_once > 1 && now.counted)
+    now.elapsed_s = std::max(kSilence_s, now.elapsed_s - (frame.at_once - 1.0) * period_s);
   now.slack_s = slack_s(now.elapsed_s);
 }
 
