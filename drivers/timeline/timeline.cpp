@@ -212,7 +212,12 @@ bool Timeline::clock_is_wrong(const Look& now) const noexcept {
   const double grain_s = ticks_.grain_s();
   const double counted_s = static_cast<double>(now.counted_samples) * period_s();
   if (now.passed_s < 0.0 || contradicts(now.passed_s - grain_s, now)) return true;
-  return now.counted && !now.timed && now.ahead == 1 && now.passed_s > counted_s + kNoSetting_s;
+  if (!now.counted || now.silent || delay_) return false;
+  if (!now.timed) return now.ahead == 1 && now.passed_s > counted_s + kNoSetting_s;
+  // Where clock and counter disagree, the one nearer to the elapsed time is right.
+  const double apart_s = 2.0 * nominal_s_ + kClocksApart * now.passed_s + grain_s;
+  return std::abs(now.passed_s - counted_s) > apart_s &&
+         std::abs(counted_s - now.elapsed_s) < std::abs(now.passed_s - now.elapsed_s);
 }
 
 // With the rollovers that the clock tells of. Where the counter stood, or restarted, the clock alone tells.

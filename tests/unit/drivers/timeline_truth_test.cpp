@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <ostream>
 #include <random>
 #include <string>
@@ -20,8 +21,8 @@ enum class Event {
   none,
   off_and_on,   // silent for `seconds`; counter and clock begin at 0 again
   unplugged,    // likewise, and the device counts on
-  paused,       // likewise, and its clock goes on but not its counter
-  recounted,    // likewise, its counter begins at 0 again and its clock (of GNSS) goes on
+  paused,       // likewise, and its clock runs on but not its counter
+  recounted,    // likewise, its counter begins at 0 again and its clock (of GNSS) runs on
   held_up,      // nothing is delivered for so long, then all at once
   early_stamp,  // one time of arrival is so much too early
   late_stamp,   // or too late
@@ -59,8 +60,9 @@ struct Sent {
   double taken_s = 0.0, arrives_s = 0.0;  // when it came, and what the log says of it
   double stamped_s = 0.0, clock_s = 0.0;
   std::uint64_t count = 0;
-  bool first_again = false;  // the first behind the event
-  bool surplus = false;      // must not be taken
+  std::uint32_t at_once = 1;  // samples in its delivery
+  bool first_again = false;   // the first behind the event
+  bool surplus = false;       // must not be taken
 };
 
 std::vector<Sent> frames_of(const Case& one) {
@@ -114,6 +116,9 @@ std::vector<Sent> frames_of(const Case& one) {
       out.push_back(sent);
     }
   }
+  std::map<double, std::uint32_t> delivered;
+  for (const Sent& sent : out) ++delivered[sent.arrives_s];
+  for (Sent& sent : out) sent.at_once = delivered[sent.arrives_s];
   return out;
 }
 
@@ -131,7 +136,7 @@ Reading reading_of(const Case& one, const Sent& sent, double value) {
     reading.device_time_ns = stamp_ns;
     reading.device_wrap_ns = one.wrap_ns;
   }
-  reading.at_once = 1;
+  reading.at_once = sent.at_once;
   return reading;
 }
 
@@ -215,23 +220,24 @@ constexpr Case kCases[] = {
      1},
     {"OffFor10s7WithAClockAlone", 0, 200.0, Event::off_and_on, 10.7, 1000, 0, 0.0, false, 0.02, 0.02, 1},
     {"OffFor10s7WithNeither", 0, 100.0, Event::off_and_on, 10.7, 0, 0, 0.0, false, 0.03, 0.03, 0},
-    {"OffFor10s7WithAClockThatGoesOn", 65536, 200.0, Event::recounted, 10.7, 1000, kHour71_ns},
+    {"OffFor10s7WithAClockThatRunsOn", 65536, 200.0, Event::recounted, 10.7, 1000, kHour71_ns},
     // A cable that is pulled: the device counts on.
     {"UnpluggedFor0s7", 128, 1000.0, Event::unplugged, 0.7},
     {"UnpluggedFor10s", 128, 1000.0, Event::unplugged, 10.0},
-    {"UnpluggedFor10sAt16Bits", 65536, 1000.0, Event::unplugged, 10.0},
+    // A round of the counter is not much longer than what a USB adapter collects.
+    {"UnpluggedFor10sAt5kHzInPortionsOf16ms", 128, 5000.0, Event::unplugged, 10.001, 0, 0, 0.016},
     {"UnpluggedFor3HoursWithAClock", 128, 200.0, Event::unplugged, 10800.0, 1000, kHour71_ns},
     // Deliveries that stall lose nothing.
     {"HeldUpFor3s", 128, 1000.0, Event::held_up, 3.0},
     {"HeldUpFor3sWithAClock", 128, 1000.0, Event::held_up, 3.0, 1000, kHour71_ns},
     // One stamp moves its own label alone.
     {"OneStamp6sEarly", 65536, 200.0, Event::early_stamp, 6.0, 0, 0, 0.0, true},
-    {"OneStamp0s2Early", 128, 200.0, Event::early_stamp, 0.2, 0, 0, 0.0, true},
     {"OneStamp6sLate", 65536, 200.0, Event::late_stamp, 6.0, 0, 0, 0.0, true},
     {"OneStampInSevenLate", 65536, 200.0, Event::late_stamps, 0.3, 0, 0, 0.0, true},
     {"TheClockOfALogIsSet", 65536, 200.0, Event::wall_set, 3600.0, 0, 0, 0.0, true},
     {"TheClockOfALogIsSetBack", 65536, 200.0, Event::wall_set, -3600.0, 0, 0, 0.0, true},
     {"TheDevicesClockIsSet", 128, 200.0, Event::clock_set, 36000.0, 1000},
+    {"TheDevicesClockIsSetBy40msInPortions", 65536, 200.0, Event::clock_set, 0.04, 1000, 0, 0.016},
     {"TheDevicesClockIsSetBack", 65536, 200.0, Event::clock_set, -5.0, 1000},
     {"FramesComeTwice", 128, 1000.0, Event::twice},
     {"FramesAreExchanged", 16, 200.0, Event::exchanged},
