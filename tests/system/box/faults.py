@@ -64,10 +64,13 @@ class Faults:
             why = why.strip().replace("\n", "; ")
             raise Failure(f"process {pid} has become {now}: {why}\n{self.machine.run('journalctl -u ifogd -n 20 -o cat --no-pager')}")
 
-    def all_come(self, name, count, hertz=100):
-        """Sends some samples to one sensor: each must be published."""
+    def all_come(self, name, count, hertz=100, paused=False):
+        """Sends some samples to one sensor: each must be published. paused: the daemon had samples of it before, and the gyro has
+        measured on since then, although nobody sent."""
         counts = self.counting(name)
-        if name == "can":
+        if paused:
+            self.lines[name].goes_on(count, hertz)
+        elif name == "can":
             start, ended = self.send_can(count, hertz, "canplayer")
             start()
             ended()
@@ -77,7 +80,6 @@ class Faults:
         got = counts()[name]
         if complaints(count, got):
             raise Failure(f"{name}: {complaints(count, got)}")
-        return got
 
     def end_of_rubbish(self):
         """It may end with what looks like the beginning of a frame: some samples let the daemon find that it is none."""
@@ -156,8 +158,9 @@ class Faults:
             time.sleep(3)
         self.same_process(pid)
         self.end_of_rubbish()
-        for name in ("usb", "can"):
-            self.all_come(name, 200)
+        self.all_come("usb", 200, paused=True)
+        self.says(lines, "sequence_missing +")
+        self.all_come("can", 200)
         self.same_process(pid)
         # Not by the messages: the flood's own fill the subscriber's socket.
         self.machine.run("systemctl stop ifogd", 30)
@@ -183,7 +186,8 @@ class Faults:
         if got["messages"] != 0:
             raise Failure(f"{got['messages']} samples were made of misread bytes")
         self.end_of_rubbish()
-        self.all_come("usb", 200)
+        self.all_come("usb", 200, paused=True)
+        self.says(lines, "sequence_missing +")
         self.same_process(pid)
         return "no sample made of misread bytes, which are counted; every one afterwards"
 
@@ -199,7 +203,7 @@ class Faults:
             self.lines["usb"].link.sendall(bytes(5000))
             self.end_of_rubbish()
             for name in ("serial", "usb", "can"):
-                self.all_come(name, 300)
+                self.all_come(name, 300, paused=name == "usb")
             self.same_process(pid)
         finally:
             self.machine.run("rm -f /run/ballast /run/ballast2; systemctl restart systemd-journald")
