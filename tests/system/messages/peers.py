@@ -323,6 +323,11 @@ def raw_bytes(build, modules):
         check(code == 0, f"denoise takes {source}: " + said.strip().split("\n")[-1])
     with open("raw.lcm.denoised.csv") as log, open("sent.bin.denoised.csv") as plain:
         check(log.read() == plain.read(), "denoise makes of the log what it makes of the bytes")
+    with open("raw.lcm", "rb") as log, open("damaged.lcm", "wb") as damaged:
+        whole = log.read()
+        damaged.write(whole[:len(whole) // 2] + bytes(1000) + whole[len(whole) // 2 + 1000:])
+    code, said, _, rows = capture(build, "damaged.lcm", *driver)
+    check(code == 0 and ROWS - 40 < len(rows) < ROWS and "are no messages and are dropped" in said, f"of a damaged log {len(rows)} are read, and it is said: " + said.strip().split("\n")[-1])
     for words, log, expected in ((driver, "both.lcm", "expected --channel with one of DSP, KVH_RAW"), ([], "raw.lcm", "has bytes of a device on KVH_RAW, expected --driver NAME"),
                                  (driver, "imu.lcm", "no channel carries bytes of a device"),
                                  ([*driver, "--channel", "IMU"], "imu.lcm", "message 1 on IMU is no senlcm.raw_t")):

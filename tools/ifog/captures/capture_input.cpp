@@ -52,8 +52,7 @@ void CaptureInput::add_to(const Command& command) {
           "Column of a CSV file with another header, by its name or number (#3), or dataset of an HDF5 file: "
           "rate_x_radps=GyroX:deg/s; a unit of angle (deg) makes its differences the rate, one of increments "
           "(deg/sample) the turn within each sample, a number before it (0.00763deg/s) the scale of counts. "
-          "May "
-          "stand several times; columns not named are passed "
+          "May stand several times; columns not named are passed "
           "over")
       .type_name("NAME=HEADER[:UNIT]");
   command

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "tools/ifog/console/say.h"
+
 namespace ifog::tools {
 namespace {
 
@@ -19,6 +21,11 @@ constexpr std::int32_t kLongestName = 255, kLongestData = 1 << 28;
 constexpr std::size_t kBlock = std::size_t{1} << 16U;
 
 }  // namespace
+
+std::int64_t type_hash(std::span<const std::uint8_t> message) {
+  constexpr std::size_t kHash = 8;  // bytes
+  return message.size() < kHash ? 0 : boost::endian::load_big_s64(message.data());
+}
 
 LcmEvents::LcmEvents(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "rb")) {
   if (!file_) throw std::runtime_error(path + ": cannot open as an LCM log: " + std::strerror(errno));
@@ -95,5 +102,15 @@ std::span<const std::uint8_t> LcmEvents::window(std::size_t from, std::size_t by
 }
 
 void LcmEvents::fail() const { throw std::runtime_error(path_ + ": " + std::strerror(errno)); }
+
+void LcmEvents::say_damage(const std::string& path) const {
+  if (places_ > 0)
+    warn(
+        "%s: %zu bytes in %zu place(s) are no messages and are dropped, the first from byte %zu on (is the "
+        "file damaged?)\n",
+        path.c_str(), damaged_, places_, first_place_);
+  if (size_ > at_)
+    warn("%s: its last %zu bytes are no whole message (is the file cut off?)\n", path.c_str(), size_ - at_);
+}
 
 }  // namespace ifog::tools

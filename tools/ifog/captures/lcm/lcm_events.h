@@ -15,6 +15,9 @@
 
 namespace ifog::tools {
 
+// The hash of its type that a message begins with, 0 for one that is too short.
+std::int64_t type_hash(std::span<const std::uint8_t> message);
+
 // lcm-logger(1), lcm/eventlog.h: big-endian 0xEDA1DA01, number and time (64 bits each), lengths of channel
 // and data (32 bits each), channel, data.
 class LcmEvents {
@@ -37,6 +40,8 @@ class LcmEvents {
   [[nodiscard]] std::size_t damaged() const { return damaged_; }
   [[nodiscard]] std::size_t places() const { return places_; }
   [[nodiscard]] std::size_t first_place() const { return first_place_; }
+  // What of a log that was read to its end is in no event, to standard error; nothing where all is.
+  void say_damage(const std::string& path) const;
 
  private:
   // At most so many bytes from there on, fewer only at the end; until the next call.

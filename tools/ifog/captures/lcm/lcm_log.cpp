@@ -86,17 +86,6 @@ std::vector<std::string> axis_names(std::size_t axes) {
 using RateSink = std::function<void(const MeasuredRate&, double)>;
 using OtherSink = std::function<void(const std::string&, std::span<const std::uint8_t>)>;
 
-// What of a log that was read to its end is in no message.
-void tell_damage(const std::string& path, const LcmEvents& log) {
-  if (log.places() > 0)
-    warn(
-        "%s: %zu bytes in %zu place(s) are no messages and are dropped, the first from byte %zu on (is the "
-        "file damaged?)\n",
-        path.c_str(), log.damaged(), log.places(), log.first_place());
-  if (const std::size_t left = log.size() - log.at(); left > 0)
-    warn("%s: its last %zu bytes are no whole message (is the file cut off?)\n", path.c_str(), left);
-}
-
 // Hands each message of the channel to `sink` with its time in s from the first, later than the one before,
 // and those of all others to `others`, which may be empty. What is not later is left out, and said.
 void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& others) {
@@ -143,8 +132,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   order.flush(hand_on);
   if (way.had_two_publishers())
     warn(
-        "%s: two publishers sent on %s (two daemons, or a log played at the same time): their messages "
-        "are "
+        "%s: two publishers sent on %s (two daemons, or a log played at the same time): their messages are "
         "mixed\n",
         path.c_str(), printable(wanted).c_str());
   if (axes == 0) throw std::runtime_error(path + ": has no message on channel " + wanted);
@@ -154,10 +142,9 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   if (left_out > 0)
     warn(
         "%s: %zu messages on %s came twice or after one that follows, and are dropped (two recorders wrote "
-        "at "
-        "once, or a clock was set back)\n",
+        "at once, or a clock was set back)\n",
         path.c_str(), left_out, printable(wanted).c_str());
-  tell_damage(path, log);
+  log.say_damage(path);
 }
 
 // The first look at a log: which columns its channels make. Throws std::runtime_error with one line where

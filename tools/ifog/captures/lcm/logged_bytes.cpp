@@ -3,7 +3,6 @@
 
 #include <ifog/decode.h>
 
-#include <boost/endian/conversion.hpp>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -17,11 +16,6 @@ namespace {
 
 using Bytes = std::span<const std::uint8_t>;
 
-std::int64_t hash_of(Bytes message) {
-  constexpr std::size_t kHash = 8;
-  return message.size() < kHash ? 0 : boost::endian::load_big_s64(message.data());
-}
-
 struct Piece {
   std::int64_t utime = 0;  // µs since the epoch
   Bytes bytes;             // until the next call
@@ -31,9 +25,9 @@ class PieceReader {
  public:
   // nullopt: the message is of neither type, or damaged.
   std::optional<Piece> read(Bytes message) {
-    if (hash_of(message) == senlcm::raw_t::getHash() && decode_message(message, raw_))
+    if (type_hash(message) == senlcm::raw_t::getHash() && decode_message(message, raw_))
       return Piece{raw_.utime, raw_.data};
-    if (hash_of(message) != senlcm::raw_ascii_t::getHash() || !decode_message(message, line_))
+    if (type_hash(message) != senlcm::raw_ascii_t::getHash() || !decode_message(message, line_))
       return std::nullopt;
     // Some publishers keep the end of the line and some do not.
     if (!line_.msg.ends_with('\n') && !line_.msg.ends_with('\r')) line_.msg += '\n';
@@ -64,7 +58,7 @@ std::string only_channel(const NamedLog& source, const std::string& path) {
 }  // namespace
 
 bool carries_bytes(Bytes message) {
-  const std::int64_t hash = hash_of(message);
+  const std::int64_t hash = type_hash(message);
   return hash == senlcm::raw_t::getHash() || hash == senlcm::raw_ascii_t::getHash();
 }
 
@@ -92,6 +86,7 @@ RecordingCounts decode_logged_bytes(InputFile& file, DriverInstance& driver, con
       sink(sample);
     });
   }
+  log.say_damage(path);
   finish_recording(driver, counts);
   return counts;
 }

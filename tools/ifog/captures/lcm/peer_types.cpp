@@ -4,9 +4,10 @@
 #include <ifog/decode.h>
 
 #include <algorithm>
-#include <boost/endian/conversion.hpp>
 #include <cmath>
 #include <iterator>
+
+#include "tools/ifog/captures/lcm/lcm_events.h"
 
 namespace ifog::tools {
 namespace {
@@ -130,9 +131,7 @@ const PeerType* peer_type(Bytes message) {
       {"ifog.inertial_t", inertial_t::getHash(), 3, true, true, Count::whole, 0, increments<inertial_t>},
       {"ifog.imu_t", imu_t::getHash(), 3, true, true, Count::whole, 0, increments<imu_t>},
   }};
-  constexpr std::size_t kHash = 8;
-  if (message.size() < kHash) return nullptr;
-  const std::int64_t hash = boost::endian::load_big_s64(message.data());
+  const std::int64_t hash = type_hash(message);
   const auto* const found =
       std::find_if(types.begin(), types.end(), [hash](const PeerType& type) { return type.hash == hash; });
   return found != types.end() ? &*found : nullptr;

@@ -9,9 +9,9 @@
 
 namespace ifog::tools {
 
-// The sensor's own clock where it has one, from the first message on. One that jumps back while the fitted
-// time goes on has restarted, or was set, and continues by that. Where that was set, or does not go on either,
-// it is by the message's own step.
+// The sensor's own clock where it has one, from the first message on. If it jumps back while the fitted time
+// advances, it has restarted or was set, and continues by the fitted time. Where that was set or stands still,
+// too, the message's own step counts.
 class SensorSeconds {
  public:
   // Later than the one before, or -1: neither clock goes on.
