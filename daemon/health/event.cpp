@@ -41,8 +41,7 @@ std::string describe(const Event& event) {
     case EventKind::label_moved:
       return fmt::format(
           "the device stood still for a while, or its deliveries take longer or shorter than before: times "
-          "of day "
-          "follow from number {} on, intervals and angles do not",
+          "of day follow from number {} on, intervals and angles do not",
           event.sequence);
     case EventKind::beyond_stated:
       return fmt::format(

@@ -176,8 +176,7 @@ std::string SensorWatch::words(std::int32_t only) const {
   }
   if ((now & kNoticedColour) != 0)
     add("innovations are no longer white: something acts on the sensor that its model does not know, run "
-        "`ifog "
-        "night`");
+        "`ifog night`");
   if ((now & kNoticedBias) != 0) {
     std::snprintf(
         text, sizeof text,

@@ -199,8 +199,8 @@ void Housekeeping::count_idle(Sensor& sensor) {
   } else if (starved != nullptr && ++sensor.starved == kStuck_s) {
     sensor.log->warn(
         "the {} thread is ready and has had no processor for {} s: something of a higher priority keeps it, "
-        "look "
-        "with `ps -eLo rtprio,pcpu,comm` and give one of them other processors (reader_cpus, filter_cpus)",
+        "look with `ps -eLo rtprio,pcpu,comm` and give one of them other processors (reader_cpus, "
+        "filter_cpus)",
         starved, kStuck_s);
   }
 }

@@ -129,7 +129,7 @@ std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::s
                                                std::size_t untold) {
   std::vector<std::string> lines;
   const auto say = [&](std::size_t samples, const char* what) {
-    if (samples != 0) lines.push_back(std::to_string(samples) + " samples " + what + ", taken for missing");
+    if (samples != 0) lines.push_back(std::to_string(samples) + " samples " + what + ", treated as missing");
   };
   say(at_full_scale, "at or beyond the sensor's full scale");
   say(implausible, "with a rate that no sensor measures");

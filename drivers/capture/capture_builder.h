@@ -55,7 +55,7 @@ class CaptureBuilder {
   [[nodiscard]] std::size_t clock_sets() const { return times_.clock_sets(); }
   [[nodiscard]] std::size_t repeated() const { return times_.repeated(); }
   [[nodiscard]] std::size_t mixed() const { return times_.mixed(); }
-  // Samples with a rate taken for missing: at full scale; or beyond what the driver interface allows.
+  // Samples with a rate treated as missing: at full scale; or beyond what the driver interface allows.
   [[nodiscard]] std::size_t at_full_scale() const { return at_full_scale_; }
   [[nodiscard]] std::size_t implausible() const { return implausible_; }
 

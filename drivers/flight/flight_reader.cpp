@@ -224,8 +224,7 @@ std::vector<std::string> losses(const FlightCounts& counts) {
   say(counts.open_files, "recording(s) without an end: still being written, or what wrote it was killed");
   say(counts.cut_off_runs,
       "run(s) of what wrote it were cut off (killed, or the computer was switched off): up to a second at "
-      "the "
-      "end of each is missing");
+      "the end of each is missing");
   if (counts.between_runs_s > 0.0) {
     std::array<char, 160> line{};
     std::snprintf(

@@ -127,8 +127,7 @@ std::string of_reference(Form form) {
   if (form == Form::kAbsolute) return "scale factor asymmetry: another one backwards";
   if (form == Form::kDeadZone)
     return "dead zone: slow rotation is not seen, as where a closed loop locks in (2 pi reset, coupling of "
-           "its "
-           "electronics); what was not seen cannot be given back";
+           "its electronics); what was not seen cannot be given back";
   if (power_of(form) % 2 == 1) return "scale factor nonlinearity, " + order_of(form) + "in the rate";
   return "scale factor asymmetry between the directions, " + order_of(form) + "in the rate";
 }
@@ -202,8 +201,7 @@ std::string of_rebuilt_ramp(const Effect& effect) {
   const double k = std::abs(parameter(effect, "cycles_per_rad"));
   std::ostringstream words;
   words << "nonlinearity of the closed loop's feedback ramp (phase modulator, 2 pi reset), which was not "
-           "logged: its "
-           "phase is rebuilt from the angle turned, "
+           "logged: its phase is rebuilt from the angle turned, "
         << std::lround(k) << " cycles a radian, as a coil of " << std::setprecision(2)
         << 100.0 * k * 1.55e-6 * 1.45 << " cm at 1.55 um has";
   return words.str();

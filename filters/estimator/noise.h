@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "filters/random/log_exp.h"
 
@@ -59,20 +60,20 @@ class Noise {
   }
   // The same without that doubt, 1 at least: for who takes all that is louder for noise.
   [[nodiscard]] double heard() const noexcept { return std::max(1.0, fast_ / usual()); }
-  // Variance of the known noise over that of white noise as rough as it is; 1 unless it is more by more than
-  // chance.
+  // Variance of the known noise over that of equally rough white noise; 1 within chance.
   [[nodiscard]] double colour() const noexcept {
     const double chance = std::sqrt(kThirdVariance / std::clamp(taken_, 1.0, kSlow));
     const double ratio = known_ / usual();
     return taken_ >= kFew && ratio > 1.0 + kSurely * chance ? ratio : 1.0;
   }
-  // Variance by which a mean of coarse steps is off, over all levels between two of them: that of the first harmonic
-  // of the converter's sawtooth, d / pi exp(-2 pi^2 R / d^2) (Widrow and Kollar, "Quantization Noise", 2008).
+  // Variance of a mean of coarse steps d, averaged over the true level: that of the sawtooth's first harmonic,
+  // d / pi exp(-2 pi^2 R / d^2) (Widrow and Kollar, "Quantization Noise", 2008).
   [[nodiscard]] double rounding() const noexcept {
     if (digit_ >= kNoDigit) return 0.0;
     // R that was learned includes the steps' own d^2 / 12; one that is less than that is of the sensor alone.
     const double d2 = digit_ * digit_, own = of_steps(), white = known_ > 1.2 * own ? known_ - own : known_;
-    return d2 / (2.0 * kPiSquared) * exponential(-std::min(4.0 * kPiSquared * white / d2, 600.0));
+    const double pi_squared = std::numbers::pi * std::numbers::pi;
+    return d2 / (2.0 * pi_squared) * exponential(-std::min(4.0 * pi_squared * white / d2, 600.0));
   }
 
  private:
@@ -89,7 +90,6 @@ class Noise {
   // The mean square of 32 overlapping third differences scatters by 0.4: four standard deviations.
   static constexpr double kSurelyLouder = 2.6;
   static constexpr double kNoDigit = 1e300;
-  static constexpr double kPiSquared = 9.869604401089358;
 
   double known_, slow_, fast_, taken_ = 0.0, digit_ = kNoDigit;
   std::array<double, 3> last_{};

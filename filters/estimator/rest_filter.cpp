@@ -8,7 +8,7 @@
 
 namespace ifog {
 
-// Instantiated in a file of their own, so that they compile beside the rest.
+// Instantiated in a file of their own, so that they compile on another processor.
 extern template class SizedRestFilter<1>;
 extern template class SizedRestFilter<2>;
 extern template class SizedRestFilter<3>;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any bytes as an HDF5 file, read by Debian's library in a process of its own: refused with one line, or columns
-// of one length and time that goes on. What the library does to its own process must not be seen here. The text
+// of one length and time that advances. What the library does to its own process must not be seen here. The text
 // that comes from there is read as capture_fuzz.cpp tries it.
 #include <algorithm>
 #include <cmath>

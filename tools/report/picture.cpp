@@ -79,8 +79,7 @@ std::string picture_svg(const std::string& title, const std::vector<PictureRow>&
   }
   const std::string height = whole(y + kEdge);
   return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" "
-         "class=\"chart\" "
-         "width=\"" +
+         "class=\"chart\" width=\"" +
          whole(width) + "\" height=\"" + height + "\" viewBox=\"0 0 " + whole(width) + " " + height +
          "\"><title>" + escaped(title) + "</title>\n<style>" + picture_style() +
          "</style>\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n" +

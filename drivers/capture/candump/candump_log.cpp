@@ -68,7 +68,7 @@ class Frames {
 };
 
 // The next line of a log's beginning that tells a time; false: there is none. A line that the beginning cuts
-// off is left out.
+// off is dropped.
 bool next_entry(std::string_view& beginning, CandumpEntry& entry) noexcept {
   for (std::size_t end = beginning.find('\n'); end != std::string_view::npos; end = beginning.find('\n')) {
     const CandumpLine kind = parse_candump_line(beginning.substr(0, end), entry);

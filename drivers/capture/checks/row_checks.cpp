@@ -21,8 +21,8 @@ std::vector<std::size_t> rates_of(const std::vector<FileColumn>& columns) {
   return rates;
 }
 
-std::string taken_for_missing(std::size_t count) {
-  return "; " + std::to_string(count) + (count == 1 ? " such cell" : " such cells") + " taken for missing";
+std::string treated_as_missing(std::size_t count) {
+  return "; " + std::to_string(count) + (count == 1 ? " such cell" : " such cells") + " treated as missing";
 }
 
 std::string at(const std::string& path, std::size_t line) { return path + ":" + std::to_string(line) + ": "; }
@@ -92,11 +92,10 @@ void RowChecks::look_for_set_clock(const std::vector<double>& time_s) {
 
 void RowChecks::tell_set_clock() {
   if (!clock_set_) return;
-  notes_.notices.push_back(
-      at(path_, notes_.line_of_row(*clock_set_)) + "its time goes on " +
-      std::to_string(std::llround(clock_set_by_s_)) +
-      " s later, as where a clock is set or recordings of two are put together: taken for "
-      "a hole, behind which times are coarser");
+  notes_.notices.push_back(at(path_, notes_.line_of_row(*clock_set_)) + "its time continues " +
+                           std::to_string(std::llround(clock_set_by_s_)) +
+                           " s later, as after a clock was set or where two recordings are joined: treated "
+                           "as a hole, behind which times are coarser");
 }
 
 void RowChecks::tell_impossible(const FileColumn& column, const ImpossibleValues& found) {
@@ -112,7 +111,7 @@ void RowChecks::tell_impossible(const FileColumn& column, const ImpossibleValues
               ":0.00763deg/s'";
     fail_at(path_, found.line, what + more);
   }
-  notes_.faults.push_back(at(path_, found.line) + what + taken_for_missing(found.count));
+  notes_.faults.push_back(at(path_, found.line) + what + treated_as_missing(found.count));
 }
 
 void RowChecks::tell_leaps() {
@@ -121,7 +120,7 @@ void RowChecks::tell_leaps() {
       notes_.faults.push_back(at(path_, notes_.line_of_row(found.first_row)) +
                               printable(columns_[rates_[r]].name) +
                               " says more than half a turn within one sample, from standstill to standstill" +
-                              taken_for_missing(found.count));
+                              treated_as_missing(found.count));
 }
 
 }  // namespace ifog

@@ -107,7 +107,7 @@ std::optional<Candidate> candidate_of(const Words& words, const std::string& uni
 }
 
 std::string unit_of(const TableSample& table, std::size_t place) {
-  if (std::string beside = table.unit_beside(place); !beside.empty()) return beside;
+  if (std::string given = table.stated_unit(place); !given.empty()) return given;
   if (const std::string unit = unit_in_name(table.names[place]); !unit.empty()) return unit;
   const std::string& text = Words(table.names[place]).text;  // gyro_rad[0]
   const std::string last = text.substr(text.rfind('_') + 1);

@@ -21,7 +21,7 @@ struct TableSample {
   bool named = true;
 
   // What the row of units says of a column; "" for nothing.
-  [[nodiscard]] std::string unit_beside(std::size_t place) const { return units.empty() ? "" : units[place]; }
+  [[nodiscard]] std::string stated_unit(std::size_t place) const { return units.empty() ? "" : units[place]; }
 };
 
 // One way to read the table.

@@ -98,11 +98,8 @@ int rank_of(const std::string& name, const Words& words) {
         "offset", "zone",     "delay",  "age",    "exposure", "week",  "accuracy", "interval",
         "flags",  "tflags",   "hour",   "minute", "year",     "month", "nano"})
     if (words.has(not_time)) return 0;
-  // UTC_Day, UTC_Hour, UTC_Second: a part of a date that is in no column alone.
-  if (words.first() == "utc" &&
-      (words.has("day") || name.find("our") != std::string::npos || name.find("econd") != std::string::npos ||
-       name.find("inute") != std::string::npos))
-    return 0;
+  // UTC_Day, UTC_Second: a part of a date that is in no column alone.
+  if (words.first() == "utc" && (words.has("day") || words.has("second"))) return 0;
   constexpr std::array<std::string_view, 18> kTimes{
       "time",           "timestamp", "stamp",   "t",       "utc",    "datetime",
       "date",           "zeit",      "seconds", "elapsed", "tow",    "sow",
@@ -117,7 +114,7 @@ int rank_of(const std::string& name, const Words& words) {
 }
 
 std::string time_unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
-  if (time_unit(table.unit_beside(place))) return table.unit_beside(place);
+  if (time_unit(table.stated_unit(place))) return table.stated_unit(place);
   const std::string named = unit_in_name(table.names[place]);
   if (time_unit(named)) return named;
   if (words.has("sample") && words.has("time") && words.has("fine"))
@@ -221,9 +218,7 @@ std::optional<TimeCandidate> joined(const TableSample& table, std::size_t first,
   return named || by_values ? std::optional(out) : std::nullopt;
 }
 
-}  // namespace
-
-// In how many rows a time is another than in the row before.
+// The number of rows whose time differs from the row before.
 std::size_t changes(const TableSample& table, const TimeCandidate& time) {
   const auto at = std::find(table.names.begin(), table.names.end(), time.time.header) - table.names.begin();
   const std::vector<std::string>& cells = table.cells[static_cast<std::size_t>(at)];
@@ -231,6 +226,8 @@ std::size_t changes(const TableSample& table, const TimeCandidate& time) {
   for (std::size_t i = 1; i < cells.size(); ++i) count += cells[i] != cells[i - 1] ? 1 : 0;
   return count;
 }
+
+}  // namespace
 
 std::vector<TimeCandidate> times_of(const TableSample& table) {
   std::vector<TimeCandidate> best;

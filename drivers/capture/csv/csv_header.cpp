@@ -131,7 +131,7 @@ class Chooser {
 
   // A row of units says what the name leaves out.
   [[nodiscard]] CsvColumn under_own_name(std::size_t i) const {
-    const std::string unit = form_.sample.unit_beside(i);
+    const std::string unit = form_.sample.stated_unit(i);
     const auto name = name_with_unit(names_[i], unit);
     if (!name)
       fail("the unit of " + in_quotes(names_[i]) + " is given as " + in_quotes(unit) +
@@ -162,7 +162,7 @@ class Chooser {
       for (const CsvColumn& other : rates_not_chosen(form_.sample, layout)) layout.columns.push_back(other);
     for (CsvColumn& column : layout.columns) {
       const std::size_t at = place(column.header);
-      if (column.unit.empty()) column.unit = unit_beside(column, at);
+      if (column.unit.empty()) column.unit = stated_unit(column, at);
       if (const std::string unit = other_unit(column); !unit.empty())
         fail(unit_by_name(column.header, unit, option_for(column, unit)));
       if (header_.cells[at].column != CsvCell::kPassedOver)
@@ -172,9 +172,9 @@ class Chooser {
   }
 
   // What the row of units says of a column that was chosen without one, where that becomes the capture's.
-  [[nodiscard]] std::string unit_beside(const CsvColumn& chosen, std::size_t at) const {
+  [[nodiscard]] std::string stated_unit(const CsvColumn& chosen, std::size_t at) const {
     CsvColumn column = chosen;
-    column.unit = form_.sample.unit_beside(at);
+    column.unit = form_.sample.stated_unit(at);
     return column.angle_rad() || convert_unit(column.unit, column.name.substr(column.name.rfind('_') + 1))
                ? column.unit
                : "";
@@ -210,7 +210,7 @@ class Chooser {
     const auto named =
         static_cast<std::size_t>(std::find(names_.begin(), names_.end(), time.header) - names_.begin());
     if (named < names_.size() && !time.told)
-      if (const auto unit_s = time_unit(form_.sample.unit_beside(named))) {
+      if (const auto unit_s = time_unit(form_.sample.stated_unit(named))) {
         time.unit_s = *unit_s;
         time.told = true;
         if (header_.layout.time) header_.layout.time = time;

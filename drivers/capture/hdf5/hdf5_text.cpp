@@ -39,7 +39,7 @@ struct Hdf5Text::Said {
 
 namespace {
 
-constexpr rlim_t kMostMemory = 2ULL << 30U;  // bytes, beside what the program had and a copy of the file
+constexpr rlim_t kMostMemory = 2ULL << 30U;  // bytes, besides the program's own and a copy of the file
 // Processor time from one block to the next, and how slowly a chunk may be unpacked besides.
 constexpr std::size_t kMostSeconds = 5, kLeastUnpacked = 32U << 20U;  // s, bytes/s
 constexpr std::size_t kMostValues = 2U << 20U;                        // of a block, all columns together
@@ -116,7 +116,8 @@ std::string one_line(std::string text) {
 }
 
 std::string as_cell(const std::string& name) {
-  if (name.find_first_of(",\"\n\r") != std::string::npos || name.front() == ' ' || name.back() == ' ')
+  if (name.empty() || name.find_first_of(",\"\n\r") != std::string::npos || name.front() == ' ' ||
+      name.back() == ' ')
     throw std::runtime_error(
         "a dataset is called " + in_quotes(name) +
         ", expected a name as a CSV file's header has it, without comma, quote or line end");

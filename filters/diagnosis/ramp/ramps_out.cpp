@@ -97,10 +97,10 @@ Phase phase_of(const UnbrokenPart& part, const RampComb& comb) {
   std::array<double, kPieces> along{}, square{};
   double information = 0.0;
   each_phase_step(part.with_phase(comb.cycles_per_rad), [&](std::size_t i, const PhaseStep& step) {
-    const auto beside = [&](double off) {
+    const auto shifted = [&](double off) {
       return ramp_rate(angle, {moved(step.before + off), moved(step.now + off), step.dt_s, 0.0});
     };
-    const double slope = (beside(aside) - beside(-aside)) / (2.0 * aside);
+    const double slope = (shifted(aside) - shifted(-aside)) / (2.0 * aside);
     const std::size_t piece = i * kPieces / part.size();
     along[piece] += slope * (step.error_radps - ramp_rate(angle, step));
     square[piece] += slope * slope;

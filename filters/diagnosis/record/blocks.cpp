@@ -57,9 +57,8 @@ std::string too_few(const std::vector<Record>& records, const BlockGrid& grid) {
         "diagnosed",
         samples, grid.used(), grid.block_s, hole_s, kLeastBlocks);
   return printed(
-      "%zu samples with a rate, and with a reference if there is one, but only %zu blocks of "
-      "%.3g s have half "
-      "of theirs: expected at least %zu; without the rows that lack one it can be diagnosed",
+      "%zu samples with a rate, and with a reference if there is one, but only %zu blocks of %.3g s have "
+      "half of theirs: expected at least %zu; without the rows that lack one it can be diagnosed",
       samples, grid.used(), grid.block_s, kLeastBlocks);
 }
 

@@ -201,8 +201,8 @@ void add_earth_rate(Findings& findings) {
     pair.correlation = 1.0;
     pair.separate_by =
         "the same capture with the heading reversed: the horizontal part of the Earth's rate changes its "
-        "sign, "
-        "g-sensitivity does not; its vertical part, along the gyro's own axis, only an acceleration without "
+        "sign, g-sensitivity does not; its vertical part, along the gyro's own axis, only an acceleration "
+        "without "
         "tilt tells";
     findings.pairs.push_back(std::move(pair));
   }

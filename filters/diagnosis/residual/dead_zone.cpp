@@ -22,7 +22,7 @@ struct Slow {
   double rate, bend;    // bend: second difference of the rate
   double gain;          // in the square of the error, where the sensor sees nothing of the rate
   double product;       // of rate and error
-  std::size_t passage;  // through zero: it goes on for as long as no rate is above the widest
+  std::size_t passage;  // through zero; it lasts as long as no rate is above the widest
 };
 
 std::vector<Slow> slow_samples(const std::vector<EvenError>& errors, const std::vector<Samples>& rates,

@@ -18,7 +18,7 @@ struct Periodogram {
   std::size_t pieces = 1;     // of a series that is longer than one transform in memory
   double mean = 0.0;          // of all samples that are there, which is taken out first
 
-  // Frequencies of the whole series that are told apart.
+  // Frequencies of the whole series that can be distinguished.
   [[nodiscard]] double bins() const { return static_cast<double>(power.size() * pieces); }
 };
 
@@ -38,7 +38,7 @@ class NoiseFloor {
   std::vector<double> value_;
 };
 
-// Bins no lower than those beside them whose power over the floor is above kLeastOfLines of what the highest
+// Bins no lower than those next to them whose power over the floor is above kLeastOfLines of what the highest
 // of all bins of noise reaches at this significance, strongest over it first. Of the mean of several pieces
 // noise reaches less, and all of that is asked.
 std::vector<std::size_t> peaks_of(const Periodogram& spectrum, const NoiseFloor& floor, double significance);

@@ -146,9 +146,8 @@ bool describe_bursts(const std::vector<double>& energy, std::size_t piece, doubl
   if (bursts == 0 || bursts * 10 >= measured) return false;
   found.kind = "bursts";
   found.hint = printed(
-      "%zu bursts, the first at %s s, the strongest at %s s: knocks, radio keying or supply dips. "
-      "Log "
-      "an accelerometer and the supply at the sensor's own rate.",
+      "%zu bursts, the first at %s s, the strongest at %s s: knocks, radio keying or supply dips. Log an "
+      "accelerometer and the supply at the sensor's own rate.",
       times.size(), told_time(times.front()).c_str(), told_time(time_of(strongest)).c_str());
   if (times.size() > 50) times.resize(50);
   found.times_s = std::move(times);
@@ -181,8 +180,7 @@ void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
     found.kind = "slow";
     found.hint = printed(
         "slow drift that follows none of the channels given: %.0f %% of what %.3g s means scatter. The "
-        "sensor's "
-        "own random walk or flicker, an effect of a form that is not known here (hysteresis), or an "
+        "sensor's own random walk or flicker, an effect of a form that is not known here (hysteresis), or an "
         "environment that was not logged. Log the temperature at the coil and at the electronics, and the "
         "supply.",
         100.0 * slow.share, slow.over_s);

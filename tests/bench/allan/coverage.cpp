@@ -246,8 +246,7 @@ struct Summary {
     for (std::size_t q = 0; q < kConfidence.size(); ++q)
       std::printf(
           "%g %% intervals: mean %.1f %%, over all cases, estimators and octaves %.1f … %.1f %%; %.0f of "
-          "%.0f off by "
-          "more than 4 points.\n",
+          "%.0f off by more than 4 points.\n",
           100.0 * kConfidence[q], 100.0 * coverage[q].sum / coverage[q].octaves, 100.0 * coverage[q].lowest,
           100.0 * coverage[q].highest, coverage[q].far, coverage[q].octaves);
     std::printf("Terms with 30 %% of the variance at some octave found: %.1f %% of %d. ",

@@ -229,8 +229,7 @@ int main(int argc, char** argv) {
   } else {
     std::fprintf(stderr,
                  "usage: notice_bench blocks MONTHS SEED [WORD] | steps SENSORS SEED [WORD] | limits BLOCKS "
-                 "SEED [WORD] | "
-                 "chain DAYS SEED\n");
+                 "SEED [WORD] | chain DAYS SEED\n");
     return 2;
   }
   return 0;

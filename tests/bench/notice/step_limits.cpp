@@ -45,10 +45,8 @@ void print_limits(const NoiseKind& kind, std::size_t blocks, unsigned seed) {
   const double designed = kLimitBlock_s / SensorWatch::kAlarmEvery_s * SensorWatch::kForStep;
   std::printf(
       "%-18s d %.2f (%.2f without blocks); all known %.1f %%; time unknown %.1f %%; and the sign %.1f %%; "
-      "windows "
-      "of the test %.1f %%, step anywhere in a block %.1f %%; its formula %.1f %%; its margin %.1f %%; "
-      "alarms "
-      "by the formula, of those there are: one window %.2f, all %.2f\n",
+      "windows of the test %.1f %%, step anywhere in a block %.1f %%; its formula %.1f %%; its margin %.1f "
+      "%%; alarms by the formula, of those there are: one window %.2f, all %.2f\n",
       kind.name.c_str(), d, finely, 100.0 * best_share(d, kLimitLook_s, kMonth_s),
       share(one_sided, one_sided.level(kAllowed), false), share(one, one.level(kAllowed), false),
       share(test, test.level(kAllowed), false), share(test, test.level(kAllowed), true),

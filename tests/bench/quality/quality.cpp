@@ -143,8 +143,7 @@ void coloured(int samples) {
   std::printf(
       "\nAt rest in coloured noise, irwe-akfg + following, %llu records of %d samples, the first %zu not "
       "counted.\n\n| correlation of neighbours | Q/R | samples in manoeuvres | most in a record | RMSE over "
-      "that "
-      "without following |\n|---|---|---|---|---|\n",
+      "that without following |\n|---|---|---|---|---|\n",
       static_cast<unsigned long long>(kSeeds), samples, kLearned);
   for (const double correlation : {0.5, 0.7, 0.8, 0.9, 0.95, 0.98}) {
     for (const double ratio : {1e-3, 1e-6}) {

@@ -347,7 +347,7 @@ class Checks:
         path, _ = self.csv("set.csv", [t + (STARTS["1970"] if i >= half else 0) for i, t in enumerate(ns)])
         for command in (["allan"], ["convert", self.folder / "out.csv"], ["denoise", "--output", self.folder / "out.csv"]):
             said = ran(command[0], path, *command[1:]).stderr
-            assert f"set.csv:{half + 2}: its time goes on 1700000000 s later, as where a clock is set" in said, (command, said)
+            assert f"set.csv:{half + 2}: its time continues 1700000000 s later, as after a clock was set" in said, (command, said)
 
 
 if __name__ == "__main__":

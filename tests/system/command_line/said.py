@@ -249,7 +249,7 @@ class Checks:
         denoised = self.folder / "fast.out.csv"
         for command in (["convert", frames, back], ["allan", frames], ["denoise", frames, "--output", denoised]):
             text = said(*command, *options)
-            assert "100 samples at or beyond the sensor's full scale, taken for missing" in text, f"{command}: {text}"
+            assert "100 samples at or beyond the sensor's full scale, treated as missing" in text, f"{command}: {text}"
         for file, column in ((back, "rate_x_radps"), (denoised, "raw_x_radps")):
             missing = [i for i, value in enumerate(columns(file)[column]) if math.isnan(value)]
             assert missing == list(range(1000, 1100)), f"{file}: {missing[:3]} … {len(missing)}"

@@ -50,7 +50,7 @@ TEST(Measurable, OneImpossibleCellIsMissingAndTold) {
     EXPECT_FALSE(std::isnan(table.columns[1].values[99]));
     ASSERT_EQ(table.faults.size(), 1U) << each.columns << each.cell;
     EXPECT_EQ(table.faults[0].substr(0, 11), "a.csv:102: ") << table.faults[0];
-    EXPECT_NE(table.faults[0].find("1 such cell taken for missing"), std::string::npos);
+    EXPECT_NE(table.faults[0].find("1 such cell treated as missing"), std::string::npos);
   }
   const Capture read = parse_capture(capture("rate_radps,accel_x_mps2", 2, 3, 0, "1e30"), "a.csv");
   EXPECT_TRUE(std::isnan(read.rate_radps[0][3]));
@@ -96,7 +96,7 @@ TEST(Measurable, AChannelOfThemIsMissingAndNoReasonToRefuse) {
   EXPECT_TRUE(std::isnan(read.channels[0].values[1]));
   EXPECT_EQ(read.channels[0].values[2], 25.0);
   ASSERT_EQ(read.faults.size(), 1U);
-  EXPECT_NE(read.faults[0].find("50 such cells taken for missing"), std::string::npos) << read.faults[0];
+  EXPECT_NE(read.faults[0].find("50 such cells treated as missing"), std::string::npos) << read.faults[0];
 }
 
 TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {

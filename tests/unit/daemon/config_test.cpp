@@ -157,8 +157,7 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
       {"[[sensor]]\nname = \"nose_status\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
        "\"can0\"\n",
        "f.toml:9: sensor.name = 'nose_status': expected one that does not end in _status or _imu, as other "
-       "channels "
-       "do"},
+       "channels do"},
       {"[[sensor]]\nname = \"nose_imu\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
        "\"can0\"\n",
        "f.toml:9: sensor.name = 'nose_imu': expected one that does not end in _status or _imu, as other "
@@ -167,20 +166,17 @@ TEST(Config, SaysWhereWhatAndWhatWasExpected) {
        "\"/dev/ttyS0\"\n"
        "set_up = [\"=CONFIG,1\", \"DR\"]\n",
        "f.toml:14: sensor.transport.set_up = ['DR']: expected \"=COMMAND\", \"?QUERY\" or \"WORDS -> "
-       "ANSWER\" "
-       "of at most "
+       "ANSWER\" of at most "
        "1000 characters of ASCII"},
       {"[[sensor.publish]]\nchannel = \"A\"\n",
        "f.toml:8: sensor.publish.type: missing; expected the name of a type, \"bot_core.ins_t\""},
       {"[[sensor.publish]]\ntype = \"bot_core.ins\"\nchannel = \"A\"\n",
        "f.toml:9: sensor.publish.type = 'bot_core.ins': expected \"bot_core.ins_t\" | \"microstrain.ins_t\" "
-       "| "
-       "\"bot_core.kvh_raw_imu_batch_t\" | \"ifog.inertial_t\" | \"ifog.imu_t\", did you mean "
+       "| \"bot_core.kvh_raw_imu_batch_t\" | \"ifog.inertial_t\" | \"ifog.imu_t\", did you mean "
        "'bot_core.ins_t'?"},
       {"[[sensor.publish]]\ntype = \"bot_core.ins_t\"\nchannel = \"IFOG_A\"\n",
        "f.toml:10: sensor.publish.channel = 'IFOG_A': expected a name that does not begin with IFOG_, which "
-       "is for "
-       "the daemon's own"},
+       "is for the daemon's own"},
       {"[[sensor.publish]]\ntype = \"bot_core.ins_t\"\nchannel = \"A\"\n[[sensor.publish]]\ntype = "
        "\"microstrain.ins_t\"\nchannel = \"A\"\n",
        "f.toml:10: sensor.publish.channel = 'A': something else is published on it already, expected another "
@@ -225,12 +221,10 @@ TEST(Config, SaysWhatIsWrongWithANetworkSensor) {
          "f.toml:6: sensor.transport.port = 70000: expected a whole number 1 ... 65535"},
         {"type = \"udp\"\nport = 5000\ngroup = \"239.1.2.3\"\n",
          "f.toml:4: sensor.transport.interface: missing; expected the interface on which the group is "
-         "joined, "
-         "\"eth0\""},
+         "joined, \"eth0\""},
         {"type = \"udp\"\nport = 5000\nbind = \"::1\"\nhost = \"10.0.0.1\"\n",
          "f.toml:8: sensor.transport.host = '10.0.0.1': expected an address of the same kind, IPv4 or IPv6, "
-         "as "
-         "::1"},
+         "as ::1"},
         {"type = \"tcp\"\nport = 4001\n",
          "f.toml:4: sensor.transport.host: missing; expected the sensor's numeric address, \"192.168.1.20\""},
         {"type = \"tcp\"\nhost = \"gyro.local\"\nport = 4001\n",
@@ -243,16 +237,13 @@ TEST(Config, SaysWhatIsWrongWithANetworkSensor) {
 
 TEST(Config, GathersAllErrors) {
   const std::string all = complaint("[[sensor]]\nname = \"a b\"\nmodle = \"x\"\n");
-  EXPECT_EQ(
-      all,
-      "f.toml:2: sensor.name = 'a b': expected at most 32 letters, digits, _ and -\n"
-      "f.toml:1: sensor.driver: missing; expected the name of a driver, see `ifog drivers`\n"
-      "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
-      "f.toml:3: sensor.modle: unknown key, did you mean 'model'? Known here: channel, driver, filter, imu, "
-      "max_step, maximum, "
-      "minimum, model, name, nominal_rate_hz, options, powered_with_computer, publish, range_radps, "
-      "realtime, record, "
-      "transport");
+  EXPECT_EQ(all,
+            "f.toml:2: sensor.name = 'a b': expected at most 32 letters, digits, _ and -\n"
+            "f.toml:1: sensor.driver: missing; expected the name of a driver, see `ifog drivers`\n"
+            "f.toml:1: sensor.transport: missing; expected a table [sensor.transport]\n"
+            "f.toml:3: sensor.modle: unknown key, did you mean 'model'? Known here: channel, driver, filter, "
+            "imu, max_step, maximum, minimum, model, name, nominal_rate_hz, options, powered_with_computer, "
+            "publish, range_radps, realtime, record, transport");
 }
 
 // The kernel's own file is the oracle of the time since boot.

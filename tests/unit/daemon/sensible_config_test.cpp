@@ -200,8 +200,7 @@ TEST(SensibleConfig, ARateDoesNotComeBackAsAChannelOfItsOwn) {
   };
   const std::string told =
       "f.toml:10: sensor.channel.own_radps.lcm_channel = 'IFOG_OWN': the rate of sensor 'own' would come "
-      "back "
-      "as a channel of its own; expected one that does not depend on it";
+      "back as a channel of its own; expected one that does not depend on it";
   EXPECT_EQ(own("compensated[0]"), told);
   EXPECT_EQ(own("denoised[2]"), told);
   EXPECT_EQ(own("raw[0]"), told);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects found beside a structure that sways.
+// Effects found on a structure that sways.
 #include <gtest/gtest.h>
 
 #include <cmath>

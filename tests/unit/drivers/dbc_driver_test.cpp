@@ -223,9 +223,8 @@ TEST_F(DbcText, RefusalsNameKeyValueAndExpectation) {
       "driver dbc: unit is 'auto', expected a unit of angular rate (rad/s, deg/s, deg/h, …), as the DBC file "
       "gives 'furlong' for B.R");
   EXPECT_EQ(refusal(kTwo, {{"signal", "A.R"}, {"x", "A.R"}}),
-            "driver dbc: x is 'A.R', expected nothing with 'signal': a sensor has either one axis without "
-            "a name or "
-            "x, y, z");
+            "driver dbc: x is 'A.R', expected nothing with 'signal': a sensor has either one axis without a "
+            "name or x, y, z");
   EXPECT_EQ(
       refusal(kTwo, {{"signal", "A.R"}, {"counter", "B.T"}}),
       "driver dbc: counter is 'B.T', expected a signal in a message that carries an axis; B.T is in none");

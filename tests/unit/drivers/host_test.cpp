@@ -46,8 +46,7 @@ TEST(DriverHost, FindsThePluginOfTheBuildTree) {
 TEST(DriverHost, NamesKeyValueAndExpectation) {
   EXPECT_EQ(refusal("kvh1750", {{"formt", "a"}}),
             "driver kvh1750: unknown option 'formt' (value 'a'), did you mean 'format'? Known here: format, "
-            "angle_unit, output, "
-            "acceleration, temperature, time_stamp, rate_hz, full_scale");
+            "angle_unit, output, acceleration, temperature, time_stamp, rate_hz, full_scale");
   EXPECT_EQ(refusal("kvh1750", {{"format", "d"}}),
             "driver kvh1750: format is 'd', expected one of auto, a, b, c");
   EXPECT_EQ(refusal("kvh1750", {{"rate_hz", "-3"}}),

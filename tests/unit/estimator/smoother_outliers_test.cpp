@@ -34,7 +34,8 @@ TEST(SmoothedOutliers, AreNotInItAtRest) {
   }
 }
 
-// In motion what a parabola through three measurements predicts is known to 4.5 sigma: outliers of 25 are rejected.
+// In motion a parabola through three measurements predicts to 4.5 sigma, and both directions have to reject an
+// outlier. Of those of 30 sigma half stay in, of those of 50 none.
 TEST(SmoothedOutliers, AreNotInItInMotion) {
   constexpr std::size_t kLength = 40'000;
   constexpr double kRatio = 1e-8;

@@ -194,8 +194,7 @@ TEST_F(ScenarioFile, RefusesInOneLine) {
       refusal(
           "duration_s = 10\n[[channel]]\nname = \"t_degC\"\nshape = \"constant\"\nlevel = 1\nlevle = 2\n"),
       ":2: [[channel]]: key 'levle' is unknown for constant, did you mean 'level'? Known here: level, noise, "
-      "resolution, every_s, "
-      "missing");
+      "resolution, every_s, missing");
   EXPECT_EQ(refusal("duration_s = 10\n[[effect]]\nform = \"magic\"\n").substr(0, 40),
             ":2: [[effect]]: 'magic' is unknown, expe");
   EXPECT_EQ(refusal("duration_s = = 3\n").substr(0, 3), ":1:");

@@ -155,8 +155,7 @@ TEST(CanTransport, RefusesInOneLine) {
   if (probe < 0) {
     EXPECT_EQ(refusal({.interface = "can7", .ids = {}}),
               "can7: cannot open a CAN socket: Address family not supported by protocol, expected a kernel "
-              "with the modules "
-              "can and can-raw");
+              "with the modules can and can-raw");
     return;
   }
   close(probe);

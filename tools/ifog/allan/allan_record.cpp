@@ -67,8 +67,7 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
     if (turned > 0)
       note = "turned in " + six_digits(static_cast<double>(turned) * clock.period_s) +
              " s: the scale factor's error against the reference remains, which is no noise; ifog diagnose "
-             "takes "
-             "it out";
+             "takes it out";
     return all;
   }
   Rest rest = find_rest(axes, references, clock.period_s);

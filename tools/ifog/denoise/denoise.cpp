@@ -177,8 +177,7 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
   if (rows.none_filtered())
     warn(
         "%s: %s: denoised is the compensated rate; expected a --model of 'ifog tune' at rest, "
-        "--process-noise "
-        "and --measurement-noise, or a shorter --start-up\n",
+        "--process-noise and --measurement-noise, or a shorter --start-up\n",
         options.capture.c_str(),
         result.noise_known ? "what is wanted of it lies within the start-up that shows its noise"
                            : "no rest in it is as long as the start-up that shows its noise");
@@ -354,8 +353,7 @@ void add_denoise(const Command& program) {
   command
       .add_option("--since-power-up", options->since_power_up_s,
                   "Seconds from power-up to the first sample; default: as a recording says it. Where nobody "
-                  "does, a model's "
-                  "warm_up is not corrected")
+                  "does, a model's warm_up is not corrected")
       .not_negative()
       .type_name("S");
   options->part.add_to(command, "Write nothing before this time, s; filter from the beginning",

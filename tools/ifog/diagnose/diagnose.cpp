@@ -116,8 +116,7 @@ void add_diagnose(const Command& program) {
   command
       .add_option("--since-power-up", arguments->since_power_up_s,
                   "seconds from power-up to the captures' first sample: a warm_up of --model is corrected, "
-                  "and one that is "
-                  "found counts from power-up; default: as a recording says it")
+                  "and one that is found counts from power-up; default: as a recording says it")
       .not_negative();
   command.add_option("--write-model", arguments->write_model, "write the model with what was found");
   command.add_option("--json", arguments->json, "write the diagnosis as JSON");

@@ -59,8 +59,8 @@ void count_from_power_up(Diagnosis& diagnosis, double began_s) {
           "the bias settles exponentially after the start of the record, when the sensor had long been on";
       diagnosis.remarks.emplace_back(
           "what settles after the start of the record is shown and not corrected: the sensor had been on for "
-          "over three "
-          "of its time constants, and what it was at power-up the record does not say; record from power-up "
+          "over three of its time constants, and what it was at power-up the record does not say; record "
+          "from power-up "
           "on");
       continue;
     }

@@ -147,8 +147,7 @@ std::string vertical_rate(const CaptureView& capture, unsigned threads) {
   std::array<char, 240> text{};
   std::snprintf(text.data(), text.size(),
                 "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
-                "Earth's rate "
-                "at latitude %.2f°",
+                "Earth's rate at latitude %.2f°",
                 up / kDegreePerHour, std::asin(up / kEarth) / kDegree);
   return text.data();
 }

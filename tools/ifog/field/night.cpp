@@ -189,8 +189,7 @@ std::string Night::judge(const std::vector<RecordedFile>& all) {
 std::string Night::not_to_be_judged(const ModelInUse& in_use, const Recorded& recorded) const {
   if (!corrects_warm_up(in_use) || recorded.capture.since_power_up_s) return "";
   return "the model in use corrects a warm-up by the time since power-up, which these recordings do not say: "
-         "diagnose "
-         "them by hand with --since-power-up";
+         "diagnose them by hand with --since-power-up";
 }
 
 bool Night::corrects_warm_up(const ModelInUse& in_use) const {

@@ -40,7 +40,7 @@ std::vector<TypeEffect> judged_effects(const TypeToMeasure& type,
 
 // What the measurements say of the choice: of each effect the form that explains most in all gyros together
 // comes first (where `forms` may change), and the least of those that chance would not show is
-// left out. Whether anything changed: then it has to be measured again.
+// dropped. Returns whether anything changed: then it has to be measured again.
 bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
                 const std::map<std::size_t, GyroMeasured>& measured, double level, bool forms);
 

@@ -237,8 +237,7 @@ void add_replay(const Command& program) {
   command
       .add_option("--to", settings->to,
                   "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
-                  "fifo:PATH or - "
-                  "(standard output)")
+                  "fifo:PATH or - (standard output)")
       .required()
       .check(names_a_target);
   command.add_option("--format", source.format, "of the recording")

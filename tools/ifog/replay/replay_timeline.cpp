@@ -189,11 +189,9 @@ ReplayTimeline read_timeline(const ReplaySource& source) {
       break;
     case FileKind::lcm_log:
     case FileKind::unknown:
-      throw std::runtime_error(
-          source.path +
-          ": neither a flight recording, a candump log, raw bytes nor a capture in columns by "
-          "its name and first bytes; "
-          "--format says which");
+      throw std::runtime_error(source.path +
+                               ": neither a flight recording, a candump log, raw bytes nor a capture in "
+                               "columns by its name and first bytes; --format says which");
   }
   if (timeline.on.empty() && !source.input.channel.empty()) timeline.interfaces = {source.input.channel};
   if (timeline.size() == 0) throw std::runtime_error(source.path + ": nothing in it to send");

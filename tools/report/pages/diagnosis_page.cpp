@@ -58,8 +58,7 @@ std::string effect_section(const PageAxis& axis, std::size_t index) {
 std::string figures_table(const Diagnosis& d) {
   std::string out =
       "<div class=\"scroll\"><table><caption>By the model as written, or on data held out of the fit: the "
-      "larger</caption><thead><tr><th "
-      "scope=\"col\">figure</th>"
+      "larger</caption><thead><tr><th scope=\"col\">figure</th>"
       "<th scope=\"col\" class=\"n\">before</th><th scope=\"col\" class=\"n\">after</th><th "
       "scope=\"col\">unit</th>"
       "<th scope=\"col\" class=\"n\">change</th></tr></thead><tbody>\n";
@@ -134,8 +133,7 @@ std::string noise_table(const NoiseTerms& noise) {
                       {"rate ramp R", noise.R, 1.0 / kDegreePerHourPerHour, "°/h/h"}};
   std::string out =
       "<div class=\"scroll\"><table><caption>Noise after the effects (IEEE Std 952 "
-      "terms)</caption><thead><tr><th "
-      "scope=\"col\">term</th><th scope=\"col\" class=\"n\">value</th><th "
+      "terms)</caption><thead><tr><th scope=\"col\">term</th><th scope=\"col\" class=\"n\">value</th><th "
       "scope=\"col\">unit</th></tr></thead><tbody>\n";
   for (const Row& row : rows)
     out += std::string("<tr><th scope=\"row\">") + row.name + "</th><td class=\"n\">" +
@@ -177,8 +175,7 @@ std::string applying(const Page& page) {
          capture + read_with + " --model " + model +
          " --output corrected.csv</pre>\n"
          "<p>In the daemon: name the file in the sensor's section of the configuration, check, and reload. "
-         "No sample is "
-         "lost.</p>\n<pre>[[sensor]]\nmodel = " +
+         "No sample is lost.</p>\n<pre>[[sensor]]\nmodel = " +
          escaped(toml_quoted(path)) +
          "\n\nifogd --config /etc/ifogd/ifogd.toml --check\n"
          "systemctl reload ifogd</pre>\n"

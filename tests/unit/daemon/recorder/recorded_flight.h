@@ -130,8 +130,7 @@ class RecordedFlight : public testing::Test {
     if (stale == 0) return "";
     return path(recording) + ": " + std::to_string(stale) +
            " samples without a value of a channel that the model wants, or with one too old: corrected with "
-           "the "
-           "last one, or not at all\n";
+           "the last one, or not at all\n";
   }
   // Two columns of every axis; NaN where a cell is empty.
   std::vector<std::vector<double>> rows_of(const std::string& name) const {
