@@ -161,37 +161,38 @@ void TableReader::filter_setting(const FilterSetting& setting, FilterChoice& cho
   if (const std::string name = expected_name(setting, text); !name.empty()) wrong(setting.key, *node, name);
 }
 
-std::optional<std::vector<int>> TableReader::integers(std::string_view key, int least, int most) {
+// All its elements, or none where `read` accepts not each of them.
+template <typename Element, typename Read>
+std::optional<std::vector<Element>> TableReader::list(std::string_view key, const std::string& expected,
+                                                      Read&& read) {
   const toml::node* const node = find(key);
   if (node == nullptr) return std::nullopt;
-  std::vector<int> out;
-  const auto* const array = node->as_array();
-  bool good = array != nullptr;
+  std::vector<Element> out;
+  bool good = node->is_array();
   if (good)
-    for (const toml::node& element : *array) {
-      const auto* const value = element.as_integer();
-      good = good && value != nullptr && value->get() >= least && value->get() <= most;
-      if (good) out.push_back(static_cast<int>(value->get()));
+    for (const toml::node& element : *node->as_array()) {
+      const std::optional<Element> value = read(element);
+      good = good && value;
+      if (good) out.push_back(*value);
     }
   if (good) return out;
-  wrong(key, *node, "a list of whole numbers " + std::to_string(least) + " ... " + std::to_string(most));
+  wrong(key, *node, "a list of " + expected);
   return std::nullopt;
 }
 
+std::optional<std::vector<int>> TableReader::integers(std::string_view key, int least, int most) {
+  return list<int>(key, "whole numbers " + std::to_string(least) + " ... " + std::to_string(most),
+                   [&](const toml::node& element) {
+                     const std::optional<std::int64_t> value = element.value_exact<std::int64_t>();
+                     return value && *value >= least && *value <= most
+                                ? std::optional(static_cast<int>(*value))
+                                : std::nullopt;
+                   });
+}
+
 std::optional<std::vector<std::string>> TableReader::texts(std::string_view key) {
-  const toml::node* const node = find(key);
-  if (node == nullptr) return std::nullopt;
-  std::vector<std::string> out;
-  const auto* const array = node->as_array();
-  bool good = array != nullptr;
-  if (good)
-    for (const toml::node& element : *array) {
-      good = good && element.is_string();
-      if (good) out.push_back(element.as_string()->get());
-    }
-  if (good) return out;
-  wrong(key, *node, "a list of texts");
-  return std::nullopt;
+  return list<std::string>(key, "texts",
+                           [](const toml::node& element) { return element.value_exact<std::string>(); });
 }
 
 const toml::table* TableReader::table(std::string_view key) {

@@ -57,6 +57,8 @@ class TableReader {
   void refuse_the_rest();
 
  private:
+  template <typename Element, typename Read>
+  std::optional<std::vector<Element>> list(std::string_view key, const std::string& expected, Read&& read);
   const toml::node* find(std::string_view key);
   void wrong(std::string_view key, const toml::node& node, const std::string& expected);
 

@@ -20,20 +20,8 @@ namespace {
 
 constexpr const char* kDaemon = "ifogd";  // name of the log that belongs to no sensor
 
-int priority(spdlog::level::level_enum level) {
-  switch (level) {
-    case spdlog::level::critical:
-      return LOG_CRIT;
-    case spdlog::level::err:
-      return LOG_ERR;
-    case spdlog::level::warn:
-      return LOG_WARNING;
-    case spdlog::level::info:
-      return LOG_INFO;
-    default:
-      return LOG_DEBUG;
-  }
-}
+// Of spdlog's levels, from trace to critical.
+constexpr std::array<int, 6> kPriorities{LOG_DEBUG, LOG_DEBUG, LOG_INFO, LOG_WARNING, LOG_ERR, LOG_CRIT};
 
 // spdlog's own systemd sink carries no fields besides its own; `journalctl IFOG_SENSOR=x` needs one.
 class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
@@ -43,7 +31,7 @@ class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
     const bool of_sensor = name != kDaemon;
     std::string text = "MESSAGE=" + (of_sensor ? name + ": " : "");
     text.append(message.payload.begin(), message.payload.end());
-    std::string level = "PRIORITY=" + std::to_string(priority(message.level));
+    std::string level = "PRIORITY=" + std::to_string(kPriorities.at(static_cast<std::size_t>(message.level)));
     std::string identifier = "SYSLOG_IDENTIFIER=ifogd";
     std::string sensor = "IFOG_SENSOR=" + name;
     std::array<iovec, 4> fields{iovec{text.data(), text.size()}, iovec{level.data(), level.size()},

@@ -24,7 +24,6 @@ double silence_s(double rate_hz) { return std::max(2.0, 3.0 / rate_hz); }
 constexpr const char* kFrozen =
     "the device sends the same frame again and again: its counter or clock stands still, nothing of it is "
     "taken";
-// What the counter shows.
 constexpr const char* kMixed =
     "the sequence runs to and fro: two devices send on one line, and nothing of either is taken";
 
@@ -80,9 +79,9 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
     case TransportState::open:
       break;
   }
-  if (mixed_) return status_t::STATE_NO_DATA;
-  if (sample_ns_ == 0) return status_t::STATE_STARTING;
-  if (static_cast<double>(monotonic_ns() - sample_ns_) * 1e-9 > silence_s(nominal_rate_hz_))
+  if (samples_.mixed) return status_t::STATE_NO_DATA;
+  if (samples_.last_ns == 0) return status_t::STATE_STARTING;
+  if (static_cast<double>(monotonic_ns() - samples_.last_ns) * 1e-9 > silence_s(nominal_rate_hz_))
     return status_t::STATE_NO_DATA;
   return status_t::STATE_RUNNING;
 }
@@ -90,17 +89,17 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
 // As the reader has it now, whether the filter answers or not. A repeated frame is no sample.
 void StatusReport::look_for_samples(const ReaderCounters& reader) {
   const std::uint64_t taken = reader.samples.value(), decoded = taken + reader.repeated.value();
-  const bool came = std::exchange(decoded_, decoded) != decoded;
-  const bool news = std::exchange(taken_, taken) != taken;
-  if (news) sample_ns_ = monotonic_ns();
-  seconds_of_samples_ += news ? 1 : 0;
-  axes_seen_ = reader.axes_seen.load(std::memory_order_relaxed);
-  news_ = news;
-  frozen_before_ = frozen_;
-  const bool long_ago = sample_ns_ != 0 &&
-                        static_cast<double>(monotonic_ns() - sample_ns_) * 1e-9 > silence_s(nominal_rate_hz_);
-  mixed_ = reader.mixed.load(std::memory_order_relaxed);
-  frozen_ = long_ago && !mixed_ && !news && (came || frozen_);
+  const bool came = std::exchange(samples_.decoded, decoded) != decoded;
+  samples_.news = std::exchange(samples_.taken, taken) != taken;
+  if (samples_.news) samples_.last_ns = monotonic_ns();
+  samples_.seconds += samples_.news ? 1 : 0;
+  samples_.axes_seen = reader.axes_seen.load(std::memory_order_relaxed);
+  samples_.frozen_before = samples_.frozen;
+  const bool long_ago =
+      samples_.last_ns != 0 &&
+      static_cast<double>(monotonic_ns() - samples_.last_ns) * 1e-9 > silence_s(nominal_rate_hz_);
+  samples_.mixed = reader.mixed.load(std::memory_order_relaxed);
+  samples_.frozen = long_ago && !samples_.mixed && !samples_.news && (came || samples_.frozen);
 }
 
 // A file is over, all of it is in the books, and no frame was in it.
@@ -197,15 +196,16 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
     now_.fault = pipeline.reader().transport().name() + ": ended, and no frame of the sensor was in its " +
                  came() + " (is it this driver's, with these options?)";
   look_for_samples(pipeline.reader().counters());
-  if (now_.fault.empty() && mixed_) now_.fault = kMixed;
-  if (now_.fault.empty() && frozen_) now_.fault = kFrozen;
+  if (now_.fault.empty() && samples_.mixed) now_.fault = kMixed;
+  if (now_.fault.empty() && samples_.frozen) now_.fault = kFrozen;
   take_line(pipeline.reader().transport().counters());
   take_counters(pipeline.reader().counters(), pipeline.filter().counters());
   take_health(snapshot);
   in_vain_ = now_.frames_good + now_.samples_decoded == 0 && now_.bytes_read + now_.frames_read > 0
                  ? in_vain_ + 1
                  : 0;
-  if (now_.fault.empty() && in_vain_ >= kInVain) now_.fault = nothing_of_it();
+  if (now_.fault.empty() && in_vain_ >= kInVain)
+    now_.fault = came() + " received and no frame of the sensor in them: check driver, options and baud";
   watch_.take(snapshot.rest, pipeline.filter().counters().published.value(),
               pipeline.filter().counters().out_of_range.value());
   now_.noticed = watch_.noticed();
@@ -236,19 +236,17 @@ std::string StatusReport::came() const {
                               : std::to_string(now_.bytes_read) + " bytes";
 }
 
-std::string StatusReport::nothing_of_it() const {
-  return came() + " received and no frame of the sensor in them: check driver, options and baud";
-}
-
 std::string StatusReport::unseen_axes() const {
-  if (!news_ || seconds_of_samples_ != kInVain || axes_seen_ == 0) return "";
+  if (!samples_.news || samples_.seconds != kInVain || samples_.axes_seen == 0) return "";
   std::string out;
   for (std::size_t i = 0; i < axes_.size(); ++i)
-    if (((axes_seen_ >> i) & 1U) == 0) out += (out.empty() ? "" : ", ") + axes_[i];
+    if (((samples_.axes_seen >> i) & 1U) == 0) out += (out.empty() ? "" : ", ") + axes_[i];
   return out.empty() ? "" : "no value of axis " + out + " so far: does the device have it?";
 }
 
-std::string StatusReport::newly_frozen() const { return frozen_ && !frozen_before_ ? kFrozen : ""; }
+std::string StatusReport::newly_frozen() const {
+  return samples_.frozen && !samples_.frozen_before ? kFrozen : "";
+}
 
 std::string StatusReport::wrong_rate() const {
   if (std::abs(interval_error_) < kWrongRate || std::abs(interval_error_before_) >= kWrongRate) return "";

@@ -55,24 +55,24 @@ class StatusReport {
   [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
   [[nodiscard]] bool nothing_in_file(const Pipeline& pipeline) const;
   [[nodiscard]] std::string came() const;  // in words
-  // The words for a wrong driver, option or baud rate, which counters alone do not say.
-  [[nodiscard]] std::string nothing_of_it() const;
 
   ifog::status_t before_, now_;
   SensorWatch watch_;
-  std::uint64_t decoded_ = 0, taken_ = 0;  // samples, at the last update()
+  // As the last update() found them.
+  struct Samples {
+    std::uint64_t decoded = 0, taken = 0;
+    std::uint32_t axes_seen = 0;
+    bool news = false;                           // there were new ones
+    int seconds = 0;                             // updates that found new ones
+    std::int64_t last_ns = 0;                    // monotonic: when the last update that found new ones was
+    bool mixed = false;                          // frames of two devices come, and none is taken
+    bool frozen = false, frozen_before = false;  // samples come, and they are all those that came before
+  } samples_;
   std::vector<std::string> axes_;
-  std::uint32_t axes_seen_ = 0;
-  bool news_ = false;           // the last update() found new samples
-  int seconds_of_samples_ = 0;  // updates that found new samples
   double nominal_rate_hz_;
   CountedRate input_rate_, output_rate_;
   double interval_error_ = 0.0, interval_error_before_ = 0.0;
-  bool frozen_before_ = false;
-  int in_vain_ = 0;             // updates in a row after which something had come, and never a good frame
-  std::int64_t sample_ns_ = 0;  // monotonic: when the last update() that found new samples was
-  bool mixed_ = false;          // frames of two devices come, and none is taken
-  bool frozen_ = false;         // samples come, and they are all those that came before
+  int in_vain_ = 0;  // updates in a row after which something had come, and never a good frame
 };
 
 }  // namespace ifog

@@ -27,17 +27,15 @@ FilterStage::FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& f
                          bool measure_latency)
     : facts_(facts),
       chain_(std::move(parts)),
-      encoder_(facts.axes),
-      channel_(std::move(channel)),
-      publisher_(std::move(publisher)),
+      output_{std::move(channel), RateEncoder(facts.axes), {}, std::move(publisher)},
       queue_(queue),
       reader_books_(reader_books),
       events_(events),
       measure_latency_(measure_latency),
       noise_known_(chain_.parts().noise_known()) {
-  encoder_.use(chain_.parts());
+  output_.encoder.use(chain_.parts());
   for (const PublishedType& each : also)
-    also_.push_back({each.channel, make_inertial_encoder(each.type, facts)});
+    output_.also.push_back({each.channel, make_inertial_encoder(each.type, facts)});
 }
 
 bool FilterStage::step() noexcept {
@@ -55,13 +53,13 @@ void FilterStage::run(bool spin) noexcept {
   std::int64_t slept_ns = 0;  // in all
   for (;;) {
     const bool stepped = step();
-    if (ask_.load(std::memory_order_acquire) == Ask::asked) answer();
+    if (answer_.state.load(std::memory_order_acquire) == Ask::asked) answer();
     if (stepped) {
       if (shares) stand_back(slept_ns);
       continue;
     }
     if (queue_.finished()) {
-      finished_.store(true, std::memory_order_release);
+      answer_.finished.store(true, std::memory_order_release);
       return;
     }
     if (spin) {
@@ -86,14 +84,15 @@ void FilterStage::stand_back(std::int64_t slept_ns) noexcept {
 
 void FilterStage::process(const Increment& in) noexcept {
   chain_.process(in, out_);
-  if (current_.model_since_ns == 0) current_.model_since_ns = in.utime_ns;
+  if (answer_.now.model_since_ns == 0) answer_.now.model_since_ns = in.utime_ns;
   const ChainParts& parts = chain_.parts();
-  const bool sent = publisher_->publish(channel_.c_str(), encoder_.encode(in, out_, parts));
-  if (measure_latency_ && in.arrival_ns != 0) current_.latency.add(arrival_clock_ns() - in.arrival_ns);
-  for (Also& each : also_) {
+  const bool sent =
+      output_.publisher->publish(output_.channel.c_str(), output_.encoder.encode(in, out_, parts));
+  if (measure_latency_ && in.arrival_ns != 0) answer_.now.latency.add(arrival_clock_ns() - in.arrival_ns);
+  for (Also& each : output_.also) {
     const auto message = each.encoder->encode(in, out_);
     if (message.empty()) continue;
-    const bool also_sent = publisher_->publish(each.channel.c_str(), message);
+    const bool also_sent = output_.publisher->publish(each.channel.c_str(), message);
     each.encoder->sent(also_sent);
     if (!also_sent) counters_.imu_failures.add(1);
   }
@@ -122,36 +121,36 @@ void FilterStage::process(const Increment& in) noexcept {
                     .b = parts.filter().measurement_noise});
   }
   follow_noise(in);
-  std::copy_n(in.channel.begin(), facts_.channels, current_.channel.begin());
-  std::copy_n(in.channel_age_s.begin(), facts_.channels, current_.channel_age_s.begin());
+  std::copy_n(in.channel.begin(), facts_.channels, answer_.now.channel.begin());
+  std::copy_n(in.channel_age_s.begin(), facts_.channels, answer_.now.channel_age_s.begin());
 }
 
 void FilterStage::follow_noise(const Increment& in) noexcept {
   if (in.samples == 1 && (in.flags & kGapBefore) == 0 && in.dt_s > 0.0) {
-    ++intervals_;
-    mean_interval_s_ += (in.dt_s - mean_interval_s_) / static_cast<double>(intervals_);
+    ++intervals_.count;
+    intervals_.mean_s += (in.dt_s - intervals_.mean_s) / static_cast<double>(intervals_.count);
   }
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
     if ((in.flags & kGapBefore) != 0) {
-      allan_[i].restart();
-      current_.rest.break_off(i);
+      intervals_.allan[i].restart();
+      answer_.now.rest.break_off(i);
     }
     // A merged sample is a mean over another time than its neighbours': no difference may use it.
     if (in.samples == 1 && ((in.valid_axes >> i) & 1U) != 0) {
-      allan_[i].add(out_.compensated_radps[i]);
-      current_.rest.add(i, (out_.estimate.flags & kAtRest) != 0, out_.compensated_radps[i],
-                        out_.estimate.innovation_radps[i]);
+      intervals_.allan[i].add(out_.compensated_radps[i]);
+      answer_.now.rest.add(i, (out_.estimate.flags & kAtRest) != 0, out_.compensated_radps[i],
+                           out_.estimate.innovation_radps[i]);
     } else {
-      allan_[i].restart();
-      current_.rest.break_off(i);
+      intervals_.allan[i].restart();
+      answer_.now.rest.break_off(i);
     }
   }
 }
 
 void FilterStage::adopted(std::uint64_t sequence) noexcept {
-  encoder_.use(chain_.parts());
+  output_.encoder.use(chain_.parts());
   // A reload that gave the same model is no other one.
-  if (chain_.parts().model_identity() != current_.model.data()) current_.model_since_ns = 0;
+  if (chain_.parts().model_identity() != answer_.now.model.data()) answer_.now.model_since_ns = 0;
   noise_known_ = chain_.parts().noise_known();
   counters_.filter_resets.add(1);
   events_.report({.kind = EventKind::model_in_use, .sequence = sequence});
@@ -162,35 +161,36 @@ void FilterStage::adopted(std::uint64_t sequence) noexcept {
 bool FilterStage::answer() noexcept {
   constexpr int kTries = 1000;
   const ChainParts& parts = chain_.parts();
-  current_.has_health = parts.health() != nullptr;
-  current_.health = chain_.health();
-  current_.learned = parts.learned();
-  current_.books = {.samples = counters_.device_samples.value(),
-                    .sent = counters_.published.value(),
-                    .failed = counters_.lcm_failures.value(),
-                    .merged = counters_.merged.value()};
+  answer_.now.has_health = parts.health() != nullptr;
+  answer_.now.health = chain_.health();
+  answer_.now.learned = parts.learned();
+  answer_.now.books = {.samples = counters_.device_samples.value(),
+                       .sent = counters_.published.value(),
+                       .failed = counters_.lcm_failures.value(),
+                       .merged = counters_.merged.value()};
   // After the filter's own: whatever that has taken is in the reader's.
-  for (int tries = 0; !reader_books_.try_read(current_.reader); relax())
+  for (int tries = 0; !reader_books_.try_read(answer_.now.reader); relax())
     if (++tries == kTries) return false;
-  current_.allan_period_s = intervals_ > 0 ? mean_interval_s_ : 1.0 / facts_.nominal_rate_hz;
-  current_.allan_octaves = StreamingAllan::kOctaves;
+  answer_.now.allan_period_s = intervals_.count > 0 ? intervals_.mean_s : 1.0 / facts_.nominal_rate_hz;
+  answer_.now.allan_octaves = StreamingAllan::kOctaves;
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
-    current_.allan_octaves = std::min(current_.allan_octaves, allan_[i].octaves());
+    answer_.now.allan_octaves = std::min(answer_.now.allan_octaves, intervals_.allan[i].octaves());
     for (int k = 0; k < StreamingAllan::kOctaves; ++k)
-      current_.allan_radps[i][static_cast<std::size_t>(k)] = allan_[i].deviation(k);
+      answer_.now.allan_radps[i][static_cast<std::size_t>(k)] = intervals_.allan[i].deviation(k);
   }
   const std::string& identity = parts.model_identity();
-  current_.model.fill('\0');
-  std::copy_n(identity.begin(), std::min(identity.size(), current_.model.size() - 1), current_.model.begin());
-  snapshot_ = current_;
-  current_.latency.clear();
-  ask_.store(Ask::answered, std::memory_order_release);
+  answer_.now.model.fill('\0');
+  std::copy_n(identity.begin(), std::min(identity.size(), answer_.now.model.size() - 1),
+              answer_.now.model.begin());
+  answer_.given = answer_.now;
+  answer_.now.latency.clear();
+  answer_.state.store(Ask::answered, std::memory_order_release);
   return true;
 }
 
 bool FilterStage::ask() noexcept {
-  const bool first = ask_.load(std::memory_order_acquire) != Ask::asked;
-  if (first) ask_.store(Ask::asked, std::memory_order_release);
+  const bool first = answer_.state.load(std::memory_order_acquire) != Ask::asked;
+  if (first) answer_.state.store(Ask::asked, std::memory_order_release);
   queue_.notify();
   return first;
 }
@@ -198,11 +198,11 @@ bool FilterStage::ask() noexcept {
 bool FilterStage::take_snapshot(FilterSnapshot& out) noexcept {
   // Nobody else touches the chain once its consumer is done, so the last word needs no question and cannot be
   // older than the last sample.
-  if (finished_.load(std::memory_order_acquire)) answer();
-  if (ask_.load(std::memory_order_acquire) != Ask::answered) return false;
-  out = snapshot_;
+  if (answer_.finished.load(std::memory_order_acquire)) answer();
+  if (answer_.state.load(std::memory_order_acquire) != Ask::answered) return false;
+  out = answer_.given;
   // Release: the next answer may be written as soon as this is seen, and not before `out` has it all.
-  ask_.store(Ask::none, std::memory_order_release);
+  answer_.state.store(Ask::none, std::memory_order_release);
   return true;
 }
 

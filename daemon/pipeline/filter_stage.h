@@ -102,28 +102,34 @@ class FilterStage {
 
   SensorFacts facts_;
   SignalChain chain_;
-  RateEncoder encoder_;
-  std::string channel_;
   struct Also {
     std::string channel;
     std::unique_ptr<InertialEncoder> encoder;
   };
-  std::vector<Also> also_;
-  std::unique_ptr<Publisher> publisher_;
+  struct Output {
+    std::string channel;
+    RateEncoder encoder;
+    std::vector<Also> also;
+    std::unique_ptr<Publisher> publisher;
+  } output_;
   IncrementQueue& queue_;
   const SharedBooks& reader_books_;
   EventQueue& events_;
   bool measure_latency_;
   bool noise_known_;
   ChainOutput out_;
-  std::array<StreamingAllan, kMaxAxes> allan_;
   // A sample clock may be per cents off what it is said to be: the averaging times are those of the samples.
-  std::uint64_t intervals_ = 0;
-  double mean_interval_s_ = 0.0;
-  FilterSnapshot current_;   // filled as samples go by
-  FilterSnapshot snapshot_;  // belongs to housekeeping while ask_ is answered
-  std::atomic<Ask> ask_{Ask::none};
-  std::atomic<bool> finished_{false};
+  struct Intervals {
+    std::array<StreamingAllan, kMaxAxes> allan;
+    std::uint64_t count = 0;
+    double mean_s = 0.0;
+  } intervals_;
+  struct Answer {
+    FilterSnapshot now;    // filled as samples go by
+    FilterSnapshot given;  // belongs to housekeeping while the state is `answered`
+    std::atomic<Ask> state{Ask::none};
+    std::atomic<bool> finished{false};  // the last sample has been processed
+  } answer_;
   PartsExchange exchange_;
   FilterCounters counters_;
   ProcessorShare share_;

@@ -16,8 +16,9 @@ Pipeline::Pipeline(PipelinePlan plan, std::unique_ptr<Transport> transport, Driv
       filter_(std::move(parts), plan_.facts, plan_.lcm_channel, plan_.also, std::move(publisher), queue_,
               reader_books_, filter_events_, !transport->holds_back()),
       hand_over_(queue_, filter_, plan_.facts.nominal_rate_hz, plan_.direct && !plan_.spin),
-      reader_(std::move(transport), std::move(driver), plan_.facts, std::move(outside), queue_, hand_over_,
-              filter_.exchange(), reader_books_, reader_events_, plan_.tape, plan_.processors.get()) {}
+      reader_(std::move(transport), std::move(driver), plan_.facts, std::move(outside),
+              {queue_, hand_over_, filter_.exchange(), reader_books_, reader_events_, plan_.tape},
+              plan_.processors.get()) {}
 
 Pipeline::~Pipeline() { stop(); }
 

@@ -18,20 +18,14 @@ constexpr auto kReaderPause = std::chrono::milliseconds(1);
 }  // namespace
 
 Reader::Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
-               std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
-               PartsExchange& exchange, SharedBooks& books, EventQueue& events, Tape* tape,
+               std::shared_ptr<const ChannelTable> outside, const ReaderLinks& links,
                SharedProcessors* processors)
     : transport_(std::move(transport)),
       driver_(std::move(driver)),
       facts_(facts),
       outside_(std::move(outside)),
       incrementer_(facts),
-      queue_(queue),
-      hand_over_(hand_over),
-      exchange_(exchange),
-      books_(books),
-      events_(events),
-      tape_(tape),
+      links_(links),
       share_(processors) {}
 
 void Reader::take(const ifog_sample& sample) noexcept {
@@ -46,16 +40,16 @@ void Reader::take(const ifog_sample& sample) noexcept {
     reading_.channel_age_s[c] = now.age_s(reading_.came_ns);
   }
   const IncrementerCounts before = incrementer_.counts();
-  Increment& increment = queue_.next();
+  Increment& increment = links_.queue.next();
   const bool taken = incrementer_.next(reading_, increment);
   now_.samples = incrementer_.counts().samples;
   now_.repeated = incrementer_.counts().repeated;
   // Before the filter can have it: what that has taken must be in these books.
-  books_.write(now_);
+  links_.books.write(now_);
   if (!taken) return;
   report(increment, before);
   pushed_ += increment.samples;
-  queue_.push();
+  links_.queue.push();
 }
 
 void Reader::report(const Increment& increment, const IncrementerCounts& before) noexcept {
@@ -65,29 +59,29 @@ void Reader::report(const Increment& increment, const IncrementerCounts& before)
   event.sequence = increment.sequence;
   if (now.restarts != before.restarts) {
     event.kind = EventKind::device_restart;
-    events_.report(event);
+    links_.events.report(event);
   } else if (now.missing != before.missing) {
     event.kind = EventKind::gap;
     event.count = now.missing - before.missing;
-    events_.report(event);
+    links_.events.report(event);
   }
   if (now.clock_steps != before.clock_steps) {
     event.kind = EventKind::clock_step;
     event.a = static_cast<double>(increment.wall_shift_ns) * 1e-9;
-    events_.report(event);
+    links_.events.report(event);
   }
   if (now.sensor_clock_sets != before.sensor_clock_sets) {
     event.kind = EventKind::sensor_clock_set;
-    events_.report(event);
+    links_.events.report(event);
   }
   if (now.pauses != before.pauses) {
     event.kind = EventKind::label_moved;
-    events_.report(event);
+    links_.events.report(event);
   }
-  if (const std::uint64_t overflows = queue_.overflows(); overflows != overflows_seen_) {
-    overflows_seen_ = overflows;
+  if (const std::uint64_t overflows = links_.queue.overflows(); overflows != reported_.overflows) {
+    reported_.overflows = overflows;
     event.kind = EventKind::overflow;
-    events_.report(event);
+    links_.events.report(event);
   }
 }
 
@@ -98,7 +92,7 @@ void Reader::tell_beyond(const ifog_driver_counters& driver) noexcept {
   event.b = driver.beyond_value > driver.beyond_maximum ? driver.beyond_maximum : driver.beyond_minimum;
   std::copy_n(driver.beyond_name, event.name.size(), event.name.begin());
   event.name.back() = '\0';
-  events_.report(event);
+  links_.events.report(event);
 }
 
 void Reader::publish_counters() noexcept {
@@ -117,7 +111,7 @@ void Reader::publish_counters() noexcept {
   counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
   counters_.interval_error.store(incrementer_.interval_error(), std::memory_order_relaxed);
   const ifog_driver_counters driver = driver_.counters();
-  if (driver.values_beyond != 0 && !std::exchange(beyond_told_, true)) tell_beyond(driver);
+  if (driver.values_beyond != 0 && !std::exchange(reported_.beyond, true)) tell_beyond(driver);
   counters_.values_beyond.set(driver.values_beyond);
   counters_.frames_crc.set(driver.frames_crc);
   counters_.bytes_skipped.set(driver.bytes_skipped);
@@ -135,7 +129,7 @@ void Reader::publish_counters() noexcept {
   now_.frames_good = driver.frames_good;
   now_.frames_refused = driver.frames_format;
   now_.frames_other = driver.frames_other;
-  books_.write(now_);
+  links_.books.write(now_);
 }
 
 void Reader::look_outside() noexcept {
@@ -154,11 +148,12 @@ void Reader::stand_back() noexcept {
 void Reader::record(const Delivery& delivery) noexcept {
   // A source that keeps its bytes until they are read loses none to a recorder that is at work.
   if (transport_->holds_back())
-    while (!transport_->stopped() && tape_->worth_waiting(delivery))
+    while (!transport_->stopped() && links_.tape->worth_waiting(delivery))
       std::this_thread::sleep_for(kReaderPause);
-  tape_->put(delivery, turn_ns_,
-             std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
-             reading_.wall_shift_ns, queue_.merged());
+  links_.tape->put(
+      delivery, turn_ns_,
+      std::span(outside_now_).first(static_cast<std::size_t>(facts_.channels - facts_.frame_channels)),
+      reading_.wall_shift_ns, links_.queue.merged());
 }
 
 bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
@@ -166,23 +161,23 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   if (delivery.restarted) {
     driver_.reset();
     incrementer_.discontinuity();
-    events_.report({.kind = EventKind::reopened});
+    links_.events.report({.kind = EventKind::reopened});
   }
   if (!delivery.empty() || delivery.restarted) {
     turn_ns_ = delivery.read_ns;
     // A recording that is read at its own pace brings its own times of day.
     if (!transport_->times_are_recorded()) reading_.wall_shift_ns = wall_shift_.at(turn_ns_);
     look_outside();
-    const std::uint32_t settings = exchange_.mark(pushed_);
-    if (settings != 0 && tape_ != nullptr) tape_->note_settings(settings);
+    const std::uint32_t settings = links_.exchange.mark(pushed_);
+    if (settings != 0 && links_.tape != nullptr) links_.tape->note_settings(settings);
   }
   const auto sink = [this](const ifog_sample& sample) { take(sample); };
   if (!delivery.bytes.empty()) driver_.decode_bytes(delivery.bytes, delivery.arrival_ns, sink);
   for (const ifog_can_frame& frame : delivery.frames) driver_.decode_can(frame, sink);
   publish_counters();
-  hand_over_.delivered();
+  links_.hand_over.delivered();
   // After all that anybody waits for.
-  if (tape_ != nullptr && (!delivery.empty() || delivery.restarted)) record(delivery);
+  if (links_.tape != nullptr && (!delivery.empty() || delivery.restarted)) record(delivery);
   counters_.turns.add(1);
   // A source that waits to be read has nobody else's time.
   if (!delivery.empty() && !transport_->holds_back()) stand_back();
@@ -190,7 +185,7 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
 }
 
 void Reader::run() noexcept {
-  while (turn(queue_.has_waiting() ? kImpatientTurn : kTurn)) {
+  while (turn(links_.queue.has_waiting() ? kImpatientTurn : kTurn)) {
   }
   transport_->close_books();
   // The bytes of a frame that never ended count as skipped.
@@ -198,7 +193,7 @@ void Reader::run() noexcept {
   driver_.reset();
   if (!transport_->stopped()) counters_.bytes_at_end.set(driver_.counters().bytes_skipped - skipped);
   publish_counters();
-  queue_.close();
+  links_.queue.close();
 }
 
 }  // namespace ifog

@@ -40,12 +40,21 @@ struct ReaderCounters {
   std::atomic<double> interval_error{0.0};  // Incrementer::interval_error()
 };
 
+// What the reader shares with the other parts of its pipeline.
+struct ReaderLinks {
+  IncrementQueue& queue;
+  HandOver& hand_over;
+  PartsExchange& exchange;
+  SharedBooks& books;
+  EventQueue& events;
+  Tape* tape = nullptr;  // of the flight recorder, null without one
+};
+
 class Reader {
  public:
-  // tape: of the flight recorder, null without one. processors: that it shares with other readers, if any.
+  // processors: that it shares with other readers, if any.
   Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
-         std::shared_ptr<const ChannelTable> outside, IncrementQueue& queue, HandOver& hand_over,
-         PartsExchange& exchange, SharedBooks& books, EventQueue& events, Tape* tape,
+         std::shared_ptr<const ChannelTable> outside, const ReaderLinks& links,
          SharedProcessors* processors = nullptr);
 
   // Until the transport is stopped or its file has ended. Opening is the caller's. Closes the queue.
@@ -58,7 +67,7 @@ class Reader {
   [[nodiscard]] const DriverInstance& driver() const noexcept { return driver_; }
   [[nodiscard]] const ReaderCounters& counters() const noexcept { return counters_; }
   // Any thread that may wait for the reader's.
-  [[nodiscard]] ReaderBooks books() const noexcept { return books_.read(); }
+  [[nodiscard]] ReaderBooks books() const noexcept { return links_.books.read(); }
 
  private:
   void take(const ifog_sample& sample) noexcept;
@@ -74,20 +83,17 @@ class Reader {
   SensorFacts facts_;
   std::shared_ptr<const ChannelTable> outside_;
   Incrementer incrementer_;
-  IncrementQueue& queue_;
-  HandOver& hand_over_;
-  PartsExchange& exchange_;
-  SharedBooks& books_;
-  EventQueue& events_;
-  Tape* tape_;
+  ReaderLinks links_;
   Reading reading_;
   // Channels from elsewhere, the same for all samples of a delivery: so they are recorded.
   std::array<ChannelValue, kMaxChannels> outside_now_;
   WallShift wall_shift_;
   ProcessorShare share_;
   std::int64_t turn_ns_ = 0;  // arrival clock, of the present turn
-  std::uint64_t overflows_seen_ = 0;
-  bool beyond_told_ = false;
+  struct Reported {
+    std::uint64_t overflows = 0;
+    bool beyond = false;
+  } reported_;
   std::uint64_t pushed_ = 0;  // samples
   ReaderBooks now_;
   ReaderCounters counters_;

@@ -93,21 +93,21 @@ void Recorder::stop() {
     const bool came = head.kind == FlightKind::bytes || head.kind == FlightKind::can;
     if (came) left += {tape_.begins_delivery() ? 1U : 0U, payload_.size()};
   }
-  unwritten_.set(unwritten);
+  counters_.unwritten.set(unwritten);
   publish_counters();
-  lost_deliveries_.add(left.deliveries);
-  lost_bytes_.add(left.bytes);
+  counters_.lost_deliveries.add(left.deliveries);
+  counters_.lost_bytes.add(left.bytes);
   judge(now_ns);
   judge_the_end(archive_.not_taken().deliveries + left.deliveries);
 }
 
 void Recorder::publish_counters() {
-  file_bytes_.set(archive_.bytes_written());
-  files_removed_.set(archive_.files_removed());
+  counters_.file_bytes.set(archive_.bytes_written());
+  counters_.files_removed.set(archive_.files_removed());
   FlightLoss lost = archive_.taken_away();
   lost += archive_.not_taken();
-  lost_deliveries_.set(lost.deliveries);
-  lost_bytes_.set(lost.bytes);
+  counters_.lost_deliveries.set(lost.deliveries);
+  counters_.lost_bytes.set(lost.bytes);
 }
 
 void Recorder::set_header(FlightHeader header, std::uint32_t settings) {
@@ -163,37 +163,36 @@ void Recorder::drain(std::int64_t now_ns, std::int64_t wall_ns, bool flush) {
 void Recorder::say(std::string message, bool good) {
   const std::lock_guard lock(mutex_);
   // Both of one turn of the housekeeping: the later stands, and says the earlier's end.
-  message_ = std::move(message);
-  message_good_ = good;
+  message_ = {std::move(message), good};
 }
 
 void Recorder::judge(std::int64_t now_ns) {
   const std::uint64_t gone = archive_.taken_away().deliveries;
-  if (const std::uint64_t before = std::exchange(gone_seen_, gone); before != gone)
+  if (const std::uint64_t before = std::exchange(trouble_.gone_seen, gone); before != gone)
     say("recorder: " + archive_.path() + ": the recording in work has been taken away, " +
             std::to_string(gone - before) + " deliveries with it",
         false);
   const std::uint64_t lost = tape_.counters().lost_deliveries.value();
-  if (const std::uint64_t before = std::exchange(lost_seen_, lost); before != lost) {
-    if (before == lost_before_) first_loss_ns_ = judged_ns_;
-    last_loss_ns_ = now_ns;
+  if (const std::uint64_t before = std::exchange(trouble_.lost_seen, lost); before != lost) {
+    if (before == trouble_.lost_before) trouble_.first_loss_ns = trouble_.judged_ns;
+    trouble_.last_loss_ns = now_ns;
   }
-  judged_ns_ = now_ns;
+  trouble_.judged_ns = now_ns;
   const int error = archive_.error();
-  const bool losing = last_loss_ns_ != 0 && now_ns - last_loss_ns_ < kQuiet_ns;
-  if (!troubled_ && (error != 0 || losing)) {
-    troubled_ = true;
+  const bool losing = trouble_.last_loss_ns != 0 && now_ns - trouble_.last_loss_ns < kQuiet_ns;
+  if (!trouble_.present && (error != 0 || losing)) {
+    trouble_.present = true;
     say("recorder: " + archive_.path() + ": " +
             (error != 0 ? archive_.complaint() + ", nothing is recorded until it takes more"
                         : std::string("slower than what is to be recorded, a part is dropped")) +
             "; what is lost is counted",
         false);
-  } else if (troubled_ && error == 0 && !losing) {
-    troubled_ = false;
+  } else if (trouble_.present && error == 0 && !losing) {
+    trouble_.present = false;
     say("recorder: " + archive_.path() + ": all is recorded again, " +
-            losses_in_words(lost - lost_before_, last_loss_ns_ - first_loss_ns_),
+            losses_in_words(lost - trouble_.lost_before, trouble_.last_loss_ns - trouble_.first_loss_ns),
         true);
-    lost_before_ = lost;
+    trouble_.lost_before = lost;
   }
 }
 
@@ -207,8 +206,8 @@ void Recorder::judge_the_end(std::uint64_t not_taken) {
 
 std::string Recorder::take_message(bool& good) {
   const std::lock_guard lock(mutex_);
-  good = message_good_;
-  return std::exchange(message_, {});
+  good = message_.good;
+  return std::exchange(message_.text, {});
 }
 
 }  // namespace ifog

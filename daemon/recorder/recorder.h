@@ -36,15 +36,15 @@ class Recorder {
   // What the log should say, each trouble once and its end once; "" for nothing new. good: it is over.
   [[nodiscard]] std::string take_message(bool& good);
   // Any thread.
-  [[nodiscard]] std::uint64_t file_bytes() const noexcept { return file_bytes_.value(); }
-  [[nodiscard]] std::uint64_t files_removed() const noexcept { return files_removed_.value(); }
-  [[nodiscard]] std::uint64_t entries_unwritten() const noexcept { return unwritten_.value(); }
+  [[nodiscard]] std::uint64_t file_bytes() const noexcept { return counters_.file_bytes.value(); }
+  [[nodiscard]] std::uint64_t files_removed() const noexcept { return counters_.files_removed.value(); }
+  [[nodiscard]] std::uint64_t entries_unwritten() const noexcept { return counters_.unwritten.value(); }
   // Deliveries that found no room, were overwritten while being written, or at the end found no disk.
   [[nodiscard]] std::uint64_t lost_deliveries() const noexcept {
-    return tape_.counters().lost_deliveries.value() + lost_deliveries_.value();
+    return tape_.counters().lost_deliveries.value() + counters_.lost_deliveries.value();
   }
   [[nodiscard]] std::uint64_t lost_bytes() const noexcept {
-    return tape_.counters().lost_bytes.value() + lost_bytes_.value();
+    return tape_.counters().lost_bytes.value() + counters_.lost_bytes.value();
   }
 
   // One round of the thread's work, at these times; for tests.
@@ -67,19 +67,25 @@ class Recorder {
   std::vector<std::uint8_t> payload_;
   // Deliveries and bytes lost, by the entries read from the tape.
   std::array<std::uint64_t, 2> told_{};
-  // A trouble: what had been lost before it, and from when to when it lost, by the turns that saw it.
-  bool troubled_ = false;
-  std::int64_t judged_ns_ = 0, first_loss_ns_ = 0, last_loss_ns_ = 0;
-  std::uint64_t lost_before_ = 0, lost_seen_ = 0, gone_seen_ = 0;
+  // What had been lost before it, and from when to when it lost, by the turns that saw it.
+  struct Trouble {
+    bool present = false;
+    std::int64_t judged_ns = 0, first_loss_ns = 0, last_loss_ns = 0;
+    std::uint64_t lost_before = 0, lost_seen = 0, gone_seen = 0;
+  } trouble_;
   std::uint32_t settings_due_ = 0;  // their file begins once all before them is written
 
   std::mutex mutex_;  // never taken by a real-time thread
   std::condition_variable stops_;
   std::map<std::uint32_t, FlightHeader> next_headers_;  // by the number of their settings
-  std::string message_;
-  bool message_good_ = false;
+  struct Message {
+    std::string text;
+    bool good = false;
+  } message_;
 
-  Counter file_bytes_, files_removed_, unwritten_, lost_deliveries_, lost_bytes_;
+  struct Counters {
+    Counter file_bytes, files_removed, unwritten, lost_deliveries, lost_bytes;
+  } counters_;
   bool stopping_ = false;  // with mutex_
   std::thread thread_;
 };

@@ -70,9 +70,9 @@ FlightArchive::~FlightArchive() { close(now_ns_, wall_ns_); }
 
 void FlightArchive::add(const FlightEntryHead& head, std::span<const std::uint8_t> payload,
                         bool begins_delivery) {
-  append_entry(waiting_, head, payload);
-  ++entries_waiting_;
-  waiting_load_ += load_of(head, payload, begins_delivery);
+  append_entry(waiting_.bytes, head, payload);
+  ++waiting_.entries;
+  waiting_.load += load_of(head, payload, begins_delivery);
 }
 
 std::string FlightArchive::complaint() const {
@@ -93,66 +93,67 @@ int FlightArchive::look(std::int64_t now_ns, std::int64_t wall_ns) {
   if (const int error = folder_->list(files); error != 0) return error;
   // What is known is not judged by the wall clock again, which may have been set meanwhile.
   std::map<std::string, std::int64_t> known;
-  for (const Kept& file : kept_) known[file.name] = file.last_ns;
-  if (!open_name_.empty()) known[open_name_] = now_ns_;
-  kept_.clear();
-  kept_bytes_ = 0;
+  for (const Kept& file : kept_.files) known[file.name] = file.last_ns;
+  if (!file_.name.empty()) known[file_.name] = now_ns_;
+  kept_.files.clear();
+  kept_.bytes = 0;
   for (FlightFolder::File& file : files) {
     std::string name = file.name;
     if (name.ends_with(kOpen)) {
       name.resize(name.size() - kOpen.size());
       if (number_of(name) == 0) continue;
-      next_number_ = std::max(next_number_, number_of(name) + 1);
+      kept_.next_number = std::max(kept_.next_number, number_of(name) + 1);
       if (folder_->take_over(file.name, name) != 0) continue;
     }
     const std::uint64_t number = number_of(name);
     if (number == 0) continue;
-    next_number_ = std::max(next_number_, number + 1);
+    kept_.next_number = std::max(kept_.next_number, number + 1);
     const std::int64_t age_ns =
         file.modified_ns < kClockIsSet_ns ? 0 : std::max<std::int64_t>(0, wall_ns - file.modified_ns);
     const auto found = known.find(name);
     const std::int64_t last_ns = found != known.end() ? found->second : now_ns - age_ns;
-    kept_.push_back({number, std::move(name), file.bytes, last_ns});
-    kept_bytes_ += file.bytes;
+    kept_.files.push_back({number, std::move(name), file.bytes, last_ns});
+    kept_.bytes += file.bytes;
   }
-  std::sort(kept_.begin(), kept_.end(), [](const Kept& a, const Kept& b) { return a.number < b.number; });
-  looked_ = true;
+  std::sort(kept_.files.begin(), kept_.files.end(),
+            [](const Kept& a, const Kept& b) { return a.number < b.number; });
+  kept_.known = true;
   return 0;
 }
 
 int FlightArchive::write(BlockType type, std::span<const std::uint8_t> content) {
-  block_.clear();
-  const BlockPlace place = type == BlockType::header ? BlockPlace{} : BlockPlace{header_.file, file_bytes_};
-  append_block(block_, type, place, content, deflater_);
+  std::vector<std::uint8_t> block;
+  const BlockPlace place = type == BlockType::header ? BlockPlace{} : BlockPlace{header_.file, file_.bytes};
+  append_block(block, type, place, content, deflater_);
   // Room is made before it is used: the limit is never exceeded.
-  while (!kept_.empty() && kept_bytes_ + file_bytes_ + block_.size() > limits_.bytes)
+  while (!kept_.files.empty() && kept_.bytes + file_.bytes + block.size() > limits_.bytes)
     if (const int error = remove_oldest(); error != 0) return error;
-  const int error = folder_->append(block_);
+  const int error = folder_->append(block);
   if (error != 0) return error;
-  file_bytes_ += block_.size();
-  bytes_written_ += block_.size();
+  file_.bytes += block.size();
+  bytes_written_ += block.size();
   return 0;
 }
 
 int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
-  if (!looked_)
+  if (!kept_.known)
     if (const int error = look(now_ns, wall_ns); error != 0) return error;
   if (next_header_) {
     next_header_->run = header_.run;
     header_ = *std::exchange(next_header_, std::nullopt);
   }
   header_.file = random_number();
-  header_.number = next_number_;
-  header_.began = began_ != 0 ? began_ : next_number_;
+  header_.number = kept_.next_number;
+  header_.began = began_ != 0 ? began_ : kept_.next_number;
   header_.opened_ns = wall_ns;
-  open_name_ = file_name(next_number_, wall_ns);
-  if (const int error = folder_->begin(open_name_ + std::string(kOpen)); error != 0) {
-    if (error == EEXIST) ++next_number_;
-    looked_ = false;
+  file_.name = file_name(kept_.next_number, wall_ns);
+  if (const int error = folder_->begin(file_.name + std::string(kOpen)); error != 0) {
+    if (error == EEXIST) ++kept_.next_number;
+    kept_.known = false;
     return error;
   }
-  file_bytes_ = file_entries_ = 0;
-  file_since_ns_ = now_ns;
+  file_.bytes = file_.entries = 0;
+  file_.since_ns = now_ns;
   std::vector<std::uint8_t> state;
   for (const auto& [key, entry] : state_) state.insert(state.end(), entry.begin(), entry.end());
   int error = write(BlockType::header, header_payload(header_));
@@ -160,20 +161,20 @@ int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
   if (error != 0) {
     // Nothing of use is in it, and its number is free again.
     folder_->leave();
-    folder_->remove(open_name_ + std::string(kOpen));
-    file_bytes_ = 0;
+    folder_->remove(file_.name + std::string(kOpen));
+    file_.bytes = 0;
     return error;
   }
-  file_entries_ = state_.size();
-  open_ = true;
-  file_load_ = {};
+  file_.entries = state_.size();
+  file_.open = true;
+  file_.load = {};
   began_ = header_.began;
-  ++next_number_;
+  ++kept_.next_number;
   return 0;
 }
 
 int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_goes_on) {
-  const std::array<std::uint64_t, 3> told{file_entries_, static_cast<std::uint64_t>(wall_ns),
+  const std::array<std::uint64_t, 3> told{file_.entries, static_cast<std::uint64_t>(wall_ns),
                                           run_goes_on ? 1U : 0U};
   std::array<std::uint8_t, sizeof told> bytes{};
   std::memcpy(bytes.data(), told.data(), sizeof told);
@@ -183,11 +184,11 @@ int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_
     forget_file();
     return error;
   }
-  if (const int finished = folder_->finish(open_name_); error == 0) error = finished;
-  open_ = false;
-  file_bytes_ = 0;
+  if (const int finished = folder_->finish(file_.name); error == 0) error = finished;
+  file_.open = false;
+  file_.bytes = 0;
   // Files may have been taken away or put back meanwhile; what could not be renamed is taken over.
-  looked_ = false;
+  kept_.known = false;
   if (const int looked = look(now_ns, wall_ns); error == 0) error = looked;
   return error;
 }
@@ -195,14 +196,14 @@ int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_
 // The open file has been taken away, and what it held with it.
 void FlightArchive::forget_file() {
   folder_->leave();
-  taken_away_ += std::exchange(file_load_, {});
-  open_ = looked_ = false;
-  file_bytes_ = 0;
+  lost_.with_files += std::exchange(file_.load, {});
+  file_.open = kept_.known = false;
+  file_.bytes = 0;
 }
 
 // The waiting entries that are state are what the next file begins with.
 void FlightArchive::remember_state() {
-  std::span<const std::uint8_t> rest = waiting_;
+  std::span<const std::uint8_t> rest = waiting_.bytes;
   FlightEntry entry;
   for (const std::uint8_t* at = rest.data(); take_entry(rest, entry); at = rest.data())
     if (entry.head.kind == FlightKind::channel || entry.head.kind == FlightKind::wall)
@@ -210,63 +211,64 @@ void FlightArchive::remember_state() {
 }
 
 bool FlightArchive::file_is_full(std::int64_t now_ns) const {
-  return open_ && (next_header_.has_value() || file_bytes_ >= limits_.file_bytes ||
-                   now_ns - file_since_ns_ >= limits_.file_ns);
+  return file_.open && (next_header_.has_value() || file_.bytes >= limits_.file_bytes ||
+                        now_ns - file_.since_ns >= limits_.file_ns);
 }
 
 int FlightArchive::write_waiting(std::int64_t now_ns, std::int64_t wall_ns) {
-  if (!open_)
+  if (!file_.open)
     if (const int error = begin_file(now_ns, wall_ns); error != 0) return error;
-  int error = write(BlockType::data, waiting_);
+  int error = write(BlockType::data, waiting_.bytes);
   if (error == ENOENT) {
     forget_file();
     error = begin_file(now_ns, wall_ns);
-    if (error == 0) error = write(BlockType::data, waiting_);
+    if (error == 0) error = write(BlockType::data, waiting_.bytes);
   }
-  if (error == EBADF) open_ = looked_ = false;  // a half-written block could not be taken back: another file
+  if (error == EBADF)
+    file_.open = kept_.known = false;  // a half-written block could not be taken back: another file
   if (error != 0) return error;
-  file_entries_ += entries_waiting_;
+  file_.entries += waiting_.entries;
   if (header_.carries != FlightHeader::Carries::messages) remember_state();
-  waiting_.clear();
-  entries_waiting_ = 0;
-  file_load_ += std::exchange(waiting_load_, {});
-  waiting_since_ns_ = -1;
+  waiting_.bytes.clear();
+  waiting_.entries = 0;
+  file_.load += std::exchange(waiting_.load, {});
+  waiting_.since_ns = -1;
   return 0;
 }
 
 int FlightArchive::remove_oldest() {
-  const int error = folder_->remove(kept_.front().name);
+  const int error = folder_->remove(kept_.files.front().name);
   if (error != 0 && error != ENOENT) return error;
-  kept_bytes_ -= kept_.front().bytes;
-  kept_.pop_front();
-  ++files_removed_;
+  kept_.bytes -= kept_.files.front().bytes;
+  kept_.files.pop_front();
+  ++kept_.removed;
   return 0;
 }
 
 // Files, before anything is written; 0 or the disk's answer.
 int FlightArchive::tidy() {
-  if (!looked_)
+  if (!kept_.known)
     if (const int error = look(now_ns_, wall_ns_); error != 0) return error;
   // With what the next one begins with; of a sensor that has fallen silent without.
-  const bool silent = now_ns_ - file_since_ns_ >= limits_.file_ns + limits_.flush_ns;
-  if (file_is_full(now_ns_) && (!waiting_.empty() || silent))
-    if (const int error = end_file(now_ns_, wall_ns_, !waiting_.empty()); error != 0 && error != ENOENT)
+  const bool silent = now_ns_ - file_.since_ns >= limits_.file_ns + limits_.flush_ns;
+  if (file_is_full(now_ns_) && (!waiting_.bytes.empty() || silent))
+    if (const int error = end_file(now_ns_, wall_ns_, !waiting_.bytes.empty()); error != 0 && error != ENOENT)
       return error;
-  while (!kept_.empty() && now_ns_ - kept_.front().last_ns > limits_.age_ns)
+  while (!kept_.files.empty() && now_ns_ - kept_.files.front().last_ns > limits_.age_ns)
     if (const int error = remove_oldest(); error != 0) return error;
   return 0;
 }
 
 void FlightArchive::turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush) {
   // A disk that refused is asked once a second.
-  if (error_ != 0 && !flush && now_ns - asked_ns_ < limits_.flush_ns) return;
-  asked_ns_ = now_ns_ = now_ns;
+  if (error_ != 0 && !flush && now_ns - now_ns_ < limits_.flush_ns) return;
+  now_ns_ = now_ns;
   wall_ns_ = wall_ns;
   const int tidied = tidy();
   if (tidied != 0) error_ = tidied;
-  if (waiting_.empty()) return;
-  if (waiting_since_ns_ < 0) waiting_since_ns_ = now_ns;
-  if (error_ == 0 && !flush && !full() && now_ns - waiting_since_ns_ < limits_.flush_ns) return;
+  if (waiting_.bytes.empty()) return;
+  if (waiting_.since_ns < 0) waiting_.since_ns = now_ns;
+  if (error_ == 0 && !flush && !full() && now_ns - waiting_.since_ns < limits_.flush_ns) return;
   const int written = write_waiting(now_ns, wall_ns);
   error_ = written != 0 ? written : tidied;
 }
@@ -274,11 +276,11 @@ void FlightArchive::turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush) 
 std::uint64_t FlightArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
   turn(now_ns, wall_ns, true);
   // A full disk may still accept the end, which is small: the error is that of what was not accepted.
-  if (open_)
-    if (const int ended = end_file(now_ns, wall_ns, false); entries_waiting_ == 0) error_ = ended;
-  waiting_.clear();
-  not_taken_ += std::exchange(waiting_load_, {});
-  return std::exchange(entries_waiting_, 0);
+  if (file_.open)
+    if (const int ended = end_file(now_ns, wall_ns, false); waiting_.entries == 0) error_ = ended;
+  waiting_.bytes.clear();
+  lost_.waiting += std::exchange(waiting_.load, {});
+  return std::exchange(waiting_.entries, 0);
 }
 
 }  // namespace ifog

@@ -53,7 +53,7 @@ class FlightArchive {
   // One entry behind the others. Only while not full(). begins_delivery: it is the first of what one read
   // brought.
   void add(const FlightEntryHead& head, std::span<const std::uint8_t> payload, bool begins_delivery = true);
-  [[nodiscard]] bool full() const { return waiting_.size() >= kBlockTarget; }
+  [[nodiscard]] bool full() const { return waiting_.bytes.size() >= kBlockTarget; }
   // Writes what is due, begins and ends files, removes old ones. `flush`: all that waits is due.
   void turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush = false);
   // From the next block on; ends the present file.
@@ -66,11 +66,11 @@ class FlightArchive {
   [[nodiscard]] std::string complaint() const;
   // What is in no recording: with files that were removed while they were written, and what waited when it
   // was closed and no disk took.
-  [[nodiscard]] const FlightLoss& taken_away() const { return taken_away_; }
-  [[nodiscard]] const FlightLoss& not_taken() const { return not_taken_; }
+  [[nodiscard]] const FlightLoss& taken_away() const { return lost_.with_files; }
+  [[nodiscard]] const FlightLoss& not_taken() const { return lost_.waiting; }
   [[nodiscard]] std::uint64_t bytes_written() const { return bytes_written_; }
-  [[nodiscard]] std::uint64_t files_removed() const { return files_removed_; }
-  [[nodiscard]] std::uint64_t entries_waiting() const { return entries_waiting_; }
+  [[nodiscard]] std::uint64_t files_removed() const { return kept_.removed; }
+  [[nodiscard]] std::uint64_t entries_waiting() const { return waiting_.entries; }
   [[nodiscard]] std::string path() const { return folder_->path(); }
 
  private:
@@ -79,6 +79,29 @@ class FlightArchive {
     std::string name;
     std::uint64_t bytes;
     std::int64_t last_ns;  // when it was last written, by the clock of now_ns
+  };
+  struct KeptFiles {
+    std::deque<Kept> files;  // oldest first
+    std::uint64_t bytes = 0;
+    bool known = false;  // the folder has been looked at since it may have changed
+    std::uint64_t next_number = 1, removed = 0;
+  };
+  struct OpenFile {
+    bool open = false;
+    std::string name;  // as it will be called
+    std::uint64_t bytes = 0, entries = 0;
+    std::int64_t since_ns = 0;
+    FlightLoss load;  // deliveries in it
+  };
+  // Entries that no file has yet.
+  struct Waiting {
+    std::vector<std::uint8_t> bytes;
+    std::uint64_t entries = 0;
+    std::int64_t since_ns = -1;
+    FlightLoss load;
+  };
+  struct Lost {
+    FlightLoss with_files, waiting;
   };
 
   int look(std::int64_t now_ns, std::int64_t wall_ns);
@@ -97,31 +120,18 @@ class FlightArchive {
   std::unique_ptr<FlightFolder> folder_;
   ArchiveLimits limits_;
   FlightHeader header_;
-  std::deque<Kept> kept_;  // oldest first
-  std::uint64_t kept_bytes_ = 0;
-  bool looked_ = false;
-  std::uint64_t next_number_ = 1;
-
-  // The open file.
-  bool open_ = false;
   std::optional<FlightHeader> next_header_;  // of the next file
-  std::string open_name_;                    // as it will be called
-  std::uint64_t file_bytes_ = 0, file_entries_ = 0;
-  std::int64_t file_since_ns_ = 0;
+  KeptFiles kept_;
+  OpenFile file_;
   std::uint64_t began_ = 0;  // number of the run's first file
-
-  std::vector<std::uint8_t> waiting_, block_;
+  Waiting waiting_;
   Deflater deflater_;
-  std::uint64_t entries_waiting_ = 0;
-  std::int64_t waiting_since_ns_ = -1;
-  std::int64_t now_ns_ = 0, wall_ns_ = 0, asked_ns_ = 0;
+  std::int64_t now_ns_ = 0, wall_ns_ = 0;  // of the last turn
   // The latest value of each channel and the wall clock's shift: each file begins with them.
   std::map<std::pair<FlightKind, std::uint16_t>, std::vector<std::uint8_t>> state_;
-
-  FlightLoss waiting_load_, file_load_;  // deliveries that wait, and in the open file
-  FlightLoss taken_away_, not_taken_;
+  Lost lost_;
   int error_ = 0;
-  std::uint64_t bytes_written_ = 0, files_removed_ = 0;
+  std::uint64_t bytes_written_ = 0;
 };
 
 }  // namespace ifog

@@ -18,39 +18,39 @@ constexpr std::size_t kPortion = 1U << 16U;
 }  // namespace
 
 FlightReader::FlightReader(std::span<const std::uint8_t> recording)
-    : source_([rest = recording](char* to, std::size_t most) mutable {
+    : FlightReader(Source([rest = recording](char* to, std::size_t most) mutable {
         const std::size_t n = std::min(most, rest.size());
         std::copy_n(rest.begin(), n, to);
         rest = rest.subspan(n);
         return n;
-      }) {}
+      })) {}
 
 bool FlightReader::ensure(std::size_t bytes) {
-  if (at_ > (kPortion << 4U)) {
-    held_.erase(0, at_);
-    at_ = 0;
+  if (stream_.at > (kPortion << 4U)) {
+    stream_.held.erase(0, stream_.at);
+    stream_.at = 0;
   }
-  while (held_.size() - at_ < bytes && !source_ended_) {
-    const std::size_t before = held_.size();
-    held_.resize(before + kPortion);
-    const std::size_t got = source_(held_.data() + before, kPortion);
-    held_.resize(before + got);
-    source_ended_ = got < kPortion;
+  while (stream_.held.size() - stream_.at < bytes && !stream_.ended) {
+    const std::size_t before = stream_.held.size();
+    stream_.held.resize(before + kPortion);
+    const std::size_t got = stream_.read(stream_.held.data() + before, kPortion);
+    stream_.held.resize(before + got);
+    stream_.ended = got < kPortion;
   }
-  return held_.size() - at_ >= bytes;
+  return stream_.held.size() - stream_.at >= bytes;
 }
 
 void FlightReader::drop(std::size_t bytes) {
-  at_ += bytes;
-  passed_ += bytes;
+  stream_.at += bytes;
+  stream_.passed += bytes;
 }
 
 // The whole good block that begins here, into block_ and content_: of this file, or the header of another.
 bool FlightReader::block_here() {
   if (!ensure(kBlockHead)) return false;
   for (const bool header : {false, true}) {
-    const BlockPlace place = header ? BlockPlace{} : BlockPlace{header_.file, passed_ - file_at_};
-    if (!header && !in_file_) continue;
+    const BlockPlace place = header ? BlockPlace{} : BlockPlace{header_.file, stream_.passed - file_.at};
+    if (!header && !file_.begun) continue;
     if (!read_block_head(ahead(), place, block_) || (block_.type == BlockType::header) != header) continue;
     if (!ensure(block_.size()) || !read_block(ahead().first(block_.size()), place, block_, content_))
       continue;
@@ -75,43 +75,43 @@ FlightReader::Found FlightReader::next_block() {
     drop(step);
   }
   const bool ended = !ensure(1);
-  if (!in_file_ && (ended || skipped > 0))
+  if (!file_.begun && (ended || skipped > 0))
     throw std::runtime_error("is no flight recording, expected one that begins with its header");
   if (skipped == 0) return ended ? Found::end : Found::block;
-  whole_ = false;
+  file_.whole = false;
   (ended || header_block_ ? counts_.torn_bytes : counts_.damaged_bytes) += skipped;
   return ended ? Found::end : Found::gap;
 }
 
 void FlightReader::finish_file(bool another_run) {
-  if (!in_file_) return;
+  if (!file_.begun) return;
   if (another_run)
-    counts_.cut_off_runs += !closed_ || goes_on_ ? 1 : 0;
+    counts_.cut_off_runs += !file_.closed || file_.run_goes_on ? 1 : 0;
   else
-    counts_.open_files += closed_ ? 0 : 1;
+    counts_.open_files += file_.closed ? 0 : 1;
 }
 
 FlightReader::Item FlightReader::begin_file() {
   FlightHeader fresh = parse_header(content_);
   // The next file of the same run continues in the middle of a frame.
-  const bool goes_on =
-      in_file_ && closed_ && whole_ && fresh.run == header_.run && fresh.number == header_.number + 1;
-  const bool first = !in_file_;
+  const bool goes_on = file_.begun && file_.closed && file_.whole && fresh.run == header_.run &&
+                       fresh.number == header_.number + 1;
+  const bool first = !file_.begun;
   const bool same_run = !first && fresh.run == header_.run;
   if (same_run && fresh.number > header_.number + 1)
     counts_.missing_files += fresh.number - header_.number - 1;
-  if (!first && !same_run && closed_ && fresh.opened_ns < closed_ns_) ++counts_.early_files;
+  if (!first && !same_run && file_.closed && fresh.opened_ns < file_.closed_ns) ++counts_.early_files;
   finish_file(!first && !same_run);
   if (!same_run) {
     ++counts_.runs;
     end_run();
   }
   header_ = std::move(fresh);
-  file_at_ = passed_;
-  file_entries_ = 0;
-  in_file_ = true;
-  closed_ = false;
-  whole_ = true;
+  file_.at = stream_.passed;
+  file_.entries = 0;
+  file_.begun = true;
+  file_.closed = false;
+  file_.whole = true;
   ++counts_.files;
   drop(block_.size());
   if (first || goes_on) return Item::header;
@@ -129,17 +129,17 @@ void FlightReader::take_block() {
   }
   std::uint64_t told = 0;
   if (content_.size() >= sizeof told) std::memcpy(&told, content_.data(), sizeof told);
-  closed_ = true;
+  file_.closed = true;
   std::uint64_t goes_on = 0;
-  if (content_.size() >= sizeof told + sizeof closed_ns_ + sizeof goes_on)
-    std::memcpy(&goes_on, content_.data() + sizeof told + sizeof closed_ns_, sizeof goes_on);
-  goes_on_ = goes_on != 0;
-  closed_ns_ = INT64_MIN;
-  if (content_.size() >= sizeof told + sizeof closed_ns_)
-    std::memcpy(&closed_ns_, content_.data() + sizeof told, sizeof closed_ns_);
-  if (told > file_entries_) {
-    counts_.missing_entries += told - file_entries_;
-    whole_ = false;
+  if (content_.size() >= sizeof told + sizeof file_.closed_ns + sizeof goes_on)
+    std::memcpy(&goes_on, content_.data() + sizeof told + sizeof file_.closed_ns, sizeof goes_on);
+  file_.run_goes_on = goes_on != 0;
+  file_.closed_ns = INT64_MIN;
+  if (content_.size() >= sizeof told + sizeof file_.closed_ns)
+    std::memcpy(&file_.closed_ns, content_.data() + sizeof told, sizeof file_.closed_ns);
+  if (told > file_.entries) {
+    counts_.missing_entries += told - file_.entries;
+    file_.whole = false;
   }
 }
 
@@ -147,27 +147,28 @@ void FlightReader::take_block() {
 // is set some seconds later. A clock that was set back, or never, says nothing of the time between two runs.
 void FlightReader::note_arrival() {
   const FlightEntryHead& head = entry_.head;
-  if (std::int64_t set_ns = 0; head.kind == FlightKind::wall && entry_.value(set_ns)) wall_set_ns_ = set_ns;
+  if (std::int64_t set_ns = 0; head.kind == FlightKind::wall && entry_.value(set_ns))
+    run_.wall_set_ns = set_ns;
   const bool came =
       head.kind == FlightKind::bytes || head.kind == FlightKind::can || head.kind == FlightKind::message;
   if (!came || head.time_ns <= 0) return;
-  if (run_began_ns_ == 0) run_began_ns_ = head.time_ns;
-  arrived_ns_ = head.time_ns;
+  if (run_.began_ns == 0) run_.began_ns = head.time_ns;
+  run_.arrived_ns = head.time_ns;
 }
 
 void FlightReader::end_run() {
   constexpr std::int64_t kClockIsSet_ns = 631'152'000'000'000'000;  // 1990: no such computer is older
-  if (run_began_ns_ == 0) return;
-  const std::int64_t began_ns = ns_after(run_began_ns_, wall_set_ns_);
-  const std::int64_t pause_ns = ns_between(last_run_ended_ns_, began_ns);
-  const bool alike = (last_run_ended_ns_ < kClockIsSet_ns) == (began_ns < kClockIsSet_ns);
-  if (last_run_ended_ns_ > 0 && alike && pause_ns > 0) {
+  if (run_.began_ns == 0) return;
+  const std::int64_t began_ns = ns_after(run_.began_ns, run_.wall_set_ns);
+  const std::int64_t pause_ns = ns_between(run_.last_ended_ns, began_ns);
+  const bool alike = (run_.last_ended_ns < kClockIsSet_ns) == (began_ns < kClockIsSet_ns);
+  if (run_.last_ended_ns > 0 && alike && pause_ns > 0) {
     const double pause_s = static_cast<double>(pause_ns) * 1e-9;
     counts_.between_runs_s += pause_s;
     counts_.longest_between_runs_s = std::max(counts_.longest_between_runs_s, pause_s);
   }
-  last_run_ended_ns_ = ns_after(arrived_ns_, wall_set_ns_);
-  run_began_ns_ = wall_set_ns_ = 0;
+  run_.last_ended_ns = ns_after(run_.arrived_ns, run_.wall_set_ns);
+  run_.began_ns = run_.wall_set_ns = 0;
 }
 
 // False: it says what is missing, which is a hole.
@@ -176,11 +177,11 @@ bool FlightReader::take_entry_ahead() {
     // Its checksum is right: what wrote it was wrong, or is newer than this.
     counts_.damaged_bytes += rest_.size();
     rest_ = {};
-    whole_ = false;
+    file_.whole = false;
     return false;
   }
   ++counts_.entries;
-  ++file_entries_;
+  ++file_.entries;
   note_arrival();
   if (std::uint64_t merged = 0; entry_.head.kind == FlightKind::merged && entry_.value(merged))
     counts_.merged_samples += merged;

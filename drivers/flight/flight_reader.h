@@ -38,7 +38,7 @@ class FlightReader {
  public:
   // As InputFile::read: up to so many bytes, fewer only at the end.
   using Source = std::function<std::size_t(char*, std::size_t)>;
-  explicit FlightReader(Source source) : source_(std::move(source)) {}
+  explicit FlightReader(Source source) : stream_{std::move(source), {}} {}
   // Reads a recording in memory, which must stay as it is while the reader is used.
   explicit FlightReader(std::span<const std::uint8_t> recording);
 
@@ -68,25 +68,37 @@ class FlightReader {
   void note_arrival();
   void end_run();
   [[nodiscard]] std::span<const std::uint8_t> ahead() const {
-    return {reinterpret_cast<const std::uint8_t*>(held_.data()) + at_, held_.size() - at_};
+    return {reinterpret_cast<const std::uint8_t*>(stream_.held.data()) + stream_.at,
+            stream_.held.size() - stream_.at};
   }
 
-  Source source_;
-  std::string held_;
-  std::size_t at_ = 0;        // in held_
-  std::uint64_t passed_ = 0;  // bytes of the stream before held_[at_]
-  bool source_ended_ = false;
+  struct Stream {
+    Source read;
+    std::string held;
+    std::size_t at = 0;        // in held
+    std::uint64_t passed = 0;  // bytes of the stream before held[at]
+    bool ended = false;
+  };
+  // The present file, or the last one.
+  struct File {
+    std::uint64_t at = 0;       // where it begins in the stream
+    std::uint64_t entries = 0;  // so far
+    bool begun = false, closed = false;
+    bool whole = true;           // nothing of it is missing
+    bool run_goes_on = false;    // by its end, in another file
+    std::int64_t closed_ns = 0;  // wall clock, once it is closed
+  };
+  struct Run {
+    // Arrival of its first and last entry, 0: none has a known time; by how much its wall clock was set.
+    std::int64_t began_ns = 0, arrived_ns = 0, wall_set_ns = 0;
+    std::int64_t last_ended_ns = 0;  // the run before, by the wall clock; 0: there was none
+  };
 
+  Stream stream_;
   FlightHeader header_;
   FlightCounts counts_;
-  std::uint64_t file_at_ = 0;                             // where the file begins in the stream
-  std::uint64_t file_entries_ = 0;                        // of the present file, so far
-  bool in_file_ = false, closed_ = false, whole_ = true;  // whole_: nothing of the file is missing
-  bool goes_on_ = false;                                  // by its end, the run of the file before does
-  // Arrival of the first and last entry of this run, 0: none has a known time; by how much its wall clock was set.
-  std::int64_t run_began_ns_ = 0, arrived_ns_ = 0, wall_set_ns_ = 0;
-  std::int64_t last_run_ended_ns_ = 0;  // by the wall clock; 0: there was none
-  std::int64_t closed_ns_ = 0;          // wall clock, of the file before once it is closed_
+  File file_;
+  Run run_;
   bool header_due_ = false, ended_ = false;
   BlockHead block_;
   bool header_block_ = false;

@@ -2,7 +2,6 @@
 #include "drivers/timeline/timeline.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <utility>
 
@@ -18,49 +17,21 @@ constexpr double kLatest_s = 2.0;       // a delivery that stays later than this
 constexpr double kStands_s = 1.0;       // a delayed line that drains shows it within this
 constexpr double kShrinks_s = 0.03;     // and is later by this much less
 constexpr int kEarly = 8, kStrays = 8;  // frames in a row: no single stamp or counter that was damaged
-constexpr double kMemory_s = 60.0;      // of the measured period
-constexpr double kMeasured_s = 1.0, kMeasuredSamples = 16.0;  // and it is
-constexpr double kCrystals = 1e-4;                            // two clocks' rates differ by less
-constexpr double kStatedRate = 0.02;                          // a stated rate is off by less (KVH DSP-3000)
-constexpr double kClocksApart = 0.01;                         // device clock and counter, of the time between
-constexpr double kNoSetting_s = 60.0;  // a clock that leaps by more, and nothing else does, was set
-constexpr double kStoodStill = 8.0;    // sample times: a step of more is a device that stood still
+constexpr double kClocksApart = 0.01;   // device clock and counter, of the time between
+constexpr double kNoSetting_s = 60.0;   // a clock that leaps by more, and nothing else does, was set
+constexpr double kStoodStill = 8.0;     // sample times: a step of more is a device that stood still
 
-std::uint64_t digest_of(std::span<const double> values) noexcept {
-  std::uint64_t out = 0x9E3779B97F4A7C15U;
-  for (const double value : values) {
-    out = (out ^ std::bit_cast<std::uint64_t>(value)) * 0xD6E8FEB86659FD93U;
-    out ^= out >> 32U;
-  }
-  return out;
-}
-
-std::uint64_t at_least_one(double samples) noexcept {
-  return samples >= 1.5 ? static_cast<std::uint64_t>(std::llround(std::min(samples, 1e18))) : 1;
-}
 double seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
 std::int64_t nanoseconds(double s) noexcept { return std::llround(std::clamp(s, -9e9, 9e9) * 1e9); }
 
 }  // namespace
 
 Timeline::Timeline(std::uint64_t modulus, double rate_hz) noexcept
-    : modulus_(modulus),
-      rate_known_(rate_hz > 0.0),
-      nominal_s_(rate_hz > 0.0 ? 1.0 / rate_hz : 1.0),
-      ticks_(nominal_s_) {}
+    : modulus_(modulus), pace_(rate_hz), ticks_(pace_.nominal_s()) {}
 
-// As arrivals have measured it, once they have.
-double Timeline::period_s() const noexcept {
-  return came_s_ >= kMeasured_s && came_ >= kMeasuredSamples ? came_s_ / came_ : nominal_s_;
-}
-// To what such a time by arrival is known.
+// Uncertainty of a time by arrivals.
 double Timeline::slack_s(double time_s) const noexcept {
-  const bool measured = came_s_ >= kMeasured_s && came_ >= kMeasuredSamples;
-  const double doubt = measured ? std::min(kStatedRate, kCrystals + scatter_s_ / came_s_) : kStatedRate;
-  return kAdapter_s + 2.0 * scatter_s_ + doubt * std::max(0.0, time_s);
-}
-std::uint64_t Timeline::samples_in(double time_s) const noexcept {
-  return rate_known_ ? at_least_one(time_s / period_s()) : 1;
+  return kAdapter_s + 2.0 * scatter_s_ + pace_.doubt(scatter_s_) * std::max(0.0, time_s);
 }
 
 std::int64_t Timeline::first(const Frame& frame) noexcept {
@@ -68,8 +39,8 @@ std::int64_t Timeline::first(const Frame& frame) noexcept {
   early_ = strays_ = 0;
   due_ns_ = frame.arrival_ns;
   ticks_.jumped();
-  kept_ = 0;
-  keep(frame, frame.stamp_ns, digest_of(frame.values));
+  recent_.forget();
+  keep(frame, frame.stamp_ns, 0, RecentFrames::digest_of(frame.values));
   return frame.stamp_ns;
 }
 
@@ -81,7 +52,7 @@ Timeline::Step Timeline::next(const Frame& frame) noexcept {
     const bool was_found = two_.found();
     const std::uint64_t back = modulus_ - now.ahead;
     two_.saw(frame.sequence, modulus_,
-             now.ahead == 0 || (back < std::min(kept_, recent_.size()) && had(now) != Had::other));
+             now.ahead == 0 || (back < recent_.size() && recent_.had(back, now.digest) != Had::other));
     if (two_.found()) return leave_out(frame);
     if (was_found) {  // of another device than what was taken, for all that is known
       restart(now, step);
@@ -108,12 +79,12 @@ Timeline::Step Timeline::leave_out(const Frame& frame) noexcept {
 
 Timeline::Look Timeline::look(const Frame& frame) const noexcept {
   Look now;
-  now.digest = digest_of(frame.values);
+  now.digest = RecentFrames::digest_of(frame.values);
   now.counted = frame.counts && modulus_ > 0;
   now.clocked = frame.clocked && last_.clocked;
   if (now.counted) now.ahead = (frame.sequence % modulus_ + modulus_ - last_.sequence % modulus_) % modulus_;
   // What is read much faster than it was taken, as from a file, has arrival times that tell nothing.
-  now.timed = frame.arrival_ns > 0 && due_ns_ > 0 && (told_s_ == 0.0 || arrived_s_ > 0.5 * told_s_);
+  now.timed = frame.arrival_ns > 0 && due_ns_ > 0 && pace_.arrivals_tell();
   if (now.timed) look_at_arrival(frame, now);
   if (now.counted) now.counted_samples = rolled_over(now, frame.reopened);
   now.time_ns = frame.stamp_ns;
@@ -122,7 +93,7 @@ Timeline::Look Timeline::look(const Frame& frame) const noexcept {
 }
 
 void Timeline::look_at_arrival(const Frame& frame, Look& now) const noexcept {
-  const double period_s = rate_known_ ? this->period_s() : 0.0;
+  const double period_s = pace_.known() ? pace_.period_s() : 0.0;
   now.elapsed_s = seconds(ns_between(due_ns_, frame.arrival_ns));
   now.quiet_s = seen_ns_ > 0 ? seconds(ns_between(seen_ns_, frame.arrival_ns)) : now.elapsed_s;
   now.silent = std::min(now.quiet_s, now.elapsed_s) > kSilence_s + 2.0 * period_s;
@@ -138,8 +109,8 @@ std::uint64_t Timeline::rolled_over(const Look& now, bool reopened) const noexce
   const bool round = now.silent || (reopened && !now.timed);
   const std::uint64_t least = now.ahead > 0 ? now.ahead : round ? modulus_ : 1;
   if (!now.timed || !(reopened || (now.silent && now.ahead != 1))) return least;
-  const double round_s = static_cast<double>(modulus_) * period_s();
-  const double rounds = std::round((now.elapsed_s - static_cast<double>(least) * period_s()) / round_s);
+  const double round_s = pace_.time_s(modulus_);
+  const double rounds = std::round((now.elapsed_s - pace_.time_s(least)) / round_s);
   return rounds > 0.0 ? least + static_cast<std::uint64_t>(std::min(rounds, 1e12)) * modulus_ : least;
 }
 
@@ -151,13 +122,14 @@ void Timeline::look_at_clock(const Frame& frame, Look& now) const noexcept {
     const double wrap_s = seconds(frame.wrap_ns);
     step_ns = (step_ns % frame.wrap_ns + frame.wrap_ns) % frame.wrap_ns;
     const std::uint64_t back = modulus_ - now.ahead;
-    const bool goes_back = now.counted && !now.silent && now.ahead > modulus_ / 2 && back < recent_.size();
-    const bool by_count = now.counted && (!now.silent || static_cast<double>(modulus_) * period_s() > wrap_s);
-    double near_s = rate_known_ ? nominal_s_ : 0.0;
+    const bool goes_back =
+        now.counted && !now.silent && now.ahead > modulus_ / 2 && back < RecentFrames::kMost;
+    const bool by_count = now.counted && (!now.silent || pace_.time_s(modulus_) > wrap_s);
+    double near_s = pace_.known() ? pace_.nominal_s() : 0.0;
     if (goes_back)
-      near_s = -static_cast<double>(back) * period_s();
+      near_s = -pace_.time_s(back);
     else if (by_count)
-      near_s = static_cast<double>(now.counted_samples) * period_s();
+      near_s = pace_.time_s(now.counted_samples);
     else if (now.timed && (now.silent || !delay_))
       near_s = now.elapsed_s;
     const double rounds = std::clamp(std::round((near_s - seconds(step_ns)) / wrap_s), -1.0, 9e9 / wrap_s);
@@ -167,69 +139,61 @@ void Timeline::look_at_clock(const Frame& frame, Look& now) const noexcept {
   now.time_ns = ns_after(last_.time_ns, step_ns);
 }
 
-// Whether one of the last frames had the place that the counter goes back to.
-Timeline::Had Timeline::had(const Look& now) const noexcept {
-  Had out = Had::no;
-  for (std::size_t i = 0; i < std::min(kept_, recent_.size()); ++i)
-    if (recent_[i].first + modulus_ - now.ahead == place_)
-      out = recent_[i].second == now.digest ? Had::same : Had::other;
-  return out;
-}
-
 // More than the elapsed time holds.
 bool Timeline::contradicts(double claimed_s, const Look& now) const noexcept {
   const double most_s = std::max(now.elapsed_s, now.quiet_s) + now.slack_s;
   return now.timed && claimed_s > most_s + kClocksApart * claimed_s;
 }
 
-// The device's clock does, by little.
-bool Timeline::goes_back(const Look& now) const noexcept {
-  const double most_s = static_cast<double>(recent_.size()) * nominal_s_;
-  return rate_known_ && now.passed_s < 0.0 && -now.passed_s <= most_s;
-}
-
 // A duplicate, or overtaken by what was taken: counter or clock go back by little without a silence.
 bool Timeline::out_of_turn(const Frame& frame, const Look& now) const noexcept {
   if (now.silent) return false;
   const bool again = now.digest == last_.digest && now.passed_s == 0.0;
-  if (!now.counted) return now.clocked && !frame.reopened && (again ? !ticks_.has_room() : goes_back(now));
+  if (!now.counted) {
+    const bool goes_back = pace_.known() && now.passed_s < 0.0 &&
+                           -now.passed_s <= static_cast<double>(RecentFrames::kMost) * pace_.nominal_s();
+    return now.clocked && !frame.reopened && (again ? !ticks_.has_room() : goes_back);
+  }
   if (now.ahead <= 1) return now.ahead == 0 && again;
-  const std::uint64_t most = std::min<std::uint64_t>(recent_.size(), modulus_ / 2);
+  const std::uint64_t most = std::min<std::uint64_t>(RecentFrames::kMost, modulus_ / 2);
   if (modulus_ - now.ahead > most || now.passed_s > 0.0 || (frame.reopened && !now.timed)) return false;
-  const Had was = had(now);
-  const bool usual = now.timed && !delay_ && !contradicts(static_cast<double>(now.ahead) * period_s(), now);
+  const Had was = recent_.had(modulus_ - now.ahead, now.digest);
+  const bool usual = now.timed && !delay_ && !contradicts(pace_.time_s(now.ahead), now);
   return was == Had::same || (was == Had::no && !usual);
 }
 
 // The time that passed and what it took; also where no elapsed time is known.
 void Timeline::restart(const Look& now, Step& step) const noexcept {
   step.restarted = step.gap = true;
-  step.dt_s = std::max(now.elapsed_s, nominal_s_);
-  step.samples = samples_in(step.dt_s);
+  step.dt_s = std::max(now.elapsed_s, pace_.nominal_s());
+  step.samples = pace_.samples_in(step.dt_s);
 }
 
 bool Timeline::clock_is_wrong(const Look& now) const noexcept {
   const double grain_s = ticks_.grain_s();
-  const double counted_s = static_cast<double>(now.counted_samples) * period_s();
+  const double counted_s = pace_.time_s(now.counted_samples);
   if (now.passed_s < 0.0 || contradicts(now.passed_s - grain_s, now)) return true;
   if (!now.counted || now.silent || delay_) return false;
   if (!now.timed) return now.ahead == 1 && now.passed_s > counted_s + kNoSetting_s;
   // Where clock and counter disagree, the one nearer to the elapsed time is right.
-  const double apart_s = 2.0 * nominal_s_ + kClocksApart * now.passed_s + grain_s;
+  const double apart_s = 2.0 * pace_.nominal_s() + kClocksApart * now.passed_s + grain_s;
   return std::abs(now.passed_s - counted_s) > apart_s &&
          std::abs(counted_s - now.elapsed_s) < std::abs(now.passed_s - now.elapsed_s);
 }
 
 // With the rollovers that the clock tells of. Where the counter stood, or restarted, the clock alone tells.
 std::uint64_t Timeline::samples_by_clock(const Look& now) const noexcept {
-  const double grain_s = ticks_.grain_s(), usual_s = period_s(), modulus = static_cast<double>(modulus_);
+  const double grain_s = ticks_.grain_s(), usual_s = pace_.period_s();
   const double spare = now.passed_s / usual_s - static_cast<double>(now.ahead);
   double samples = std::max(1.0, static_cast<double>(now.ahead));
-  if (spare > 2.0 + grain_s / usual_s) samples += modulus * std::round(spare / modulus);
+  if (spare > 2.0 + grain_s / usual_s)
+    samples += static_cast<double>(modulus_) * std::round(spare / static_cast<double>(modulus_));
   const double took_s = now.passed_s / samples;
   const bool stood = took_s > kStoodStill * usual_s + grain_s && took_s > 2.0 * each_s_ && each_s_ > 0.0;
-  const bool beyond = samples > 2.0 && samples * usual_s > 1.5 * now.passed_s + 2.0 * nominal_s_ + grain_s;
-  return stood || (beyond && each_s_ > 0.0) ? at_least_one(now.passed_s / usual_s) : at_least_one(samples);
+  const bool beyond =
+      samples > 2.0 && samples * usual_s > 1.5 * now.passed_s + 2.0 * pace_.nominal_s() + grain_s;
+  return stood || (beyond && each_s_ > 0.0) ? SamplePace::at_least_one(now.passed_s / usual_s)
+                                            : SamplePace::at_least_one(samples);
 }
 
 // False: the device has no clock, or it says nothing here.
@@ -237,7 +201,7 @@ bool Timeline::by_clock(const Frame& frame, const Look& now, Step& step) noexcep
   if (!now.clocked) return false;
   if (!clock_is_wrong(now)) {
     step.dt_s = now.passed_s;
-    if (!now.counted && !rate_known_) return true;
+    if (!now.counted && !pace_.known()) return true;
     const Ticks::Step told = ticks_.take(nanoseconds(now.passed_s), now.counted ? samples_by_clock(now) : 0);
     step.samples = told.samples;
     step.dt_s = told.dt_s;
@@ -245,27 +209,27 @@ bool Timeline::by_clock(const Frame& frame, const Look& now, Step& step) noexcep
     return true;
   }
   ticks_.jumped();
-  if (now.silent || frame.reopened || (!now.counted && (!now.timed || !rate_known_))) {
+  if (now.silent || frame.reopened || (!now.counted && (!now.timed || !pace_.known()))) {
     restart(now, step);
     step.time_ns = frame.stamp_ns;
     return true;
   }
   step.by_count = true;
   step.clock_set = ticks_.known();
-  step.dt_s = nominal_s_;
+  step.dt_s = pace_.nominal_s();
   return !now.counted;
 }
 
 void Timeline::by_counter(const Frame& frame, const Look& now, Step& step) const noexcept {
   step.samples = now.counted_samples;
-  const double claimed_s = static_cast<double>(step.samples) * period_s();
+  const double claimed_s = pace_.time_s(step.samples);
   const bool never_timed = due_ns_ == 0 && now.ahead > modulus_ / 2;
   const bool short_of = now.silent && claimed_s < now.elapsed_s - now.slack_s;
   const bool wrong = step.samples > 1 && (never_timed || short_of || contradicts(claimed_s, now));
-  step.dt_s = static_cast<double>(step.samples) * nominal_s_;
+  step.dt_s = static_cast<double>(step.samples) * pace_.nominal_s();
   if (wrong && now.ahead == 1) {  // kept by the line while nobody read it, for all that is known
     step.samples = 1;
-    step.dt_s = nominal_s_;
+    step.dt_s = pace_.nominal_s();
   } else if (wrong) {
     // Without a silence no device restarts: one damaged counter is nobody's, a few in a row are.
     step.out_of_turn = !now.silent && !never_timed && !frame.reopened && strays_ < kStrays;
@@ -279,31 +243,30 @@ void Timeline::by_elapsed(const Frame& frame, const Look& now, Step& step) noexc
   constexpr std::uint32_t kAlone = 2;
   const bool prompt = frame.reopened || (frame.at_once > 0 && frame.at_once <= kAlone);
   step.dt_s = std::max(0.0, now.elapsed_s);
-  if (!rate_known_) return;
+  if (!pace_.known()) return;
   if (now.silent && prompt) {
-    step.samples = samples_in(now.elapsed_s);
+    step.samples = pace_.samples_in(now.elapsed_s);
     return;
   }
-  const double more_s = std::clamp(owed_s_, -0.25 * period_s(), 0.25 * period_s());
-  step.dt_s = period_s() + more_s;
+  const double more_s = std::clamp(owed_s_, -0.25 * pace_.period_s(), 0.25 * pace_.period_s());
+  step.dt_s = pace_.period_s() + more_s;
   owed_s_ -= more_s;
 }
 
 // What the arrival of a frame that is taken tells of the frames behind it.
 void Timeline::settle(const Frame& frame, const Look& now, Step& step) noexcept {
-  const bool by_time = (now.clocked && !step.by_count) || step.restarted || !rate_known_;
-  const double due_s = by_time ? step.dt_s : static_cast<double>(step.samples) * period_s();
+  const bool by_time = (now.clocked && !step.by_count) || step.restarted || !pace_.known();
+  const double due_s = by_time ? step.dt_s : pace_.time_s(step.samples);
   if (due_ns_ > 0) due_ns_ = ns_after(due_ns_, nanoseconds(due_s));
   if (step.restarted) delay_.reset();
   if (frame.arrival_ns > 0) meet_arrival(frame, now, step);
   step.gap = step.gap || step.samples > 1;
   learn(frame, now, step);
   if (step.restarted) {
-    kept_ = 0;
+    recent_.forget();
     ticks_.jumped();
   }
-  place_ += step.samples;
-  keep(frame, step.time_ns, now.digest);
+  keep(frame, step.time_ns, step.samples, now.digest);
 }
 
 void Timeline::meet_arrival(const Frame& frame, const Look& now, Step& step) noexcept {
@@ -329,7 +292,7 @@ void Timeline::judge_delay(const Frame& frame, const Look& now, double late_s, S
 
 // It stands: the silence was a gap, or deliveries take longer from its end on.
 void Timeline::end_delay(const Frame& frame, const Look& now, double late_s, Step& step) noexcept {
-  const double round_s = now.counted ? static_cast<double>(modulus_) * period_s() : late_s;
+  const double round_s = now.counted ? pace_.time_s(modulus_) : late_s;
   const double slack = slack_s(late_s), lost = std::round(late_s / round_s);
   const bool whole = now.counted && lost >= 1.0 && std::abs(lost * round_s - late_s) <= slack;
   const double usual_s = now.clocked ? kLatest_s : now.counted ? std::min(round_s - slack, kLatest_s) : 0.0;
@@ -338,11 +301,12 @@ void Timeline::end_delay(const Frame& frame, const Look& now, double late_s, Ste
   const bool set = frame.recorded && (now.clocked ? !delay_->shown : now.counted && one_by_one);
   delay_.reset();
   due_ns_ = frame.arrival_ns;
-  step.clock_moved = late_s <= usual_s || set || !rate_known_;
+  step.clock_moved = late_s <= usual_s || set || !pace_.known();
   if (step.clock_moved) return;
-  const std::uint64_t missing = whole ? static_cast<std::uint64_t>(lost) * modulus_ : samples_in(late_s);
+  const std::uint64_t missing =
+      whole ? static_cast<std::uint64_t>(lost) * modulus_ : pace_.samples_in(late_s);
   step.samples += missing;
-  step.dt_s += whole ? static_cast<double>(missing) * nominal_s_ : late_s;
+  step.dt_s += whole ? static_cast<double>(missing) * pace_.nominal_s() : late_s;
   step.by_count = now.clocked;
 }
 
@@ -364,21 +328,16 @@ void Timeline::follow(double late_s, std::int64_t arrival_ns) noexcept {
 }
 
 void Timeline::learn(const Frame& frame, const Look& now, const Step& step) noexcept {
-  constexpr double kForgets = 0.998;
   if (now.clocked && !step.by_count && !step.restarted)
     each_s_ = step.dt_s / static_cast<double>(std::max<std::uint64_t>(now.ahead, 1));
   if (frame.arrival_ns <= 0 || seen_ns_ <= 0 || now.silent || delay_ || step.gap) return;
   const double since_s = std::max(0.0, seconds(ns_between(seen_ns_, frame.arrival_ns)));
-  arrived_s_ = kForgets * arrived_s_ + since_s;
-  told_s_ = kForgets * told_s_ + step.dt_s;
-  if (!now.timed || since_s > kSilence_s) return;
-  const double keeps = std::max(0.0, 1.0 - since_s / kMemory_s);
-  came_s_ = keeps * came_s_ + since_s;
-  came_ = keeps * came_ + static_cast<double>(step.samples);
+  pace_.learn(since_s, step.dt_s, step.samples, now.timed && since_s <= kSilence_s);
 }
 
-void Timeline::keep(const Frame& frame, std::int64_t time_ns, std::uint64_t digest) noexcept {
-  recent_[kept_++ % recent_.size()] = {place_, digest};
+void Timeline::keep(const Frame& frame, std::int64_t time_ns, std::uint64_t samples,
+                    std::uint64_t digest) noexcept {
+  recent_.keep(samples, digest);
   last_ = {frame.sequence, frame.clocked, frame.stamp_ns, time_ns, digest};
   if (frame.arrival_ns > 0) seen_ns_ = frame.arrival_ns;
 }

@@ -12,12 +12,12 @@
 //   - A stamp of arrival that is too early by itself moves nothing: kEarly of them in a row do.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <utility>
 
+#include "drivers/timeline/recent_frames.h"
+#include "drivers/timeline/sample_pace.h"
 #include "drivers/timeline/ticks.h"
 #include "drivers/timeline/two_devices.h"
 
@@ -89,18 +89,14 @@ class Timeline {
     double least_late_s = 0.0;  // since it began
     std::int64_t least_ns = 0;  // when that was last undercut
   };
-  enum class Had : std::uint8_t { no, other, same };
+  using Had = RecentFrames::Had;
 
-  [[nodiscard]] double period_s() const noexcept;
   [[nodiscard]] double slack_s(double time_s) const noexcept;
-  [[nodiscard]] std::uint64_t samples_in(double time_s) const noexcept;
   [[nodiscard]] Look look(const Frame& frame) const noexcept;
   void look_at_arrival(const Frame& frame, Look& now) const noexcept;
   void look_at_clock(const Frame& frame, Look& now) const noexcept;
   [[nodiscard]] std::uint64_t rolled_over(const Look& now, bool reopened) const noexcept;
-  [[nodiscard]] Had had(const Look& now) const noexcept;
   [[nodiscard]] bool contradicts(double claimed_s, const Look& now) const noexcept;
-  [[nodiscard]] bool goes_back(const Look& now) const noexcept;
   [[nodiscard]] bool out_of_turn(const Frame& frame, const Look& now) const noexcept;
   [[nodiscard]] bool clock_is_wrong(const Look& now) const noexcept;
   [[nodiscard]] std::uint64_t samples_by_clock(const Look& now) const noexcept;
@@ -115,26 +111,21 @@ class Timeline {
   void end_delay(const Frame& frame, const Look& now, double late_s, Step& step) noexcept;
   void follow(double late_s, std::int64_t arrival_ns) noexcept;
   void learn(const Frame& frame, const Look& now, const Step& step) noexcept;
-  void keep(const Frame& frame, std::int64_t time_ns, std::uint64_t digest) noexcept;
+  void keep(const Frame& frame, std::int64_t time_ns, std::uint64_t samples, std::uint64_t digest) noexcept;
 
   std::uint64_t modulus_;
-  bool rate_known_;
-  double nominal_s_;
+  SamplePace pace_;
   Ticks ticks_;
   TwoDevices two_;
+  RecentFrames recent_;
   Last last_;
   std::int64_t due_ns_ = 0;     // when the last frame was due; 0: no arrival is known
   std::int64_t seen_ns_ = 0;    // when any frame last came, taken or not; 0: unknown
   double owed_s_ = 0.0;         // that due_ns_ moved by and no step has told
   int early_ = 0, strays_ = 0;  // frames in a row
   std::optional<Delay> delay_;
-  double scatter_s_ = 0.0;                 // most that deliveries are late by, of late
-  double came_s_ = 0.0, came_ = 0.0;       // elapsed time of so many samples that came at their pace
-  double arrived_s_ = 0.0, told_s_ = 0.0;  // elapsed and told time of late
-  double each_s_ = 0.0;                    // of the last counted sample by the device's clock
-  std::uint64_t place_ = 0;                // the counter over its rollovers
-  std::array<std::pair<std::uint64_t, std::uint64_t>, 64> recent_{};  // places and digests
-  std::size_t kept_ = 0;
+  double scatter_s_ = 0.0;  // most that deliveries are late by, of late
+  double each_s_ = 0.0;     // of the last counted sample by the device's clock
 };
 
 }  // namespace ifog

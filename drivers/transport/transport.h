@@ -6,11 +6,8 @@
 // fault() and take_warning() may be called from any thread, stop() also from a signal handler.
 #pragma once
 
-#include <sys/types.h>
-
 #include <array>
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <mutex>
@@ -18,13 +15,14 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "drivers/ifog/driver.h"
 #include "drivers/transport/backlog.h"
 #include "drivers/transport/backoff.h"
 #include "drivers/transport/counter.h"
-#include "drivers/transport/read_alarm.h"
+#include "drivers/transport/stoppable_wait.h"
 
 namespace ifog {
 
@@ -83,8 +81,8 @@ struct TransportFault {
 class Transport {
  public:
   // Throws std::runtime_error when the system has no eventfd left.
-  explicit Transport(std::string name);
-  virtual ~Transport();
+  explicit Transport(std::string name) : name_(std::move(name)) {}
+  virtual ~Transport() = default;
   Transport(const Transport&) = delete;
   Transport& operator=(const Transport&) = delete;
 
@@ -98,7 +96,7 @@ class Transport {
 
   // After the last read(): counts what the kernel has still to say of bytes and frames it had no room for.
   void close_books() noexcept {
-    if (connected_) count_losses();
+    if (link_.open) count_losses();
   }
 
   // True: the source keeps until it is read, so a reader whose ring is full stops reading rather than lose
@@ -108,8 +106,8 @@ class Transport {
   [[nodiscard]] virtual bool times_are_recorded() const { return false; }
 
   // Ends a waiting read() at once and every later one immediately.
-  void stop() noexcept;
-  [[nodiscard]] bool stopped() const { return stopped_.load(std::memory_order_relaxed); }
+  void stop() noexcept { waiting_.stop(); }
+  [[nodiscard]] bool stopped() const { return waiting_.stopped(); }
 
   [[nodiscard]] const std::string& name() const { return name_; }
   // Whoever sees a state sees its reason, too.
@@ -126,56 +124,19 @@ class Transport {
   [[nodiscard]] std::string take_answers();
 
  protected:
+  using Wake = StoppableWait::Wake;
+  using Received = StoppableWait::Received;
+
   // Opens the device, again if need be, and sends opening(). False: the other end has not answered when
   // `until_ns` of CLOCK_MONOTONIC has passed or stop() was called; the next call waits on. Throws OpenError.
   virtual bool connect(std::string& warning, std::int64_t until_ns) = 0;
   // read() of an open device, until `until_ns` of CLOCK_MONOTONIC. Calls lost(), left() or end() when there
   // is no more.
   virtual Delivery receive(std::int64_t until_ns) noexcept = 0;
-  // Brings kernel_drops_ and error_frames_ up to what the kernel has counted against the open device.
+  // Brings the counters of kernel drops and error frames up to what the kernel has counted against the open device.
   virtual void count_losses() noexcept {}
   // Whether receive() would find something at once.
   [[nodiscard]] virtual bool more_waits() noexcept { return false; }
-
-  enum class Wake { ready, timeout, stopped };
-  // Waits for `events` on fd (or for nothing but time and stop() when fd is −1). `happened` gets poll's
-  // answer.
-  Wake wait(int fd, short events, std::int64_t until_ns, short& happened) noexcept;
-
-  // The outcome of a system call that reads.
-  struct Received {
-    Wake wake = Wake::ready;
-    ssize_t n = 0;       // what it returned
-    int error = 0;       // errno, where that is below 0; never EINTR from a descriptor that blocks
-    short happened = 0;  // poll's answer, of a call that brought nothing
-  };
-  // Reads `fd` once by `call(bool may_wait)` when something is there: until `until_ns`, and until stop(). A
-  // descriptor that blocks costs a single system call, for the waiting and the reading: `call` then waits
-  // where it may, and is interrupted by the thread's alarm. Another one is polled first.
-  template <typename Call>
-  Received receive_by(int fd, bool blocks, std::int64_t until_ns, Call&& call) noexcept {
-    Received got;
-    const auto make = [&](bool may_wait) {
-      got.n = call(may_wait);
-      got.error = got.n < 0 ? errno : 0;
-    };
-    while (blocks) {
-      const Entry entry = enter_call(until_ns);
-      if (entry == Entry::stopped) return {.wake = Wake::stopped};
-      if (entry == Entry::poll_first) break;
-      make(true);
-      leave_call();
-      if (got.n > 0) return got;
-      if (got.error == EINTR) continue;
-      got.happened = happened_to(fd);
-      return got;
-    }
-    got.wake = wait(fd, kReadable, until_ns, got.happened);
-    if (got.wake == Wake::ready) make(false);
-    return got;
-  }
-  // Lets a descriptor block. False: it cannot, and is to be polled.
-  static bool let_block(int fd) noexcept;
 
   [[nodiscard]] std::span<const std::uint8_t> opening() const { return opening_; }
   // For take_warning().
@@ -191,47 +152,46 @@ class Transport {
   // Counts it as malformed, too. text: the line's.
   void report(const char* what, std::uint64_t line, std::string_view text = {}) noexcept;
 
-  Counter kernel_drops_, error_frames_;
+  struct Counters {
+    Counter bytes, frames, kernel_drops, error_frames, reopened, malformed;
+  } counters_;
+  StoppableWait waiting_;
 
  private:
-  enum class Entry { call, poll_first, stopped };
-  static const short kReadable;
-  // Whether a call that waits may be made now: `call` when it will be interrupted in time; leave_call() then
-  // follows it.
-  Entry enter_call(std::int64_t until_ns) noexcept;
-  static void leave_call() noexcept { ReadAlarm::of_this_thread().leave(); }
-  static short happened_to(int fd) noexcept;
-
   bool regain(std::int64_t until_ns) noexcept;
   void enter(TransportState state, int reason) noexcept;
 
-  std::string name_;
-  std::vector<std::uint8_t> opening_;
-  std::mutex warning_mutex_;  // taken when a device opens, never while it is read
-  std::string warning_, answers_;
-  bool new_warning_ = false;
-  Backoff backoff_;
-  std::int64_t connected_ns_ = 0;  // since when, of CLOCK_MONOTONIC
-  bool connected_ = false, once_ = false;
-  bool returning_ = false;  // the next delivery is the first since the device came back
-  Backlog backlog_;
-  int stop_event_;
-  // Alarm of the thread that reads. In one order with stopped_: either stop() finds it and rings, or the reader
-  // finds that it is stopped.
-  std::atomic<int> alarm_{-1};
-  // Relaxed: each stands for itself. A reader may see a state before its reason, which is words for a person;
-  // stop() wakes a waiting read() by the event, not by this flag.
-  std::atomic<bool> stopped_{false};
-  std::atomic<TransportState> state_{TransportState::gone};
-  std::atomic<int> reason_{0};
+  // What opening said. The mutex is taken when a device opens, never while it is read.
+  struct Notices {
+    std::mutex mutex;
+    std::string warning, answers;
+    bool new_warning = false;
+  };
+  struct Link {
+    std::int64_t since_ns = 0;  // of CLOCK_MONOTONIC
+    bool open = false, once = false;
+    bool returning = false;  // the next delivery is the first since the device came back
+  };
   // The first fault of each kind, written once and then published.
   struct KindOfFault {
     TransportFault fault;
     std::array<char, 60> text{};
   };
-  std::array<KindOfFault, 6> kinds_{};
-  std::atomic<const TransportFault*> fault_{nullptr};
-  Counter bytes_, frames_, reopened_, malformed_;
+  struct Faults {
+    std::array<KindOfFault, 6> kinds{};
+    std::atomic<const TransportFault*> latest{nullptr};
+  };
+
+  std::string name_;
+  std::vector<std::uint8_t> opening_;
+  Notices notices_;
+  Backoff backoff_;
+  Link link_;
+  Backlog backlog_;
+  // Relaxed: each stands for itself. A reader may see a state before its reason, which is words for a person.
+  std::atomic<TransportState> state_{TransportState::gone};
+  std::atomic<int> reason_{0};
+  Faults faults_;
 };
 
 }  // namespace ifog

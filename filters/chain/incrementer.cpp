@@ -30,26 +30,27 @@ int clock_memory(double rate_hz) {
 Incrementer::Incrementer(const SensorFacts& facts) noexcept
     : facts_(facts),
       period_s_(1.0 / facts.nominal_rate_hz),
-      clock_(period_s_, clock_memory(facts.nominal_rate_hz)),
+      labels_{.clock = {period_s_, clock_memory(facts.nominal_rate_hz)}},
       timeline_(facts.sequence_modulus, facts.nominal_rate_hz) {
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
     rate_[axis] = PlausibleRate(facts.rate, facts.full_scale_radps[axis]);
   for (std::size_t c = 0; c < kMaxChannels; ++c)
-    frame_channel_[c] = PlausibleValue(facts.channel[c], kMostChannel);
-  channel_.fill(kNaN);
-  channel_age_s_.fill(std::numeric_limits<float>::infinity());
+    channels_.plausible[c] = PlausibleValue(facts.channel[c], kMostChannel);
+  channels_.value.fill(kNaN);
+  channels_.age_s.fill(std::numeric_limits<float>::infinity());
 }
 
 double Incrementer::clock_offset_ppm() const noexcept {
-  const double longer = clocked_samples_ > 0.0 ? clocked_periods_ / clocked_samples_ : 1.0;
-  return clock_.settled() ? (clock_.period_s() / period_s_ * longer - 1.0) * 1e6 : 0.0;
+  const double longer =
+      labels_.clocked_samples > 0.0 ? labels_.clocked_periods / labels_.clocked_samples : 1.0;
+  return labels_.clock.settled() ? (labels_.clock.period_s() / period_s_ * longer - 1.0) * 1e6 : 0.0;
 }
 
 double Incrementer::interval_error() const noexcept {
-  if (row_s_ >= kGapsAreNone && gaps_in_a_row_ >= kGapsThatShow)
-    return row_s_ / static_cast<double>(gaps_in_a_row_) / period_s_ - 1.0;
+  if (row_.lasts_s >= kGapsAreNone && row_.gaps >= kGapsThatShow)
+    return row_.lasts_s / static_cast<double>(row_.gaps) / period_s_ - 1.0;
   const bool nominal = facts_.sequence_modulus > 0 && !last_.clocked;
-  return nominal && clock_.settled() ? clock_.period_s() / period_s_ - 1.0 : 0.0;
+  return nominal && labels_.clock.settled() ? labels_.clock.period_s() / period_s_ - 1.0 : 0.0;
 }
 
 Timeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
@@ -87,14 +88,14 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
   const double own_s = step.dt_s / static_cast<double>(step.samples);  // a gap's time is not this sample's
   out.valid_axes = out.stuck_axes = 0;
   bool invalid = false, unseen = false, saturated = false, implausible = false;
-  if (const std::uint32_t seen = axes_seen_ | reading.valid_axes; seen != std::exchange(axes_seen_, seen))
-    counts_.invalid += std::exchange(without_unseen_, 0);
+  if (const std::uint32_t seen = seen_.axes | reading.valid_axes; seen != std::exchange(seen_.axes, seen))
+    counts_.invalid += std::exchange(seen_.without_others, 0);
   for (int i = 0; i < facts_.axes; ++i) {
     const auto axis = static_cast<std::size_t>(i);
     angle_[axis].pass(step.dt_s);
     Turn turned;
     if (((reading.valid_axes >> i) & 1u) == 0) {
-      const bool known = axes_seen_ == 0 || ((axes_seen_ >> i) & 1u) != 0;
+      const bool known = seen_.axes == 0 || ((seen_.axes >> i) & 1u) != 0;
       (known ? invalid : unseen) = true;
     } else if (const Verdict verdict = turn(axis, reading.value[axis], own_s, turned);
                verdict != Verdict::plausible) {
@@ -118,7 +119,7 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
   if (invalid) out.flags |= kInvalid;  // an axis that the device has never had is absent
   if (saturated) out.flags |= kAtFullScale;
   counts_.invalid += invalid ? 1 : 0;
-  without_unseen_ += unseen && !invalid ? 1 : 0;
+  seen_.without_others += unseen && !invalid ? 1 : 0;
   counts_.saturated += saturated ? 1 : 0;
   counts_.implausible += implausible ? 1 : 0;
 }
@@ -127,29 +128,29 @@ void Incrementer::hold_channels(const Reading& reading, std::uint64_t samples, I
   for (int i = 0; i < facts_.channels; ++i) {
     const auto c = static_cast<std::size_t>(i);
     if (i >= facts_.frame_channels) {
-      channel_[c] = reading.channel[c];
-      channel_age_s_[c] = reading.channel_age_s[c];
+      channels_.value[c] = reading.channel[c];
+      channels_.age_s[c] = reading.channel_age_s[c];
       continue;
     }
     const bool fresh = ((reading.fresh_channels >> i) & 1u) != 0;
-    if (fresh && frame_channel_[c].take(reading.channel[c])) {
-      channel_[c] = reading.channel[c];
-      channel_age_s_[c] = 0.0F;
+    if (fresh && channels_.plausible[c].take(reading.channel[c])) {
+      channels_.value[c] = reading.channel[c];
+      channels_.age_s[c] = 0.0F;
     } else {
       if (fresh) ++counts_.channel_implausible;
-      channel_age_s_[c] += static_cast<float>(out.dt_s);
+      channels_.age_s[c] += static_cast<float>(out.dt_s);
     }
   }
   // As with a rate: a gap's time is not this sample's, and a value that is held is none that was measured.
   const double own_s = out.dt_s / static_cast<double>(samples);
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
     const int c = facts_.acceleration_channel[axis];
-    const bool measured = c >= 0 && channel_age_s_[static_cast<std::size_t>(c)] == 0.0F;
-    out.delta_v_mps[axis] = measured ? channel_[static_cast<std::size_t>(c)] * own_s : 0.0;
+    const bool measured = c >= 0 && channels_.age_s[static_cast<std::size_t>(c)] == 0.0F;
+    out.delta_v_mps[axis] = measured ? channels_.value[static_cast<std::size_t>(c)] * own_s : 0.0;
     out.moved_s[axis] = measured ? own_s : 0.0;
   }
-  out.channel = channel_;
-  out.channel_age_s = channel_age_s_;
+  out.channel = channels_.value;
+  out.channel_age_s = channels_.age_s;
 }
 
 // That have passed, in nominal ones: a device's own clock says it whatever rate the device was set to.
@@ -159,8 +160,8 @@ double Incrementer::periods_of(const Step& step, bool clocked) noexcept {
   if (!clocked) return samples;
   const double periods = step.dt_s / period_s_;
   if (!step.gap) {
-    clocked_periods_ = kForgets * clocked_periods_ + periods;
-    clocked_samples_ = kForgets * clocked_samples_ + samples;
+    labels_.clocked_periods = kForgets * labels_.clocked_periods + periods;
+    labels_.clocked_samples = kForgets * labels_.clocked_samples + samples;
   }
   return periods;
 }
@@ -176,15 +177,15 @@ bool Incrementer::wall_was_set(const Reading& reading) const noexcept {
 // Whether the line of labels is to restart at this arrival: nothing arrives before it was taken, and what
 // stays late is not delayed any more. A single stamp that is early or late moves no label.
 bool Incrementer::apart(double late_s, std::int64_t arrival_ns) noexcept {
-  const double usual_s = std::max(kApart_s, kScatters * clock_.spread_s());
-  early_ = late_s < -usual_s ? early_ + 1 : 0;
+  const double usual_s = std::max(kApart_s, kScatters * labels_.clock.spread_s());
+  labels_.early = late_s < -usual_s ? labels_.early + 1 : 0;
   if (late_s <= usual_s)
-    late_since_ns_ = 0;
-  else if (late_since_ns_ == 0)
-    late_since_ns_ = arrival_ns;
-  const bool stands =
-      late_since_ns_ != 0 && static_cast<double>(ns_between(late_since_ns_, arrival_ns)) > kStands_s * 1e9;
-  return early_ >= kEarly || stands;
+    labels_.late_since_ns = 0;
+  else if (labels_.late_since_ns == 0)
+    labels_.late_since_ns = arrival_ns;
+  const bool stands = labels_.late_since_ns != 0 &&
+                      static_cast<double>(ns_between(labels_.late_since_ns, arrival_ns)) > kStands_s * 1e9;
+  return labels_.early >= kEarly || stands;
 }
 
 // When the sample was taken, by a line through the times of arrival.
@@ -193,15 +194,15 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
   bool moved = step.clock_moved;
   bool unlike = false;
   if (reading.arrival_ns > 0 && step.late_s == 0.0 && !step.gap) {
-    moved = apart(clock_.lateness_s(periods, reading.arrival_ns), reading.arrival_ns) || moved;
-    unlike = early_ > 0 || late_since_ns_ != 0;
+    moved = apart(labels_.clock.lateness_s(periods, reading.arrival_ns), reading.arrival_ns) || moved;
+    unlike = labels_.early > 0 || labels_.late_since_ns != 0;
   }
   if (moved || step.gap) {
-    early_ = 0;
-    late_since_ns_ = 0;
+    labels_.early = 0;
+    labels_.late_since_ns = 0;
   }
   moved = moved && started_;
-  if (moved) clock_.restart();
+  if (moved) labels_.clock.restart();
   // The stamps of a log are a wall clock's, which was set; by an unslewed clock it was the line.
   if (started_ && (wall_was_set(reading) || (moved && reading.arrival_recorded))) {
     out.flags |= kClockStep;
@@ -210,7 +211,8 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
     ++counts_.pauses;
   }
   const bool delayed = step.late_s > 0.0 || (unlike && !moved);
-  out.utime_ns = ns_after(clock_.advance(periods, delayed ? 0 : reading.arrival_ns), reading.wall_shift_ns);
+  out.utime_ns =
+      ns_after(labels_.clock.advance(periods, delayed ? 0 : reading.arrival_ns), reading.wall_shift_ns);
   // Later than the one before also in the message's microseconds: a line that has few samples yet goes to and
   // fro by as much as arrival times scatter.
   if (started_ && (out.flags & kClockStep) == 0)
@@ -221,11 +223,11 @@ void Incrementer::pass_gap(const Step& now, Increment& out) noexcept {
   out.flags |= kGapBefore;
   for (PlausibleRate& rate : rate_) rate.forget();
   for (PlausibleAngle& angle : angle_) angle.miss();
-  for (PlausibleValue& channel : frame_channel_) channel.forget();
+  for (PlausibleValue& channel : channels_.plausible) channel.forget();
   ++counts_.gaps;
   counts_.missing += now.samples - 1;
   counts_.untold += now.untold ? now.samples - 1 : 0;
-  clock_.restart();
+  labels_.clock.restart();
 }
 
 // An angle counts from power-up: after a restart it says nothing about the turn since the last one.
@@ -254,8 +256,8 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   if (started_ && now.gap) pass_gap(now, out);
   if (now.restarted) begin_anew();
   const bool in_a_row = now.gap && !now.restarted && frame.clocked && !frame.counts;
-  gaps_in_a_row_ = in_a_row ? gaps_in_a_row_ + 1 : 0;
-  row_s_ = in_a_row ? row_s_ + now.dt_s : 0.0;
+  row_.gaps = in_a_row ? row_.gaps + 1 : 0;
+  row_.lasts_s = in_a_row ? row_.lasts_s + now.dt_s : 0.0;
   if (now.clock_set) {
     out.flags |= kSensorClockSet;
     ++counts_.sensor_clock_sets;

@@ -51,7 +51,7 @@ class Incrementer {
 
   [[nodiscard]] const IncrementerCounts& counts() const noexcept { return counts_; }
   // Bits of the axes that the device has marked good at least once.
-  [[nodiscard]] std::uint32_t axes_seen() const noexcept { return axes_seen_; }
+  [[nodiscard]] std::uint32_t axes_seen() const noexcept { return seen_.axes; }
   // Two devices send on one line, and no frame is accepted.
   [[nodiscard]] bool mixed() const noexcept { return timeline_.two_devices(); }
   // Fitted against nominal period, 1e-6; 0 until the line has settled.
@@ -76,11 +76,14 @@ class Incrementer {
 
   SensorFacts facts_;
   double period_s_;
-  FittedClock clock_;
-  int early_ = 0;                   // arrivals before the line of labels, in a row
-  std::int64_t late_since_ns_ = 0;  // arrivals have been behind it since then; 0: they are not
-  // Recent sample times by a device's own clock, in nominal periods.
-  double clocked_periods_ = 0.0, clocked_samples_ = 0.0;
+  // The line through the times of arrival.
+  struct Labels {
+    FittedClock clock;
+    int early = 0;                   // arrivals before the line, in a row
+    std::int64_t late_since_ns = 0;  // arrivals have been behind it since then; 0: they are not
+    // Recent sample times by a device's own clock, in nominal periods.
+    double clocked_periods = 0.0, clocked_samples = 0.0;
+  } labels_;
   Timeline timeline_;
   bool started_ = false;
   bool reopened_ = false;
@@ -88,19 +91,25 @@ class Incrementer {
   struct Last {
     std::int64_t wall_shift_ns = 0, utime_ns = 0, came_ns = 0;
     bool clocked = false;
-  };
-  Last last_;
-  std::uint64_t gaps_in_a_row_ = 0;  // of a device with a clock alone
-  double row_s_ = 0.0;
+  } last_;
+  // Samples in a row that each came behind a gap, of a device with a clock alone.
+  struct Row {
+    std::uint64_t gaps = 0;
+    double lasts_s = 0.0;
+  } row_;
   std::uint64_t sequence_ = 0;
   std::array<PlausibleRate, kMaxAxes> rate_;
   std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle
   SensorCheck check_;
-  std::uint32_t axes_seen_ = 0;
-  std::uint64_t without_unseen_ = 0;  // samples that lack nothing but axes that have never been there
-  std::array<PlausibleValue, kMaxChannels> frame_channel_;
-  std::array<double, kMaxChannels> channel_{};
-  std::array<float, kMaxChannels> channel_age_s_{};
+  struct Seen {
+    std::uint32_t axes = 0;
+    std::uint64_t without_others = 0;  // samples that lack nothing but axes that have never been there
+  } seen_;
+  struct Channels {
+    std::array<PlausibleValue, kMaxChannels> plausible;  // of the device's own
+    std::array<double, kMaxChannels> value{};
+    std::array<float, kMaxChannels> age_s{};
+  } channels_;
   IncrementerCounts counts_;
 };
 

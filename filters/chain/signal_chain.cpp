@@ -111,13 +111,13 @@ std::optional<LearnedNoise> ChainParts::learned() const noexcept {
 void ChainParts::use_effects(const ChainSettings& settings) {
   // Each channel has a limit of its own: the compensator is given ages in units of it.
   try {
-    compensator_.emplace(*settings.model, settings.axes, 1.0,
-                         settings.powered_ns ? 0.0 : settings.since_power_up_s);
+    effects_.compensator.emplace(*settings.model, settings.axes, 1.0,
+                                 settings.powered_ns ? 0.0 : settings.since_power_up_s);
   } catch (const std::invalid_argument& error) {
     throw ModelMisfit(0, error.what());
   }
-  powered_ns_ = settings.powered_ns;
-  for (const std::string& name : compensator_->channels()) {
+  effects_.powered_ns = settings.powered_ns;
+  for (const std::string& name : effects_.compensator->channels()) {
     const auto found = std::find(settings.channels.begin(), settings.channels.end(), name);
     if (found == settings.channels.end()) {
       std::string known;
@@ -127,47 +127,50 @@ void ChainParts::use_effects(const ChainSettings& settings) {
                                                             (known.empty() ? "none" : known));
     }
     const auto index = static_cast<std::size_t>(found - settings.channels.begin());
-    wanted_.push_back(index);
+    effects_.wanted.push_back(index);
     const double allowed =
         index < settings.channel_max_age_s.size() ? settings.channel_max_age_s[index] : 0.0;
-    relative_age_max_.push_back(allowed > 0.0 ? 1.0 / allowed : 0.0);
+    effects_.relative_age_max.push_back(allowed > 0.0 ? 1.0 / allowed : 0.0);
   }
-  channel_.resize(wanted_.size());
-  relative_age_.resize(wanted_.size());
+  effects_.channel.resize(effects_.wanted.size());
+  effects_.relative_age.resize(effects_.wanted.size());
 }
 
 std::vector<std::string> ChainParts::left_out() const {
-  return compensator_ ? compensator_->left_out() : std::vector<std::string>{};
+  return effects_.compensator ? effects_.compensator->left_out() : std::vector<std::string>{};
 }
 
 void ChainParts::compensate(const Increment& in, ChainOutput& out) noexcept {
   out.compensated_radps = in.rate_radps;
   out.delta_theta_rad = in.delta_theta_rad;
   out.compensator_flags = 0;
-  if (!compensator_) return;
-  if (powered_ns_) {
+  if (!effects_.compensator) return;
+  if (effects_.powered_ns) {
     // A sample from before that is a recording's, of which nobody knows: no warm-up, rather than all of it.
-    compensator_->begin(in.came_ns < *powered_ns_ ? std::numeric_limits<double>::infinity()
-                                                  : static_cast<double>(in.came_ns - *powered_ns_) * 1e-9);
-    powered_ns_.reset();
+    effects_.compensator->begin(in.came_ns < *effects_.powered_ns
+                                    ? std::numeric_limits<double>::infinity()
+                                    : static_cast<double>(in.came_ns - *effects_.powered_ns) * 1e-9);
+    effects_.powered_ns.reset();
   }
-  for (std::size_t i = 0; i < wanted_.size(); ++i) {
-    channel_[i] = in.channel[wanted_[i]];
-    relative_age_[i] = static_cast<double>(in.channel_age_s[wanted_[i]]) * relative_age_max_[i];
+  for (std::size_t i = 0; i < effects_.wanted.size(); ++i) {
+    effects_.channel[i] = in.channel[effects_.wanted[i]];
+    effects_.relative_age[i] =
+        static_cast<double>(in.channel_age_s[effects_.wanted[i]]) * effects_.relative_age_max[i];
   }
   Axes missed_s{};
   for (std::size_t i = 0; i < kMaxAxes; ++i) missed_s[i] = in.dt_s - in.covered_s[i];
-  compensator_->step({.dt_s = in.dt_s,
-                      .rate_radps = in.rate_radps,
-                      .missed_s = missed_s,
-                      .channels = channel_,
-                      .age_s = relative_age_},
-                     correction_);
+  effects_.compensator->step({.dt_s = in.dt_s,
+                              .rate_radps = in.rate_radps,
+                              .missed_s = missed_s,
+                              .channels = effects_.channel,
+                              .age_s = effects_.relative_age},
+                             effects_.correction);
   refuse_impossible(in, out);
-  out.compensated_radps = correction_.compensated_radps;
-  out.compensator_flags = correction_.flags;
+  out.compensated_radps = effects_.correction.compensated_radps;
+  out.compensator_flags = effects_.correction.flags;
   for (std::size_t i = 0; i < kMaxAxes; ++i)
-    if (in.covered_s[i] > 0.0) out.delta_theta_rad[i] -= correction_.correction_radps[i] * in.covered_s[i];
+    if (in.covered_s[i] > 0.0)
+      out.delta_theta_rad[i] -= effects_.correction.correction_radps[i] * in.covered_s[i];
 }
 
 // A correction as large as anything the sensor measures is a model gone wrong, whatever its numbers look like
@@ -177,13 +180,13 @@ void ChainParts::refuse_impossible(const Increment& in, ChainOutput& out) noexce
     const double most = facts_.full_scale_radps[i] > 0.0 ? facts_.full_scale_radps[i] : kMostRate_radps;
     const bool measured = in.covered_s[i] > 0.0;
     // Written so that NaN fails.
-    if (!measured ||
-        (std::abs(correction_.correction_radps[i]) < most && std::isfinite(correction_.variance_rad2ps2[i])))
+    if (!measured || (std::abs(effects_.correction.correction_radps[i]) < most &&
+                      std::isfinite(effects_.correction.variance_rad2ps2[i])))
       continue;
     out.flags |= kNotCompensated;
-    correction_.correction_radps[i] = 0.0;
-    correction_.compensated_radps[i] = in.rate_radps[i];
-    correction_.variance_rad2ps2[i] = std::numeric_limits<double>::quiet_NaN();
+    effects_.correction.correction_radps[i] = 0.0;
+    effects_.correction.compensated_radps[i] = in.rate_radps[i];
+    effects_.correction.variance_rad2ps2[i] = std::numeric_limits<double>::quiet_NaN();
   }
 }
 
@@ -219,7 +222,7 @@ void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
     out.estimate.variance_rad2ps2[i] =
         first_samples_.variance(i, out.compensated_radps[i], (in.valid_axes >> i & 1U) != 0);
-    if (compensator_) out.estimate.variance_rad2ps2[i] += correction_.variance_rad2ps2[i];
+    if (effects_.compensator) out.estimate.variance_rad2ps2[i] += effects_.correction.variance_rad2ps2[i];
   }
 }
 
@@ -269,9 +272,9 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   // A mean over so many whole samples, merged or summed: timing jitter makes no noise quieter.
   input.averaged_s = in.samples > 1 ? in.samples * parts.period_s_ : 0.0;
   parts.estimator_->step(input, out.estimate);
-  if (parts.compensator_)
+  if (parts.effects_.compensator)
     for (std::size_t i = 0; i < static_cast<std::size_t>(parts.facts_.axes); ++i)
-      out.estimate.variance_rad2ps2[i] += parts.correction_.variance_rad2ps2[i];
+      out.estimate.variance_rad2ps2[i] += parts.effects_.correction.variance_rad2ps2[i];
   parts.measured_axes_ |= in.valid_axes & ~in.stuck_axes;
   hold_unmeasured(out);
 }
@@ -287,7 +290,8 @@ EstimatorHealth SignalChain::health() const noexcept {
 
 std::unique_ptr<ChainParts> SignalChain::swap(std::unique_ptr<ChainParts> parts) noexcept {
   before_ = health();
-  if (parts->compensator_ && parts_->compensator_) parts->compensator_->take_over(*parts_->compensator_);
+  if (parts->effects_.compensator && parts_->effects_.compensator)
+    parts->effects_.compensator->take_over(*parts_->effects_.compensator);
   parts->owed_ = parts_->estimator_ ? parts_->estimator_->owed() : parts_->owed_;
   if (parts->estimator_) parts->estimator_->owe(parts->owed_);
   std::swap(parts_, parts);

@@ -116,12 +116,14 @@ class ChainParts {
   AxisShares shares_;
   std::string identity_;
   double period_s_;
-  std::optional<Compensator> compensator_;
-  std::optional<std::int64_t> powered_ns_;  // until the first sample
-  std::vector<std::size_t> wanted_;         // by the compensator: index in Increment::channel
-  std::vector<double> relative_age_max_;    // 1 / the age allowed, of each
-  std::vector<double> channel_, relative_age_;
-  CompensatorOutput correction_;
+  struct Effects {
+    std::optional<Compensator> compensator;
+    std::optional<std::int64_t> powered_ns;  // until the first sample
+    std::vector<std::size_t> wanted;         // by the compensator: index in Increment::channel
+    std::vector<double> relative_age_max;    // 1 / the age allowed, of each
+    std::vector<double> channel, relative_age;
+    CompensatorOutput correction;
+  } effects_;
   Walk start_up_;  // until the noise is known
   std::unique_ptr<Estimator> estimator_;
   FirstSamples first_samples_;

@@ -134,7 +134,7 @@ double Compensator::correction(std::size_t axis, const Axes& rates) const noexce
 
 // By values_.
 double Compensator::parameter_variance(std::size_t axis) const noexcept {
-  if (covariance_.empty()) return 0.0;
+  if (covariance_.values.empty()) return 0.0;
   double variance = 0.0;
   const AxisTerms& of = of_axis_[axis];
   for (std::size_t i = of.begin; i < of.end; ++i) {
@@ -143,7 +143,7 @@ double Compensator::parameter_variance(std::size_t axis) const noexcept {
     for (std::size_t j = of.begin; j < of.end; ++j) {
       const Term& b = terms_[j];
       if (!b.usable || b.parameter == kNone) continue;
-      variance += values_[i] * covariance_[a.parameter * parameters_ + b.parameter] * values_[j];
+      variance += values_[i] * covariance_.values[a.parameter * covariance_.size + b.parameter] * values_[j];
     }
   }
   return std::max(variance, 0.0);
@@ -203,7 +203,7 @@ void Compensator::solve(const CompensatorInput& in, ChannelSet moved, Compensato
     AxisTerms& of = of_axis_[axis];
     out.correction_radps[axis] = of.correction;
     out.compensated_radps[axis] = rates[axis];
-    if (of.of_rate || of.of_zone || of.doubtful > 0 || !covariance_.empty()) {
+    if (of.of_rate || of.of_zone || of.doubtful > 0 || !covariance_.values.empty()) {
       if (of.of_rate || of.of_zone || (of.needs & moved) != 0) judge(axis, rates, out);
     } else {
       of.variance = 0.0;

@@ -184,8 +184,10 @@ class Compensator {
   std::vector<Term> terms_;
   std::vector<Ramp> ramps_;
   std::vector<Zone> zones_;
-  std::vector<double> covariance_;
-  std::size_t parameters_ = 0;
+  struct Covariance {
+    std::vector<double> values;
+    std::size_t size = 0;  // parameters
+  } covariance_;
   std::size_t axes_;
   std::array<AxisTerms, kMaxAxes> of_axis_{};
   std::vector<double> values_;  // of terms_, where judge() is

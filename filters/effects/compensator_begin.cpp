@@ -59,10 +59,10 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
   if (axes.empty() || axes.size() > kMaxAxes)
     throw std::invalid_argument("a compensator has 1 to 3 axes, not " + std::to_string(axes.size()));
   for (const Effect& effect : model.effects) {
-    add_effect(effect, parameters_, axes, model.ranges);
-    parameters_ += effect.parameters.size();
+    add_effect(effect, covariance_.size, axes, model.ranges);
+    covariance_.size += effect.parameters.size();
   }
-  if (model.covariance.size() == parameters_ * parameters_) covariance_ = model.covariance;
+  if (model.covariance.size() == covariance_.size * covariance_.size) covariance_.values = model.covariance;
   held_.resize(channels_.size());
   for (const std::string& name : channels_) ranges_.push_back(range_of_channel(name, model.ranges));
   // Where an angle is in its arc, each effect of it says; what is nothing but an angle has no range.

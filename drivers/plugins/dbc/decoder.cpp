@@ -88,9 +88,9 @@ void Decoder::begin_sample() noexcept {
 
 // What is left of a sample may be a late copy of the one before.
 bool Decoder::repeats_last() const noexcept {
-  if (!last_counted_ || !counted_ || !counter_moved_ || sample_.sequence != last_sequence_) return false;
-  for (std::size_t i = 0; i < last_value_.size(); ++i)
-    if ((present_ & bit(i)) != 0 && !same_value(sample_.value[i], last_value_[i])) return false;
+  if (!last_.counted || !counted_ || !counter_moved_ || sample_.sequence != last_.sequence) return false;
+  for (std::size_t i = 0; i < last_.value.size(); ++i)
+    if ((present_ & bit(i)) != 0 && !same_value(sample_.value[i], last_.value[i])) return false;
   return true;
 }
 
@@ -104,7 +104,7 @@ void Decoder::give_up() noexcept {
 
 void Decoder::reset() noexcept {
   give_up();
-  last_counted_ = false;
+  last_.counted = false;
   sample_.environment_fresh = 0;
   timed_ = false;
 }
@@ -140,10 +140,10 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
             ? 0
             : static_cast<std::uint32_t>(raw_bits(*counter->signal, data) % picks_.counter_modulus);
     const bool same_count = counter != nullptr && counted_ && count == sample_.sequence;
-    const bool in_last = counter != nullptr && last_counted_ && count == last_sequence_;
+    const bool in_last = counter != nullptr && last_.counted && count == last_.sequence;
     if (present_ != 0 && counted_ && counter_moved_ &&
         (same_count ? (present_ & brings) == brings && repeats(wanted, data, sample_.value)
-                    : in_last && repeats(wanted, data, last_value_.data()))) {
+                    : in_last && repeats(wanted, data, last_.value.data()))) {
       ++counters_.frames_good;
       ++counters_.frames_repeated;
       return;
@@ -232,10 +232,10 @@ void Decoder::complete(std::int64_t arrival_ns, ifog_emit_sample emit, void* sin
   const bool good = !picks_.status_good || (sample_.status & picks_.status_mask) == *picks_.status_good;
   sample_.valid_axes = good ? good_ : 0;
   emit(sink, &sample_);
-  counter_moved_ = counter_moved_ || (counted_ && last_counted_ && sample_.sequence != last_sequence_);
-  last_counted_ = counted_;
-  last_sequence_ = sample_.sequence;
-  std::copy_n(std::begin(sample_.value), last_value_.size(), last_value_.begin());
+  counter_moved_ = counter_moved_ || (counted_ && last_.counted && sample_.sequence != last_.sequence);
+  last_.counted = counted_;
+  last_.sequence = sample_.sequence;
+  std::copy_n(std::begin(sample_.value), last_.value.size(), last_.value.begin());
   begin_sample();
   sample_.environment_fresh = 0;
 }

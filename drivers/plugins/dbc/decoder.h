@@ -72,9 +72,12 @@ class Decoder {
   std::uint32_t frames_ = 0;          // that brought axes of it
   // The last whole one, if it was counted. A counter that has never moved does not tell one sample from
   // another.
-  bool last_counted_ = false, counter_moved_ = false;
-  std::uint32_t last_sequence_ = 0;
-  std::array<double, IFOG_MAX_AXES> last_value_{};
+  struct Last {
+    bool counted = false;
+    std::uint32_t sequence = 0;
+    std::array<double, IFOG_MAX_AXES> value{};
+  } last_;
+  bool counter_moved_ = false;
   ifog_sample sample_{};
   bool timed_ = false;   // its clock has been read
   bool beyond_ = false;  // since the last sample

@@ -67,14 +67,14 @@ bool CanTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   ask_for_drops(socket_.fd());
   ask_for_room(socket_.fd(), settings_.receive_buffer_bytes, name(), warning);
   ask_for_times(socket_.fd(), name(), warning);
-  blocks_ = let_block(socket_.fd());
+  blocks_ = StoppableWait::let_block(socket_.fd());
   return true;
 }
 
 Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
   int n = 0;
   if (leaving_ == 0) {
-    const Received got = receive_by(socket_.fd(), blocks_, until_ns, [this](bool may_wait) {
+    const Received got = waiting_.receive_by(socket_.fd(), blocks_, until_ns, [this](bool may_wait) {
       return ssize_t{receive_batch(may_wait ? MSG_WAITFORONE : MSG_DONTWAIT)};
     });
     if (got.wake != Wake::ready) {
@@ -142,7 +142,7 @@ void CanTransport::count_losses() noexcept {
 void CanTransport::count_drops(std::uint32_t drops) noexcept {
   const std::uint32_t more = drops - drops_;
   if (more == 0 || more > UINT32_MAX / 2) return;
-  kernel_drops_.add(more);
+  counters_.kernel_drops.add(more);
   drops_ = drops;
 }
 
@@ -159,7 +159,7 @@ std::span<const ifog_can_frame> CanTransport::accept(std::size_t received, std::
         ++kept;
         break;
       case CanKind::error:
-        error_frames_.add(1);
+        counters_.error_frames.add(1);
         break;
       case CanKind::remote:
       case CanKind::unknown:

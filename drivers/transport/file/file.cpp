@@ -116,7 +116,7 @@ bool FileTransport::fill(std::int64_t until_ns) noexcept {
     };
     int error = 0;
     if (file_.poll_fd() >= 0) {
-      const Received got = receive_by(file_.poll_fd(), file_.blocks() && written_, until_ns, read);
+      const Received got = waiting_.receive_by(file_.poll_fd(), file_.blocks() && written_, until_ns, read);
       if (got.wake != Wake::ready) return false;
       error = got.error;
       written_ = true;
@@ -149,7 +149,7 @@ bool FileTransport::await(std::int64_t recorded_ns, std::int64_t until_ns) noexc
   const std::int64_t due = pace_.due_ns(recorded_ns);
   if (due <= monotonic_ns()) return true;
   short happened = 0;
-  return wait(-1, 0, std::min(due, until_ns), happened) != Wake::stopped && due <= until_ns;
+  return waiting_.wait(-1, 0, std::min(due, until_ns), happened) != Wake::stopped && due <= until_ns;
 }
 
 // Raw bytes.
@@ -296,14 +296,14 @@ bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
         pending_ = wanted(entry_) && of_one_device();
         break;
       case CandumpLine::error:
-        error_frames_.add(1);
+        counters_.error_frames.add(1);
         break;
       case CandumpLine::malformed:
         report(at_end() && unread().empty() ? "the log is cut off here" : kCandumpExpected, line_, line);
         break;
       case CandumpLine::drops:
         if (settings().interface.empty() || entry_.interface == settings().interface)
-          kernel_drops_.add(entry_.dropped);
+          counters_.kernel_drops.add(entry_.dropped);
         break;
       case CandumpLine::xl:
       case CandumpLine::remote:

@@ -71,7 +71,7 @@ bool TcpTransport::connect(std::string& warning, std::int64_t until_ns) {
   // A connection that was lost is closed; one that is open here is an attempt of the call before.
   if (!socket_.is_open()) begin();
   short happened = 0;
-  switch (wait(socket_.fd(), POLLOUT, std::min(until_ns, limit_ns_), happened)) {
+  switch (waiting_.wait(socket_.fd(), POLLOUT, std::min(until_ns, limit_ns_), happened)) {
     case Wake::stopped:
       return false;
     case Wake::timeout:
@@ -86,7 +86,7 @@ bool TcpTransport::connect(std::string& warning, std::int64_t until_ns) {
   words_.connected();
   if (turned_away_) hear_out(monotonic_ns() + kHearOut_ns);
   send_opening();
-  blocks_ = let_block(socket_.fd());
+  blocks_ = StoppableWait::let_block(socket_.fd());
   return true;
 }
 
@@ -127,7 +127,7 @@ void TcpTransport::hear_out(std::int64_t until_ns) {
   std::array<std::uint8_t, 256> said{};
   for (ssize_t n = 0;;) {
     short happened = 0;
-    if (wait(socket_.fd(), POLLIN | POLLRDHUP, until_ns, happened) != Wake::ready) break;
+    if (waiting_.wait(socket_.fd(), POLLIN | POLLRDHUP, until_ns, happened) != Wake::ready) break;
     n = recv(socket_.fd(), said.data(), said.size(), MSG_PEEK | MSG_DONTWAIT);
     words_.connected();
     if (n > 0) words_.came(std::span(said).first(static_cast<std::size_t>(n)));
@@ -168,7 +168,7 @@ Delivery TcpTransport::receive(std::int64_t until_ns) noexcept {
   message.msg_iovlen = 1;
   message.msg_control = control_.bytes;
   message.msg_controllen = sizeof control_.bytes;
-  const Received got = receive_by(socket_.fd(), blocks_, until_ns, [&](bool may_wait) {
+  const Received got = waiting_.receive_by(socket_.fd(), blocks_, until_ns, [&](bool may_wait) {
     return recvmsg(socket_.fd(), &message, may_wait ? 0 : MSG_DONTWAIT);
   });
   if (got.wake != Wake::ready) return {};

@@ -73,12 +73,23 @@ class UdpTransport final : public Transport {
     std::int64_t ns;
     bool stamped;
   };
+  // The datagrams of one system call.
+  struct Batch {
+    std::vector<std::uint8_t> bytes = std::vector<std::uint8_t>(kDatagramsAtOnce * kLongest);
+    std::array<iovec, kDatagramsAtOnce> vectors{};
+    std::array<sockaddr_storage, kDatagramsAtOnce> senders{};
+    std::array<ControlRoom, kDatagramsAtOnce> control{};
+    std::array<mmsghdr, kDatagramsAtOnce> messages{};
+    std::array<Arrival, kDatagramsAtOnce> arrivals{};
+    std::size_t filled = kDatagramsAtOnce;  // messages that are to be made ready
+    std::size_t count = 0, next = 0;        // read, and handed on of these
+  };
 
   bool connect(std::string& warning, std::int64_t until_ns) override;
   Delivery receive(std::int64_t until_ns) noexcept override;
   [[nodiscard]] bool more_waits() noexcept override {
     pollfd socket{socket_.fd(), POLLIN, 0};
-    return next_ < count_ || ::poll(&socket, 1, 0) > 0;
+    return batch_.next < batch_.count || ::poll(&socket, 1, 0) > 0;
   }
   void join(const IpSocket& socket) const;
   void send_opening(const IpSocket& socket) const;
@@ -98,15 +109,8 @@ class UdpTransport final : public Transport {
   std::uint16_t sends_from_ = 0;  // the port of the host that sends; 0: none has
   std::int64_t sent_ns_ = 0;      // when it last did
   KernelStamps stamps_;
-  std::vector<std::uint8_t> bytes_ = std::vector<std::uint8_t>(kDatagramsAtOnce * kLongest);
-  std::array<iovec, kDatagramsAtOnce> vectors_{};
-  std::array<sockaddr_storage, kDatagramsAtOnce> senders_{};
-  std::array<ControlRoom, kDatagramsAtOnce> control_{};
-  std::array<mmsghdr, kDatagramsAtOnce> messages_{};
-  std::array<Arrival, kDatagramsAtOnce> arrivals_{};
   bool blocks_ = false;
-  std::size_t filled_ = kDatagramsAtOnce;  // messages_ that are to be made ready
-  std::size_t count_ = 0, next_ = 0;       // read, and handed on of these
+  Batch batch_;
 };
 
 UdpTransport::UdpTransport(const UdpSettings& settings, Addresses addresses)
@@ -118,18 +122,18 @@ UdpTransport::UdpTransport(const UdpSettings& settings, Addresses addresses)
       settings_(settings),
       addresses_(std::move(addresses)) {
   for (std::size_t i = 0; i < kDatagramsAtOnce; ++i) {
-    vectors_[i] = {&bytes_[i * kLongest], kLongest};
-    msghdr& header = messages_[i].msg_hdr;
-    header.msg_iov = &vectors_[i];
+    batch_.vectors[i] = {&batch_.bytes[i * kLongest], kLongest};
+    msghdr& header = batch_.messages[i].msg_hdr;
+    header.msg_iov = &batch_.vectors[i];
     header.msg_iovlen = 1;
-    header.msg_control = control_[i].bytes;
-    header.msg_name = &senders_[i];
+    header.msg_control = batch_.control[i].bytes;
+    header.msg_name = &batch_.senders[i];
   }
 }
 
 bool UdpTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   socket_.close();
-  count_ = next_ = 0;
+  batch_.count = batch_.next = 0;
   drops_ = sends_from_ = 0;
   IpSocket fresh(addresses_.local.family(), SOCK_DGRAM, name());
   const auto require = [this](int error, const char* what, const char* expected) {
@@ -152,7 +156,7 @@ bool UdpTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   ask_for_times(fresh.fd(), name(), warning);
   stamps_.begin(realtime_ns(), arrival_clock_ns());
   send_opening(fresh);
-  blocks_ = let_block(fresh.fd());
+  blocks_ = StoppableWait::let_block(fresh.fd());
   socket_ = std::move(fresh);
   return true;
 }
@@ -188,9 +192,9 @@ void UdpTransport::send_opening(const IpSocket& socket) const {
 
 Delivery UdpTransport::receive(std::int64_t until_ns) noexcept {
   if (const Delivery waiting = next(); !waiting.empty()) return waiting;
-  count_ = next_ = 0;
-  const Received got = receive_by(socket_.fd(), blocks_, until_ns,
-                                  [this](bool may_wait) { return ssize_t{receive_batch(may_wait)}; });
+  batch_.count = batch_.next = 0;
+  const Received got = waiting_.receive_by(
+      socket_.fd(), blocks_, until_ns, [this](bool may_wait) { return ssize_t{receive_batch(may_wait)}; });
   if (got.wake == Wake::timeout) look_at_interface();
   if (got.wake != Wake::ready) return {};
   if (got.n > 0)
@@ -213,15 +217,15 @@ void UdpTransport::look_at_interface() noexcept {
 
 int UdpTransport::receive_batch(bool may_wait) noexcept {
   // What the call before has written to.
-  for (std::size_t i = 0; i < filled_; ++i) {
-    messages_[i].msg_hdr.msg_namelen = sizeof(sockaddr_storage);
-    messages_[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
-    messages_[i].msg_hdr.msg_flags = 0;
+  for (std::size_t i = 0; i < batch_.filled; ++i) {
+    batch_.messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_storage);
+    batch_.messages[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
+    batch_.messages[i].msg_hdr.msg_flags = 0;
   }
-  const int n = recvmmsg(socket_.fd(), messages_.data(), kDatagramsAtOnce,
+  const int n = recvmmsg(socket_.fd(), batch_.messages.data(), kDatagramsAtOnce,
                          may_wait ? MSG_WAITFORONE : MSG_DONTWAIT, nullptr);
   // One that failed may have been begun.
-  filled_ = std::min(kDatagramsAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
+  batch_.filled = std::min(kDatagramsAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
   return n;
 }
 
@@ -233,34 +237,36 @@ void UdpTransport::give_up(int error) noexcept {
 }
 
 void UdpTransport::take(std::size_t received) noexcept {
-  count_ = received;
+  batch_.count = received;
   const std::int64_t read_at = arrival_clock_ns();
   stamps_.begin(realtime_ns(), read_at);
-  for (std::size_t i = 0; i < count_; ++i) {
-    const ReceiveControl said = receive_control(messages_[i].msg_hdr);
+  for (std::size_t i = 0; i < batch_.count; ++i) {
+    const ReceiveControl said = receive_control(batch_.messages[i].msg_hdr);
     if (said.has_drops) {
-      kernel_drops_.add(said.drops - drops_);  // modulo 2^32, as the kernel counts
+      counters_.kernel_drops.add(said.drops - drops_);  // modulo 2^32, as the kernel counts
       drops_ = said.drops;
     }
     const bool stamped = said.arrival_ns != 0;
-    arrivals_[i] = {stamped ? stamps_.on_arrival_clock(said.arrival_ns) : read_at, stamped};
+    batch_.arrivals[i] = {stamped ? stamps_.on_arrival_clock(said.arrival_ns) : read_at, stamped};
   }
 }
 
 bool UdpTransport::is_of_port(std::size_t i) noexcept {
-  const std::uint16_t port = ntohs(reinterpret_cast<const sockaddr_in&>(senders_[i]).sin_port);  // v6 too
+  const std::uint16_t port =
+      ntohs(reinterpret_cast<const sockaddr_in&>(batch_.senders[i]).sin_port);  // v6 too
   if (settings_.host_port != 0) return port == settings_.host_port;
   const bool another = sends_from_ != 0 && port != sends_from_;
-  if (another && arrivals_[i].ns < sent_ns_ + 2'000'000'000 /* no sensor restarts in less */) return false;
+  if (another && batch_.arrivals[i].ns < sent_ns_ + 2'000'000'000 /* no sensor restarts in less */)
+    return false;
   sends_from_ = port;
-  sent_ns_ = arrivals_[i].ns;
+  sent_ns_ = batch_.arrivals[i].ns;
   return true;
 }
 
 Delivery UdpTransport::next() noexcept {
-  for (; next_ < count_; ++next_) {
-    const std::size_t i = next_, length = messages_[i].msg_len;
-    if (addresses_.host && !addresses_.host->is_host_of(senders_[i])) {
+  for (; batch_.next < batch_.count; ++batch_.next) {
+    const std::size_t i = batch_.next, length = batch_.messages[i].msg_len;
+    if (addresses_.host && !addresses_.host->is_host_of(batch_.senders[i])) {
       report("datagrams from another host, which are dropped", 0);
       continue;
     }
@@ -269,11 +275,11 @@ Delivery UdpTransport::next() noexcept {
       continue;
     }
     if (length == 0) continue;
-    ++next_;
+    ++batch_.next;
     Delivery delivery;
-    delivery.bytes = {&bytes_[i * kLongest], length};
-    delivery.arrival_ns = arrivals_[i].ns;
-    delivery.stamped = arrivals_[i].stamped;
+    delivery.bytes = {&batch_.bytes[i * kLongest], length};
+    delivery.arrival_ns = batch_.arrivals[i].ns;
+    delivery.stamped = batch_.arrivals[i].stamped;
     return delivery;
   }
   return {};

@@ -80,7 +80,7 @@ bool SerialTransport::connect(std::string& warning, std::int64_t until_ns) {
   dialogue_.reset();
   send(opening());
   heard_ns_ = monotonic_ns();
-  blocks_ = wait_for_bytes(port_->fd()) && let_block(port_->fd());
+  blocks_ = wait_for_bytes(port_->fd()) && StoppableWait::let_block(port_->fd());
   errors_known_ = port_->errors(errors_);
   next_errors_ns_ = arrival_clock_ns() + kErrorPeriod_ns;
   return true;
@@ -95,7 +95,7 @@ bool SerialTransport::set_up(std::int64_t until_ns) {
       answer_by_ns_ = monotonic_ns() + kAnswerLimit_ns;
     }
     short happened = 0;
-    const Wake wake = wait(port_->fd(), POLLIN, std::min(until_ns, answer_by_ns_), happened);
+    const Wake wake = waiting_.wait(port_->fd(), POLLIN, std::min(until_ns, answer_by_ns_), happened);
     if (wake == Wake::stopped) return false;
     const ssize_t n = wake == Wake::ready ? ::read(port_->fd(), buffer_.data(), buffer_.size()) : 0;
     const std::span<const std::uint8_t> bytes(buffer_);
@@ -138,7 +138,7 @@ void SerialTransport::send(std::span<const std::uint8_t> rest) {
     if (error == EINTR) continue;
     short happened = 0;
     if (error == EAGAIN) {
-      if (wait(port_->fd(), POLLOUT, limit, happened) == Wake::ready) continue;
+      if (waiting_.wait(port_->fd(), POLLOUT, limit, happened) == Wake::ready) continue;
       error = ETIMEDOUT;
     }
     port_.reset();
@@ -148,8 +148,9 @@ void SerialTransport::send(std::span<const std::uint8_t> rest) {
 }
 
 Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
-  const Received got = receive_by(port_->fd(), blocks_, until_ns,
-                                  [&](bool) { return ::read(port_->fd(), buffer_.data(), buffer_.size()); });
+  const Received got = waiting_.receive_by(port_->fd(), blocks_, until_ns, [&](bool) {
+    return ::read(port_->fd(), buffer_.data(), buffer_.size());
+  });
   Delivery delivery;
   delivery.read_ns = arrival_clock_ns();
   if (delivery.read_ns >= next_errors_ns_) {
@@ -188,8 +189,8 @@ Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
 void SerialTransport::count_losses() noexcept {
   LineErrors now;
   if (!errors_known_ || !port_->errors(now)) return;
-  kernel_drops_.add(now.lost - errors_.lost);  // modulo 2^32
-  error_frames_.add(now.damaged - errors_.damaged);
+  counters_.kernel_drops.add(now.lost - errors_.lost);  // modulo 2^32
+  counters_.error_frames.add(now.damaged - errors_.damaged);
   errors_ = now;
 }
 

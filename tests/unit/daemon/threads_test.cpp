@@ -39,7 +39,7 @@ class SilentTransport final : public Transport {
   bool connect(std::string&, std::int64_t) override { return true; }
   Delivery receive(std::int64_t until_ns) noexcept override {
     short happened = 0;
-    wait(-1, 0, until_ns, happened);
+    waiting_.wait(-1, 0, until_ns, happened);
     return {};
   }
 };

@@ -71,17 +71,17 @@ void DenoisedRows::count(const ChainOutput& out) {
 
 bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOutput& out) {
   const double told_s = origin_.told(time_s);
-  if (rows_++ == 0) first_s_ = told_s;
-  last_s_ = told_s;
+  if (extent_.rows++ == 0) extent_.first_s = told_s;
+  extent_.last_s = told_s;
   if (keep_) {
     columns_.time_s.push_back(time_s);
     columns_.dt_s.push_back(increment.dt_s);
   }
   const bool begun = !part_.from.is_after(origin_, time_s);
-  over_ = over_ || (begun && !part_.to.is_after(origin_, time_s));
-  const bool inside = begun && !over_;
+  extent_.over = extent_.over || (begun && !part_.to.is_after(origin_, time_s));
+  const bool inside = begun && !extent_.over;
   if (inside) {
-    ++written_;
+    ++extent_.written;
     count(out);
     if (!smooth_) append(time_s);
   }
@@ -110,10 +110,11 @@ bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
 }
 
 void DenoisedRows::finish(const std::string& name) {
-  if (written_ == 0 && rows_ > 0) part_.refuse_empty(first_s_, last_s_, name);
-  if (written_ > 0 && std::all_of(moments_.begin(), moments_.end(),
-                                  [&](const AxisMoments& axis) { return axis.missing == written_; }))
-    refuse_without_rates(name, written_);
+  if (extent_.written == 0 && extent_.rows > 0) part_.refuse_empty(extent_.first_s, extent_.last_s, name);
+  if (extent_.written > 0 && std::all_of(moments_.begin(), moments_.end(), [&](const AxisMoments& axis) {
+        return axis.missing == extent_.written;
+      }))
+    refuse_without_rates(name, extent_.written);
   if (keep_) {
     std::vector<Samples*> all{&columns_.dt_s};
     for (DenoisedAxis& axis : columns_.axes)

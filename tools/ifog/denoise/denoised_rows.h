@@ -68,10 +68,10 @@ class DenoisedRows {
   // std::runtime_error with one line when there are none, or none with a value, or as OutputFile does.
   void finish(const std::string& name);
 
-  [[nodiscard]] std::size_t written() const { return written_; }
+  [[nodiscard]] std::size_t written() const { return extent_.written; }
   // All figures are of the rows in the part.
   // Not one was filtered: the noise was known too late, or never.
-  [[nodiscard]] bool none_filtered() const { return counts_.unknown_noise == written_; }
+  [[nodiscard]] bool none_filtered() const { return counts_.unknown_noise == extent_.written; }
   [[nodiscard]] const Counts& counts() const { return counts_; }
   [[nodiscard]] const AxisMoments& moments(std::size_t axis) const { return moments_[axis]; }
 
@@ -91,10 +91,12 @@ class DenoisedRows {
   DenoisedColumns columns_;
   std::vector<AxisMoments> moments_;
   Counts counts_;
-  std::size_t rows_ = 0, written_ = 0;
+  struct Extent {
+    std::size_t rows = 0, written = 0;
+    double first_s = 0.0, last_s = 0.0;
+    bool over = false;  // beyond the part
+  } extent_;
   TimeOrigin origin_;
-  double first_s_ = 0.0, last_s_ = 0.0;
-  bool over_ = false;  // beyond the part
 };
 
 }  // namespace ifog::tools

@@ -24,12 +24,10 @@ class FlightChain {
         sink_(sink),
         first_(settings_()),
         now_(chain_settings(first_)),
-        axes_(now_.axes),
         chain_(now_, first_),
         times_(driver_.description(), sink_),
-        run_(flight.header().run),
-        number_(flight.header().settings),
-        missed_(!begins_a_run(flight.header())) {
+        runs_{flight.header().run, flight.header().settings},
+        missed_{!begins_a_run(flight.header()), {}} {
     sink_.begin(now_.axes);
   }
 
@@ -47,8 +45,8 @@ class FlightChain {
     times_.come(recorded.sample);
     const Increment* const increment = chain_.run(reading_, out_);
     if (increment == nullptr) return;
-    if (std::exchange(missed_, false) && !missed_at_s_) missed_at_s_ = times_.now_s();
-    if (std::exchange(merged_, false) && !merged_at_s_) merged_at_s_ = times_.now_s();
+    missed_.sample(times_.now_s());
+    merged_.sample(times_.now_s());
     chain_.count(sink_.sample(times_.now_s(), *increment, out_));
   }
 
@@ -56,44 +54,59 @@ class FlightChain {
     chain_.discontinuity();
     times_.times().discontinuity();
   }
-  void missing() { missed_ = true; }
-  void merged() { merged_ = true; }
+  void missing() { missed_.before_next = true; }
+  void merged() { merged_.before_next = true; }
 
   void file(const FlightHeader& header) {
     times_.times().go_on_as(driver_.description());
-    const bool another_run = header.run != run_;
-    if (!another_run && (fixed_ || header.settings == number_)) return;
-    run_ = header.run;
-    number_ = header.settings;
+    const bool another_run = header.run != runs_.run;
+    if (!another_run && (fixed_ || header.settings == runs_.settings)) return;
+    runs_.run = header.run;
+    runs_.settings = header.settings;
     OfflineSettings settings = settings_();
     // What was said of the first sample.
     if (another_run) settings.since_power_up_s.reset();
-    now_ = chain_settings(settings);
-    if (now_.axes != axes_)
+    ChainSettings next = chain_settings(settings);
+    if (next.axes != now_.axes)
       throw std::runtime_error(
           "continues with other axes, as the driver's options changed; expected recordings of one");
+    now_ = std::move(next);
     if (another_run) {
-      ++runs_;
-      missed_ = !begins_a_run(header);
+      ++runs_.count;
+      missed_.before_next = !begins_a_run(header);
       chain_.begin(now_);
     } else {
-      ++exchanges_;
+      ++runs_.exchanges;
       chain_.exchange(now_);
     }
   }
 
   OfflineResult finish() {
     OfflineResult out = chain_.finish();
-    out.runs = runs_;
-    out.exchanges = exchanges_;
-    out.not_as_published_from_s = missed_at_s_;
+    out.runs = runs_.count;
+    out.exchanges = runs_.exchanges;
+    out.not_as_published_from_s = missed_.first_s;
     out.between_runs_s = flight_.counts().between_runs_s;
     out.merged = flight_.counts().merged_samples;
-    out.merged_from_s = merged_at_s_;
+    out.merged_from_s = merged_.first_s;
     return out;
   }
 
  private:
+  // What happened before the next sample, and when it did first.
+  struct Occurrence {
+    bool before_next = false;
+    std::optional<double> first_s;
+    void sample(double now_s) {
+      if (std::exchange(before_next, false) && !first_s) first_s = now_s;
+    }
+  };
+  struct Runs {
+    std::uint64_t run;
+    std::uint32_t settings;
+    std::size_t count = 1, exchanges = 0;
+  };
+
   // Nobody knows it of an older recording.
   static bool begins_a_run(const FlightHeader& header) {
     return header.began == 0 || header.number == header.began;
@@ -118,18 +131,13 @@ class FlightChain {
   std::vector<std::size_t> recorded_at_;
   OfflineSettings first_;
   ChainSettings now_;
-  std::vector<std::string> axes_;
   ChainRun chain_;
   OfflineTimes times_;
-  std::uint64_t run_;
-  std::uint32_t number_;
-  std::size_t runs_ = 1, exchanges_ = 0;
+  Runs runs_;
   Reading reading_;
   ChainOutput out_;
-  bool missed_;                        // something, before the next sample
-  std::optional<double> missed_at_s_;  // the first time
-  bool merged_ = false;                // samples, about where the next one is
-  std::optional<double> merged_at_s_;  // the first time
+  Occurrence missed_;  // something
+  Occurrence merged_;  // samples, about where the next one is
 };
 
 }  // namespace

@@ -47,17 +47,17 @@ void SensorView::take(const rate_t& message) {
 }
 
 void SensorView::take(status_t message) {
-  status_ = std::move(message);
-  came_ = status_came_ = true;
-  status_age_s_ = 0.0;
+  status_.message = std::move(message);
+  came_ = status_.came = true;
+  status_.age_s = 0.0;
 }
 
 void SensorView::end_interval(double seconds) {
   rate_hz_ = static_cast<double>(in_interval_) / seconds;
   judged_ = true;
-  shown_ = shown_ || in_interval_ > 0 || status_;
+  shown_ = shown_ || in_interval_ > 0 || status_.message;
   silent_s_ = std::exchange(came_, false) ? 0.0 : silent_s_ + seconds;
-  status_age_s_ = std::exchange(status_came_, false) ? 0.0 : status_age_s_ + seconds;
+  status_.age_s = std::exchange(status_.came, false) ? 0.0 : status_.age_s + seconds;
   flagged_before_ = std::exchange(flagged_, {});
   axes_.clear();
   for (std::size_t a = 0; a < sums_.size(); ++a) {
@@ -80,7 +80,7 @@ std::vector<SensorView::Count> SensorView::flags() const {
 }
 
 std::vector<SensorView::Count> SensorView::all_losses() const {
-  const status_t s = status_.value_or(status_t{});
+  const status_t s = status_.message.value_or(status_t{});
   std::vector<Count> out{{"lost on LCM", way_.lost()}};
   for (const StatusCounter& each : kStatusCounters)
     if (*each.loss != '\0') out.push_back({each.loss, s.*each.count});

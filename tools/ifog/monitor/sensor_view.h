@@ -48,16 +48,16 @@ class SensorView {
   [[nodiscard]] bool silent() const { return silent_s_ > kStale_s; }
   // Null: none was received, or it is too old, s, to describe the present.
   [[nodiscard]] const status_t* live_status() const {
-    return status_ && status_age_s_ <= kStale_s ? &*status_ : nullptr;
+    return status_.message && status_.age_s <= kStale_s ? &*status_.message : nullptr;
   }
-  [[nodiscard]] double status_age_s() const { return status_age_s_; }
+  [[nodiscard]] double status_age_s() const { return status_.age_s; }
   [[nodiscard]] bool two_publishers() const { return way_.two_publishers(); }
   [[nodiscard]] double message_rate_hz() const { return rate_hz_; }
   [[nodiscard]] const std::string& model() const { return model_; }
   [[nodiscard]] const std::vector<AxisView>& axes() const { return axes_; }  // none: nothing came
   [[nodiscard]] std::size_t axis_count() const { return sums_.size(); }      // of the last message
   [[nodiscard]] const std::deque<Second>& history(std::size_t axis) const { return history_[axis]; }
-  [[nodiscard]] const std::optional<status_t>& status() const { return status_; }
+  [[nodiscard]] const std::optional<status_t>& status() const { return status_.message; }
 
   struct Count {
     std::string_view name;
@@ -78,7 +78,7 @@ class SensorView {
 
   std::int64_t messages_ = 0, in_interval_ = 0;
   bool came_ = false;  // anything, in the interval
-  double silent_s_ = 0.0, status_age_s_ = 0.0;
+  double silent_s_ = 0.0;
   bool judged_ = false, shown_ = false;
   double rate_hz_ = 0.0;
   LcmLoss way_;
@@ -87,8 +87,11 @@ class SensorView {
   std::vector<AxisView> axes_;
   std::vector<std::deque<Second>> history_;
   std::array<std::int64_t, kFlagNames.size()> flagged_{}, flagged_before_{};
-  std::optional<status_t> status_;
-  bool status_came_ = false;  // in the interval
+  struct Status {
+    std::optional<status_t> message;
+    double age_s = 0.0;
+    bool came = false;  // in the interval
+  } status_;
   std::vector<std::int64_t> forgotten_;
 };
 

@@ -87,13 +87,13 @@ class FakeBus final : public Transport {
       : Transport("fake0"), frames_(std::move(frames)), drops_(drops), last_(last) {}
   bool connect(std::string&, std::int64_t) override { return true; }
   // Of these the kernel tells only when it is asked at the end.
-  void count_losses() noexcept override { kernel_drops_.add(std::exchange(last_, 0)); }
+  void count_losses() noexcept override { counters_.kernel_drops.add(std::exchange(last_, 0)); }
   Delivery receive(std::int64_t until_ns) noexcept override {
     Delivery out;
-    kernel_drops_.add(std::exchange(drops_, 0));
+    counters_.kernel_drops.add(std::exchange(drops_, 0));
     out.frames = std::exchange(given_, true) ? std::span<const ifog_can_frame>() : frames_;
     short happened = 0;
-    if (out.empty()) wait(-1, 0, until_ns, happened);
+    if (out.empty()) waiting_.wait(-1, 0, until_ns, happened);
     return out;
   }
 

@@ -26,7 +26,7 @@ bool FaultyTransport::connect(std::string&, std::int64_t) {
   throw OpenError("faulty", "cannot open", ENODEV, "a device");
 }
 
-void FaultyTransport::count_losses() noexcept { kernel_drops_.add(std::exchange(untold_, 0)); }
+void FaultyTransport::count_losses() noexcept { counters_.kernel_drops.add(std::exchange(untold_, 0)); }
 
 void FaultyTransport::cut() noexcept {
   ++next_cut_;
@@ -53,7 +53,7 @@ Delivery FaultyTransport::receive(std::int64_t) noexcept {
     const std::uint64_t drops = below(5);
     dropped_ += drops;
     if (below(2) == 0)
-      kernel_drops_.add(drops);
+      counters_.kernel_drops.add(drops);
     else
       untold_ += drops;
   }
@@ -89,7 +89,7 @@ Delivery FloodedBus::receive(std::int64_t) noexcept {
   }
   const std::uint64_t drops = random_() % 3;
   dropped_ += drops;
-  kernel_drops_.add(drops);
+  counters_.kernel_drops.add(drops);
   Delivery out;
   out.frames = frames_;
   return out;

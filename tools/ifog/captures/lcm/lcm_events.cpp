@@ -23,8 +23,7 @@ constexpr std::size_t kBlock = std::size_t{1} << 16U;
 }  // namespace
 
 std::int64_t type_hash(std::span<const std::uint8_t> message) {
-  constexpr std::size_t kHash = 8;  // bytes
-  return message.size() < kHash ? 0 : boost::endian::load_big_s64(message.data());
+  return message.size() < sizeof(std::int64_t) ? 0 : boost::endian::load_big_s64(message.data());
 }
 
 LcmEvents::LcmEvents(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "rb")) {

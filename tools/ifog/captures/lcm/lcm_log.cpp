@@ -48,11 +48,10 @@ std::string first_channel(const NamedLog& source, const std::string& path) {
     if (bytes.empty() && carries_bytes(event->data)) bytes = event->channel;
   }
   if (!peer.empty()) return peer;
-  if (bytes.empty())
-    throw std::runtime_error(path +
-                             ": has no channel IFOG_<NAME>, and none with rates of another program's type");
-  throw std::runtime_error(path + ": has bytes of a device on " + printable(bytes) +
-                           ", expected --driver NAME to decode them with");
+  throw std::runtime_error(
+      path + (bytes.empty() ? ": has no channel IFOG_<NAME>, and none with rates of another program's type"
+                            : ": has bytes of a device on " + printable(bytes) +
+                                  ", expected --driver NAME to decode them with"));
 }
 
 // A log, and the channel of it that carries the rates: the one that was asked for, or else the first, which
@@ -75,12 +74,11 @@ struct ChosenLog {
   std::optional<PeerReader> peer;  // its messages are no ifog.rate_t
 };
 
-// The message carries no names; three axes are x, y, z.
-std::vector<std::string> axis_names(std::size_t axes) {
-  if (axes == 1) return {""};
-  std::vector<std::string> names{"x", "y", "z"};
-  names.resize(std::min(names.size(), axes));
-  return names;
+// What the names of the axes end with: the message carries none; three axes are x, y, z.
+std::vector<std::string> axis_ends(std::size_t axes) {
+  std::vector<std::string> ends{"_x", "_y", "_z"};
+  ends.resize(std::min(ends.size(), axes));
+  return axes == 1 ? std::vector<std::string>{""} : ends;
 }
 
 using RateSink = std::function<void(const MeasuredRate&, double)>;
@@ -97,10 +95,8 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   LcmLoss way;
   const auto hand_on = [&](const MeasuredRate& message) {
     const double time_s = seconds.of(message);
-    if (time_s < 0.0)
-      ++left_out;
-    else
-      sink(message, time_s);
+    if (time_s >= 0.0) return sink(message, time_s);
+    ++left_out;
   };
   Progress progress("reading " + std::filesystem::path(path).filename().string(), log.size());
   while (const LcmEvents::Event* event = log.next()) {
@@ -204,8 +200,7 @@ class LcmRows {
   static constexpr std::size_t kRows = std::size_t{1} << 14U;
   void begin(std::size_t axes) {
     std::vector<std::string> names;
-    for (const std::string& axis : axis_names(axes))
-      names.push_back(axis.empty() ? "rate_radps" : "rate_" + axis + "_radps");
+    for (const std::string& end : axis_ends(axes)) names.push_back("rate" + end + "_radps");
     names.insert(names.end(), beside_.begin(), beside_.end());
     names.insert(names.end(), names_.begin(), names_.end());
     rows_.columns.resize(names.size());
@@ -260,10 +255,9 @@ Table read_published(InputFile& file, const std::string& channel) {
     // The sum of the steps: the sensor's own time also when a recording was played faster.
     if (!table.time_s.empty()) time_s += message.dt;
     if (table.time_s.empty()) {
-      for (const std::string& axis : axis_names(message.raw.size()))
+      for (const std::string& end : axis_ends(message.raw.size()))
         for (const std::string what : {"raw", "compensated", "denoised", "variance"})
-          table.columns.push_back(
-              {what + (axis.empty() ? "" : "_" + axis) + (what == "variance" ? "_rad2ps2" : "_radps"), {}});
+          table.columns.push_back({what + end + (what == "variance" ? "_rad2ps2" : "_radps"), {}});
     }
     table.time_s.push_back(time_s);
     auto column = table.columns.begin();

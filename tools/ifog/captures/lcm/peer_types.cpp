@@ -19,13 +19,20 @@ constexpr double kStandardGravity = 9.80665;  // m/s² per g
 constexpr std::int64_t kMostTime_us = 4'000'000'000'000'000;
 constexpr std::int64_t kKvhModulus = 128;  // KVH 1750 technical manual: the sequence number is 0 to 127
 
+template <typename Number>
+PeerSample three_axes(std::int64_t utime, const Number* rates, const Number* forces) {
+  PeerSample sample;
+  sample.utime = utime;
+  std::copy_n(rates, 3, sample.value.begin());
+  std::copy_n(forces, 3, sample.specific_force_mps2.begin());
+  return sample;
+}
+
 template <typename Message>
 bool ins(Bytes bytes, std::vector<PeerSample>& out) {
   Message message;
   if (!decode_message(bytes, message)) return false;
-  PeerSample sample;
-  sample.utime = message.utime;
-  std::copy_n(message.gyro, 3, sample.value.begin());
+  PeerSample sample = three_axes(message.utime, message.gyro, message.accel);
   if constexpr (std::is_same_v<Message, microstrain::ins_t>) {
     if (std::abs(message.device_time) < 1e-6 * static_cast<double>(kMostTime_us))
       sample.device_ns = std::llround(message.device_time * 1e9);
@@ -33,7 +40,6 @@ bool ins(Bytes bytes, std::vector<PeerSample>& out) {
              device_us < kMostTime_us && device_us > -kMostTime_us) {
     sample.device_ns = device_us * 1000;
   }
-  std::copy_n(message.accel, 3, sample.specific_force_mps2.begin());
   out.push_back(sample);
   return true;
 }
@@ -42,12 +48,9 @@ bool kvh_batch(Bytes bytes, std::vector<PeerSample>& out) {
   bot_core::kvh_raw_imu_batch_t message;
   if (!decode_message(bytes, message)) return false;
   for (auto packet = message.raw_imu.rbegin(); packet != message.raw_imu.rend(); ++packet) {
-    PeerSample sample;
+    PeerSample sample = three_axes(packet->utime, packet->delta_rotation, packet->linear_acceleration);
     sample.kind = PeerSample::Kind::delta;
-    sample.utime = packet->utime;
     sample.count = packet->packet_count;
-    std::copy_n(packet->delta_rotation, 3, sample.value.begin());
-    std::copy_n(packet->linear_acceleration, 3, sample.specific_force_mps2.begin());
     out.push_back(sample);
   }
   return true;
@@ -88,10 +91,7 @@ bool dsp3000(Bytes bytes, std::vector<PeerSample>& out) {
 bool senlcm_imu(Bytes bytes, std::vector<PeerSample>& out) {
   senlcm::IMU_t message;
   if (!decode_message(bytes, message)) return false;
-  PeerSample sample;
-  sample.utime = message.utime;
-  std::copy_n(message.angRate, 3, sample.value.begin());
-  std::copy_n(message.accel, 3, sample.specific_force_mps2.begin());
+  PeerSample sample = three_axes(message.utime, message.angRate, message.accel);
   out.push_back(sample);
   return true;
 }

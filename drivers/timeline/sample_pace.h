@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: Apache-2.0
+// The sample period of a device, as the arrivals of its frames measure it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+namespace ifog {
+
+class SamplePace {
+ public:
+  // rate_hz: nominal; 0: unknown.
+  explicit SamplePace(double rate_hz) noexcept
+      : known_(rate_hz > 0.0), nominal_s_(rate_hz > 0.0 ? 1.0 / rate_hz : 1.0) {}
+
+  // The nominal rate is known.
+  [[nodiscard]] bool known() const noexcept { return known_; }
+  [[nodiscard]] double nominal_s() const noexcept { return nominal_s_; }
+  // As measured, or the nominal one until then.
+  [[nodiscard]] double period_s() const noexcept { return measured() ? elapsed_s_ / samples_ : nominal_s_; }
+  [[nodiscard]] double time_s(std::uint64_t samples) const noexcept {
+    return static_cast<double>(samples) * period_s();
+  }
+  // Relative error of the period, at most, where deliveries are late by up to scatter_s.
+  [[nodiscard]] double doubt(double scatter_s) const noexcept {
+    return measured() ? std::min(kStatedRate, kCrystals + scatter_s / elapsed_s_) : kStatedRate;
+  }
+  // The number of samples that a device takes in that time, 1 at least.
+  [[nodiscard]] std::uint64_t samples_in(double time_s) const noexcept {
+    return known_ ? at_least_one(time_s / period_s()) : 1;
+  }
+  static std::uint64_t at_least_one(double samples) noexcept {
+    return samples >= 1.5 ? static_cast<std::uint64_t>(std::llround(std::min(samples, 1e18))) : 1;
+  }
+  // False for what is read much faster than it was sampled, as from a file.
+  [[nodiscard]] bool arrivals_tell() const noexcept {
+    return recent_published_s_ == 0.0 || recent_elapsed_s_ > 0.5 * recent_published_s_;
+  }
+  // The next frames arrived elapsed_s after the one before, and their samples took published_s. steady: the
+  // arrivals show the device's period, without a silence.
+  void learn(double elapsed_s, double published_s, std::uint64_t samples, bool steady) noexcept {
+    recent_elapsed_s_ = kForgets * recent_elapsed_s_ + elapsed_s;
+    recent_published_s_ = kForgets * recent_published_s_ + published_s;
+    if (!steady) return;
+    const double keeps = std::max(0.0, 1.0 - elapsed_s / kMemory_s);
+    elapsed_s_ = keeps * elapsed_s_ + elapsed_s;
+    samples_ = keeps * samples_ + static_cast<double>(samples);
+  }
+
+ private:
+  static constexpr double kMeasured_s = 1.0, kMeasuredSamples = 16.0;  // a period is measured behind these
+  static constexpr double kMemory_s = 60.0, kForgets = 0.998;
+  static constexpr double kCrystals = 1e-4;    // the rates of two clocks differ by less
+  static constexpr double kStatedRate = 0.02;  // a nominal rate is off by less (KVH DSP-3000)
+
+  [[nodiscard]] bool measured() const noexcept {
+    return elapsed_s_ >= kMeasured_s && samples_ >= kMeasuredSamples;
+  }
+
+  bool known_;
+  double nominal_s_;
+  double elapsed_s_ = 0.0, samples_ = 0.0;
+  double recent_elapsed_s_ = 0.0, recent_published_s_ = 0.0;
+};
+
+}  // namespace ifog
