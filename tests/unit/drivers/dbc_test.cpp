@@ -244,14 +244,11 @@ std::string refusal(const std::string& text) {
 
 TEST(DbcFile, RefusesWithFileAndLine) {
   EXPECT_EQ(refusal("VERSION \"\"\nBO_ 1 A 8 X\n"), "f.dbc:2: '8 X', expected ':'");
-  EXPECT_EQ(refusal("BO_ 1 A: 8 X\n SG_ S : 0|32@2+ (1,0) [0|0] \"\" X\n"),
-            "f.dbc:2: '2+ (1,0) [0|0] \"\" X', expected one of 01");
   EXPECT_EQ(refusal("BO_ 1 A: 8 X\n SG_ S : 0|32@1+ (1,0) [0|0"), "f.dbc:2: the file ends, expected ']'");
   EXPECT_EQ(refusal("\n\nCM_ \"no end"), "f.dbc:3: a string without its closing quote");
   EXPECT_EQ(refusal("hello"), "f.dbc:1: 'hello', expected a section of a DBC file (BO_, SG_, CM_, …)");
   EXPECT_EQ(refusal("BO_ 4096 A: 8 X\n"),
             "f.dbc:1: message A has id 4096, expected at most 11 bits, or 29 bits and bit 31 set");
-  EXPECT_EQ(refusal("BO_ 1 A: 8 X\nBO_ 1 B: 8 X\n"), "f.dbc:2: message B has the id of A on line 1");
   EXPECT_EQ(refusal("BO_ 1 A: 4 X\n SG_ S : 24|16@1+ (1,0) [0|0] \"\" X\n"),
             "f.dbc:2: signal A.S reaches beyond the 4 bytes of its message");
   EXPECT_EQ(refusal("BO_ 1 A: 2 X\n SG_ S : 7|17@0+ (1,0) [0|0] \"\" X\n"),
@@ -262,8 +259,6 @@ TEST(DbcFile, RefusesWithFileAndLine) {
             "f.dbc:3: signal S is a float of 24 bits, expected 16 or 32");
   EXPECT_EQ(refusal("BO_ 1 A: 8 X\n SG_ S m1 : 0|16@1- (1,0) [0|0] \"\" X\n"),
             "f.dbc:2: signal S is multiplexed, but message A has no multiplexor (M)");
-  EXPECT_EQ(refusal("BO_ 1 A: 8 X\n SG_ S q1 : 0|16@1- (1,0) [0|0] \"\" X\n"),
-            "f.dbc:2: signal S is marked 'q1', expected M, m and a number, or both");
 }
 
 }  // namespace
