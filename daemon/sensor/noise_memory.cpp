@@ -8,7 +8,7 @@
 
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/transport/utc_now.h"
+#include "drivers/system/utc_now.h"
 
 namespace ifog {
 namespace {
@@ -46,7 +46,7 @@ NoiseMemory::NoiseMemory(const std::string& folder, const std::string& sensor, c
       kept_.learned = found.learned;
       remark_ = in_words(found);
     } else {
-      remark_ = path_ + ": is of driver \"" + printable(found.driver) + "\", " + std::to_string(found.axes) +
+      remark_ = path_ + ": belongs to driver \"" + printable(found.driver) + "\", " + std::to_string(found.axes) +
                 " axes at " + std::to_string(found.sample_rate_hz) + " Hz: learned again";
     }
   } catch (const std::exception& error) {

@@ -53,8 +53,7 @@ class TimeAsleep {
     boot_ns_.store(boot_ns, std::memory_order_relaxed);
   }
 
-  static constexpr std::int64_t kAsk_ns =
-      1'000'000;  // a clock costs 80 ns to read, a machine sleeps for longer
+  static constexpr std::int64_t kAsk_ns = 1'000'000;  // a clock costs 80 ns to read; sleep is longer
 
   std::atomic<std::int64_t> asleep_ns_{0}, raw_ns_{0}, boot_ns_{0}, asked_ns_{0};
 };

@@ -2,8 +2,8 @@
 #include "drivers/transport/stoppable_wait.h"
 
 #include <fcntl.h>
-#include <poll.h>
 #include <sys/eventfd.h>
+#include <sys/syscall.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,6 +14,111 @@
 #include "drivers/transport/clock.h"
 
 namespace ifog {
+namespace {
+
+constexpr long kRepeat_ns = 1'000'000;
+
+// What the signal's handler sees of the thread it interrupts: lock-free atomics, as the standard asks for.
+thread_local std::atomic<int> t_number{-1};
+thread_local std::atomic<bool> t_in_call{false}, t_rang{false};
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+// The system's own calls: glibc's take a timer_t, which is a pointer, and a pointer that outlives its timer
+// cannot be given to ring().
+bool set_timer(int number, int flags, const itimerspec& when) noexcept {
+  return syscall(SYS_timer_settime, number, flags, &when, nullptr) == 0;
+}
+
+void on_signal(int /*signal*/) {
+  const int before = errno;
+  t_rang.store(true, std::memory_order_relaxed);
+  // At its call the thread may have been just about to enter it: the next signal finds it there. Elsewhere it
+  // will look before it enters.
+  const int number = t_number.load(std::memory_order_relaxed);
+  if (number >= 0 && !t_in_call.load(std::memory_order_relaxed)) set_timer(number, 0, itimerspec{});
+  errno = before;
+}
+
+bool handle_signal() noexcept {
+  struct sigaction action {};
+  action.sa_handler = on_signal;  // without SA_RESTART: a call that is interrupted ends
+  sigemptyset(&action.sa_mask);
+  return sigaction(SIGURG, &action, nullptr) == 0;
+}
+
+}  // namespace
+
+ReadAlarm& ReadAlarm::of_this_thread() noexcept {
+  thread_local ReadAlarm alarm;
+  return alarm;
+}
+
+ReadAlarm::ReadAlarm() noexcept {
+  static const bool handled = handle_signal();
+  if (!handled) return;
+  sigset_t mine;
+  sigemptyset(&mine);
+  sigaddset(&mine, SIGURG);
+  if (pthread_sigmask(SIG_UNBLOCK, &mine, nullptr) != 0) return;
+  sigevent event{};
+  event.sigev_notify = SIGEV_THREAD_ID;
+  event.sigev_signo = SIGURG;
+  event._sigev_un._tid = static_cast<pid_t>(syscall(SYS_gettid));
+  int number = -1;
+  if (syscall(SYS_timer_create, CLOCK_MONOTONIC, &event, &number) != 0) return;
+  number_ = number;
+  t_number.store(number, std::memory_order_relaxed);
+}
+
+ReadAlarm::~ReadAlarm() {
+  if (number_ < 0) return;
+  t_number.store(-1, std::memory_order_relaxed);
+  syscall(SYS_timer_delete, number_);
+}
+
+bool ReadAlarm::is_set(std::int64_t until_ns) noexcept {
+  if (t_rang.load(std::memory_order_relaxed)) {
+    t_rang.store(false, std::memory_order_relaxed);
+    set_ns_ = kNever;
+  }
+  return set_ns_ <= until_ns;
+}
+
+bool ReadAlarm::set(std::int64_t until_ns) noexcept {
+  if (number_ < 0) return false;
+  itimerspec when{};
+  when.it_value = {until_ns / 1'000'000'000, until_ns % 1'000'000'000};
+  when.it_interval.tv_nsec = kRepeat_ns;
+  if (!set_timer(number_, TIMER_ABSTIME, when)) return false;
+  set_ns_ = until_ns;
+  return true;
+}
+
+void ReadAlarm::off() noexcept {
+  if (set_ns_ != kNever) set_timer(number_, 0, itimerspec{});
+  set_ns_ = kNever;
+}
+
+bool ReadAlarm::enter() noexcept {
+  t_in_call.store(true, std::memory_order_relaxed);
+  // The handler runs in this thread: nothing but the compiler could put the look before the word.
+  std::atomic_signal_fence(std::memory_order_seq_cst);
+  if (!t_rang.load(std::memory_order_relaxed)) return true;
+  leave();
+  return false;
+}
+
+void ReadAlarm::leave() noexcept { t_in_call.store(false, std::memory_order_relaxed); }
+
+void ReadAlarm::ring(int number) noexcept {
+  if (number < 0) return;
+  const int before = errno;
+  itimerspec now{};
+  now.it_value.tv_nsec = 1;
+  now.it_interval.tv_nsec = kRepeat_ns;
+  set_timer(number, 0, now);
+  errno = before;
+}
 
 StoppableWait::StoppableWait() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) {
   if (event_ < 0)
@@ -48,8 +153,6 @@ StoppableWait::Wake StoppableWait::wait(int fd, short events, std::int64_t until
     // Interrupted by a signal: wait for the rest.
   }
 }
-
-const short StoppableWait::kReadable = POLLIN;
 
 StoppableWait::Entry StoppableWait::enter_call(std::int64_t until_ns) noexcept {
   ReadAlarm& alarm = ReadAlarm::of_this_thread();

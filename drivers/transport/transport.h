@@ -63,9 +63,8 @@ struct TransportCounters {
   std::uint64_t bytes = 0;         // delivered
   std::uint64_t frames = 0;        // delivered, CAN
   std::uint64_t kernel_drops = 0;  // frames, datagrams or bytes the kernel had no room for
-  std::uint64_t error_frames =
-      0;                        // CAN error frames; serial bytes of wrong framing or parity, overruns, breaks
-  std::uint64_t reopened = 0;   // times the device came back
+  std::uint64_t error_frames = 0;  // CAN error frames; damaged serial bytes, overruns, breaks
+  std::uint64_t reopened = 0;      // times the device came back
   std::uint64_t malformed = 0;  // lines of a log that are no frame, a file cut off in the middle, datagrams
                                 // from somebody else; see fault()
 };
@@ -110,11 +109,9 @@ class Transport {
   [[nodiscard]] bool stopped() const { return waiting_.stopped(); }
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  // Whoever sees a state sees its reason, too.
+  // Whoever sees a state sees its reason, too: errno of the latest failure.
   [[nodiscard]] TransportState state() const { return state_.load(std::memory_order_acquire); }
-  [[nodiscard]] int reason() const {
-    return reason_.load(std::memory_order_relaxed);
-  }  // errno of the latest failure
+  [[nodiscard]] int reason() const { return reason_.load(std::memory_order_relaxed); }
   [[nodiscard]] TransportCounters counters() const;
   [[nodiscard]] TransportFault fault() const;
   // What opening the device, for the first time or again, could not get and can do without. Each text once,

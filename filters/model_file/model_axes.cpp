@@ -24,7 +24,7 @@ std::string effects_of_no_axis(const Model& model, std::span<const std::string> 
                                       [](const Effect& effect) { return effect.axis.empty(); });
   if (nameless == 0 || axes.size() < 2) return "";
   return std::to_string(nameless) +
-         " of its effects are of a sensor with one axis and are subtracted from each of " + listed(axes) +
+         " of its effects belong to a sensor with one axis and are subtracted from each of " + listed(axes) +
          "; expected effects with an axis";
 }
 

@@ -378,7 +378,7 @@ std::string in_words(std::span<const NoiseChange> changes) {
       words += text.data();
       continue;
     }
-    std::snprintf(text.data(), text.size(), " %.2g times as loud in %s … %s s", change.times, from.c_str(),
+    std::snprintf(text.data(), text.size(), " %.2g times the noise in %s … %s s", change.times, from.c_str(),
                   to.c_str());
     words += text.data();
     if (change.range_hz.low > 0.0)
@@ -388,7 +388,7 @@ std::string in_words(std::span<const NoiseChange> changes) {
       std::snprintf(text.data(), text.size(), " (below %.3g Hz)", change.range_hz.high);
     words += text.data();
   }
-  return words + "; the figures are of all of it together, --from and --to take a part";
+  return words + "; the figures are of the whole record, choose a part by --from and --to";
 }
 
 }  // namespace ifog

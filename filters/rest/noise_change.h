@@ -36,8 +36,8 @@ struct NoiseChange {
                                                      std::span<const Stretch> parts, double period_s,
                                                      const std::function<double(std::size_t)>& time_s);
 
-// "the noise is not the same along the record: 5.1 times as loud in 1606 … 1713 s (below 0.78 Hz); the
-// figures are of all of it together, --from and --to take a part"; empty where it is the same.
+// "the noise is not the same along the record: 5.1 times the noise in 1606 … 1713 s (below 0.78 Hz); the
+// figures are of the whole record, choose a part by --from and --to"; empty where it is the same.
 [[nodiscard]] std::string in_words(std::span<const NoiseChange> changes);
 
 }  // namespace ifog

@@ -31,10 +31,10 @@ std::string reason_against(const TunedModel& model, const TunedModel& walk, doub
   if (!model.held_out || !walk.held_out) return "";
   const double worse = prediction_against(*model.held_out, *walk.held_out);
   if (worse <= kWorse) return "";
-  std::snprintf(
-      text, sizeof text,
-      "its published rate foretells the second half worse than the random walk's, %.3g times in mean square",
-      worse);
+  std::snprintf(text, sizeof text,
+                "its published rate predicts the second half worse than the random walk's: %.3g times the "
+                "mean square error",
+                worse);
   return text;
 }
 

@@ -297,7 +297,7 @@ TEST(ModelAxes, WhatIsOfNoAxisHereIsTold) {
   const std::vector<std::string> one = {""}, three = {"x", "y", "z"};
   EXPECT_EQ(
       remarks_on_axes(model, three),
-      (std::vector<std::string>{"1 of its effects are of a sensor with one axis and are subtracted from "
+      (std::vector<std::string>{"1 of its effects belong to a sensor with one axis and are subtracted from "
                                 "each of x, y, z; expected effects with an axis",
                                 "has the noise of an axis 'q', of which there is none here, but x, y, z"}));
   EXPECT_EQ(remarks_on_axes(model, one),

@@ -59,7 +59,7 @@ TEST(NoiseChange, ALoudStretchIsWhereItIsAndAsLoudAsItIs) {
   EXPECT_NEAR(found[0].to_s, 1713.0, kTime_s);
   EXPECT_NEAR(found[0].times, 5.0, 1.0);
   EXPECT_DOUBLE_EQ(found[0].range_hz.high, 0.5 * kRate_hz);
-  EXPECT_NE(ifog::in_words(found).find("times as loud in 16"), std::string::npos) << ifog::in_words(found);
+  EXPECT_NE(ifog::in_words(found).find("times the noise in 16"), std::string::npos) << ifog::in_words(found);
 }
 
 TEST(NoiseChange, AQuietStretchIsSaidToBeQuiet) {

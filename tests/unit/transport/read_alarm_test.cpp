@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Calls that wait for bytes end when they are to: at their time, and by another thread's wish, at whichever
 // moment of the way into the call that comes.
-#include "drivers/transport/read_alarm.h"
+#include "drivers/transport/stoppable_wait.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

@@ -71,7 +71,7 @@ Motion motion_of(const CaptureView& capture, double period_s) {
   } catch (const std::invalid_argument&) {
   }
   motion.words += motion.left_out
-                      ? "; std and Allan deviation are of the rest alone, RMSE, bias, lag and heading of all"
+                      ? "; std and Allan deviation: at rest alone; RMSE, bias, lag and heading: all samples"
                       : "; too little rest: std and Allan deviation have the motion in them";
   return motion;
 }

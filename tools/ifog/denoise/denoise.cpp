@@ -172,7 +172,7 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
   for (const std::string& effect : result.left_out)
     warn("%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
   if (result.counts.mixed > 0)
-    warn("%s: %llu samples are of two devices that come mixed, and dropped: which of them is wanted?\n",
+    warn("%s: %llu samples come from two devices, mixed, and are dropped: which of them is wanted?\n",
          options.capture.c_str(), static_cast<unsigned long long>(result.counts.mixed));
   if (rows.none_filtered())
     warn(

@@ -76,7 +76,7 @@ constexpr std::array<FigureName, 12> kFigures = {{
     {"adev_10s_radps", "Allan deviation, 10 s", "°/h", 1.0 / kDegreePerHour},
     {"adev_100s_radps", "Allan deviation, 100 s", "°/h", 1.0 / kDegreePerHour},
     {"heading_drift_rad", "heading drift at the end", "°", 1.0 / kDegree},
-    {"whiteness", "correlation of neighbours", "", 1.0},
+    {"whiteness", "autocorrelation at lag 1", "", 1.0},
 }};
 
 std::string figure_lines(const Diagnosis& diagnosis) {

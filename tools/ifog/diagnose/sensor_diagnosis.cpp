@@ -16,7 +16,7 @@
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/transport/utc_now.h"
+#include "drivers/system/utc_now.h"
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/diagnosis/cleaning/other_axes.h"
 #include "filters/diagnosis/cleaning/prepared_channels.h"

@@ -19,7 +19,7 @@
 
 #include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/transport/utc_now.h"
+#include "drivers/system/utc_now.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/compensated_rates.h"
 #include "tools/ifog/captures/usable_axes.h"

@@ -179,7 +179,7 @@ std::optional<Proposal> read_proposal(const std::string& state, const std::strin
   return with_keys(path, [&]() -> std::optional<Proposal> {
     Proposal out;
     out.sensor = index->at("sensor").get<std::string>();
-    if (out.sensor != sensor) throw std::runtime_error(path + ": is of another sensor");
+    if (out.sensor != sensor) throw std::runtime_error(path + ": belongs to another sensor");
     out.made = index->at("made").get<std::string>();
     out.why = index->at("why").get<std::string>();
     out.against = name_from(index->at("against"));

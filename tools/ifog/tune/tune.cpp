@@ -15,7 +15,7 @@
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
-#include "drivers/transport/utc_now.h"
+#include "drivers/system/utc_now.h"
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/model_file/model.h"
 #include "filters/rest/glitches.h"

@@ -21,7 +21,7 @@ void say_of_samples(const CaptureBuilder& builder, const std::string& path) {
     warn("%s: %zu samples came twice or after one that follows, and are dropped\n", path.c_str(),
          builder.repeated());
   if (builder.mixed() != 0)
-    warn("%s: %zu samples are of two devices that come mixed, and dropped: which of them is wanted?\n",
+    warn("%s: %zu samples come from two devices, mixed, and are dropped: which of them is wanted?\n",
          path.c_str(), builder.mixed());
   if (builder.impossible() != 0)
     warn("%s: %zu values of channels cannot be, in the unit of their name: dropped\n", path.c_str(),
