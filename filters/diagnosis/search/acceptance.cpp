@@ -6,18 +6,6 @@
 #include "filters/diagnosis/checks/cross_validation.h"
 
 namespace ifog {
-namespace {
-
-// Beside the effects that came after it.
-bool step_stands(const BlockData& reconstructed, const SearchResult& found, std::size_t at) {
-  std::vector<Candidate> ordered = candidates_of(found.chosen);
-  std::rotate(ordered.begin() + static_cast<std::ptrdiff_t>(at),
-              ordered.begin() + static_cast<std::ptrdiff_t>(at) + 1, ordered.end());
-  return step_persists(reconstructed, {ordered, found.noise});
-}
-
-}  // namespace
-
 std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen) {
   std::optional<std::size_t> least;
   for (std::size_t i = 0; i < chosen.size(); ++i) {
@@ -39,21 +27,6 @@ SearchResult without_effect(const BlockData& reconstructed, SearchResult found, 
   found.noise = fit_noise(reconstructed.grid, columns, found.noise.shape);
   found.coefficients = solve(reconstructed.grid, found.noise.shape, columns, &found.covariance);
   return found;
-}
-
-std::vector<Effect> drop_steps_that_do_not_last(const BlockData& data, const BlockData& reconstructed,
-                                                SearchResult& found, std::vector<EvenError>& errors) {
-  std::vector<Effect> dropped;
-  for (std::size_t i = 0; i < found.chosen.size();) {
-    if (found.chosen[i].candidate.form != Form::kStep || step_stands(reconstructed, found, i)) {
-      ++i;
-      continue;
-    }
-    dropped.push_back(effect_of(data, found.chosen[i].candidate));
-    found = without_effect(reconstructed, std::move(found), i);
-    subtract_found(data, found, errors);
-  }
-  return dropped;
 }
 
 }  // namespace ifog

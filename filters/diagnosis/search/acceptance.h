@@ -19,9 +19,4 @@ SearchResult without_effect(const BlockData& reconstructed, SearchResult found, 
 // Index of the least certain effect that is corrected online; none when there is no such effect.
 std::optional<std::size_t> least_certain(const std::vector<Chosen>& chosen);
 
-// Takes out of `found` every step that does not persist once the effects found after it are known. `errors`
-// follow. Returns the effects dropped, in that order.
-std::vector<Effect> drop_steps_that_do_not_last(const BlockData& data, const BlockData& reconstructed,
-                                                SearchResult& found, std::vector<EvenError>& errors);
-
 }  // namespace ifog
