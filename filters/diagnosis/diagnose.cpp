@@ -9,6 +9,7 @@
 #include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/channels/reconstruct.h"
 #include "filters/diagnosis/checks/channel_delay.h"
+#include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/record/blocks.h"
@@ -24,7 +25,6 @@
 #include "filters/diagnosis/residual/hysteresis.h"
 #include "filters/diagnosis/residual/lines.h"
 #include "filters/diagnosis/residual/unexplained.h"
-#include "filters/diagnosis/search/acceptance.h"
 #include "filters/diagnosis/search/earth_rate.h"
 #include "filters/diagnosis/search/plausible.h"
 
@@ -51,14 +51,14 @@ class Run {
     look_at_channels();
     separate_dead_zone();
     search({});
-    subtract_found(data_, found_, errors_);
+    subtract_found();
     separate_lines();
     separate_hysteresis();
     drop_what_a_capture_denies();
     fit_jointly();
     while (const std::optional<std::size_t> harmful = what_makes_it_worse()) {
       say(harmful_in_words(result_.effects[*harmful].effect));
-      found_ = without_effect(reconstructed_, std::move(found_), *harmful);
+      drop(*harmful);
       fit_jointly();
     }
     report_figures();
@@ -91,6 +91,21 @@ class Run {
     if (!options_.allow_proxies) doubt_proxies(reconstructed_, found_);
   }
 
+  // `after` and `held_out` of the errors as the chosen effects leave them.
+  void subtract_found() {
+    subtract_effects(data_, candidates_of(found_.chosen), found_.noise.shape, found_.coefficients, errors_);
+  }
+
+  // Everything but effect `at` is fitted again.
+  void drop(std::size_t at) {
+    found_.chosen.erase(found_.chosen.begin() + static_cast<std::ptrdiff_t>(at));
+    std::erase_if(found_.alternatives, [&](const Alternative& other) { return other.of == at; });
+    for (Alternative& other : found_.alternatives) other.of -= other.of > at ? 1 : 0;
+    const Columns columns = design(reconstructed_, candidates_of(found_.chosen));
+    found_.noise = fit_noise(reconstructed_.grid, columns, found_.noise.shape);
+    found_.coefficients = solve(reconstructed_.grid, found_.noise.shape, columns, &found_.covariance);
+  }
+
   // The forms of the search would take a part of it for a nonlinearity.
   void separate_dead_zone() {
     if (data_.reference < 0 || data_.grid.dwells || data_.grid.noisy_reference) return;
@@ -118,7 +133,7 @@ class Run {
       if (lines_.slow.size() == before) break;
       if (lines_.slow.empty()) search({});
     }
-    subtract_found(data_, found_, errors_);
+    subtract_found();
   }
 
   // A loop is no effect that the daemon corrects, but what it leaves is searched again without it.
@@ -129,7 +144,7 @@ class Run {
     take_out(*result_.hysteresis, reconstructed_, data_.grid);
     reconstructed_.grid.error = data_.grid.error;
     search(lines_.slow);
-    subtract_found(data_, found_, errors_);
+    subtract_found();
   }
 
   void drop_what_a_capture_denies() {
@@ -139,15 +154,14 @@ class Run {
       for (const std::size_t i : denied->effects)
         effects.push_back(effect_of(data_, found_.chosen[i].candidate));
       say(denied_in_words(effects, *denied, records_));
-      for (std::size_t k = denied->effects.size(); k-- > 0;)
-        found_ = without_effect(reconstructed_, std::move(found_), denied->effects[k]);
-      subtract_found(data_, found_, errors_);
+      for (std::size_t k = denied->effects.size(); k-- > 0;) drop(denied->effects[k]);
+      subtract_found();
     }
   }
 
   void fit_jointly() {
     joint_ = settle(reconstructed_, found_);
-    subtract_found(data_, found_, errors_);
+    subtract_found();
     report_effects();
     if (data_.reference >= 0)
       name_bias(data_.grid, joint_, errors_, uncorrected_mean(), options_.axis, result_);
@@ -186,7 +200,17 @@ class Run {
     if (const auto harmful =
             most_harmful_effect(records_, result_, found_.chosen.size(), data_.grid.sample_s, errors_))
       return harmful;
-    return least_certain(found_.chosen);
+    return least_certain();
+  }
+
+  // Of the effects that are corrected the one that the fit would miss least.
+  [[nodiscard]] std::optional<std::size_t> least_certain() const {
+    std::optional<std::size_t> least;
+    for (std::size_t i = 0; i < found_.chosen.size(); ++i) {
+      if (!found_.chosen[i].candidate.corrected()) continue;
+      if (!least || found_.chosen[i].likelihood_ratio < found_.chosen[*least].likelihood_ratio) least = i;
+    }
+    return least;
   }
 
   void report_effects() {

@@ -4,12 +4,12 @@
 #include <cmath>
 
 #include "filters/allan/row_times.h"
+#include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/words.h"
 
 namespace ifog {
 namespace {
 
-constexpr double kLongestPeriod_s = 1.0;  // beyond, rows are averages of their own
 constexpr std::size_t kSteps = 16;
 constexpr double kOwnLengths = 4.0;
 
@@ -40,8 +40,7 @@ std::string in_words(const Record& record, const SampleClock& clock) {
 OwnedRecords with_even_stamps(OwnedRecords given) {
   for (Record& record : given.records) {
     const SampleClock clock = sample_clock(record.time_s);
-    if (!clock.scatters() || clock.period_s > kLongestPeriod_s || !keeps_a_beat(record.time_s, clock))
-      continue;
+    if (!clock.scatters() || clock.period_s > kSlowest_s || !keeps_a_beat(record.time_s, clock)) continue;
     RowTimes times(record.time_s, clock);
     Samples& even = given.columns.emplace_back(record.time_s.size());
     for (std::size_t i = 0; i < even.size(); ++i)

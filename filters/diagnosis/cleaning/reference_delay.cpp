@@ -19,14 +19,13 @@
 #include "filters/allan/stretches.h"
 #include "filters/diagnosis/cleaning/autoregression.h"
 #include "filters/diagnosis/cleaning/series_fit.h"
+#include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/words.h"
 
 namespace ifog {
 namespace {
 
-constexpr double kLongest_s = 60.0;
-constexpr double kSlowest_s = 1.0;        // between samples; a table of dwells is slower
 constexpr std::size_t kMost = 1U << 17U;  // steps that the delay is sought on
 constexpr std::size_t kLeast = 200;       // and the fewest that tell
 constexpr int kRounds = 20;
@@ -85,7 +84,7 @@ std::optional<Pair> pair_of(const Record& record) {
 }
 
 std::size_t longest_lag(const Pair& pair) {
-  return std::min(static_cast<std::size_t>(kLongest_s / pair.step_s), pair.rate.size() / 4);
+  return std::min(static_cast<std::size_t>(kMostEarly_s / pair.step_s), pair.rate.size() / 4);
 }
 
 std::vector<std::complex<double>> transform(const Series& series, std::size_t size) {

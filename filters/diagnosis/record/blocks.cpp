@@ -26,7 +26,6 @@ constexpr double kLeastShare = 0.5;
 constexpr std::size_t kLeastBlocks = 32;
 // Points of a rate table: a calibration by IEEE Std 952 has 11 or more.
 constexpr std::size_t kLeastDwells = 11;
-constexpr double kSlowest_s = 1.0;  // between samples of a time series beside a reference; dwells are slower
 
 std::string too_few(const std::vector<Record>& records, std::size_t blocks, double block_s) {
   std::size_t samples = 0;
