@@ -9,6 +9,7 @@
 #include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/channels/reconstruct.h"
 #include "filters/diagnosis/checks/channel_delay.h"
+#include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/checks/predicted_capture.h"
 #include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/record/blocks.h"
@@ -24,7 +25,6 @@
 #include "filters/diagnosis/residual/hysteresis.h"
 #include "filters/diagnosis/residual/lines.h"
 #include "filters/diagnosis/residual/unexplained.h"
-#include "filters/diagnosis/search/acceptance.h"
 #include "filters/diagnosis/search/earth_rate.h"
 #include "filters/diagnosis/search/plausible.h"
 
@@ -37,31 +37,28 @@ constexpr std::size_t kMoreOnDwells = 4;  // effects: a scale factor comes with 
 // One diagnosis, step by step. What each step finds is out of the errors for the next.
 class Run {
  public:
-  // whole: nothing of the records is kept back.
-  Run(const PreparedRecords& prepared, bool whole, const DiagnoseOptions& options)
-      : records_(prepared.fitted()),
-        as_logged_(whole ? prepared.as_logged() : nullptr),
-        ramps_(prepared.without_ramps().ramps),
-        no_ramp_because_(prepared.without_ramps().remark),
+  Run(const PreparedRecords& prepared, const DiagnoseOptions& options)
+      : records_(prepared.fitted),
+        ramps_(prepared.without_ramps.ramps),
+        lines_of_a_ramp_(prepared.without_ramps.remark),
         options_(options),
         earth_{options.subtract_earth_rate, options.latitude_rad, options.axis},
-        data_(cut_to_blocks(prepared.without_ramps().records)),
-        errors_(even_errors(records_, prepared.without_ramps(), data_.grid.sample_s)) {}
+        data_(cut_to_blocks(prepared.without_ramps.records)),
+        errors_(even_errors(records_, prepared.without_ramps, data_.grid.sample_s)) {}
 
   Diagnosis run() {
     refuse_constant(records_);
     look_at_channels();
     separate_dead_zone();
     search({});
-    subtract_found(data_, found_, errors_);
+    subtract_found();
     separate_lines();
     separate_hysteresis();
     drop_what_a_capture_denies();
-    drop_what_is_not_proven();
     fit_jointly();
     while (const std::optional<std::size_t> harmful = what_makes_it_worse()) {
       say(harmful_in_words(result_.effects[*harmful].effect));
-      found_ = without_effect(reconstructed_, std::move(found_), *harmful);
+      drop(*harmful);
       fit_jointly();
     }
     report_figures();
@@ -74,7 +71,7 @@ class Run {
     for (const Record& record : records_) result_.samples += record.time_s.size();
     result_.sample_rate_hz = 1.0 / data_.grid.sample_s;
     std::vector<std::string> ramps;
-    for (const RampFit& ramp : ramps_) ramps.push_back(ramp.effect.channel);
+    for (const RampFit& ramp : ramps_) ramps.push_back(ramp.found.effect.channel);
     say(unused_channels(records_, data_, ramps));
     for (std::string& each : mark_motion(data_, options_.allow_motion_channels)) say(std::move(each));
     reconstructed_ = with_reconstructed_channels(data_);
@@ -92,6 +89,21 @@ class Run {
     found_ = search_effects(reconstructed_, search);
     read_as_earth_rate(reconstructed_, earth_, found_);
     if (!options_.allow_proxies) doubt_proxies(reconstructed_, found_);
+  }
+
+  // `after` and `held_out` of the errors as the chosen effects leave them.
+  void subtract_found() {
+    subtract_effects(data_, candidates_of(found_.chosen), found_.noise.shape, found_.coefficients, errors_);
+  }
+
+  // Everything but effect `at` is fitted again.
+  void drop(std::size_t at) {
+    found_.chosen.erase(found_.chosen.begin() + static_cast<std::ptrdiff_t>(at));
+    std::erase_if(found_.alternatives, [&](const Alternative& other) { return other.of == at; });
+    for (Alternative& other : found_.alternatives) other.of -= other.of > at ? 1 : 0;
+    const Columns columns = design(reconstructed_, candidates_of(found_.chosen));
+    found_.noise = fit_noise(reconstructed_.grid, columns, found_.noise.shape);
+    found_.coefficients = solve(reconstructed_.grid, found_.noise.shape, columns, &found_.covariance);
   }
 
   // The forms of the search would take a part of it for a nonlinearity.
@@ -121,7 +133,7 @@ class Run {
       if (lines_.slow.size() == before) break;
       if (lines_.slow.empty()) search({});
     }
-    subtract_found(data_, found_, errors_);
+    subtract_found();
   }
 
   // A loop is no effect that the daemon corrects, but what it leaves is searched again without it.
@@ -132,12 +144,7 @@ class Run {
     take_out(*result_.hysteresis, reconstructed_, data_.grid);
     reconstructed_.grid.error = data_.grid.error;
     search(lines_.slow);
-    subtract_found(data_, found_, errors_);
-  }
-
-  void drop_what_is_not_proven() {
-    const std::vector<Effect> dropped = drop_steps_that_do_not_last(data_, reconstructed_, found_, errors_);
-    if (!dropped.empty()) say(dropped_in_words(dropped));
+    subtract_found();
   }
 
   void drop_what_a_capture_denies() {
@@ -147,22 +154,21 @@ class Run {
       for (const std::size_t i : denied->effects)
         effects.push_back(effect_of(data_, found_.chosen[i].candidate));
       say(denied_in_words(effects, *denied, records_));
-      for (std::size_t k = denied->effects.size(); k-- > 0;)
-        found_ = without_effect(reconstructed_, std::move(found_), denied->effects[k]);
-      subtract_found(data_, found_, errors_);
+      for (std::size_t k = denied->effects.size(); k-- > 0;) drop(denied->effects[k]);
+      subtract_found();
     }
   }
 
   void fit_jointly() {
     joint_ = settle(reconstructed_, found_);
-    subtract_found(data_, found_, errors_);
+    subtract_found();
     report_effects();
     if (data_.reference >= 0)
       name_bias(data_.grid, joint_, errors_, uncorrected_mean(), options_.axis, result_);
+    result_.covariance = covariance_of(result_.effects, joint_, data_.grid.constants(), parts_.size());
     count_rates_from_the_bias(errors_, result_.effects, result_.bias.has_value());
     run_written_model(records_, result_, data_.grid.sample_s, errors_);
     leave_as_written(errors_);
-    if (as_logged_) run_as_logged(records_, *as_logged_, result_, data_.grid.sample_s, errors_);
     write_before_and_after(errors_, data_.grid.sample_s, data_.reference >= 0, result_);
   }
 
@@ -194,7 +200,17 @@ class Run {
     if (const auto harmful =
             most_harmful_effect(records_, result_, found_.chosen.size(), data_.grid.sample_s, errors_))
       return harmful;
-    return least_certain(found_.chosen);
+    return least_certain();
+  }
+
+  // Of the effects that are corrected the one that the fit would miss least.
+  [[nodiscard]] std::optional<std::size_t> least_certain() const {
+    std::optional<std::size_t> least;
+    for (std::size_t i = 0; i < found_.chosen.size(); ++i) {
+      if (!found_.chosen[i].candidate.corrected()) continue;
+      if (!least || found_.chosen[i].likelihood_ratio < found_.chosen[*least].likelihood_ratio) least = i;
+    }
+    return least;
   }
 
   void report_effects() {
@@ -203,10 +219,8 @@ class Run {
     result_.indistinguishable = std::move(findings.pairs);
     result_.others = std::move(findings.others);
     result_.noise_posterior = joint_.noise;
-    const std::size_t jointly = result_.effects.size();
     for (FoundEffect& each : sample_effects(ramps_, zone_, lines_.fast, errors_, options_.axis))
       result_.effects.push_back(std::move(each));
-    result_.covariance = covariance_of(result_.effects, joint_, data_.grid.constants(), jointly);
     result_.ranges = ranges_of(data_, result_.effects);
     parts_ = std::move(findings.parts);
   }
@@ -214,8 +228,7 @@ class Run {
   void report_figures() {
     write_noise(records_, errors_, data_.grid, found_.noise, result_);
     result_.series = series_of(data_, errors_, found_.chosen, result_.effects, parts_, result_.noise);
-    const bool as_cut = records_.size() == 1 && ramps_.empty();  // with nothing taken out of its channels
-    result_.heading = predict_like_longest(result_, records_, as_cut ? &data_ : nullptr);
+    result_.heading = predict_like_longest(result_, records_);
   }
 
   void report_rest() {
@@ -229,12 +242,9 @@ class Run {
     // Of figures that the part kept back takes the place of, judge() says it.
     if (TimeShare{options_.fit_from, options_.fit_to}.whole())
       say(grown_in_words(result_, samples_of(errors_)));
-    if (as_logged_) say(faults_in_words(result_, errors_));
-    say(no_ramp_because_);
+    say(lines_of_a_ramp_);
     if (result_.hysteresis) describe_hysteresis(*result_.hysteresis, result_.unexplained);
     balance_shares(parts_.size(), result_);
-    say(slow_beside(errors_, data_.grid, result_.unexplained));
-    say(judged_beside(found_.noise.shape.harmonics.size()));
     if (data_.grid.dwells && !result_.effects.empty()) {
       say("coefficients were fitted without the part they are judged on; which effects to take was decided "
           "on all of the data");
@@ -245,10 +255,9 @@ class Run {
     if (!remark.empty()) result_.remarks.push_back(std::move(remark));
   }
 
-  const std::vector<Record>& records_;    // as given
-  const std::vector<Record>* as_logged_;  // with channels before their faults were repaired; null: no faults
+  const std::vector<Record>& records_;
   const std::vector<RampFit>& ramps_;
-  const std::string& no_ramp_because_;  // empty, or a sentence
+  const std::string& lines_of_a_ramp_;  // empty, or a sentence
   const DiagnoseOptions& options_;
   const EarthRateOptions earth_;
   BlockData data_;           // without the ramps
@@ -265,17 +274,16 @@ class Run {
 
 }  // namespace
 
-Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options,
-                   const PreparedChannels* channels) {
+Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options) {
   if (!(options.fit_from < options.fit_to))
     throw std::invalid_argument("the part to fit ends before it begins, expected fit-from below fit-to");
   const TimeShare share{options.fit_from, options.fit_to};
-  const PreparedRecords prepared(records, share, options.significance, channels);
-  Diagnosis diagnosis = Run(prepared, share.whole(), options).run();
-  diagnosis.reference_delays = prepared.delays();
-  const std::vector<std::string> remarks = prepared.remarks();
-  diagnosis.remarks.insert(diagnosis.remarks.begin(), remarks.begin(), remarks.end());
-  if (!share.whole()) judge(prepared.whole(), share, diagnosis);
+  const PreparedRecords prepared(records, share, options.significance);
+  Diagnosis diagnosis = Run(prepared, options).run();
+  diagnosis.reference_delays = prepared.whole.delays;
+  diagnosis.remarks.insert(diagnosis.remarks.begin(), prepared.whole.remarks.begin(),
+                           prepared.whole.remarks.end());
+  if (!share.whole()) judge(prepared.whole.records, share, diagnosis);
   return diagnosis;
 }
 

@@ -18,8 +18,6 @@
 
 namespace ifog {
 
-class PreparedChannels;
-
 struct DiagnoseOptions {
   double significance = 0.01;  // of a false effect, after correction for everything tried
   std::string axis;            // written into the effects found
@@ -38,8 +36,6 @@ struct DiagnoseOptions {
 
 // Throws std::invalid_argument, one line: no record, a part to fit that ends before it begins, spans of
 // unequal length, a reference in some records only, fewer than 32 usable samples.
-// channels: of the same records and part to fit, where other axes' diagnoses have them, too; null: made here.
-Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options,
-                   const PreparedChannels* channels = nullptr);
+Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options);
 
 }  // namespace ifog

@@ -207,7 +207,7 @@ MeasuredEffects measure_effects(const std::vector<Record>& records, const Effect
   if (!wanted.instead.empty() && wanted.instead.size() != wanted.together.size())
     throw std::invalid_argument("others in the place of effects, expected a list for each");
   const PreparedRecords prepared(records, {}, significance);
-  BlockData data = cut_to_blocks(prepared.without_ramps().records);
+  BlockData data = cut_to_blocks(prepared.without_ramps.records);
   wait_for_early(wanted.ranges, data);
   const BlockData reconstructed = with_reconstructed_channels(data);
   return Measuring(reconstructed, wanted, axis).run();

@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <optional>
 #include <utility>
 
 #include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
-#include "filters/series/samples_writer.h"
 
 namespace ifog {
 namespace {
@@ -57,34 +57,19 @@ bool alike(const std::string& one, const std::string& other) {
   return has_gradients && kind == kind_of(other) && unit_of(one) == unit_of(other);
 }
 
-void add_difference(const std::string& one, const std::string& other, DerivedRecords& derived) {
-  for (Record& record : derived.records) {
+void add_difference(const std::string& one, const std::string& other, OwnedRecords& to) {
+  for (Record& record : to.records) {
     const std::span<const double> a = values_of(record, one);
     const std::span<const double> b = values_of(record, other);
-    SamplesWriter difference(a.size());
+    Samples& difference = to.columns.emplace_back(a.size());
     double held_a = std::nan("");  // loggers poll their thermometers in turn
     double held_b = std::nan("");
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (std::isfinite(a[i])) held_a = a[i];
       if (std::isfinite(b[i])) held_b = b[i];
-      difference.add(held_a - held_b);
+      difference[i] = held_a - held_b;
     }
-    record.channels.push_back(
-        {difference_of(one, other), derived.values.emplace_back(std::move(difference).done())});
-  }
-}
-
-void add_differences(const std::vector<Record>& records, DerivedRecords& derived) {
-  std::vector<std::string> names;
-  for (const RecordChannel& channel : records.front().channels)
-    if (all_have(records, channel.name)) names.push_back(channel.name);
-  std::size_t count = 0;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    for (std::size_t j = i + 1; j < names.size() && count < kMostDifferences; ++j) {
-      if (!alike(names[i], names[j])) continue;
-      add_difference(names[i], names[j], derived);
-      ++count;
-    }
+    record.channels.push_back({difference_of(one, other), difference});
   }
 }
 
@@ -122,55 +107,53 @@ bool of_one_vector(const std::string& one, const std::string& other) {
          a + 1 != one.end() && *(a + 1) == '_' && std::equal(a + 1, one.end(), b + 1);
 }
 
-namespace {
-
-std::string outside_in_words(const std::string& channel, std::size_t samples, double first) {
-  return channel +
-         printed(" is outside the turn in %zu sample(s), first %.6g: no angle, dropped", samples, first);
-}
-
-}  // namespace
-
-DerivedRecords with_unwrapped_angles(const std::vector<Record>& records) {
-  DerivedRecords derived{records, {}, {}};
-  if (records.empty()) return derived;
-  for (const RecordChannel& channel : records.front().channels) {
-    double period = 0.0;
-    for (const Record& record : records)
-      period = std::max(period, angle_period(channel.name, values_of(record, channel.name)));
-    if (!(period > 0.0)) continue;
-    for (Record& record : derived.records) {
-      for (RecordChannel& mine : record.channels) {
-        if (mine.name != channel.name) continue;
-        Samples& whole = derived.values.emplace_back(mine.values.begin(), mine.values.end());
-        const std::optional<Turn> turn = turn_of(mine.values, period);
-        double before = std::nan("");
-        double first = 0.0;
-        std::size_t outside = 0;
-        for (double& value : whole) {
-          if (turn && std::isfinite(value) && !turn->has(value)) {
-            if (outside++ == 0) first = value;
-            value = std::nan("");
-          }
-          if (!std::isfinite(value)) continue;
-          if (std::isfinite(before)) value -= period * std::round((value - before) / period);
-          before = value;
+OwnedRecords with_unwrapped_angles(OwnedRecords given) {
+  std::map<std::string, double> periods;
+  for (const Record& record : given.records)
+    for (const RecordChannel& channel : record.channels)
+      if (const double period = angle_period(channel.name, channel.values); period > 0.0)
+        periods[channel.name] = period;
+  for (Record& record : given.records) {
+    for (RecordChannel& mine : record.channels) {
+      const auto found = periods.find(mine.name);
+      if (found == periods.end()) continue;
+      const double period = found->second;
+      Samples& whole = given.columns.emplace_back(mine.values);
+      const std::optional<Turn> turn = turn_of(mine.values, period);
+      double before = std::nan(""), first = 0.0;
+      std::size_t outside = 0;
+      for (double& value : whole) {
+        if (turn && std::isfinite(value) && !turn->has(value)) {
+          if (outside++ == 0) first = value;
+          value = std::nan("");
         }
-        mine.values = whole;
-        mine.period = period;
-        if (outside > 0)
-          derived.remarks.push_back(outside_in_words(
-              records.size() > 1 ? mine.name + " (" + record.name + ")" : mine.name, outside, first));
+        if (!std::isfinite(value)) continue;
+        if (std::isfinite(before)) value -= period * std::round((value - before) / period);
+        before = value;
       }
+      mine.values = whole;
+      mine.period = period;
+      if (outside > 0)
+        given.remarks.push_back(
+            mine.name + given.of_several(record) +
+            printed(" is outside the turn in %zu sample(s), first %.6g: no angle, dropped", outside, first));
     }
   }
-  return derived;
+  return given;
 }
 
-DerivedRecords with_differences(const std::vector<Record>& records) {
-  DerivedRecords derived{records, {}, {}};
-  if (!records.empty()) add_differences(records, derived);
-  return derived;
+OwnedRecords with_differences(OwnedRecords given) {
+  std::vector<std::string> names;
+  for (const RecordChannel& channel : given.records.front().channels)
+    if (all_have(given.records, channel.name)) names.push_back(channel.name);
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    for (std::size_t j = i + 1; j < names.size() && count < kMostDifferences; ++j) {
+      if (!alike(names[i], names[j])) continue;
+      add_difference(names[i], names[j], given);
+      ++count;
+    }
+  return given;
 }
 
 }  // namespace ifog

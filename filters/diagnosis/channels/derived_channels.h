@@ -3,21 +3,12 @@
 // thermometers on one coil see its gradient), and angles without their wraps.
 #pragma once
 
-#include <list>
 #include <span>
 #include <string>
-#include <vector>
 
-#include "filters/diagnosis/record.h"
-#include "filters/series/samples.h"
+#include "filters/diagnosis/record/owned_records.h"
 
 namespace ifog {
-
-struct DerivedRecords {
-  std::vector<Record> records;
-  std::list<Samples> values;           // which new channels' spans show; keep as long as `records`
-  std::vector<std::string> remarks{};  // of what was left out, for people
-};
 
 // 2 pi, 360 or 1 when the channel is an angle by its unit (rad, deg, turns) that stays within a turn and
 // wraps by a whole one; 0 otherwise.
@@ -27,10 +18,10 @@ double angle_period(const std::string& channel, std::span<const double> values);
 bool of_one_vector(const std::string& one, const std::string& other);
 
 // Angles go on where they wrapped, in every record; RecordChannel::period says which they are.
-DerivedRecords with_unwrapped_angles(const std::vector<Record>& records);
+OwnedRecords with_unwrapped_angles(OwnedRecords given);
 
 // Adds, of the channels that all records have and that move, the differences of like ones (at most six),
 // named as difference_of() does.
-DerivedRecords with_differences(const std::vector<Record>& records);
+OwnedRecords with_differences(OwnedRecords given);
 
 }  // namespace ifog

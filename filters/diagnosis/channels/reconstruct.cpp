@@ -4,6 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/words.h"
 
 namespace ifog {
 namespace {
@@ -29,10 +33,7 @@ double change_of(std::span<const Reading> readings) {
     const double change = std::abs(readings[i].value - readings[i - 1].value);
     if (change != 0.0) changes.push_back(change);
   }
-  if (changes.empty()) return 0.0;
-  const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
-  std::nth_element(changes.begin(), middle, changes.end());
-  return *middle;
+  return changes.empty() ? 0.0 : median(std::move(changes));
 }
 
 bool is_coarse(std::span<const Reading> readings) {
@@ -241,12 +242,6 @@ std::vector<Reading> one_a_step(std::span<const double> values) {
 
 Reconstruction as_read(std::span<const double> values) { return {{values.begin(), values.end()}, false}; }
 
-double sum_of_squares(std::span<const double> values, double about) {
-  double sum = 0.0;
-  for (const double value : values) sum += (value - about) * (value - about);
-  return sum;
-}
-
 }  // namespace
 
 Reconstruction reconstruct(std::span<const double> values) {
@@ -263,36 +258,27 @@ Reconstruction reconstruct(std::span<const double> values) {
   Spline spline(used, smooth.drive * share);
   Reconstruction result{{}, true};
   std::vector<double> taken;  // away: it has to be reading noise and nothing else
-  double mean = 0.0;
   for (const Reading& each : read) {
     double value = spline.at(each.step);
     if (coarse) value = std::clamp(value, each.value - 0.5 * step, each.value + 0.5 * step);
     result.values.push_back(value);
     taken.push_back(each.value - value);
-    mean += value / static_cast<double>(values.size());
   }
   if (!coarse && !stands_still(taken)) return as_read(values);
-  const double signal = sum_of_squares(result.values, mean);
-  return signal > kAboveNoise * kAboveNoise * sum_of_squares(taken, 0.0) ? result : as_read(values);
+  return variance_of(result.values) > kAboveNoise * kAboveNoise * variance_of(taken) ? result
+                                                                                     : as_read(values);
 }
 
 bool stands_still(std::span<const double> readings) {
-  const auto variance = [](std::span<const double> values) {
-    double mean = 0.0;
-    for (const double v : values) mean += v / static_cast<double>(values.size());
-    double sum = 0.0;
-    for (const double v : values) sum += (v - mean) * (v - mean);
-    return sum / static_cast<double>(values.size());
-  };
   std::vector<double> means(readings.begin(), readings.end());
-  const double white = variance(means);
+  const double white = variance_of(means);
   for (double length = 4.0; means.size() >= 64; length *= 4.0) {
     const std::size_t n = means.size() / 4;
     for (std::size_t i = 0; i < n; ++i) {
       means[i] = 0.25 * (means[4 * i] + means[4 * i + 1] + means[4 * i + 2] + means[4 * i + 3]);
     }
     means.resize(n);
-    const double excess = variance(means) * length / std::max(white, 1e-300) - 1.0;
+    const double excess = variance_of(means) * length / std::max(white, 1e-300) - 1.0;
     if (excess > kScatter * std::sqrt(2.0 / static_cast<double>(n))) return false;
   }
   return true;

@@ -13,7 +13,6 @@
 namespace ifog {
 namespace {
 
-constexpr double kLongest_s = 60.0;
 constexpr double kGridFactor = 2.0;  // between the delays tried, from a block on
 // Twice the log-likelihood that a delay has to gain: one in ten thousand by chance after some thirty tries.
 constexpr double kCertain = 24.0;
@@ -69,7 +68,7 @@ std::vector<ChannelDelay> delayed_channels(const BlockData& data, const std::vec
                                            const NoiseShape& shape) {
   std::vector<ChannelDelay> found;
   const BlockGrid& grid = data.grid;
-  const double longest = std::min(kLongest_s, 0.1 * static_cast<double>(grid.longest()) * grid.block_s);
+  const double longest = std::min(kMostEarly_s, 0.1 * static_cast<double>(grid.longest()) * grid.block_s);
   for (std::size_t c = 0; c < data.channels.size() && !grid.dwells; ++c) {
     const auto uses = [&](const Candidate& each) { return each.uses(c); };
     if (static_cast<std::ptrdiff_t>(c) == data.reference || std::none_of(model.begin(), model.end(), uses))

@@ -2,6 +2,7 @@
 // Noise as an autoregression, by which a series is whitened.
 #pragma once
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -28,7 +29,17 @@ class Autoregression {
         if (std::isfinite(product)) covariance[lag] += product;
       }
     covariance[0] *= 1.0 + 1e-9;
-    levinson(covariance);
+    if (!(covariance[0] > 0.0)) return;
+    Eigen::Matrix<double, kOrder, kOrder> equations;  // of Yule and Walker
+    Eigen::Matrix<double, kOrder, 1> right;
+    for (std::size_t i = 0; i < kOrder; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      right[row] = covariance[i + 1];
+      for (std::size_t j = 0; j < kOrder; ++j)
+        equations(row, static_cast<Eigen::Index>(j)) = covariance[i > j ? i - j : j - i];
+    }
+    const Eigen::Matrix<double, kOrder, 1> weight = equations.ldlt().solve(right);
+    std::copy(weight.begin(), weight.end(), weight_.begin());
   }
 
   // NaN where a value before is missing.
@@ -42,20 +53,6 @@ class Autoregression {
   }
 
  private:
-  // Of the equations of Yule and Walker.
-  void levinson(const std::array<double, kOrder + 1>& covariance) {
-    double left = covariance[0];
-    for (std::size_t m = 0; m < kOrder && left > 0.0; ++m) {
-      double reflection = covariance[m + 1];
-      for (std::size_t k = 0; k < m; ++k) reflection -= weight_[k] * covariance[m - k];
-      reflection /= left;
-      const std::array<double, kOrder> before = weight_;
-      for (std::size_t k = 0; k < m; ++k) weight_[k] = before[k] - reflection * before[m - 1 - k];
-      weight_[m] = reflection;
-      left *= 1.0 - reflection * reflection;
-    }
-  }
-
   std::array<double, kOrder> weight_{};
 };
 

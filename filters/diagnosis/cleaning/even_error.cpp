@@ -15,17 +15,8 @@ std::vector<EvenError> even_errors(const std::vector<Record>& records, const Wit
     EvenError error;
     error.origin = records[r].origin;
     error.start_s = records[r].time_s.front();
-    const bool plain = records[r].reference_radps.empty();
-    Samples held_out = plain && without.ramps.empty() ? Samples() : error_of(records[r]);
-    Samples room;
-    const std::span<const double> whole = even_samples(
-        records[r], sample_s, plain ? records[r].rate_radps : std::span<const double>(held_out), room);
-    if (!room.empty())
-      error.before = std::move(room);
-    else if (plain)
-      error.before = SharedSamples::of(whole);
-    else
-      error.before = copied(whole);
+    Samples held_out = error_of(records[r]);
+    error.before = on_even_grid(records[r], sample_s, held_out);
     if (without.ramps.empty()) {
       error.rest = error.rest_held_out = error.before;
     } else {

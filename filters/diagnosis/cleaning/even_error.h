@@ -23,7 +23,6 @@ struct EvenError {
   SharedSamples held_out;
   SharedSamples held_in;  // less the same by coefficients of all samples
   SharedSamples written;  // what the daemon's own correction leaves of `before`, by the model as written
-  SharedSamples logged;   // the same with channels as they were logged, faults and all
 };
 
 // after, held_out and written: still empty. The records' rates outlive what is made of them. Throws as

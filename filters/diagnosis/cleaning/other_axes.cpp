@@ -35,7 +35,7 @@ Samples less_its_own(std::span<const double> measured, std::span<const double> r
 }
 
 // The other axes as records, each with its reference as if that had not been logged late.
-AlignedRecords aligned_others(const Record& record) {
+OwnedRecords aligned_others(const Record& record) {
   std::vector<Record> axes;
   for (std::size_t a = 0; a < record.other_axes.size(); ++a) {
     Record axis;
@@ -46,30 +46,27 @@ AlignedRecords aligned_others(const Record& record) {
     axis.origin = record.origin;
     axes.push_back(std::move(axis));
   }
-  return align_references(axes);
+  return align_references(std::move(axes));
 }
 
 }  // namespace
 
-AlongAxes with_other_axes(std::vector<Record> records) {
-  AlongAxes out;
+OwnedRecords with_other_axes(OwnedRecords given) {
   const auto referenced = [](const Record& record) { return moves(record.reference_radps); };
-  if (!records.empty() && std::all_of(records.begin(), records.end(), referenced)) {
-    for (Record& record : records) {
-      const AlignedRecords others = aligned_others(record);
-      std::vector<std::span<const double>> along{record.reference_radps};
-      for (const Record& other : others.records)
-        if (moves(other.reference_radps)) along.push_back(other.reference_radps);
-      for (const Record& other : others.records) {
-        RecordChannel axis{other.name, other.rate_radps};
-        if (moves(other.reference_radps))
-          axis.values = out.values.emplace_back(less_its_own(axis.values, other.reference_radps, along));
-        record.channels.push_back(axis);
-      }
+  if (!std::all_of(given.records.begin(), given.records.end(), referenced)) return given;
+  for (Record& record : given.records) {
+    const OwnedRecords others = aligned_others(record);
+    std::vector<std::span<const double>> along{record.reference_radps};
+    for (const Record& other : others.records)
+      if (moves(other.reference_radps)) along.push_back(other.reference_radps);
+    for (const Record& other : others.records) {
+      RecordChannel axis{other.name, other.rate_radps};
+      if (moves(other.reference_radps))
+        axis.values = given.columns.emplace_back(less_its_own(axis.values, other.reference_radps, along));
+      record.channels.push_back(axis);
     }
   }
-  out.records = std::move(records);
-  return out;
+  return given;
 }
 
 }  // namespace ifog

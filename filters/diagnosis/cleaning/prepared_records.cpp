@@ -1,28 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/cleaning/prepared_records.h"
 
+#include <utility>
+
+#include "filters/diagnosis/channels/derived_channels.h"
+#include "filters/diagnosis/cleaning/channel_faults.h"
+#include "filters/diagnosis/cleaning/even_stamps.h"
+#include "filters/diagnosis/cleaning/other_axes.h"
+#include "filters/diagnosis/cleaning/reference_delay.h"
+#include "filters/diagnosis/cleaning/turned.h"
+#include "filters/diagnosis/record/blocks.h"
+
 namespace ifog {
+namespace {
 
-// Differences are of channels without faults.
+// An angle's wraps are no faults, and differences are of channels without faults.
+OwnedRecords cleaned(const std::vector<Record>& captures) {
+  check_columns(captures);
+  OwnedRecords channels =
+      with_differences(repair_channels(with_unwrapped_angles(with_even_stamps(captures))));
+  return without_turns(with_other_axes(align_references(leave_out_knocks(std::move(channels)))));
+}
+
+}  // namespace
+
 PreparedRecords::PreparedRecords(const std::vector<Record>& captures, const TimeShare& share,
-                                 double significance, const PreparedChannels* channels)
-    : channels_(channels != nullptr ? *channels : own_.emplace(captures)),
-      quiet_(leave_out_knocks(channels_.of_axis(captures))),
-      aligned_(align_references(quiet_.records)),
-      derived_(with_other_axes(aligned_.records)),
-      resting_(without_turns(derived_.records)),
-      fitted_(share.whole() ? resting_.records : fitted_parts(resting_.records, share)),
-      without_(take_out_ramps(fitted_, significance)) {
-  if (channels_.has_faults() || !quiet_.values.empty()) logged_ = channels_.as_logged(captures);
-}
-
-const std::vector<Record>* PreparedRecords::as_logged() const { return logged_.empty() ? nullptr : &logged_; }
-
-std::vector<std::string> PreparedRecords::remarks() const {
-  std::vector<std::string> all = channels_.remarks_of_times();
-  for (const auto* remarks : {&quiet_.remarks, &channels_.remarks(), &aligned_.remarks, &resting_.remarks})
-    all.insert(all.end(), remarks->begin(), remarks->end());
-  return all;
-}
+                                 double significance)
+    : whole(cleaned(captures)),
+      fitted(share.whole() ? whole.records : fitted_parts(whole.records, share)),
+      without_ramps(take_out_ramps(fitted, significance)) {}
 
 }  // namespace ifog

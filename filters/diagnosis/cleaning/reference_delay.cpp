@@ -19,14 +19,13 @@
 #include "filters/allan/stretches.h"
 #include "filters/diagnosis/cleaning/autoregression.h"
 #include "filters/diagnosis/cleaning/series_fit.h"
+#include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/words.h"
 
 namespace ifog {
 namespace {
 
-constexpr double kLongest_s = 60.0;
-constexpr double kSlowest_s = 1.0;        // between samples; a table of dwells is slower
 constexpr std::size_t kMost = 1U << 17U;  // steps that the delay is sought on
 constexpr std::size_t kLeast = 200;       // and the fewest that tell
 constexpr int kRounds = 20;
@@ -85,7 +84,7 @@ std::optional<Pair> pair_of(const Record& record) {
 }
 
 std::size_t longest_lag(const Pair& pair) {
-  return std::min(static_cast<std::size_t>(kLongest_s / pair.step_s), pair.rate.size() / 4);
+  return std::min(static_cast<std::size_t>(kMostEarly_s / pair.step_s), pair.rate.size() / 4);
 }
 
 std::vector<std::complex<double>> transform(const Series& series, std::size_t size) {
@@ -242,34 +241,31 @@ Samples moved_reference(const Record& record, double delay_s) {
   return out;
 }
 
-std::string in_words(const ReferenceDelay& delay, const std::string& name, bool several) {
+std::string in_words(const ReferenceDelay& delay, const std::string& name) {
   const double late = delay.delay_s;
-  return name + (several ? " (" + delay.record + ")" : "") +
-         printed(" logged %.4g s %s (+-%.2g): shifted", std::abs(late),
-                 late > 0.0 ? "late" : "early, or the rate late", delay.std_error_s);
+  return name + printed(" logged %.4g s %s (+-%.2g): shifted", std::abs(late),
+                        late > 0.0 ? "late" : "early, or the rate late", delay.std_error_s);
 }
 
 }  // namespace
 
-AlignedRecords align_references(const std::vector<Record>& records) {
-  AlignedRecords aligned;
-  aligned.records = records;
-  for (Record& record : aligned.records) {
+OwnedRecords align_references(OwnedRecords given) {
+  for (Record& record : given.records) {
     std::optional<Pair> pair = pair_of(record);
     if (!pair || pair->rate.size() < kLeast || !(variance_of(pair->reference) > 0.0)) continue;
     std::optional<Delay> delay = refined(*pair, coarse_delay(*pair));
     if (!delay || delay->gain < price_of(*pair)) continue;
     settle_without_jumps(*pair, *delay);
     ReferenceDelay found{record.name, delay->steps * pair->step_s, delay->error * pair->step_s};
-    Samples& moved = aligned.references.emplace_back(moved_reference(record, found.delay_s));
+    Samples& moved = given.columns.emplace_back(moved_reference(record, found.delay_s));
     const std::size_t jumps = leave_out_jumps(moved, record.rate_radps);
     record.reference_radps = moved;
-    aligned.remarks.push_back(in_words(found, record.reference_name, records.size() > 1));
+    given.remarks.push_back(in_words(found, record.reference_name + given.of_several(record)));
     if (jumps > 0)
-      aligned.remarks.back() += "; " + std::to_string(jumps) + " sample(s) where it jumps left out";
-    aligned.delays.push_back(std::move(found));
+      given.remarks.back() += "; " + std::to_string(jumps) + " sample(s) where it jumps left out";
+    given.delays.push_back(std::move(found));
   }
-  return aligned;
+  return given;
 }
 
 namespace {

@@ -5,21 +5,11 @@
 
 #include <cstddef>
 #include <span>
-#include <string>
-#include <vector>
 
-#include "filters/diagnosis/diagnosis.h"
-#include "filters/diagnosis/record.h"
+#include "filters/diagnosis/record/owned_records.h"
 #include "filters/series/samples.h"
 
 namespace ifog {
-
-struct AlignedRecords {
-  std::vector<Record> records;         // as given, but for references that were shifted
-  std::vector<Samples> references;     // which those show; keep as long as `records`
-  std::vector<ReferenceDelay> delays;  // of those
-  std::vector<std::string> remarks;    // one a delay, for people
-};
 
 // The delay within 60 s of greatest likelihood, beside a constant and a cubic of the reference, in
 // innovations of an autoregressive noise. Sought by generalised cross-correlation (Knapp and Carter 1976:
@@ -27,7 +17,7 @@ struct AlignedRecords {
 // gains more likelihood than the lags tried would by chance, and more than what repeats with an angle that
 // was logged; a reference that does not move has nothing to tell it by. Left as they are: records without a
 // reference, with an uneven clock, and tables of dwells.
-AlignedRecords align_references(const std::vector<Record>& records);
+OwnedRecords align_references(OwnedRecords given);
 
 // A reference that jumps from one sample to the next, where it was moved by a part of a sample.
 // What lies between samples is known of what changes slowly against them; where a reference jumps, an

@@ -35,37 +35,31 @@ void note_implausible(const Record& record, const Rest& rest, std::vector<std::s
 
 }  // namespace
 
-WithoutTurns without_turns(const std::vector<Record>& records) {
-  WithoutTurns out;
-  for (const Record& record : records) {
-    out.records.push_back(record);
+OwnedRecords without_turns(OwnedRecords given) {
+  for (Record& record : given.records) {
     const std::optional<double> period = period_of(record);
     if (!record.reference_radps.empty() || !period) continue;
-    const double period_s = *period;
+    const double period_s = *period, start_s = record.origin.told(record.time_s.front());
     std::vector<std::span<const double>> axes{record.rate_radps};
     for (const RecordChannel& other : record.other_axes) axes.push_back(other.values);
     const std::vector<SeriesView> views(axes.begin(), axes.end());
     const Rest rest = find_rest(views, {}, period_s);
-    note_implausible(record, rest, out.remarks);
-    if (rest.turned == 0) {
-      out.records.back().at_rest = rest.at_rest;
-      continue;
-    }
+    note_implausible(record, rest, given.remarks);
+    record.at_rest = rest.at_rest;
+    if (rest.turned == 0) continue;
     try {
-      require_rest(rest, period_s, record.origin.told(record.time_s.front()));
+      require_rest(rest, period_s, start_s);
     } catch (const std::invalid_argument& error) {
       throw std::invalid_argument(std::string(error.what()) + ", or a reference rate beside it");
     }
-    Samples& rate = out.rates.emplace_back(record.rate_radps.size(), std::nan(""));
+    Samples& rate = given.columns.emplace_back(record.rate_radps.size(), std::nan(""));
     for (const Stretch& part : rest.at_rest)
       for (std::size_t i = part.begin; i < part.end; ++i) rate[i] = record.rate_radps[i];
-    out.records.back().rate_radps = rate;
-    out.records.back().at_rest = rest.at_rest;
-    out.remarks.push_back(record.name + ": " +
-                          in_words(rest, period_s, record.origin.told(record.time_s.front())) +
-                          "; only the rest is diagnosed");
+    record.rate_radps = rate;
+    given.remarks.push_back(record.name + ": " + in_words(rest, period_s, start_s) +
+                            "; only the rest is diagnosed");
   }
-  return out;
+  return given;
 }
 
 }  // namespace ifog

@@ -3,24 +3,13 @@
 // forecast or noise figure may be made of it.
 #pragma once
 
-#include <list>
-#include <string>
-#include <vector>
-
-#include "filters/diagnosis/record.h"
-#include "filters/series/samples.h"
+#include "filters/diagnosis/record/owned_records.h"
 
 namespace ifog {
 
-struct WithoutTurns {
-  // Turned parts missing, and what is at rest known; as given where a reference stands beside. What is only
-  // shaken stays: its means are right.
-  std::vector<Record> records;
-  std::list<Samples> rates;  // that the records point to
-  std::vector<std::string> remarks;
-};
-
+// Turned parts become missing, and what is at rest is known; a record stays as given where a reference stands
+// beside. What is only shaken stays: its means are right.
 // Throws std::invalid_argument with one line when a record was turned and less than half of it is at rest.
-WithoutTurns without_turns(const std::vector<Record>& records);
+OwnedRecords without_turns(OwnedRecords given);
 
 }  // namespace ifog

@@ -17,7 +17,8 @@
 
 namespace ifog {
 
-inline constexpr std::size_t kRampParts = 4;  // held out in turn
+inline constexpr std::size_t kRampParts = 4;   // held out in turn
+inline constexpr double kSlowSamples = 512.0;  // of the mean that a slow part is taken out by
 
 // Which of them a sample is in; each is made of four pieces, spread over the record.
 inline std::size_t ramp_part(std::size_t sample, std::size_t samples) {
@@ -68,7 +69,6 @@ inline double ramp_rate(const Eigen::VectorXd& angle_rad, const PhaseStep& step)
 // online takes it out (see ramp_tracker.h).
 template <class Use>
 void each_phase_step(const PhasedRecord& of, Use&& use) {
-  constexpr double kSlowSamples = 512.0;
   const Record& record = *of.record;
   double slow = 0.0, weight = 0.0, before = std::nan("");
   for (std::size_t i = 0; i < record.time_s.size(); ++i) {

@@ -7,7 +7,6 @@
 #include "filters/diagnosis/ramp/phase_table.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/meaning.h"
-#include "filters/series/series_view.h"
 
 namespace ifog {
 namespace {
@@ -38,9 +37,7 @@ Effect table_effect(const std::string& channel, double period, const PhaseTable&
 double wrap_period(std::span<const double> values) {
   constexpr double kSmallestCounter = 16.0;  // counts: what is smaller may be a state
   double low = 1e300, high = -1e300;
-  ReadingAhead ahead(values);
   for (std::size_t i = 0; i < values.size(); ++i) {
-    ahead.at(i);
     if (!std::isfinite(values[i])) continue;
     if (values[i] < 0.0) return 0.0;  // no counter
     low = std::min(low, values[i]);
@@ -75,10 +72,11 @@ std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::s
   const std::optional<PhaseTable> table = fit_phase_table(phased);
   if (!table) return std::nullopt;
   RampFit fit;
-  fit.ratio = table->ratio();
-  fit.p_value = chi_squared_above(std::max(0.0, fit.ratio), static_cast<double>(table->angle_rad.size()));
-  if (fit.p_value > significance || table->predicted <= 0.0) return std::nullopt;
-  fit.effect = table_effect(channel, period, *table);
+  fit.found.likelihood_ratio = table->ratio();
+  fit.found.p_value =
+      chi_squared_above(std::max(0.0, table->ratio()), static_cast<double>(table->angle_rad.size()));
+  if (fit.found.p_value > significance || table->predicted <= 0.0) return std::nullopt;
+  fit.found.effect = table_effect(channel, period, *table);
   for (const PhasedRecord& record : phased) {
     const std::size_t n = record.record->time_s.size();
     Samples& correction = fit.correction.emplace_back(n, 0.0);

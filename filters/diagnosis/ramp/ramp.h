@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/record.h"
-#include "filters/model_file/model.h"
 #include "filters/series/samples.h"
 
 namespace ifog {
@@ -21,9 +21,9 @@ namespace ifog {
 double wrap_period(std::span<const double> values);
 
 struct RampFit {
-  Effect effect;       // an angle lookup; the table's ends may differ: the flyback is not exactly 2 pi
-  double ratio = 0.0;  // twice the log-likelihood gained in white noise
-  double p_value = 1.0;
+  // The effect is an angle lookup, whose table's ends may differ: the flyback is not exactly 2 pi. Its
+  // likelihood ratio is that in white noise.
+  FoundEffect found;
   std::vector<Samples> correction;  // by record and sample, rad/s, of the fit to all
   std::vector<Samples> held_out;    // each part from the fit to the other parts
 };

@@ -113,7 +113,6 @@ struct VisibleCycles {
 };
 
 VisibleCycles visible_cycles(const UnbrokenPart& part) {
-  constexpr double kSlowSamples = 512.0;
   const double turn = std::abs(part.mean_turn_rad());
   if (!(turn > 0.0)) return {1.0, 0.0};
   const double slowest = std::max(kLeastTurns / static_cast<double>(part.size()), 1.0 / kSlowSamples);

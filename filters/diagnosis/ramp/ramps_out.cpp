@@ -13,7 +13,6 @@
 #include "filters/effects/compensate_series.h"
 #include "filters/effects/meaning.h"
 #include "filters/effects/ramp_tracker.h"
-#include "filters/units/field_units.h"
 
 namespace ifog {
 
@@ -54,8 +53,6 @@ namespace {
 constexpr double kOverOthers = 30.0;
 // Slower sensors cannot show a ramp, and nothing is said of it.
 constexpr double kQuickSensor_hz = 20.0;
-constexpr double kUsualCycles = 1e5;  // a coil of 10 cm at 1.55 um has 7e4
-constexpr double kSeenCycles = 20.0;
 constexpr double kCertain = 3.0;  // standard errors of the table
 // The ramp's phase is the angle's, and stays it: a tenth of a cycle in 40 min is more than the one that was
 // measured walks. A line that walks more, of a swaying structure or a machine, follows itself.
@@ -70,14 +67,6 @@ std::string lines_in_words(const RampComb& comb, const UnbrokenPart& part) {
          std::to_string(std::lround(comb.cycles_per_rad)) +
          " cycles for each radian turned; whether they follow the angle is not certain, so nothing is "
          "corrected. A capture at another rate would tell, and so would the feedback ramp, logged";
-}
-
-std::string too_slow_in_words(const UnbrokenPart& part) {
-  const double span_s = static_cast<double>(part.size()) * part.sample_s();
-  const double needed = kSeenCycles / kUsualCycles / span_s;
-  return "a feedback ramp (phase modulator, 2 pi reset) that was not logged would not show here, so near "
-         "zero rate its line stands still: it would from " +
-         printed("%.2g", needed / kDegreePerHour) + " degrees an hour on";
 }
 
 // The phase against k times the angle, piece by piece, to first order: how far it walks, and how uncertain
@@ -229,9 +218,7 @@ std::optional<RampFit> fit_of(const std::vector<Record>& records, std::size_t at
                               std::sqrt(table.left() / table.samples * part.sample_s()), phase.walk};
   if (rms(settings.angle_rad) < kCertain * table.angle_error || phase.walk > kMostWalk) return std::nullopt;
   RampFit fit;
-  fit.effect = effect_of(comb, settings, phase);
-  fit.ratio = table.ratio();
-  fit.p_value = chance_of(comb);
+  fit.found = {effect_of(comb, settings, phase), chance_of(comb), 0.0, table.ratio()};
   correct_all(records, at, part, comb, settings, fit);
   return helps(records, fit) ? std::optional(std::move(fit)) : std::nullopt;
 }
@@ -240,24 +227,18 @@ std::optional<RampFit> fit_of(const std::vector<Record>& records, std::size_t at
 
 RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance) {
   RebuiltRamp out;
+  const auto comb_of = [&](const UnbrokenPart& turned) {
+    std::optional<RampComb> found = find_ramp_comb(turned);
+    return found && chance_of(*found) <= significance ? found : std::nullopt;
+  };
   for (std::size_t r = 0; r < records.size(); ++r) {
     const UnbrokenPart part = unbroken_part(records[r]);
-    if (part.size() == 0) continue;
-    const bool quick = part.sample_s() * kQuickSensor_hz < 1.0;
-    if (kUsualCycles * std::abs(part.mean_turn_rad()) * static_cast<double>(part.size()) < kSeenCycles) {
-      if (records[r].reference_radps.empty() && quick && out.remark.empty())
-        out.remark = too_slow_in_words(part);
-      continue;
-    }
-    const auto comb_of = [&](const UnbrokenPart& turned) {
-      std::optional<RampComb> found = find_ramp_comb(turned);
-      return found && chance_of(*found) <= significance ? found : std::nullopt;
-    };
     std::optional<RampComb> comb = comb_of(part);
     if (comb)
       if (auto fit = fit_of(records, r, part, *comb)) return {std::move(fit), ""};
     if (!comb) comb = comb_of(evenly_turned(part));
-    if (comb && out.remark.empty() && (quick || comb->over_line > kOverOthers))
+    if (!comb || !out.remark.empty()) continue;
+    if (part.sample_s() * kQuickSensor_hz < 1.0 || comb->over_line > kOverOthers)
       out.remark = lines_in_words(*comb, part);
   }
   return out;

@@ -14,7 +14,7 @@ struct WithoutRamps {
   std::vector<RampFit> ramps;
   std::vector<Record> records;  // without channels that wrap, and less what the ramps explain
   std::vector<Samples> rates;   // what their rates point to, when a ramp was found
-  std::string remark;           // why one that was not logged is not rebuilt, where that is known
+  std::string remark;           // of lines that one that was not logged may make; empty: none
 };
 
 // A counter that wraps is no environment: as a function of its value or slope it would take rotation away. So
@@ -27,12 +27,12 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
 // the angle that the sensor has measured, its correction made by the code that runs online.
 struct RebuiltRamp {
   std::optional<RampFit> fit;  // effect "rebuilt_ramp"
-  std::string remark;          // what keeps it from being found, where there is something to say
+  std::string remark;          // where lines are found that may be a ramp's and are not corrected
 };
 
-// Nothing is found, and a reason given if there may be one: where the harmonics would do as well at fixed
-// frequencies, where the table does not predict the parts held out of its fit, where by chance a comb would
-// do as well more often than `significance`.
+// Nothing is found where the harmonics would do as well at fixed frequencies or near zero rate, where the table
+// does not predict the parts held out of its fit, or where by chance a comb would do as well more often than
+// `significance`.
 RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance);
 
 }  // namespace ifog

@@ -15,7 +15,6 @@
 #include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 #include "filters/series/mapped_file.h"
-#include "filters/series/series_view.h"
 
 namespace ifog {
 namespace {
@@ -27,39 +26,21 @@ constexpr double kLeastShare = 0.5;
 constexpr std::size_t kLeastBlocks = 32;
 // Points of a rate table: a calibration by IEEE Std 952 has 11 or more.
 constexpr std::size_t kLeastDwells = 11;
-constexpr double kSlowest_s = 1.0;  // between samples of a time series beside a reference; dwells are slower
 
-std::string too_few(std::size_t used) {
-  return "a diagnosis needs at least 32 samples with a rate, and with a reference if there is one: " +
-         std::to_string(used) + " found";
-}
-
-// Of a grid with too few blocks: that there are too few samples, that holes take up nearly all of the time,
-// or that most samples of every block are missing.
-std::string too_few(const std::vector<Record>& records, const BlockGrid& grid) {
+std::string too_few(const std::vector<Record>& records, std::size_t blocks, double block_s) {
   std::size_t samples = 0;
-  double hole_s = 0.0;  // the longest time between two that are there
-  for (const Record& record : records) {
-    double last_s = std::numeric_limits<double>::quiet_NaN();
-    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-      if (!std::isfinite(record.rate_radps[i]) ||
-          (!record.reference_radps.empty() && !std::isfinite(record.reference_radps[i])))
-        continue;
-      if (samples++ > 0 && std::isfinite(last_s)) hole_s = std::max(hole_s, record.time_s[i] - last_s);
-      last_s = record.time_s[i];
-    }
-  }
-  if (samples < kLeastBlocks) return too_few(samples);
-  if (hole_s > grid.block_s)
-    return printed(
-        "%zu samples, but only %zu blocks of %.3g s have enough of them, as the longest hole is of %.6g s: "
-        "expected at least %zu; each side of it by itself (--from, --to, or captures of their own) can be "
-        "diagnosed",
-        samples, grid.used(), grid.block_s, hole_s, kLeastBlocks);
+  for (const Record& record : records)
+    for (std::size_t i = 0; i < record.time_s.size(); ++i)
+      if (std::isfinite(record.rate_radps[i]) &&
+          (record.reference_radps.empty() || std::isfinite(record.reference_radps[i])))
+        ++samples;
   return printed(
-      "%zu samples with a rate, and with a reference if there is one, but only %zu blocks of %.3g s have "
-      "half of theirs: expected at least %zu; without the rows that lack one it can be diagnosed",
-      samples, grid.used(), grid.block_s, kLeastBlocks);
+      "%zu samples with a rate, and with a reference if there is one, and %zu blocks of %.3g s that have "
+      "half of "
+      "theirs: expected at least %zu of either. Where a long hole or empty cells are the reason, each side "
+      "of the "
+      "hole (--from, --to, or captures of their own) or the rows without empty cells can be diagnosed",
+      samples, blocks, block_s, kLeastBlocks);
 }
 
 double median_period(const std::vector<Record>& records) {
@@ -68,7 +49,7 @@ double median_period(const std::vector<Record>& records) {
     const std::size_t n = std::min<std::size_t>(record.time_s.size(), 20001);
     for (std::size_t i = 1; i < n; ++i) steps.push_back(record.time_s[i] - record.time_s[i - 1]);
   }
-  if (steps.empty()) throw std::invalid_argument(too_few(records.size()));
+  if (steps.empty()) throw std::invalid_argument(too_few(records, 0, 0.0));
   return median(std::move(steps));
 }
 
@@ -104,15 +85,9 @@ void check_columns(const std::vector<Record>& records) {
                                   records.front().name);
     if (!record.reference_radps.empty()) same(record.reference_radps.size(), "the reference");
     for (const RecordChannel& channel : record.channels) same(channel.values.size(), channel.name);
-    double before_s = record.time_s.front();
-    for_each_piece(record.time_s, 1, n, [&](std::span<const double> times, std::size_t from) {
-      bool all = true;  // without a branch
-      for (const double time_s : times) all = all && time_s > std::exchange(before_s, time_s);
-      if (all) return;
-      std::size_t at = from;
-      while (record.time_s[at] > record.time_s[at - 1]) ++at;
-      throw std::invalid_argument(record.name + ": time does not increase at sample " + std::to_string(at));
-    });
+    for (std::size_t i = 1; i < n; ++i)
+      if (!(record.time_s[i] > record.time_s[i - 1]))
+        throw std::invalid_argument(record.name + ": time does not increase at sample " + std::to_string(i));
   }
 }
 
@@ -303,7 +278,7 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
     data.grid.dwells = data.grid.sample_s > kSlowest_s && data.channels.back().varies;
   }
   if (data.grid.used() < (data.grid.dwells ? kLeastDwells : kLeastBlocks))
-    throw std::invalid_argument(too_few(records, data.grid));
+    throw std::invalid_argument(too_few(records, data.grid.used(), data.grid.block_s));
   return data;
 }
 

@@ -91,6 +91,9 @@ struct BlockData {
   std::ptrdiff_t reference = -1;      // its index
 };
 
+// Between samples of a time series, s. What is slower is a table: its rows are averages of their own.
+inline constexpr double kSlowest_s = 1.0;
+
 // Throws std::invalid_argument, naming the record: no record, columns of different length, a reference in
 // some records only, a time that does not increase.
 void check_columns(const std::vector<Record>& records);

@@ -8,33 +8,8 @@
 #include <stdexcept>
 
 #include "filters/series/finite_sum.h"
-#include "filters/series/series_view.h"
 
 namespace ifog {
-
-namespace {
-
-double step_of(const Record& record, std::size_t i, double sample_s) {
-  return std::floor((record.time_s[i] - record.time_s.front()) / sample_s + 0.5);
-}
-
-bool is_even(const Record& record, double sample_s) {
-  ReadingAhead ahead(record.time_s);
-  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-    ahead.at(i);
-    if (step_of(record, i, sample_s) != static_cast<double>(i)) return false;
-  }
-  return true;
-}
-
-}  // namespace
-
-std::span<const double> even_samples(const Record& record, double sample_s, std::span<const double> values,
-                                     Samples& room) {
-  if (values.size() == record.time_s.size() && is_even(record, sample_s)) return values;
-  room = on_even_grid(record, sample_s, values);
-  return room;
-}
 
 Samples on_even_grid(const Record& record, double sample_s, std::span<const double> values) {
   const double span = record.time_s.back() - record.time_s.front();
@@ -69,10 +44,8 @@ std::optional<double> variance_of_two(std::span<const double> values) {
   if (n < 2.0) return std::nullopt;
   double square = 0.0;
   const double mean = sum / n;
-  for_each_piece(values, 0, values.size(), [&](std::span<const double> some, std::size_t) {
-    for (const double v : some)
-      if (std::isfinite(v)) square += (v - mean) * (v - mean);
-  });
+  for (const double v : values)
+    if (std::isfinite(v)) square += (v - mean) * (v - mean);
   return square / n;
 }
 

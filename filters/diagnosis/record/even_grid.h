@@ -14,10 +14,6 @@ namespace ifog {
 // the samples.
 Samples on_even_grid(const Record& record, double sample_s, std::span<const double> values);
 
-// Likewise: the values themselves where each is on its step, else in `room`.
-std::span<const double> even_samples(const Record& record, double sample_s, std::span<const double> values,
-                                     Samples& room);
-
 // rate - reference by sample.
 Samples error_of(const Record& record);
 

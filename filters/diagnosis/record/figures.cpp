@@ -10,7 +10,6 @@
 #include "filters/allan/gapped_deviation.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/series/finite_sum.h"
-#include "filters/series/series_view.h"
 
 namespace ifog {
 namespace {
@@ -43,10 +42,8 @@ double heading_drift(std::span<const double> error, double period_s) {
   if (n == 0.0) return kMissing;
   const double bias = sum / n;
   double angle = 0.0;
-  for_each_piece(error, aligned, error.size(), [&](std::span<const double> some, std::size_t) {
-    for (const double each : some)
-      if (std::isfinite(each)) angle += (each - bias) * period_s;
-  });
+  for (const double each : error.subspan(aligned))
+    if (std::isfinite(each)) angle += (each - bias) * period_s;
   return std::abs(angle);
 }
 
@@ -55,12 +52,10 @@ double heading_drift(std::span<const double> error, double period_s) {
 Samples means_over(std::span<const double> error, std::size_t count) {
   Samples means;
   means.reserve(error.size() / count);
-  ReadingAhead ahead(error);
   for (std::size_t from = 0; from + count <= error.size(); from += count) {
     double sum = 0.0;
     std::size_t there = 0;
     for (std::size_t i = from; i < from + count; ++i) {
-      ahead.at(i);
       if (std::isfinite(error[i])) sum += error[i], ++there;
     }
     means.push_back(2 * there >= count ? sum / static_cast<double>(there) : kMissing);

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <cstdint>
 
-#include "filters/series/series_view.h"
-
 namespace ifog {
 namespace {
 
@@ -32,12 +30,10 @@ std::size_t fine_index(const Record& record, std::size_t i, double fine_s) {
 StepStarts step_starts(const Record& record, double fine_s, std::size_t steps) {
   StepStarts first;
   first.reserve(steps + 1);
-  for_each_piece(record.time_s, 0, record.time_s.size(), [&](std::span<const double> some, std::size_t from) {
-    for (std::size_t i = from; i < from + some.size(); ++i) {
-      const std::size_t k = std::min(fine_index(record, i, fine_s), steps - 1);
-      while (first.size() <= k) first.push_back(i);
-    }
-  });
+  for (std::size_t i = 0; i < record.time_s.size(); ++i) {
+    const std::size_t k = std::min(fine_index(record, i, fine_s), steps - 1);
+    while (first.size() <= k) first.push_back(i);
+  }
   first.resize(steps + 1, record.time_s.size());
   return first;
 }
@@ -48,9 +44,7 @@ StepMeans step_means(std::span<const double> values, const StepStarts& starts, b
   const std::size_t steps = starts.size() - 1;
   bool known = false;  // steps before the first value hold that
   double held = 0.0;
-  ReadingAhead ahead(values);
   for (std::size_t k = 0; k < steps; ++k) {
-    ahead.at(starts[k]);
     double sum = 0.0, square = 0.0;
     std::uint32_t count = 0;
     for (std::size_t i = starts[k]; i < starts[k + 1]; ++i) {

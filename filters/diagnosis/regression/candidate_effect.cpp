@@ -33,9 +33,6 @@ double complexity_of_form(const Candidate& candidate) {
     case Form::kSine:
     case Form::kRateRamp:
       return 2.0;
-    case Form::kSecondRate:
-      return 20.0;  // with its bandwidth free it stands in for most things that change; rarely is it the
-                    // thing
     case Form::kQuintic:
       return 5.0;
     case Form::kSeptic:

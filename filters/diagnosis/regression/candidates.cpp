@@ -16,11 +16,10 @@ constexpr double kBlocksOfRate = 2.0;  // the shortest smoothing of a derivative
 constexpr double kShortestWarmUp_s = 10.0;
 constexpr double kHighest = 0.5;  // of a sample: a band power of the frequencies near half the sample rate
 constexpr double kInside = 0.1;   // of the range from its edge: of a transition both levels have to be seen
-// Twice log-likelihood: a gradient is a bolder claim than a temperature.
-constexpr double kOfDifference = 3.0;
-constexpr double kOfOtherAxis = 2.0;
-// What a field does has a direction: of its components the sum is a law, the product of two none.
-constexpr double kOfComponents = 4.0;
+// Twice log-likelihood that a bolder claim has to gain: a gradient is bolder than a temperature, another axis
+// than the own, a product of two components of a field, which has a direction, than their sum, and a fringe,
+// whose period is free, than a polynomial.
+constexpr double kBolder = 4.0;
 // Another axis was turned when it moved by this share of the own; what runs with it this closely is a picture of it.
 constexpr double kTurned = 0.05;
 constexpr double kPicture = 0.9;
@@ -45,7 +44,7 @@ Eigen::VectorXd means_of(const BlockData& data, std::size_t channel) {
 void add_difference(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   const auto add = [&](Form form, double tau) {
     found.push_back(candidate_of(form, channel, tau));
-    found.back().of_channel = kOfDifference;
+    found.back().of_channel = kBolder;
   };
   add(Form::kLinear, 0.0);
   if (data.channels[channel].still) return;
@@ -70,7 +69,7 @@ void add_other_axis(const BlockData& data, std::size_t channel, std::vector<Cand
   if (other.norm() < kTurned * own.norm() || std::abs(own.dot(other)) > kPicture * own.norm() * other.norm())
     return;
   found.push_back(candidate_of(Form::kLinear, channel));
-  found.back().of_channel = kOfOtherAxis;
+  found.back().of_channel = kBolder;
 }
 
 // Where the polarisation of the coil turns over the bias goes from one level to another. Widths in parts of
@@ -94,14 +93,13 @@ void add_transitions(const BlockData& data, std::size_t channel, std::vector<Can
 // Fewer fringes are a polynomial's as well, of more a thermometer's noise leaves nothing.
 void add_fringes(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   constexpr double kFewest = 1.25, kMost = 12.0;  // within the range
-  constexpr double kFreePeriod = 4.0;             // twice the log-likelihood, of either half
   const FineChannel& source = data.channels[channel];
   if (kind_of(source.name) != ChannelKind::kTemperature || data.grid.dwells) return;
   for (double fringes = kFewest; fringes <= kMost; fringes += kStepOfFringes)
     for (const Form form : {Form::kCosine, Form::kSine}) {
       found.push_back(candidate_of(form, channel));
       found.back().period = (source.high - source.low) / fringes;
-      found.back().of_channel = kFreePeriod;
+      found.back().of_channel = kBolder;
     }
 }
 
@@ -137,7 +135,7 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
     // or interpolated errs, and no law of a gyro.
     const bool moved = data.reference < 0 || data.channels[static_cast<std::size_t>(data.reference)].varies;
     const bool is_rotation = moved && kind_of(source.name) == ChannelKind::kAcceleration;
-    for (const Form form : {Form::kRate, Form::kSecondRate, Form::kLagged}) {
+    for (const Form form : {Form::kRate, Form::kLagged}) {
       if (is_rotation && (form != Form::kLagged || source.moves)) continue;
       for (const double tau : time_constants(data.grid, form)) add(form, tau);
     }
@@ -194,7 +192,7 @@ Candidate product_of(const BlockData& data, std::size_t one, std::size_t other) 
   candidate.form = Form::kProduct;
   candidate.channel = std::min(one, other);
   candidate.with_channel = std::max(one, other);
-  if (of_one_vector(data.channels[one].name, data.channels[other].name)) candidate.of_channel = kOfComponents;
+  if (of_one_vector(data.channels[one].name, data.channels[other].name)) candidate.of_channel = kBolder;
   return candidate;
 }
 
@@ -244,7 +242,6 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form) {
   const double longest = static_cast<double>(grid.longest()) * grid.block_s;
   double from = grid.block_s * kBlocksOfRate;
   double to = std::min(kHour, longest / 3.0);
-  if (form == Form::kSecondRate) to = std::min(to, longest / 10.0);
   if (form == Form::kLagged || form == Form::kWarmUp) from = std::max(from, 3.0 * grid.block_s);
   if (form == Form::kWarmUp) from = std::max(from, kShortestWarmUp_s);
   if (form == Form::kBandPower) {

@@ -14,7 +14,7 @@ namespace ifog {
 
 void write_before_and_after(const std::vector<EvenError>& errors, double sample_s, bool with_bias,
                             Diagnosis& diagnosis) {
-  std::vector<std::map<std::string, double>> before, written, held_out, logged;
+  std::vector<std::map<std::string, double>> before, written, held_out;
   std::vector<double> weight;
   for (const EvenError& error : errors) {
     before.push_back(error_figures(error.before, sample_s));
@@ -23,7 +23,6 @@ void write_before_and_after(const std::vector<EvenError>& errors, double sample_
     };
     written.push_back(figures_of(error.written));
     held_out.push_back(figures_of(error.held_out));
-    if (!error.logged.empty()) logged.push_back(figures_of(error.logged));
     weight.push_back(static_cast<double>(error.before.size()));
   }
   const auto add_mean = [&](SharedSamples EvenError::*of, std::map<std::string, double>& figures) {
@@ -31,14 +30,10 @@ void write_before_and_after(const std::vector<EvenError>& errors, double sample_
   };
   diagnosis.before = pooled(before, weight);
   diagnosis.after = pooled(written, weight);
-  const auto take_worse = [&](const std::map<std::string, double>& others) {
-    for (const auto& [name, value] : others) {
-      double& figure = diagnosis.after[name];
-      if (std::abs(value) > std::abs(figure)) figure = value;
-    }
-  };
-  take_worse(pooled(held_out, weight));
-  if (logged.size() == errors.size()) take_worse(pooled(logged, weight));
+  for (const auto& [name, value] : pooled(held_out, weight)) {
+    double& figure = diagnosis.after[name];
+    if (std::abs(value) > std::abs(figure)) figure = value;
+  }
   if (!with_bias) return;
   add_mean(&EvenError::before, diagnosis.before);
   add_mean(&EvenError::written, diagnosis.after);
@@ -83,13 +78,6 @@ double count_of(const Figure& figure, const Diagnosis& diagnosis, double samples
   return figure.means_s > 0.0 ? samples / (diagnosis.sample_rate_hz * figure.means_s) : samples;
 }
 
-double of_10s_means(const std::vector<EvenError>& errors, SharedSamples EvenError::*of, double rate_hz) {
-  const auto count = static_cast<std::size_t>(std::max(1.0, std::round(10.0 * rate_hz)));
-  double variance = 0.0;
-  for (const EvenError& error : errors) variance += variance_of(means_over(error.*of, count));
-  return std::sqrt(variance);
-}
-
 }  // namespace
 
 double samples_of(const std::vector<EvenError>& errors) {
@@ -127,58 +115,30 @@ std::string grown_in_words(const Diagnosis& diagnosis, double samples) {
               : ": that is no chance, the model does harm there; take another capture before it is used");
 }
 
-std::string faults_in_words(const Diagnosis& diagnosis, const std::vector<EvenError>& errors) {
-  constexpr double kMore = 1.05;
-  if (diagnosis.effects.empty()) return "";
-  const double written = of_10s_means(errors, &EvenError::written, diagnosis.sample_rate_hz);
-  const double logged = of_10s_means(errors, &EvenError::logged, diagnosis.sample_rate_hz);
-  if (!(logged > kMore * written)) return "";
-  return printed(
-      "the daemon has the channels as they are logged: with the faults that were repaired for the fit it "
-      "leaves %.2g times as much of 10 s means as without, and the figures after are those",
-      logged / written);
-}
-
 void judge(const std::vector<Record>& records, const TimeShare& fitted, Diagnosis& diagnosis) {
   Model model;
   add_to_model(diagnosis, "", model);
   const double sample_s = 1.0 / diagnosis.sample_rate_hz;
-  std::vector<std::map<std::string, double>> before;
-  std::vector<std::map<std::string, double>> after;
-  std::vector<double> weight;
-  double samples = 0.0, bias_before = 0.0, bias_after = 0.0, count = 0.0;
+  std::vector<EvenError> judged;
   for (const Record& record : records) {
     const SampleRange part = samples_in(record, fitted);
     const Samples raw = error_of(record);
     const Samples left = compensated_error(record, model);
     // Each judged piece on its own: what lies between them was fitted.
-    for (const SampleRange judged : {SampleRange{0, part.from}, SampleRange{part.to, record.time_s.size()}}) {
-      if (judged.size() < 32) continue;
-      const Record piece = part_of(record, judged);
+    for (const SampleRange range : {SampleRange{0, part.from}, SampleRange{part.to, record.time_s.size()}}) {
+      if (range.size() < 32) continue;
+      const Record piece = part_of(record, range);
       const auto of = [&](std::span<const double> all) {
-        return error_figures(on_even_grid(piece, sample_s, all.subspan(judged.from, judged.size())),
-                             sample_s);
+        return on_even_grid(piece, sample_s, all.subspan(range.from, range.size()));
       };
-      before.push_back(of(raw));
-      after.push_back(of(left));
-      weight.push_back(static_cast<double>(judged.size()));
-      samples += static_cast<double>(judged.size());
-      for (std::size_t i = judged.from; i < judged.to; ++i) {
-        if (!std::isfinite(raw[i]) || !std::isfinite(left[i])) continue;
-        bias_before += raw[i];
-        bias_after += left[i];
-        count += 1.0;
-      }
+      EvenError& error = judged.emplace_back();
+      error.before = of(raw);
+      error.written = error.held_out = of(left);
     }
   }
-  if (before.empty()) return;
-  diagnosis.before = pooled(before, weight);
-  diagnosis.after = pooled(after, weight);
-  if (!records.front().reference_radps.empty() && count > 0.0) {
-    diagnosis.before["bias_radps"] = bias_before / count;
-    diagnosis.after["bias_radps"] = bias_after / count;
-  }
-  if (const std::string words = grown_in_words(diagnosis, samples); !words.empty())
+  if (judged.empty()) return;
+  write_before_and_after(judged, sample_s, !records.front().reference_radps.empty(), diagnosis);
+  if (const std::string words = grown_in_words(diagnosis, samples_of(judged)); !words.empty())
     diagnosis.remarks.push_back("on what was kept back to judge " + words);
 }
 

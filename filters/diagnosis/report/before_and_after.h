@@ -34,10 +34,6 @@ bool grows_over_many(const Diagnosis& diagnosis, const std::vector<EvenError>& e
 std::string grown_in_words(const Diagnosis& diagnosis, double samples);
 [[nodiscard]] double samples_of(const std::vector<EvenError>& errors);
 
-// One sentence where the channels as they were logged, with their faults, leave more than the repaired ones
-// the effects were fitted to; empty where they do not. errors: `written` and `logged` are filled.
-std::string faults_in_words(const Diagnosis& diagnosis, const std::vector<EvenError>& errors);
-
 // Before and after on the part of the records that was kept out of the fit: the model's effects subtracted
 // causally, by the code the daemon runs.
 // Replaces before and after of the diagnosis, which was made of the fitted share of the records. The

@@ -22,6 +22,8 @@ constexpr double kFarthest = 0.3;
 // Standard errors a curvature has to be from zero before it is followed beyond the range that showed it.
 constexpr double kWellKnown = 5.0;
 constexpr int kHighestFollowed = 3;  // higher powers stand for a law that is none
+// Another explanation that loses more than this, twice the log-likelihood, weighs less than 1 %.
+constexpr double kNoRival = 9.2;
 
 std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& values) {
   std::vector<double> used;
@@ -36,17 +38,10 @@ bool is_searched(const ModelParameter& parameter, const Effect& effect) {
   return parameter.name == (effect.form == "line" ? "frequency_hz" : time_constant_name(effect));
 }
 
-}  // namespace
-
+// All effects fitted by generalised least squares, at the time constants they have.
 std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Candidate>& candidates,
-                                   const NoiseShape& shape, const std::string& axis,
-                                   const Eigen::VectorXd* beside) {
-  Columns columns = design(data, candidates);
-  if (beside) {
-    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
-    columns.rightCols(1) = *beside;
-  }
-  const Eigen::VectorXd c = solve(data.grid, shape, columns);
+                                   const NoiseShape& shape, const std::string& axis) {
+  const Eigen::VectorXd c = solve(data.grid, shape, design(data, candidates));
   Eigen::Index at = data.grid.constants();
   std::vector<Effect> effects;
   for (const Candidate& candidate : candidates) {
@@ -58,6 +53,33 @@ std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Cand
   }
   return effects;
 }
+
+// Which capture would tell two effects apart that this one cannot.
+std::string capture_that_separates(const BlockData& data, const Candidate& one, const Candidate& other) {
+  const bool timed = one.channel == Candidate::kNone || other.channel == Candidate::kNone;
+  const std::size_t channel = one.channel == Candidate::kNone ? other.channel : one.channel;
+  const std::string name = channel == Candidate::kNone ? "" : data.channels[channel].name;
+  if (timed && !name.empty()) {
+    return "a capture in which " + name +
+           " goes up and comes down again, so that it does not run with the time";
+  }
+  if (timed) return "a longer capture, started from cold";
+  if (one.channel != other.channel) {
+    return "a capture in which " + data.channels[one.channel].name + " changes while " +
+           data.channels[other.channel].name + " stays";
+  }
+  const bool memory = has_memory(one.form) || has_memory(other.form);
+  if (memory) {
+    const double tau = std::max(one.time_constant_s, other.time_constant_s);
+    return "a capture in which " + name + " changes and then rests for several times " +
+           printed("%.3g s", tau) + ", at different speeds";
+  }
+  const double reference = reference_of(name);
+  return "a capture over a wider range of " + name + ", on both sides of " +
+         std::to_string(static_cast<int>(reference)) + " " + unit_of(name);
+}
+
+}  // namespace
 
 JointFit settle(const BlockData& reconstructed, SearchResult& found) {
   JointFit joint = joint_fit(reconstructed, candidates_of(found.chosen), found.coefficients, found.noise);
@@ -278,36 +300,6 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
       ranges.push_back({channel.name, channel.low, channel.high});
   }
   return ranges;
-}
-
-namespace {
-
-std::string seconds(double value) { return printed("%.3g s", value); }
-
-}  // namespace
-
-std::string capture_that_separates(const BlockData& data, const Candidate& one, const Candidate& other) {
-  const bool timed = one.channel == Candidate::kNone || other.channel == Candidate::kNone;
-  const std::size_t channel = one.channel == Candidate::kNone ? other.channel : one.channel;
-  const std::string name = channel == Candidate::kNone ? "" : data.channels[channel].name;
-  if (timed && !name.empty()) {
-    return "a capture in which " + name +
-           " goes up and comes down again, so that it does not run with the time";
-  }
-  if (timed) return "a longer capture, started from cold";
-  if (one.channel != other.channel) {
-    return "a capture in which " + data.channels[one.channel].name + " changes while " +
-           data.channels[other.channel].name + " stays";
-  }
-  const bool memory = has_memory(one.form) || has_memory(other.form);
-  if (memory) {
-    const double tau = std::max(one.time_constant_s, other.time_constant_s);
-    return "a capture in which " + name + " changes and then rests for several times " + seconds(tau) +
-           ", at different speeds";
-  }
-  const double reference = reference_of(name);
-  return "a capture over a wider range of " + name + ", on both sides of " +
-         std::to_string(static_cast<int>(reference)) + " " + unit_of(name);
 }
 
 }  // namespace ifog

@@ -20,15 +20,6 @@ struct Findings {
   std::vector<OtherExplanation> others;  // with the effects' parameters fitted anew
 };
 
-// Another explanation that loses more than this, twice the log-likelihood, weighs less than 1 %.
-inline constexpr double kNoRival = 9.2;
-
-// All effects fitted by generalised least squares, at the time constants they have; `beside`: one more
-// regressor in the fit.
-std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Candidate>& candidates,
-                                   const NoiseShape& shape, const std::string& axis,
-                                   const Eigen::VectorXd* beside = nullptr);
-
 // Coefficients, time constants and their errors from `joint`. reconstructed: the reconstructed channels.
 Findings findings_of(const BlockData& data, const BlockData& reconstructed, const SearchResult& found,
                      const JointFit& joint, const std::string& axis);
@@ -41,8 +32,5 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
 
 // The joint fit of what the search chose, put into `found`.
 JointFit settle(const BlockData& reconstructed, SearchResult& found);
-
-// Which capture would tell two effects apart that this one cannot.
-std::string capture_that_separates(const BlockData& data, const Candidate& one, const Candidate& other);
 
 }  // namespace ifog

@@ -18,23 +18,10 @@ std::string named(const Effect& effect) {
 
 }  // namespace
 
-std::string dropped_in_words(const std::vector<Effect>& dropped) {
-  std::string names;
-  for (const Effect& effect : dropped) names += (names.empty() ? "" : ", ") + named(effect);
-  return "the innovations suggest " + names + ", but a step does not last: dropped";
-}
-
 std::string harmful_in_words(const Effect& effect) {
   return "the innovations suggest " + named(effect) +
          ", but by its own error bar it is chance, or the daemon's own correction by it would leave a larger "
          "error than none: left out";
-}
-
-std::string judged_beside(std::size_t harmonics) {
-  if (harmonics == 0) return "";
-  return "effects were judged in the noise beside " + std::to_string(harmonics) +
-         (harmonics == 1 ? " resonance or line that moves" : " resonances or lines that move") +
-         ", which the model of the noise knows; nothing of that is subtracted";
 }
 
 std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,

@@ -12,14 +12,8 @@
 
 namespace ifog {
 
-// Steps that do not last.
-std::string dropped_in_words(const std::vector<Effect>& dropped);
-
 // One that the daemon's own run judged.
 std::string harmful_in_words(const Effect& effect);
-
-// Resonances and lines that move, of the noise; empty without any.
-std::string judged_beside(std::size_t harmonics);
 
 // Effects of one channel that a capture denies.
 std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,

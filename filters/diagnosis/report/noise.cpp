@@ -19,36 +19,28 @@ void put(const NoiseCoefficient& found, std::optional<double>& value, std::optio
   error = found.std_error;
 }
 
-// What the effects leave of a record's samples at rest, NaN elsewhere: in `room` unless it is all of them.
-std::span<const double> error_at_rest(const Record& record, const EvenError& error, double sample_s,
-                                      Samples& room) {
-  const bool all = record.at_rest.empty() ||
-                   (record.at_rest.size() == 1 && record.at_rest.front().size() == record.time_s.size());
-  // A step of the grid without a sample is missing in the error, too.
-  if (all) return error.after;
+// What the effects leave of a record's samples at rest, NaN elsewhere.
+Samples error_at_rest(const Record& record, const EvenError& error, double sample_s) {
+  Samples left = error.after.values();
+  if (record.at_rest.empty()) return left;
   Samples resting(record.time_s.size(), std::nan(""));
   for (const Stretch& part : record.at_rest)
     std::fill(resting.begin() + static_cast<std::ptrdiff_t>(part.begin),
               resting.begin() + static_cast<std::ptrdiff_t>(part.end), 1.0);
   const Samples rests = on_even_grid(record, sample_s, resting);
-  room = error.after.values();
-  for (std::size_t i = 0; i < room.size(); ++i)
-    if (std::isnan(rests[i])) room[i] = std::nan("");
-  return room;
+  for (std::size_t i = 0; i < left.size(); ++i)
+    if (std::isnan(rests[i])) left[i] = std::nan("");
+  return left;
 }
 
 // All records one after the other.
 NoiseCoefficients coefficients_at_rest(const std::vector<Record>& records,
                                        const std::vector<EvenError>& errors, double sample_s) {
-  Samples room;
-  if (records.size() == 1) {
-    const std::span<const double> rate = error_at_rest(records.front(), errors.front(), sample_s, room);
-    return noise_coefficients(AngleSum(rate, stretches({}, rate, {})), sample_s);
-  }
   Samples all;
   std::vector<Stretch> parts;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room);
+    const Samples left = error_at_rest(records[r], errors[r], sample_s);
+    const std::span<const double> rate = left;
     for (const Stretch& part : stretches({}, rate, {}))
       parts.push_back({all.size() + part.begin, all.size() + part.end});
     all.insert(all.end(), rate.begin(), rate.end());
@@ -58,9 +50,9 @@ NoiseCoefficients coefficients_at_rest(const std::vector<Record>& records,
 
 void write_changes(const std::vector<Record>& records, const std::vector<EvenError>& errors, double sample_s,
                    Diagnosis& diagnosis) {
-  Samples room;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const std::span<const double> rate = error_at_rest(records[r], errors[r], sample_s, room);
+    const Samples left = error_at_rest(records[r], errors[r], sample_s);
+    const std::span<const double> rate = left;
     const std::vector<NoiseChange> found =
         noise_changes(rate, stretches({}, rate, {}), sample_s, [&](std::size_t i) {
           return errors[r].origin.told(errors[r].start_s + static_cast<double>(i) * sample_s);

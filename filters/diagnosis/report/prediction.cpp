@@ -150,8 +150,39 @@ double line_square(const Weights& weights, const Effect& line) {
   return 0.5 * square * kept * kept * std::norm(sum);
 }
 
-HeadingPrediction predicted(const Diagnosis& diagnosis, const BlockData& data, double aligned_s,
-                            const std::vector<double>& after_s) {
+}  // namespace
+
+double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s) {
+  const double steps = std::ceil(aligned_s / std::min((aligned_s + after_s) / kSteps, 0.1 * aligned_s));
+  const double step = aligned_s / steps;
+  const std::vector<double> weight = heading_weights(aligned_s, after_s, step, SIZE_MAX).of_step;
+  double square = 0.0;
+  for (const double w : weight) square += w * w;
+  double walk = 0.0;
+  double flicker = 0.0;
+  double variance = 0.0;
+  for (const NoisePosterior::Part& part : posterior.parts) {
+    variance += part.weight * part.white / step * square;
+    walk += part.weight * part.walk;
+    flicker += part.weight * part.flicker;
+    if (part.markov > 0.0) {
+      const double f = std::exp(-step / part.markov_s);
+      variance += part.weight * brought_by(weight, f, part.markov * (1.0 - f * f));
+    }
+  }
+  if (walk > 0.0) variance += brought_by(weight, 1.0, walk * step);
+  if (flicker > 0.0) {
+    for (const double tau : posterior.flicker_s) {
+      const double f = std::exp(-step / tau);
+      variance += brought_by(weight, f, flicker * (1.0 - f * f));
+    }
+  }
+  return variance;
+}
+
+HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
+                                  const std::vector<double>& after_s) {
+  const BlockData data = cut_to_blocks({next});
   HeadingPrediction prediction;
   prediction.aligned_s = aligned_s;
   prediction.after_s = after_s;
@@ -192,43 +223,7 @@ HeadingPrediction predicted(const Diagnosis& diagnosis, const BlockData& data, d
   return prediction;
 }
 
-}  // namespace
-
-double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s) {
-  const double steps = std::ceil(aligned_s / std::min((aligned_s + after_s) / kSteps, 0.1 * aligned_s));
-  const double step = aligned_s / steps;
-  const std::vector<double> weight = heading_weights(aligned_s, after_s, step, SIZE_MAX).of_step;
-  double square = 0.0;
-  for (const double w : weight) square += w * w;
-  double walk = 0.0;
-  double flicker = 0.0;
-  double variance = 0.0;
-  for (const NoisePosterior::Part& part : posterior.parts) {
-    variance += part.weight * part.white / step * square;
-    walk += part.weight * part.walk;
-    flicker += part.weight * part.flicker;
-    if (part.markov > 0.0) {
-      const double f = std::exp(-step / part.markov_s);
-      variance += part.weight * brought_by(weight, f, part.markov * (1.0 - f * f));
-    }
-  }
-  if (walk > 0.0) variance += brought_by(weight, 1.0, walk * step);
-  if (flicker > 0.0) {
-    for (const double tau : posterior.flicker_s) {
-      const double f = std::exp(-step / tau);
-      variance += brought_by(weight, f, flicker * (1.0 - f * f));
-    }
-  }
-  return variance;
-}
-
-HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
-                                  const std::vector<double>& after_s) {
-  return predicted(diagnosis, cut_to_blocks({next}), aligned_s, after_s);
-}
-
-HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records,
-                                       const BlockData* data) {
+HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records) {
   const auto span_of = [](const Record& record) { return record.time_s.back() - record.time_s.front(); };
   const Record& longest =
       *std::max_element(records.begin(), records.end(),
@@ -238,8 +233,7 @@ HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::ve
   // A record says nothing of what is a hundred times as long, and to add it up takes as many steps.
   constexpr double kFarthest = 100.0;
   std::erase_if(after_s, [&](double after) { return after > kFarthest * span_of(longest); });
-  return data ? predicted(diagnosis, *data, aligned, after_s)
-              : predict_heading(diagnosis, longest, aligned, after_s);
+  return predict_heading(diagnosis, longest, aligned, after_s);
 }
 
 }  // namespace ifog

@@ -17,9 +17,7 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
                                   const std::vector<double>& after_s);
 
 // Of a next capture whose channels run as they did in the longest of the records.
-// data: the blocks of the longest, where they are at hand.
-HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records,
-                                       const BlockData* data = nullptr);
+HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records);
 
 // Of the noise alone, without the motion of what the sensor stands on: variance of the heading error, rad^2.
 double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s);

@@ -20,16 +20,6 @@ double share_of(const std::vector<EvenError>& errors, const PartOf& part_of) {
   return total > 0.0 ? std::min(1.0, explained / total) : 0.0;
 }
 
-FoundEffect ramp_effect(const RampFit& ramp, const std::vector<EvenError>& errors) {
-  FoundEffect found;
-  found.effect = ramp.effect;
-  found.p_value = ramp.p_value;
-  found.likelihood_ratio = ramp.ratio;
-  found.variance_explained =
-      share_of(errors, [&](std::size_t r) -> const Samples& { return ramp.correction[r]; });
-  return found;
-}
-
 FoundEffect zone_effect(const FoundZone& of, const std::vector<EvenError>& errors) {
   const DeadZone& zone = of.zone;
   FoundEffect found;
@@ -68,7 +58,11 @@ std::vector<FoundEffect> sample_effects(const std::vector<RampFit>& ramps,
                                         const std::vector<EvenError>& errors, const std::string& axis) {
   std::vector<FoundEffect> found;
   found.reserve(ramps.size() + lines.size() + 1);
-  for (const RampFit& ramp : ramps) found.push_back(ramp_effect(ramp, errors));
+  for (const RampFit& ramp : ramps) {
+    found.push_back(ramp.found);
+    found.back().variance_explained =
+        share_of(errors, [&](std::size_t r) -> const Samples& { return ramp.correction[r]; });
+  }
   if (zone) found.push_back(zone_effect(*zone, errors));
   for (const FastLine& fast : lines)
     found.push_back(line_effect(fast.line, variance_of(errors[fast.record].before)));

@@ -51,13 +51,6 @@ void name_bias(const BlockGrid& grid, const JointFit& joint, const std::vector<E
   found.likelihood_ratio = value * value / variance;
   found.p_value = chi_squared_above(found.likelihood_ratio, 1.0);
   diagnosis.effects.push_back(std::move(found));
-  std::size_t n = 0;
-  while (n * n < diagnosis.covariance.size()) ++n;
-  std::vector<double> covariance((n + 1) * (n + 1), 0.0);
-  for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t j = 0; j < n; ++j) covariance[i * (n + 1) + j] = diagnosis.covariance[i * n + j];
-  covariance.back() = variance;
-  diagnosis.covariance = std::move(covariance);
 }
 
 void count_rates_from_the_bias(const std::vector<EvenError>& errors, std::vector<FoundEffect>& effects,
@@ -99,20 +92,6 @@ void leave_as_written(std::vector<EvenError>& errors) {
       held_out[i] += between;
       after[i] += between;
     }
-  }
-}
-
-void run_as_logged(const std::vector<Record>& records, const std::vector<Record>& logged,
-                   const Diagnosis& diagnosis, double sample_s, std::vector<EvenError>& errors) {
-  Model model;
-  add_to_model(diagnosis, "", model);
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    Record record = records[r];
-    for (RecordChannel& channel : record.channels)
-      if (const auto values = values_of(logged[r], channel.name); !values.empty()) channel.values = values;
-    errors[r].logged = model.effects.empty()
-                           ? errors[r].before
-                           : on_even_grid(records[r], sample_s, compensated_error(record, model));
   }
 }
 

@@ -13,8 +13,8 @@
 namespace ifog {
 
 // What the effects leave on the mean beside a reference rate, which the model corrects; it is an effect
-// `bias` at the end of the diagnosis' effects, too, and its covariance, where it is beyond five times what
-// the noise makes of a record's mean. errors: `after` is filled; uncorrected: the mean of what was taken out
+// `bias` at the end of the diagnosis' effects, too, where it is beyond five times what the noise makes of a
+// record's mean. errors: `after` is filled; uncorrected: the mean of what was taken out
 // of it that the model does not correct, such as steps.
 void name_bias(const BlockGrid& grid, const JointFit& joint, const std::vector<EvenError>& errors,
                double uncorrected, const std::string& axis, Diagnosis& diagnosis);
@@ -35,11 +35,6 @@ void run_written_model(const std::vector<Record>& records, const Diagnosis& diag
 // own correction leaves of each sample, but for what it does not correct, and for what other coefficients
 // make of it. Of records that have lost ramps, lines or a dead zone before, both stay.
 void leave_as_written(std::vector<EvenError>& errors);
-
-// `logged` of each error: the same with the channels of `logged`, as many records of as many rows, where they
-// have one of that name: what a logger's faults, which the fit was spared, do to the correction.
-void run_as_logged(const std::vector<Record>& records, const std::vector<Record>& logged,
-                   const Diagnosis& diagnosis, double sample_s, std::vector<EvenError>& errors);
 
 // Of the diagnosis' first `candidates` effects that are corrected online, the one whose absence leaves least
 // of the error, means of a two-thousandth of the record; none where each makes it smaller.

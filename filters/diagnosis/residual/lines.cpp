@@ -2,7 +2,6 @@
 #include "filters/diagnosis/residual/lines.h"
 
 #include <algorithm>
-#include <array>
 #include <boost/math/tools/minima.hpp>
 #include <cmath>
 #include <complex>
@@ -12,7 +11,6 @@
 
 #include "filters/diagnosis/record/words.h"
 #include "filters/diagnosis/residual/periodogram.h"
-#include "filters/series/mapped_file.h"
 
 namespace ifog {
 namespace {
@@ -36,30 +34,29 @@ Complex wave_at(double cycles) {
   return std::polar(1.0, -2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
 }
 
-// Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. By a table of
-// the first turns, which a carrier turns on from one table's length to the next. of: cycles a sample.
+// Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. of: cycles a
+// sample.
 std::vector<Complex> demodulate(std::span<const double> error, double mean, double of, std::size_t pieces) {
-  constexpr std::size_t kTable = 64;
-  std::array<double, kTable> cosine{}, sine{};
-  for (std::size_t k = 0; k < kTable; ++k) {
-    const Complex wave = wave_at(of * static_cast<double>(k));
-    cosine[k] = wave.real();
-    sine[k] = wave.imag();
-  }
+  constexpr std::size_t kTurns = 4096;  // of one carrier, before rounding is taken out of it
+  const Complex turn = wave_at(of);
   std::vector<Complex> sums(pieces);
   for (std::size_t p = 0; p < pieces; ++p) {
     const std::size_t from = p * error.size() / pieces, to = (p + 1) * error.size() / pieces;
-    expect_reading(error.data() + from, (to - from) * sizeof(double));
-    for (std::size_t begin = from; begin < to; begin += kTable) {
-      const std::span<const double> some = error.subspan(begin, std::min(kTable, to - begin));
-      double real = 0.0, imaginary = 0.0;
-      for (std::size_t k = 0; k < some.size(); ++k) {
-        const double value = std::isfinite(some[k]) ? some[k] - mean : 0.0;
-        real += value * cosine[k];
-        imaginary += value * sine[k];
+    double cosine = 0.0, sine = 0.0, real = 0.0, imaginary = 0.0;
+    for (std::size_t i = from; i < to; ++i) {
+      if ((i - from) % kTurns == 0) {
+        const Complex wave = wave_at(of * static_cast<double>(i));
+        cosine = wave.real();
+        sine = wave.imag();
       }
-      sums[p] += Complex(real, imaginary) * wave_at(of * static_cast<double>(begin));
+      const double value = std::isfinite(error[i]) ? error[i] - mean : 0.0;
+      real += value * cosine;
+      imaginary += value * sine;
+      const double next = cosine * turn.real() - sine * turn.imag();
+      sine = cosine * turn.imag() + sine * turn.real();
+      cosine = next;
     }
+    sums[p] = Complex(real, imaginary);
   }
   return sums;
 }
@@ -80,20 +77,14 @@ struct Search {
   const Periodogram& spectrum;
 };
 
-// Offset from the bin, in parts of one over the whole length, at which the pieces add up to most. Of a series
-// in several transforms a bin holds as many of those: the tops are tried first.
-double best_offset(const std::vector<Complex>& sums, std::size_t transforms) {
+// Offset from the bin, in parts of one over the length, at which the pieces add up to most.
+double best_offset(const std::vector<Complex>& sums) {
   const auto power_lacking = [&](double offset) {
     return -std::norm(shifted(sums, offset / static_cast<double>(sums.size()), 0, sums.size()));
   };
   constexpr int kBits = 14;  // 1e-4 of a bin
-  const auto reach = static_cast<double>(transforms - 1);
-  double top = 0.0, least = power_lacking(0.0);
-  for (double offset = -reach; offset <= reach; offset += 0.5)
-    if (const double now = power_lacking(offset); now < least) least = now, top = offset;
   std::uintmax_t most_evaluations = 50;
-  return boost::math::tools::brent_find_minima(power_lacking, top - 1.0, top + 1.0, kBits, most_evaluations)
-      .first;
+  return boost::math::tools::brent_find_minima(power_lacking, -1.0, 1.0, kBits, most_evaluations).first;
 }
 
 // Of what chance would do as well only the p-value is said.
@@ -104,7 +95,7 @@ SpectralLine refine(const Search& in, std::size_t bin, double floor) {
   const std::vector<Complex> sums =
       demodulate(error, spectrum.mean, f0, std::min<std::size_t>(256, error.size() / 4));
   const auto pieces = static_cast<double>(sums.size());
-  const double offset = best_offset(sums, spectrum.pieces);
+  const double offset = best_offset(sums);
   const Complex total = shifted(sums, offset / pieces, 0, sums.size());
 
   SpectralLine line;
@@ -112,7 +103,7 @@ SpectralLine refine(const Search& in, std::size_t bin, double floor) {
   line.ratio = std::norm(total) / (floor * n / length);
   // Between the bins there are more tries than bins: Rice's count of the maxima of a spectrum.
   const double between = std::max(1.0, std::sqrt(std::numbers::pi * line.ratio / 3.0));
-  line.p_value = std::min(1.0, between * spectrum.bins() * std::exp(-line.ratio));
+  line.p_value = std::min(1.0, between * static_cast<double>(spectrum.power.size()) * std::exp(-line.ratio));
   if (line.p_value > significance) return line;
   double separate = 0.0;
   Complex together(0.0, 0.0);
@@ -153,6 +144,7 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
                                      double significance, std::size_t most) {
   std::vector<SpectralLine> lines;
   if (error.size() < 128) return lines;
+  error = error.first(std::min(error.size(), kMostTransformed));
   const Periodogram spectrum = periodogram(error);
   const std::vector<double>& power = spectrum.power;
   const NoiseFloor floor(power);

@@ -8,7 +8,6 @@
 #include <unsupported/Eigen/FFT>
 
 #include "filters/diagnosis/record/words.h"
-#include "filters/distributions/chi_squared.h"
 #include "filters/series/finite_sum.h"
 
 namespace ifog {
@@ -22,26 +21,20 @@ bool is_smooth(std::size_t length) {
 
 }  // namespace
 
-Periodogram periodogram(std::span<const double> error, std::size_t most_in_memory) {
+Periodogram periodogram(std::span<const double> error) {
   Periodogram out;
-  out.pieces = (error.size() + most_in_memory - 1) / most_in_memory;
-  out.length = error.size() / out.pieces;
+  out.length = std::min(error.size(), kMostTransformed);
   while (out.length > 16 && !is_smooth(out.length)) --out.length;
   const auto [sum, present] = finite_sum(error);
   out.mean = present > 0.0 ? sum / present : 0.0;
-  out.power.assign(out.length / 2 + 1, 0.0);
+  std::vector<double> values(out.length);
+  for (std::size_t i = 0; i < out.length; ++i)
+    values[i] = std::isfinite(error[i]) ? error[i] - out.mean : 0.0;
   Eigen::FFT<double> fft;
   fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<double> values(out.length);
   std::vector<std::complex<double>> bins;
-  for (std::size_t p = 0; p < out.pieces; ++p) {
-    const std::size_t from = p * (error.size() / out.pieces);
-    for (std::size_t i = 0; i < out.length; ++i)
-      values[i] = std::isfinite(error[from + i]) ? error[from + i] - out.mean : 0.0;
-    fft.fwd(bins, values);
-    for (std::size_t k = 0; k < out.power.size(); ++k)
-      out.power[k] += std::norm(bins[k]) / static_cast<double>(out.pieces);
-  }
+  fft.fwd(bins, values);
+  for (const std::complex<double>& bin : bins) out.power.push_back(std::norm(bin));
   return out;
 }
 
@@ -74,10 +67,7 @@ double NoiseFloor::operator[](std::size_t bin) const {
 
 std::vector<std::size_t> peaks_of(const Periodogram& spectrum, const NoiseFloor& floor, double significance) {
   const std::vector<double>& power = spectrum.power;
-  const auto pieces = static_cast<double>(spectrum.pieces);
-  const double chance = significance / static_cast<double>(power.size());
-  const double least = spectrum.pieces == 1 ? -kLeastOfLines * std::log(chance)
-                                            : chi_squared_exceeded(chance, 2.0 * pieces) / (2.0 * pieces);
+  const double least = -kLeastOfLines * std::log(significance / static_cast<double>(power.size()));
   std::vector<std::size_t> peaks;
   for (std::size_t k = kFirstBinOfLines; k + 1 < power.size(); ++k)
     if (power[k] >= power[k - 1] && power[k] >= power[k + 1] && power[k] > least * floor[k])

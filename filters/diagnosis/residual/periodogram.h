@@ -13,17 +13,16 @@ inline constexpr std::size_t kFirstBinOfLines = 16;  // below, slow noise and a 
 inline constexpr double kLeastOfLines = 0.6;  // of a line's power that its nearest bin has, between two bins
 
 struct Periodogram {
-  std::vector<double> power;  // of bins 0 … length / 2, not scaled: the mean of all pieces
-  std::size_t length = 0;     // of a piece, cut to a product of small primes for the transform's sake
-  std::size_t pieces = 1;     // of a series that is longer than one transform in memory
+  std::vector<double> power;  // of bins 0 … length / 2, not scaled
+  std::size_t length = 0;     // cut to a product of small primes for the transform's sake
   double mean = 0.0;          // of all samples that are there, which is taken out first
-
-  // Frequencies of the whole series that can be distinguished.
-  [[nodiscard]] double bins() const { return static_cast<double>(power.size() * pieces); }
 };
 
+// A transform has room in memory for so many samples, an hour at 1 kHz: what comes behind is not looked at.
+inline constexpr std::size_t kMostTransformed = std::size_t{1} << 22U;
+
 // Missing samples (NaN) count as the mean. At least 16 samples.
-Periodogram periodogram(std::span<const double> error, std::size_t most_in_memory = std::size_t{1} << 22U);
+Periodogram periodogram(std::span<const double> error);
 
 // Mean noise power around each bin, from medians so that lines do not count; computed at a few hundred
 // frequencies, and between them in proportion.
@@ -39,8 +38,7 @@ class NoiseFloor {
 };
 
 // Bins no lower than those next to them whose power over the floor is above kLeastOfLines of what the highest
-// of all bins of noise reaches at this significance, strongest over it first. Of the mean of several pieces
-// noise reaches less, and all of that is asked.
+// of all bins of noise reaches at this significance, strongest over it first.
 std::vector<std::size_t> peaks_of(const Periodogram& spectrum, const NoiseFloor& floor, double significance);
 
 struct Spectrum {

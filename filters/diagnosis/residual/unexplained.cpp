@@ -13,7 +13,6 @@
 #include "filters/diagnosis/record/words.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/meaning.h"
-#include "filters/series/series_view.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 
@@ -32,9 +31,7 @@ double usual_of(std::vector<double> values) {
 // with a hole in it: of few differences the energy scatters more than that of the others.
 std::vector<double> energies(std::span<const double> left, std::size_t piece) {
   std::vector<double> found;
-  ReadingAhead ahead(left);
   for (std::size_t from = 0; from + piece <= left.size(); from += piece) {
-    ahead.at(from);
     double square = 0.0;
     double n = 0.0;
     for (std::size_t i = from + 1; i < from + piece; ++i) {
@@ -76,18 +73,6 @@ std::vector<double> over_usual(const std::vector<double>& energy, double piece_s
     for (const double each : mine) over.push_back(usual > 0.0 && std::isfinite(each) ? each / usual : 0.0);
   }
   return over;
-}
-
-// Where more than a tenth of the pieces is above the level of white noise, the strongest hundredth counts, if
-// it is far above the rest. over: 0 where nothing was measured.
-double heavy_level(std::vector<double> over, double level) {
-  std::erase(over, 0.0);
-  const auto count = static_cast<std::size_t>(
-      std::count_if(over.begin(), over.end(), [&](double value) { return value >= level; }));
-  if (count * 10 < over.size()) return level;
-  const auto at = over.begin() + static_cast<std::ptrdiff_t>(over.size() - over.size() / 100 - 1);
-  std::nth_element(over.begin(), at, over.end());
-  return *at > 5.0 * level ? *at : level;
 }
 
 struct SlowRest {
@@ -132,7 +117,7 @@ bool describe_bursts(const std::vector<double>& energy, std::size_t piece, doubl
                      Unexplained& found) {
   const std::vector<double> over = over_usual(energy, static_cast<double>(piece) * period_s);
   const std::size_t measured = measured_of(energy);
-  const double level = heavy_level(over, burst_level(piece, energy.size()));
+  const double level = burst_level(piece, energy.size());
   std::size_t bursts = 0;
   std::size_t strongest = 0;
   std::vector<double> times;
@@ -254,20 +239,6 @@ void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {
       "and look at the mounting of the coil and at its potting.",
       loop.channel.c_str(), 2.0 * loop.half_width, unit.c_str(),
       2.0 * loop.half_width * std::abs(loop.coefficient) / kDegreePerHour);
-}
-
-std::string slow_beside(const std::vector<EvenError>& errors, const BlockGrid& grid,
-                        const Unexplained& found) {
-  constexpr double kMuch = 0.3;          // of what those means scatter
-  constexpr double kUnexplained = 0.12;  // of the error: less is any sensor's own noise
-  if (grid.dwells || found.fraction < kUnexplained || found.kind == "slow" || found.kind == "hysteresis")
-    return "";
-  const SlowRest slow = slow_rest(longest_of(errors).after, grid.sample_s);
-  if (slow.share < kMuch) return "";
-  return printed(
-      "beside that a slow drift that follows none of the channels given: %.0f %% of what %.3g s means "
-      "scatter, by the sensor's own noise or by a cause that was not logged",
-      100.0 * slow.share, slow.over_s);
 }
 
 }  // namespace ifog

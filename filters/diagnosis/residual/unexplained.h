@@ -25,8 +25,4 @@ Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& 
 // A loop takes the description's place.
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found);
 
-// What is slow in it, where something quicker took the description's place; "" where nothing is.
-std::string slow_beside(const std::vector<EvenError>& errors, const BlockGrid& grid,
-                        const Unexplained& found);
-
 }  // namespace ifog

@@ -19,21 +19,27 @@ constexpr double kEdge = 0.05;       // of the range: nearer to its edge no midd
 constexpr double kWidest = 0.5;      // of the range
 constexpr double kNarrowest = 0.02;  // likewise
 
+// Brent's minimum of minus the log-likelihood of the columns that `with` makes of a value between low and high.
+template <class With>
+double likeliest(const BlockGrid& grid, const NoiseShape& shape, double low, double high, const With& with) {
+  std::uintmax_t most_evaluations = 30;
+  const auto lacking = [&](double value) { return -fit_whitened(grid, shape, with(value)).log_likelihood; };
+  return boost::math::tools::brent_find_minima(lacking, low, high, kBits, most_evaluations).first;
+}
+
 void refine_transition(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
                        std::size_t at) {
   Columns columns = design(data, model);
   const Eigen::Index place = column_of(data.grid, model, at);
   const auto best = [&](double Candidate::*which, double low, double high) {
-    const auto value = [&](double x) {
+    if (!(low < high)) return;
+    const auto with = [&](double value) -> const Columns& {
       Candidate trial = model[at];
-      trial.*which = x;
+      trial.*which = value;
       columns.col(place) = regressors(data, trial).col(0);
-      return -fit_whitened(data.grid, shape, columns).log_likelihood;
+      return columns;
     };
-    std::uintmax_t most_evaluations = 30;
-    if (low < high)
-      model[at].*which =
-          boost::math::tools::brent_find_minima(value, low, high, kBits, most_evaluations).first;
+    model[at].*which = likeliest(data.grid, shape, low, high, with);
   };
   const FineChannel& channel = data.channels[model[at].channel];
   const double span = channel.high - channel.low;
@@ -60,13 +66,9 @@ void refine_fringe(const BlockData& data, const NoiseShape& shape, std::vector<C
       if (each.same_shape(model[at]) || each.swings_with(model[at])) each.period = span / fringes;
     return trial;
   };
-  const auto value = [&](double fringes) {
-    return -fit_whitened(data.grid, shape, design(data, with(fringes))).log_likelihood;
-  };
-  std::uintmax_t most_evaluations = 30;
-  model = with(boost::math::tools::brent_find_minima(value, std::max(0.9, now - kStepOfFringes),
-                                                     now + kStepOfFringes, kBits, most_evaluations)
-                   .first);
+  const auto columns = [&](double fringes) { return design(data, with(fringes)); };
+  model =
+      with(likeliest(data.grid, shape, std::max(0.9, now - kStepOfFringes), now + kStepOfFringes, columns));
 }
 
 }  // namespace
@@ -81,29 +83,27 @@ void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Ca
     refine(data, shape, model, at);
 }
 
-// Brent's minimum of minus the log-likelihood over the logarithm of the time constant.
+// Over the logarithm of the time constant.
 void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model, std::size_t at,
             double Candidate::*which) {
+  const Form form = model[at].form;
+  const std::vector<double> tried = time_constants(data.grid, form);
+  // The power of vibration is as quick as the samples.
+  double least = (form == Form::kBandPower ? 0.3 : 2.0) * data.grid.fine_s;
+  if (form == Form::kWarmUp && !tried.empty()) least = tried.front();
+  const double most = tried.empty() ? 3600.0 : std::min(3600.0, 1.6 * tried.back());
+  const double now = model[at].*which;
+  const double high = std::min(std::max(now * 2.5, least), most);
+  const double low = std::min(std::max(now / 2.5, least), high);
   Columns columns = design(data, model);
   const Eigen::Index place = column_of(data.grid, model, at);
-  const auto value = [&](double log_tau) {
+  const auto with = [&](double log_tau) -> const Columns& {
     Candidate trial = model[at];
     trial.*which = std::exp(log_tau);
     columns.col(place) = regressors(data, trial).col(0);
-    return -fit_whitened(data.grid, shape, columns).log_likelihood;
+    return columns;
   };
-  double low = std::log(model[at].*which / 2.5);
-  double high = std::log(model[at].*which * 2.5);
-  const bool power = model[at].form == Form::kBandPower;  // of vibration, which is as quick as the samples
-  const double least = std::log((power ? 0.3 : 2.0) * data.grid.fine_s);
-  const std::vector<double> tried = time_constants(data.grid, model[at].form);
-  low = std::max(low, model[at].form == Form::kWarmUp && !tried.empty() ? std::log(tried.front()) : least);
-  const double most = tried.empty() ? 3600.0 : std::min(3600.0, 1.6 * tried.back());
-  high = std::min(std::max(high, least), std::log(most));
-  low = std::min(low, high);
-  std::uintmax_t most_evaluations = 30;
-  model[at].*which =
-      std::exp(boost::math::tools::brent_find_minima(value, low, high, kBits, most_evaluations).first);
+  model[at].*which = std::exp(likeliest(data.grid, shape, std::log(low), std::log(high), with));
 }
 
 bool levels_seen(const BlockData& data, const std::vector<Candidate>& model) {

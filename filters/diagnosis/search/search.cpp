@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "filters/diagnosis/checks/cross_validation.h"
-#include "filters/diagnosis/regression/harmonics.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
 #include "filters/effects/meaning.h"
@@ -62,8 +61,6 @@ class EffectSearch {
     count_tries();
     start_with_basics();
     improve();
-    // Beside the effects there may be fewer harmonics, or one that they had hidden.
-    if (model_.size() > first_) noise_ = with_harmonics(data_.grid, design(data_, model_), noise_);
     FittedModel unfolded{model_, noise_};
     try_second_time_constants(data_, first_, unfolded);
     model_ = std::move(unfolded.effects);

@@ -33,8 +33,12 @@ struct Logged {
     record.channels = {{name, channel}};
     return record;
   }
-  [[nodiscard]] RepairedRecords repaired(const char* name) const { return repair_channels({record(name)}); }
-  [[nodiscard]] RepairedRecords without_knocks() const { return leave_out_knocks({record("supply_V")}); }
+  [[nodiscard]] OwnedRecords repaired(const char* name) const {
+    return repair_channels(std::vector{record(name)});
+  }
+  [[nodiscard]] OwnedRecords without_knocks() const {
+    return leave_out_knocks(std::vector{record("supply_V")});
+  }
 };
 
 // Hundredths of a degree, as a thermometer gives them.
@@ -44,7 +48,7 @@ TEST(ChannelFaults, WhatAThermometerCannotHaveMeasuredIsInterpolated) {
   Logged logged(warming);
   for (std::size_t i = 1000; i < 1007; ++i) logged.channel[i] = 85.0;
   for (std::size_t i = 2500; i < 2503; ++i) logged.channel[i] = -127.0;
-  const RepairedRecords repaired = logged.repaired("temperature_degC");
+  const OwnedRecords repaired = logged.repaired("temperature_degC");
   for (std::size_t i = 0; i < kSamples; ++i)
     EXPECT_NEAR(repaired.records[0].channels[0].values[i], warming(static_cast<double>(i)), 0.02) << i;
   ASSERT_EQ(repaired.remarks.size(), 1U);
@@ -61,7 +65,7 @@ TEST(ChannelFaults, ANumberInPlaceOfAVibrationIsNoneHoweverOftenItStands) {
   const std::vector<double> before = logged.channel;
   for (std::size_t start = 500; start < 3500; start += 600)
     for (std::size_t i = start; i < start + 55; ++i) logged.channel[i] = -999.0;
-  const RepairedRecords repaired = logged.repaired("accel_x_mps2");
+  const OwnedRecords repaired = logged.repaired("accel_x_mps2");
   const auto values = repaired.records[0].channels[0].values;
   for (std::size_t i = 0; i < kSamples; ++i) {
     EXPECT_LT(std::abs(values[i]), 25.0) << i;
@@ -75,7 +79,7 @@ TEST(ChannelFaults, WhatOnlyLooksLikeOneIsLeftAlone) {
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   const auto untouched = [](const Logged& logged, const char* name) {
-    const RepairedRecords repaired = logged.repaired(name);
+    const OwnedRecords repaired = logged.repaired(name);
     EXPECT_TRUE(repaired.remarks.empty()) << name << ": " << repaired.remarks.front();
     EXPECT_EQ(repaired.records[0].channels[0].values.data(), logged.channel.data());
   };
@@ -105,7 +109,7 @@ TEST(ChannelFaults, EmptyCellsDoNotHideAGlitch) {
     for (std::size_t i = 0; i < kSamples; ++i)
       if (i % 10 != 0) logged.channel[i] = std::nan("");
     logged.channel[at] = -1e6;
-    const RepairedRecords repaired = logged.repaired("temperature_degC");
+    const OwnedRecords repaired = logged.repaired("temperature_degC");
     ASSERT_EQ(repaired.remarks.size(), 1U) << at;
     for (std::size_t i = 0; i < kSamples; ++i) {
       const double value = repaired.records[0].channels[0].values[i];
@@ -124,7 +128,7 @@ TEST(ChannelFaults, ASampleOfTheRateThatLeapsIsMissing) {
   for (double& rate : logged.rate) rate = 1e-6 * normal(random);
   logged.rate[1700] = 5e-4;  // a hundred times what the others span
   const auto clean = logged.rate;
-  const RepairedRecords repaired = logged.without_knocks();
+  const OwnedRecords repaired = logged.without_knocks();
   for (std::size_t i = 0; i < kSamples; ++i) {
     const double rate = repaired.records[0].rate_radps[i];
     if (i == 1700)

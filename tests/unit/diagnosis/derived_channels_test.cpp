@@ -72,7 +72,7 @@ TEST(DerivedChannels, UnwrappedItIsTheAngleTurned) {
   const Columns c = columns(5000);
   std::vector<double> inside = wrapped(c.angle, kTurn);
   inside[2000] = std::nan("");
-  const DerivedRecords derived = with_unwrapped_angles({record_of(c, inside)});
+  const OwnedRecords derived = with_unwrapped_angles(std::vector{record_of(c, inside)});
   const RecordChannel& angle = derived.records[0].channels[3];
   EXPECT_DOUBLE_EQ(angle.period, kTurn);
   for (std::size_t i = 0; i < c.angle.size(); ++i) {
@@ -88,7 +88,7 @@ TEST(DerivedChannels, AGlitchOfTheLoggerIsNoAngle) {
   const Columns c = columns(5000);
   std::vector<double> inside = wrapped(c.angle, kTurn);
   for (const std::size_t i : {700, 701, 3000}) inside[i] = 1e6;
-  const DerivedRecords derived = with_unwrapped_angles({record_of(c, inside)});
+  const OwnedRecords derived = with_unwrapped_angles(std::vector{record_of(c, inside)});
   const RecordChannel& angle = derived.records[0].channels[3];
   EXPECT_DOUBLE_EQ(angle.period, kTurn);
   for (const std::size_t i : {700, 701, 3000}) EXPECT_TRUE(std::isnan(angle.values[i]));
@@ -107,8 +107,7 @@ TEST(DerivedChannels, LikeChannelsAreTakenFromEachOtherAndUnlikeOnesAreNot) {
     if (i % 2 == 1) polled[i] = std::nan("");
   Record record = record_of(c, c.angle);
   record.channels[1].values = polled;
-  const DerivedRecords derived = with_differences({record});
-  const AlongAxes along = with_other_axes(derived.records);
+  const OwnedRecords along = with_other_axes(with_differences(std::vector{record}));
   const auto& channels = along.records[0].channels;
   ASSERT_EQ(channels.size(), 6U) << "one difference and one other axis";
   EXPECT_EQ(channels[4].name, difference_of("inner_degC", "outer_degC"));
@@ -123,10 +122,11 @@ TEST(DerivedChannels, WithoutAReferenceAnotherAxisIsRotationAndNoChannel) {
   const Columns c = columns(100);
   Record record = record_of(c, c.angle);
   record.reference_radps = {};
-  EXPECT_EQ(with_other_axes({record}).records[0].channels.size(), 4U);
+  EXPECT_EQ(with_other_axes(std::vector{record}).records[0].channels.size(), 4U);
   const std::vector<double> still(100, 0.0);
   record.reference_radps = still;
-  EXPECT_EQ(with_other_axes({record}).records[0].channels.size(), 4U) << "a table that never turned";
+  EXPECT_EQ(with_other_axes(std::vector{record}).records[0].channels.size(), 4U)
+      << "a table that never turned";
 }
 
 // Three gyros on a table, each of which sees thousandths of the others' rotation: what one is told to see of
@@ -156,7 +156,7 @@ TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
   record.reference_radps = truth[0];
   record.other_axes = {{"rate_y_radps", measured[1]}, {"rate_z_radps", measured[2]}};
   record.other_references = {truth[1], truth[2]};
-  const AlongAxes along = with_other_axes({record});
+  const OwnedRecords along = with_other_axes(std::vector{record});
   const Diagnosis found = diagnose({record}, {});
   for (const std::size_t a : {1U, 2U}) {
     const std::span<const double> rate = along.records[0].channels.at(a - 1).values;

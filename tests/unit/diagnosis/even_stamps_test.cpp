@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stamps that scatter about an even clock are set even; steps that are of different lengths stay.
-#include "filters/diagnosis/cleaning/prepared_channels.h"
+#include "filters/diagnosis/cleaning/even_stamps.h"
 
 #include <gtest/gtest.h>
 
@@ -44,7 +44,7 @@ TEST(EvenStamps, NoSampleOfAJitteringLogIsLostOnTheGrid) {
   };
   const std::vector<Record> records{stamped(time_s, rate)};
   EXPECT_LT(on_grid(records[0]), kSamples - kSamples / 20) << "samples share steps by their stamps";
-  const TimedRecords timed = with_even_stamps(records);
+  const OwnedRecords timed = with_even_stamps(records);
   EXPECT_EQ(on_grid(timed.records[0]), kSamples);
   ASSERT_EQ(timed.remarks.size(), 1U);
   EXPECT_NE(timed.remarks[0].find("sensor: the time stamps are up to"), std::string::npos);
@@ -62,7 +62,7 @@ TEST(EvenStamps, StepsOfDifferentLengthsAndAnEvenClockStay) {
   }
   const std::vector<double> rate(kSamples, 1.0);
   for (const std::vector<double>& time_s : {uneven, even}) {
-    const TimedRecords timed = with_even_stamps({stamped(time_s, rate)});
+    const OwnedRecords timed = with_even_stamps(std::vector{stamped(time_s, rate)});
     EXPECT_EQ(timed.records[0].time_s.data(), time_s.data());
     EXPECT_TRUE(timed.remarks.empty());
   }

@@ -21,26 +21,6 @@ std::vector<double> noise(std::size_t n) {
   return values;
 }
 
-// A tone between two of a piece's bins adds up over all pieces by its own frequency; of noise each bin is the
-// mean of them.
-TEST(Periodogram, OfALongSeriesIsTheMeanOfItsPieces) {
-  constexpr std::size_t kLength = 27000, kBin = 1234;
-  std::vector<double> values(4 * kLength);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] = 0.5 * std::sin(2.0 * std::numbers::pi * static_cast<double>(kBin * i % kLength) / kLength);
-  const Periodogram found = periodogram(values, kLength);
-  EXPECT_EQ(found.pieces, 4U);
-  EXPECT_EQ(found.length, kLength);
-  EXPECT_NEAR(found.power[kBin] / (0.0625 * kLength * kLength), 1.0, 1e-12);
-  EXPECT_LT(found.power[kBin + 1], 1e-12);
-  const Periodogram white = periodogram(noise(100000), 1000);
-  double square = 0.0;
-  for (std::size_t k = 1; k + 1 < white.power.size(); ++k)
-    square += std::pow(white.power[k] / 1000.0 - 1.0, 2);
-  // Means of a hundred exponential variates.
-  EXPECT_NEAR(square / 499.0, 0.01, 0.004);
-}
-
 TEST(Periodogram, WhatIsMissingCountsAsTheMean) {
   std::vector<double> values = noise(6000);
   values[100] = std::numeric_limits<double>::quiet_NaN();

@@ -7,9 +7,7 @@
 #include <random>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 
-#include "filters/diagnosis/cleaning/prepared_channels.h"
 #include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/figures.h"
@@ -64,38 +62,24 @@ TEST(Blocks, AreOfTheTrueRateWhereStampsAreRounded) {
   }
 }
 
-// A day between two minutes: the samples are many, and what they are too few for is said.
-TEST(Blocks, AHoleThatIsNearlyAllOfTheTimeIsSaid) {
-  Arrays arrays(1000);
-  for (std::size_t i = 500; i < 1000; ++i) arrays.time[i] += 86400.0;
-  try {
-    static_cast<void>(cut_to_blocks({arrays.record()}, 100));
-    FAIL() << "was cut";
-  } catch (const std::invalid_argument& error) {
-    const std::string said = error.what();
-    for (const char* part : {"1000 samples", "86400.1 s", "at least 32", "--from"})
-      EXPECT_NE(said.find(part), std::string::npos) << part << ": " << said;
-  }
-  arrays.time.resize(20);
-  arrays.rate.resize(20);
-  arrays.temperature.resize(20);
-  EXPECT_THROW(static_cast<void>(cut_to_blocks({arrays.record()}, 100)), std::invalid_argument);
-}
-
-// Two of three cells of the rate are empty: no hole is to blame, and no side of one can be diagnosed.
-TEST(Blocks, CellsThatAreMissingHereAndThereAreNoHole) {
-  Arrays arrays(6000);
+// A day between two minutes, or two of three cells empty: what there is too little of is said.
+TEST(Blocks, TooFewOfThemAreSaid) {
+  Arrays hole(1000), empty(6000);
+  for (std::size_t i = 500; i < 1000; ++i) hole.time[i] += 86400.0;
   for (std::size_t i = 0; i < 6000; ++i)
-    if (i % 3 != 0) arrays.rate[i] = kNan;
-  try {
-    static_cast<void>(cut_to_blocks({arrays.record()}, 100));
-    FAIL() << "was cut";
-  } catch (const std::invalid_argument& error) {
-    const std::string said = error.what();
-    for (const char* part : {"2000 samples", "only 0 blocks of 7.5 s", "at least 32", "have half of theirs"})
-      EXPECT_NE(said.find(part), std::string::npos) << part << ": " << said;
-    for (const char* part : {"hole", "--from"}) EXPECT_EQ(said.find(part), std::string::npos) << said;
+    if (i % 3 != 0) empty.rate[i] = kNan;
+  for (const auto& [arrays, samples] :
+       {std::pair{&hole, "1000 samples"}, std::pair{&empty, "2000 samples"}}) {
+    try {
+      static_cast<void>(cut_to_blocks({arrays->record()}, 100));
+      FAIL() << "was cut";
+    } catch (const std::invalid_argument& error) {
+      const std::string said = error.what();
+      for (const char* part : {samples, "at least 32", "--from", "empty cells"})
+        EXPECT_NE(said.find(part), std::string::npos) << part << ": " << said;
+    }
   }
+  EXPECT_THROW(static_cast<void>(cut_to_blocks({Arrays(20).record()}, 100)), std::invalid_argument);
 }
 
 TEST(Blocks, OfSeveralRecordsFollowEachOtherAndAGapIsNotValid) {
@@ -115,10 +99,6 @@ TEST(Blocks, OfSeveralRecordsFollowEachOtherAndAGapIsNotValid) {
   for (std::size_t b = 20; b < 26; ++b) EXPECT_EQ(grid.valid[b], 0);
 }
 
-static_assert(!std::is_copy_constructible_v<PreparedRecords> &&
-                  !std::is_move_constructible_v<PreparedRecords>,
-              "a copy's records would show the first one's columns");
-
 TEST(PreparedRecords, AreRepairedAndCutAndSayWhatWasDone) {
   Arrays arrays(4000);
   std::mt19937_64 draw(11);
@@ -129,18 +109,17 @@ TEST(PreparedRecords, AreRepairedAndCutAndSayWhatWasDone) {
   arrays.temperature[1000] = 85.0;  // a thermometer's power-on value
   const std::vector<Record> captures = {arrays.record()};
   const PreparedRecords prepared(captures, {0.0, 0.5});
-  const Record& whole = prepared.whole().front();
+  const Record& whole = prepared.whole.records.front();
   EXPECT_TRUE(std::isnan(whole.rate_radps[500]));
   EXPECT_EQ(whole.rate_radps[501], arrays.rate[501]);
   EXPECT_NEAR(values_of(whole, "temperature_degC")[1000], 26.0, 1e-9);
-  ASSERT_NE(prepared.as_logged(), nullptr);
-  EXPECT_EQ(values_of(prepared.as_logged()->front(), "temperature_degC")[1000], 85.0);
-  EXPECT_EQ(prepared.fitted().front().time_s.size(), 2000U);
-  EXPECT_EQ(prepared.fitted().front().rate_radps.data(), whole.rate_radps.data());
-  ASSERT_EQ(prepared.without_ramps().records.size(), 1U);
-  ASSERT_EQ(prepared.remarks().size(), 2U);
-  EXPECT_NE(prepared.remarks()[0].find("1 sample leaps away"), std::string::npos) << prepared.remarks()[0];
-  EXPECT_NE(prepared.remarks()[1].find("temperature_degC leaps away"), std::string::npos);
+  EXPECT_EQ(prepared.fitted.front().time_s.size(), 2000U);
+  EXPECT_EQ(prepared.fitted.front().rate_radps.data(), whole.rate_radps.data());
+  ASSERT_EQ(prepared.without_ramps.records.size(), 1U);
+  ASSERT_EQ(prepared.whole.remarks.size(), 2U);
+  EXPECT_NE(prepared.whole.remarks[1].find("1 sample leaps away"), std::string::npos)
+      << prepared.whole.remarks[1];
+  EXPECT_NE(prepared.whole.remarks[0].find("temperature_degC leaps away"), std::string::npos);
 }
 
 TEST(PreparedRecords, NothingIsRepairedWhereNothingIsWrong) {
@@ -150,55 +129,11 @@ TEST(PreparedRecords, NothingIsRepairedWhereNothingIsWrong) {
   for (double& rate : arrays.rate) rate = 1e-6 * normal(draw);
   const std::vector<Record> captures = {arrays.record()};
   const PreparedRecords prepared(captures);
-  EXPECT_EQ(prepared.as_logged(), nullptr);
-  EXPECT_TRUE(prepared.remarks().empty());
-  EXPECT_EQ(prepared.fitted().front().rate_radps.data(), arrays.rate.data());
+  EXPECT_TRUE(prepared.whole.remarks.empty());
+  EXPECT_EQ(prepared.fitted.front().rate_radps.data(), arrays.rate.data());
   Record backwards = arrays.record();
   arrays.time[7] = arrays.time[5];
   EXPECT_THROW(PreparedRecords({backwards}), std::invalid_argument);
-}
-
-// Two axes with one thermometer, which has a fault, and a hole of half an hour.
-TEST(PreparedChannels, AreThoseOfEachAxisByItself) {
-  Arrays x(4000);
-  Arrays y(4000);
-  std::mt19937_64 draw(13);
-  std::normal_distribution<double> normal;
-  for (Arrays* axis : {&x, &y}) {
-    for (double& rate : axis->rate) rate = 1e-6 * normal(draw);
-    for (std::size_t i = 0; i < 4000; ++i) {
-      axis->temperature[i] = 25.0 + 1e-3 * static_cast<double>(i);
-      if (i >= 1500) axis->time[i] += 1800.0;
-    }
-    axis->temperature[1000] = 85.0;
-  }
-  y.rate[2500] = 1e-3;  // a knock of one of them
-  const std::vector<Record> of_x = {x.record()};
-  const std::vector<Record> of_y = {y.record()};
-  const PreparedChannels channels(of_x);
-  EXPECT_TRUE(channels.has_faults());
-  for (const std::vector<Record>* captures : {&of_x, &of_y}) {
-    const PreparedRecords shared(*captures, {}, 0.01, &channels);
-    const PreparedRecords own(*captures);
-    EXPECT_EQ(shared.remarks(), own.remarks());
-    ASSERT_EQ(shared.whole().size(), own.whole().size());
-    for (std::size_t part = 0; part < own.whole().size(); ++part) {
-      const Record& one = shared.whole()[part];
-      const Record& other = own.whole()[part];
-      EXPECT_EQ(one.name, other.name);
-      EXPECT_TRUE(std::ranges::equal(one.time_s, other.time_s));
-      EXPECT_EQ(one.rate_radps.size(), other.rate_radps.size());
-      for (std::size_t i = 0; i < one.rate_radps.size(); ++i)
-        EXPECT_EQ(std::isnan(one.rate_radps[i]) ? 1.0 : one.rate_radps[i],
-                  std::isnan(other.rate_radps[i]) ? 1.0 : other.rate_radps[i]);
-      EXPECT_TRUE(
-          std::ranges::equal(values_of(one, "temperature_degC"), values_of(other, "temperature_degC")));
-    }
-    EXPECT_EQ(values_of(shared.as_logged()->front(), "temperature_degC")[1000], 85.0);
-  }
-  Record short_of_one = y.record();
-  short_of_one.rate_radps = short_of_one.rate_radps.first(3999);
-  EXPECT_THROW(static_cast<void>(channels.of_axis({short_of_one})), std::invalid_argument);
 }
 
 }  // namespace

@@ -55,7 +55,7 @@ struct Logged {
 TEST(ReferenceDelay, IsFoundToAPartOfASampleAndShifted) {
   for (const double delay_s : {0.31, -0.137, 3.705, 0.012, -21.6}) {
     const Logged logged(7, delay_s);
-    const AlignedRecords aligned = align_references({logged.record});
+    const OwnedRecords aligned = align_references(std::vector{logged.record});
     ASSERT_EQ(aligned.delays.size(), 1U) << delay_s;
     EXPECT_NEAR(aligned.delays[0].delay_s, delay_s, 4.0 * aligned.delays[0].std_error_s) << delay_s;
     EXPECT_LT(aligned.delays[0].std_error_s, 1e-3);
@@ -75,7 +75,7 @@ TEST(ReferenceDelay, StandardErrorIsHonest) {
   constexpr int kSeeds = 60;
   for (int seed = 0; seed < kSeeds; ++seed) {
     const Logged logged(100 + static_cast<std::uint64_t>(seed), 0.113);
-    const AlignedRecords aligned = align_references({logged.record});
+    const OwnedRecords aligned = align_references(std::vector{logged.record});
     ASSERT_EQ(aligned.delays.size(), 1U);
     square += std::pow((aligned.delays[0].delay_s - 0.113) / aligned.delays[0].std_error_s, 2);
   }
@@ -87,12 +87,12 @@ TEST(ReferenceDelay, StandardErrorIsHonest) {
 TEST(ReferenceDelay, WhatIsNotLateIsLeftAsItIs) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Logged in_time(200 + seed, 0.0);
-    EXPECT_TRUE(align_references({in_time.record}).delays.empty()) << seed;
+    EXPECT_TRUE(align_references(std::vector{in_time.record}).delays.empty()) << seed;
     const Logged with_effect(300 + seed, 0.0, turning, 3e-4);
-    EXPECT_TRUE(align_references({with_effect.record}).delays.empty()) << seed;
+    EXPECT_TRUE(align_references(std::vector{with_effect.record}).delays.empty()) << seed;
     // A table that hardly moves tells nothing, however late its reference is.
     const Logged resting(400 + seed, 2.0, [](double) { return 7e-5; });
-    const AlignedRecords left = align_references({resting.record});
+    const OwnedRecords left = align_references(std::vector{resting.record});
     EXPECT_TRUE(left.delays.empty()) << seed;
     EXPECT_EQ(left.records[0].reference_radps.data(), resting.reference.data());
   }
@@ -115,7 +115,7 @@ TEST(ReferenceDelay, TheDiagnosisIsThatOfTheShiftedReference) {
 TEST(ReferenceDelay, WhereTheReferenceJumpsNothingIsSaidOfTheRate) {
   const auto jumping = [](double t) { return turning(t) + (std::fmod(t, 100.0) < 50.0 ? 0.0 : 0.2); };
   const Logged logged(23, 0.025, jumping);
-  const AlignedRecords aligned = align_references({logged.record});
+  const OwnedRecords aligned = align_references(std::vector{logged.record});
   ASSERT_EQ(aligned.delays.size(), 1U);
   double worst = 0.0;
   std::size_t missing = 0;
@@ -144,7 +144,7 @@ TEST(ReferenceDelay, IsToldWhereAllMotionIsJumps) {
       return at < 1.0 ? level(at) : level(at - 1.0) + std::min(1.0, share) * (level(at) - level(at - 1.0));
     };
     const Logged logged(24, 0.5, stepping);
-    const AlignedRecords aligned = align_references({logged.record});
+    const OwnedRecords aligned = align_references(std::vector{logged.record});
     ASSERT_EQ(aligned.delays.size(), 1U) << ramp_s;
     EXPECT_NEAR(aligned.delays[0].delay_s, 0.5, kStep_s) << ramp_s << ", of a step no more can be told";
   }
@@ -157,7 +157,7 @@ TEST(ReferenceDelay, WhatIsFastButSmoothIsNotLeftOut) {
                                      : turning(t) * 0.0;
   };
   const Logged logged(25, 0.037, fast);
-  const AlignedRecords aligned = align_references({logged.record});
+  const OwnedRecords aligned = align_references(std::vector{logged.record});
   ASSERT_EQ(aligned.delays.size(), 1U);
   EXPECT_EQ(aligned.remarks[0].find("jumps"), std::string::npos) << aligned.remarks[0];
 }

@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <limits>
 #include <list>
-#include <memory>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
@@ -19,7 +18,6 @@
 #include "drivers/system/utc_now.h"
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/diagnosis/cleaning/other_axes.h"
-#include "filters/diagnosis/cleaning/prepared_channels.h"
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"
@@ -210,9 +208,6 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
   options.latitude_rad = wanted.latitude_rad;
   options.allow_motion_channels = wanted.allow_motion_channels;
   options.allow_proxies = wanted.allow_proxies;
-  const auto channels = naming_a_capture(names, [&] {
-    return std::make_unique<PreparedChannels>(records_of(captures, names, axes.front()), wanted.threads);
-  });
   Together together("diagnose", axes.size(), options.most_effects + 1);
   std::vector<AxisDiagnosis> found(axes.size());
   std::vector<std::exception_ptr> failed(axes.size());
@@ -224,7 +219,7 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
     own.progress = [&, i](std::size_t done, std::size_t) { together.at(i, done); };
     try {
       const std::vector<Record> records = records_of(captures, names, axes[i]);
-      found[i].diagnosis = naming_a_capture(names, [&] { return diagnose(records, own, channels.get()); });
+      found[i].diagnosis = naming_a_capture(names, [&] { return diagnose(records, own); });
     } catch (...) {
       failed[i] = std::current_exception();
     }
@@ -304,18 +299,17 @@ std::string diagnosis_report(const std::vector<CaptureView>& captures,
   for (std::size_t c = 0; c < captures.size(); ++c)
     page.inputs.push_back({names[c], hashes[c], captures[c].comments});
   const std::vector<std::string>& axes = captures.front().axes;
-  std::list<DerivedRecords> derived;  // whose columns the page draws
-  std::list<AlongAxes> along;
+  std::list<OwnedRecords> drawn;
   for (const AxisDiagnosis& each : found) {
     report::PageAxis axis{each.axis, &each.diagnosis, {}};
     const auto index =
         static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
     const std::vector<Record> records = records_of(captures, names, index);
-    derived.push_back(with_differences(records));
+    OwnedRecords derived = with_differences(records);
     // Drawn as they were measured: what the fit takes out of them is no line's width.
-    for (Record& record : derived.back().records) record.other_references.clear();
-    along.push_back(with_other_axes(derived.back().records));
-    axis.records = along.back().records;
+    for (Record& record : derived.records) record.other_references.clear();
+    drawn.push_back(with_other_axes(std::move(derived)));
+    axis.records = drawn.back().records;
     page.axes.push_back(std::move(axis));
   }
   return report::diagnosis_page(page);

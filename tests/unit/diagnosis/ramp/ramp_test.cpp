@@ -54,40 +54,13 @@ Record record_of(const Loop& made) {
   return record;
 }
 
-TEST(Ramp, WrapsAreRecognised) {
-  EXPECT_EQ(wrap_period(loop(4000, 5.4e-5, 0.0).ramp), kPeriod);
-  EXPECT_EQ(wrap_period(std::vector<double>{20.0, 21.0, 22.0, 21.5, 20.0}), 0.0);
-}
-
-TEST(Ramp, TheTableIsTheNonlinearity) {
-  // 32 knots from 30 000 samples of 1e-7 rad/s leave 0.2 % of the nonlinearity's variance; straight lines
-  // between them leave as much of the third harmonic.
-  const Loop made = loop(40000, 5.4e-5, 1e-7);
-  const auto fit = fit_ramp({record_of(made)}, "ramp_counts", 0.01);
-  ASSERT_TRUE(fit.has_value());
-  double left = 0.0;
-  double was = 0.0;
-  for (std::size_t i = 1; i < made.rate.size(); ++i) {
-    const double truth = (nonlinearity(made.ramp[i]) - nonlinearity(made.ramp[i - 1])) / kStep_s;
-    was += truth * truth;
-    left += (truth - fit->held_out[0][i]) * (truth - fit->held_out[0][i]);
-  }
-  EXPECT_LT(left, 0.02 * was);
-}
-
-TEST(Ramp, ACounterWithoutNonlinearityIsNotBlamed) {
-  Loop made = loop(40000, 5.4e-5, 4e-7);
-  for (std::uint32_t i = 0; i < 40000; ++i) made.rate[i] = 5.4e-5 + 4e-7 * gaussian(i);
-  EXPECT_FALSE(fit_ramp({record_of(made)}, "ramp_counts", 0.01).has_value());
-}
-
 // Rotation put into the rate and, as the loop would, into the ramp's slope comes out with its gain and phase,
 // from a stalled ramp to many wraps a sample and up to 0.8 of the Nyquist frequency.
 TEST(Ramp, TheCorrectionIsTransparentToRotation) {
   const auto fit = fit_ramp({record_of(loop(40000, 5.4e-5, 4e-7))}, "ramp_counts", 0.01);
   ASSERT_TRUE(fit.has_value());
   Model model;
-  model.effects = {fit->effect};
+  model.effects = {fit->found.effect};
   for (const double bias : {0.0, 5.4e-5, 2.6e-3, 9.7e-3}) {
     for (const double frequency : {0.05, 1.0, 20.0, 80.0}) {
       const double amplitude = 1e-4;
