@@ -10,7 +10,6 @@ namespace ifog {
 namespace {
 // Failures of the filter at rest that are a motion: 6 nats each, 18 in all.
 constexpr double kSurelyMoves = 3.0;
-Lanes to_lanes(const Axes& axes) noexcept { return {axes[0], axes[1], axes[2], 0.0}; }
 }  // namespace
 
 Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, int axes, double period_s)
@@ -55,8 +54,7 @@ LearnedNoise Engine::learned() const noexcept {
 
 Axes Engine::owed() const noexcept {
   if (!settings_.conserve_angle) return {};
-  const Lanes owed = follow_.ledger.owed();
-  return {owed[0], owed[1], owed[2]};
+  return to_axes(follow_.ledger.owed());
 }
 
 void Engine::owe(const Axes& angle_rad) noexcept {
@@ -64,32 +62,17 @@ void Engine::owe(const Axes& angle_rad) noexcept {
   if (angle.allFinite() && (angle != 0.0).any()) follow_.ledger.owe(angle);
 }
 
-double Engine::mean_noise() const noexcept {
-  double sum = 0.0;
-  for (std::size_t a = 0; a < axes_; ++a) sum += noise_[a].known();
-  return sum / static_cast<double>(axes_);
+Lanes Engine::of_noise(double (Noise::*figure)() const noexcept) const noexcept {
+  Lanes all = Lanes::Ones();
+  for (std::size_t a = 0; a < axes_; ++a) all[static_cast<Eigen::Index>(a)] = (noise_[a].*figure)();
+  return all;
 }
 
-Lanes Engine::noise_share() const noexcept {
-  Lanes share = Lanes::Ones();
-  const double mean = mean_noise();
-  for (std::size_t a = 0; a < axes_; ++a) share[static_cast<Eigen::Index>(a)] = noise_[a].known() / mean;
-  return share;
+double Engine::mean(const Lanes& of) const noexcept {
+  return of.head(static_cast<Eigen::Index>(axes_)).sum() / static_cast<double>(axes_);
 }
 
 Lanes Engine::walk_share() const noexcept { return walk_share_ ? to_lanes(*walk_share_) : noise_share(); }
-
-Lanes Engine::colour() const noexcept {
-  Lanes colour = Lanes::Ones();
-  for (std::size_t a = 0; a < axes_; ++a) colour[static_cast<Eigen::Index>(a)] = noise_[a].colour();
-  return colour;
-}
-
-Lanes Engine::rest_rate() const noexcept {
-  Lanes rate = Lanes::Zero();
-  for (std::size_t a = 0; a < axes_; ++a) rate[static_cast<Eigen::Index>(a)] = rest_->rate(a);
-  return rate;
-}
 
 // Of the filter at rest, samples; after a move it is as slow as what it has received since is long.
 double Engine::lag() const noexcept {
@@ -111,7 +94,8 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   if (settings_.follow_manoeuvres) {
     follow_.trackers.predict(s.dt_s / period_s_);
     for (std::size_t a = 0; a < axes_; ++a)
-      if ((s.sample.valid >> a & 1U) != 0) noise_[a].take(in.rate_radps[a], follow_.trackers.since(a));
+      if ((s.sample.valid >> a & 1U) != 0)
+        noise_[a].take(in.rate_radps[a], follow_.trackers.since()[static_cast<Eigen::Index>(a)]);
     weigh(s);
     follow(s);
   } else {
@@ -140,7 +124,9 @@ void Engine::screen(Step& s) noexcept {
       continue;
     }
     s.sample.valid |= 1U << a;
+    s.sample.rate[static_cast<Eigen::Index>(a)] = s.in.rate_radps[a];
   }
+  s.sample.mask = mask_of(s.sample.valid);
 }
 
 // The first measurement of an axis sets its state.
@@ -156,17 +142,15 @@ void Engine::begin_axes(const Step& s) noexcept {
   }
   const std::uint32_t first = s.sample.valid & ~started_;
   if (first == 0) return;
-  rest_->shift_to(s.in.rate_radps, first);
-  for (std::size_t a = 0; a < axes_; ++a)
-    if ((first >> a & 1U) != 0) f.trackers.seed(a, s.in.rate_radps[a]);
+  rest_->shift_to(s.sample.rate, first);
+  f.trackers.seed(s.sample.rate, mask_of(first));
   // An axis that comes late is one that begins, and all share one gain.
   if (follows && started_ != 0) {
     rest_->set_variance(mean_noise());
     f.since_moved = 0.0;
     f.moving = true;
     f.trackers.begin();
-    for (std::size_t a = 0; a < axes_; ++a)
-      f.trackers.seed(a, (first >> a & 1U) != 0 ? s.in.rate_radps[a] : rest_->rate(a));
+    f.trackers.seed(rest_->rate(), Lanes::Ones());
     f.mix.begin(0);
     f.change.begin();
   }
@@ -181,18 +165,14 @@ void Engine::weigh(Step& s) noexcept {
   m.log_rest_factor = logarithm(m.rest_factor);
   m.rest_gain = std::min(1.0, projected / (projected + s.noise_scale));
   m.slow = std::max(1.0, rest_->rule().measurement_noise() / settings_.measurement_noise);
-  for (std::size_t a = 0; a < axes_; ++a) {
-    const auto i = static_cast<Eigen::Index>(a);
-    m.scale[i] = noise_[a].tested() * s.noise_scale * (smooths ? noise_[a].heard() : 1.0);
-    if ((m.valid >> a & 1U) == 0) continue;
-    m.mask[i] = 1.0;
-    m.rate[i] = s.in.rate_radps[a];
-    m.innovation[i] = s.in.rate_radps[a] - rest_->measurement(a);
-    m.inverse[i] = 1.0 / m.scale[i];
-    m.covered_s[i] = s.in.covered_s[a] > 0.0 ? s.in.covered_s[a] : s.dt_s;
-  }
+  m.scale = of_noise(&Noise::tested) * s.noise_scale;
+  if (smooths) m.scale *= of_noise(&Noise::heard);
+  m.innovation = m.mask * (m.rate - rest_->measurement());
+  m.inverse = m.mask / m.scale;
+  const Lanes covered = to_lanes(s.in.covered_s);
+  m.covered_s = (covered > 0.0).select(covered, s.dt_s);
   m.surprise = m.innovation * m.innovation * m.inverse / m.rest_factor;
-  s.out.innovation_radps = {m.innovation[0], m.innovation[1], m.innovation[2]};
+  s.out.innovation_radps = to_axes(m.innovation);
 }
 
 void Engine::follow(Step& s) noexcept {
@@ -228,11 +208,10 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
   // Where nothing follows the motion nothing tells an outlier from it.
   if (follow_.moving && follow_.mix.raw()) return Outliers::Verdict::usual;
   // Nor behind a gap.
-  for (std::size_t a = 0; a < axes_; ++a)
-    if ((s.sample.valid >> a & 1U) != 0 && trackers.since(a) > kShortGap) {
-      follow_.outliers.end_run();
-      return Outliers::Verdict::usual;
-    }
+  if (greatest(s.sample.mask * trackers.since()) > kShortGap) {
+    follow_.outliers.end_run();
+    return Outliers::Verdict::usual;
+  }
   Lanes least = s.sample.surprise;
   // At rest the raw one, a parabola through three measurements, predicts nothing better than others.
   for (std::size_t j = follow_.moving ? 0 : 1; j < trackers.size(); ++j) {
@@ -241,11 +220,7 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
       break;
     }
     const Lanes error = s.sample.rate - trackers.rate(j);
-    Lanes square = error * error * s.sample.inverse / trackers.gains(j).factor;
-    for (std::size_t a = 0; a < axes_; ++a)  // what was missing is predicted worse
-      if (trackers.since(a) > 1.0)
-        square[static_cast<Eigen::Index>(a)] *= trackers.gains(j).factor / trackers.factor(j, a);
-    least = least.min(square);
+    least = least.min(error * error * s.sample.inverse / trackers.factor(j));
   }
   Eigen::Index worst = 0;
   const double most = least.maxCoeff(&worst);
@@ -256,17 +231,15 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
 void Engine::jump(Step& s) noexcept {
   Follower& f = follow_;
   f.trackers.begin();
-  for (std::size_t a = 0; a < axes_; ++a) f.trackers.seed(a, f.published[static_cast<Eigen::Index>(a)]);
+  f.trackers.seed(f.published, Lanes::Ones());
   for (std::size_t i = 0; i + 1 < f.outliers.kept(); ++i) {
     f.trackers.predict(1.0);
-    f.trackers.correct(f.outliers.kept(i), s.sample.valid);
+    f.trackers.correct(f.outliers.kept(i), s.sample.mask);
   }
   f.trackers.predict(1.0);
   f.ledger.admit();
   f.outliers.end_run();
-  Lanes rate = f.published;
-  rate = (s.sample.mask > 0.0).select(s.sample.rate, rate);
-  move_rest(rate, s.sample.scale);
+  move_rest((s.sample.mask > 0.0).select(s.sample.rate, f.published), s.sample.scale);
   weigh(s);
   begin_to_move(s);
   f.mix.begin(0);
@@ -277,9 +250,9 @@ void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
   s.sample.short_rad = f.ledger.take_short_at_rest();
   std::optional<std::size_t> found =
-      f.change.take(f.trackers, s.sample, colour(), f.outliers.rarity(), lag());
+      f.change.take(f.trackers, s.sample, of_noise(&Noise::colour), f.outliers.rarity(), lag());
   if (found == ChangeTest::kShaking && settings_.wideband == "noise") found.reset();
-  f.trackers.correct(s.sample.rate, s.sample.valid);
+  f.trackers.correct(s.sample.rate, s.sample.mask);
   if (found) {
     begin_manoeuvre(s, *found);
     take(s, false);
@@ -313,7 +286,7 @@ void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
 
 void Engine::follow_manoeuvre(Step& s) noexcept {
   Follower& f = follow_;
-  f.mix.take(f.trackers, s.sample, colour());
+  f.mix.take(f.trackers, s.sample, of_noise(&Noise::colour));
   take(s, false);
   publish_mix(s);
   if (f.mix.rest_failed()) {
@@ -335,39 +308,29 @@ void Engine::take(Step& s, bool learn) noexcept {
     rest_->skip();
     return;
   }
-  RestFilter::Measured measured{s.in.rate_radps, m.valid, s.noise_scale, {1.0, 1.0, 1.0}};
+  RestFilter::Measured measured{m.rate, m.valid, s.noise_scale, Lanes::Ones()};
   if (settings_.follow_manoeuvres) {
     const Lanes most = kMostDeviations * (m.scale * m.rest_factor).sqrt();
-    const Lanes clipped = m.innovation.max(-most).min(most);
+    measured.rate += m.innovation.max(-most).min(most) - m.innovation;
     // The mean of all axes, whichever are measured: one gain is for all.
-    double mean = 0.0;
-    for (std::size_t a = 0; a < axes_; ++a) {
-      const auto i = static_cast<Eigen::Index>(a);
-      if ((m.valid >> a & 1U) != 0) measured.rate[a] = m.rate[i] - m.innovation[i] + clipped[i];
-      measured.share[a] = noise_[a].known() * (settings_.wideband == "noise" ? noise_[a].heard() : 1.0);
-      mean += measured.share[a] / static_cast<double>(axes_);
-    }
-    for (double& share : measured.share) share /= mean;
-    measured.noise_scale *= mean / settings_.measurement_noise;
+    measured.share = of_noise(&Noise::known);
+    if (settings_.wideband == "noise") measured.share *= of_noise(&Noise::heard);
+    const double of_all = mean(measured.share);
+    measured.share /= of_all;
+    measured.noise_scale *= of_all / settings_.measurement_noise;
   }
   // The first measurement sets the state: its innovation is zero and no evidence.
   rest_->update(measured, s.in.sequence, learn && follow_.since_moved > 0.0);
   follow_.since_moved += 1.0;
   if (!learn || !(rest_->covariance() > 0.0)) return;
+  const Lanes normalised = m.innovation / (rest_->covariance() * measured.share).sqrt();
   for (std::size_t a = 0; a < axes_; ++a)
-    if ((m.valid >> a & 1U) != 0)
-      grades_.take(
-          a, m.innovation[static_cast<Eigen::Index>(a)] / std::sqrt(rest_->covariance() * measured.share[a]),
-          health_);
+    if ((m.valid >> a & 1U) != 0) grades_.take(a, normalised[static_cast<Eigen::Index>(a)], health_);
 }
 
 void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
-  rest_->shift_to({rate[0], rate[1], rate[2]}, started_);
-  const Lanes share = noise_share();
-  double of_all = 0.0;
-  for (std::size_t a = 0; a < axes_; ++a)
-    of_all += variance[static_cast<Eigen::Index>(a)] / share[static_cast<Eigen::Index>(a)];
-  of_all /= static_cast<double>(axes_);
+  rest_->shift_to(rate, started_);
+  const double of_all = mean(variance / noise_share());
   // Colour and lines that a larger model has found stay known.
   if (rest_->rate_alone() || of_all > rest_->variance()) rest_->set_variance(of_all);
   follow_.since_moved = 0.0;

@@ -92,11 +92,13 @@ class Engine {
   void refresh_lag() noexcept;
   [[nodiscard]] bool rests(const Step& s) const noexcept;
   [[nodiscard]] double lag() const noexcept;
-  [[nodiscard]] double mean_noise() const noexcept;
-  [[nodiscard]] Lanes noise_share() const noexcept;
+  // Over the axes of the sensor.
+  [[nodiscard]] double mean(const Lanes& of) const noexcept;
+  // One figure of each axis' noise; 1 where the sensor has no axis.
+  [[nodiscard]] Lanes of_noise(double (Noise::*figure)() const noexcept) const noexcept;
+  [[nodiscard]] double mean_noise() const noexcept { return mean(of_noise(&Noise::known)); }
+  [[nodiscard]] Lanes noise_share() const noexcept { return of_noise(&Noise::known) / mean_noise(); }
   [[nodiscard]] Lanes walk_share() const noexcept;
-  [[nodiscard]] Lanes colour() const noexcept;
-  [[nodiscard]] Lanes rest_rate() const noexcept;
 
   FilterSettings settings_;
   std::size_t axes_;

@@ -30,7 +30,7 @@ constexpr double kLouder_s = 60.0, kLouderSamples = 8192.0, kStretch = 4096.0;
 
 // Half of the variance is the measurements' noise, more where it is coloured, and half the walk's.
 void Engine::publish_rest(Step& s) noexcept {
-  s.rate = rest_rate();
+  s.rate = rest_->rate();
   s.gain = rest_->gain();
   s.variance.setConstant(rest_->variance());
   if (!settings_.follow_manoeuvres) return;
@@ -47,13 +47,10 @@ void Engine::publish_rest(Step& s) noexcept {
 }
 
 void Engine::publish_mix(Step& s) noexcept {
-  Lanes scale = s.sample.scale;
   // A measurement's variance as it is heard: what is louder may be noise.
-  for (std::size_t a = 0; a < axes_; ++a)
-    scale[static_cast<Eigen::Index>(a)] =
-        std::max(scale[static_cast<Eigen::Index>(a)], noise_[a].known() * noise_[a].louder() * s.noise_scale);
-  const Mix::Published mix =
-      follow_.mix.publish(follow_.trackers, rest_rate(), rest_->variance() * noise_share(), scale);
+  const Lanes heard = of_noise(&Noise::known) * of_noise(&Noise::louder) * s.noise_scale;
+  const Mix::Published mix = follow_.mix.publish(
+      follow_.trackers, rest_->rate(), rest_->variance() * noise_share(), s.sample.scale.max(heard));
   s.rate = mix.rate;
   s.variance = mix.variance;
   s.gain = mix.gain + follow_.mix.rest_weight() * rest_->gain();
@@ -91,9 +88,7 @@ bool Engine::rests(const Step& s) const noexcept {
   if (!settings_.follow_manoeuvres || follow_.moving || s.outlier || s.sample.valid == 0 ||
       follow_.since_moved < kRestMemory || follow_.change.suspected())
     return false;
-  for (std::size_t a = 0; a < axes_; ++a)
-    if ((started_ >> a & 1U) != 0 && !(std::abs(rest_->rate(a)) <= kMostRestRate)) return false;
-  return true;
+  return (rest_->rate().abs() * mask_of(started_) <= kMostRestRate).all();
 }
 
 // The noise: at rest its walk, and R where that is less than is known; in a manoeuvre R, where what looks
@@ -125,19 +120,14 @@ void Engine::learn(const Step& s) noexcept {
 // The filter's variance is of the axes that are measured.
 void Engine::know_unmeasured(const Step& s, double grown) noexcept {
   const Lanes walk = walk_share();
-  Axes rate{}, variance{};
-  for (std::size_t a = 0; a < axes_; ++a) {
-    rate[a] = s.rate[static_cast<Eigen::Index>(a)];
-    variance[a] = s.variance[static_cast<Eigen::Index>(a)];
-  }
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     if ((s.sample.valid >> a & 1U) != 0)
-      unmeasured_.measure(a, s.gain, variance[a], s.sample.rate[i] - s.rate[i], s.sample.scale[i]);
+      unmeasured_.measure(a, s.gain, s.variance[i], s.sample.rate[i] - s.rate[i], s.sample.scale[i]);
     else if (s.sample.valid == 0 && !follow_.moving)
       unmeasured_.miss_with_all(a, grown * walk[i]);
     else if ((started_ >> a & 1U) != 0)
-      unmeasured_.miss(a, grown * walk[i], rate, variance);
+      unmeasured_.miss(a, grown * walk[i], to_axes(s.rate), to_axes(s.variance));
   }
 }
 

@@ -87,7 +87,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
                 link_[j] / std::max(5.0, 3.0 * trackers.length(j - 1));
   };
   compare(1);
-  trackers.correct(now.rate, now.valid);
+  trackers.correct(now.rate, now.mask);
   rest_weight_ = rest_age_ >= 3.0 * failed_after_ ? certain(least(rest_ratio_) - kRestPrior) : 0.0;
   double remains = 1.0 - rest_weight_;
   gain_ = 0.0;

@@ -15,6 +15,13 @@ namespace ifog {
 using Lanes = Eigen::Array<double, 4, 1>;
 static_assert(kMaxAxes < Lanes::SizeAtCompileTime);
 
+[[nodiscard]] inline Lanes to_lanes(const Axes& axes) noexcept { return {axes[0], axes[1], axes[2], 0.0}; }
+[[nodiscard]] inline Axes to_axes(const Lanes& lanes) noexcept { return {lanes[0], lanes[1], lanes[2]}; }
+// 1 in the lane of each axis of the set, else 0.
+[[nodiscard]] inline Lanes mask_of(std::uint32_t axes) noexcept {
+  return {static_cast<double>(axes & 1U), static_cast<double>(axes >> 1U & 1U),
+          static_cast<double>(axes >> 2U & 1U), 0.0};
+}
 // The axes that a sensor of so many has, bit i.
 [[nodiscard]] constexpr std::uint32_t axes_of_sensor(std::size_t axes) noexcept { return (1U << axes) - 1U; }
 
