@@ -21,10 +21,8 @@ constexpr double kMostSquare = 400.0;
 // Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
 // worth.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
-// Above a learned width by chance; a single sum counts for four standard deviations.
-constexpr double kWider = 1.25, kMostSum = 16.0;
-// Nats that an earlier manoeuvre still counts for fade over so many samples.
-constexpr double kRelaxedKept = 0.999;
+// Above a learned width by chance.
+constexpr double kWider = 1.25;
 // Square of two standard deviations: of a sum in which a change may have begun.
 constexpr double kUnseenSquare = 6.25;
 // Mean of a change that grows as a parabola over a horizon to its end: (0.8)^-2.
@@ -62,29 +60,29 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   const Trackers::Gains& g = trackers.gains(j);
   const double h = trackers.horizon(j), keep = 1.0 - 1.0 / h;
   const Lanes error = now.rate - trackers.rate(j);
-  const Lanes mine = error * error * now.inverse / g.factor;
+  const Lanes mine = error * error * now.inverse * (1.0 / g.factor);
   c.sum = keep * c.sum + common.clipped;
   c.weight = keep * keep * c.weight + now.mask;
   const Lanes square = c.sum * c.sum;
-  c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
-  evidence_ = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
-  c.wide += now.mask * ((square / c.weight.max(1.0)).min(kMostSum * c.wide.max(1.0)) - c.wide) /
-            (h * (c.horizons + 1.0));
-  // Until it is learned the width is the widest that the known noise allows with its third differences.
-  const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
-  const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
-  // Without colour only as far as the filter takes the noise for louder than is known, and is slow by that.
-  const Lanes likely = (colour > kColoured).select(wide, wide.min(now.slow)).max(1.0);
-  c.divisor = (colour > kColoured).select(kWider * likely, Lanes::Ones());
+  Lanes evidence = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
+  Lanes likely = Lanes::Ones();
+  c.divisor.setOnes();
   if (coloured_) {
+    c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
+    c.wide += now.mask * (square / c.weight.max(1.0) - c.wide) / (h * (c.horizons + 1.0));
+    // Until it is learned the width is the widest that the known noise allows with its third differences.
+    const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
+    const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
+    likely = (colour > kColoured).select(wide.max(1.0), likely);
+    c.divisor = (colour > kColoured).select(kWider * likely, Lanes::Ones());
     widest_ = widest_.max(c.divisor);
-    evidence_ /= c.divisor;
+    evidence /= c.divisor;
   }
-  if (j >= 1 && h <= 2.0 * lag)
-    unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * likely * c.weight)
-                  .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
-  short_[j].add(now.short_rad, c.ratio, keep);
-  c.ratio = (keep * c.ratio + evidence_).max(kLeastRatio);
+  const auto large = square > kUnseenSquare * likely * c.weight;
+  if (j >= 1 && h <= 2.0 * lag && large.any())
+    unseen_ = large.select(unseen_.max(now.scale * kAtEnd * square / c.weight.square().max(1.0)), unseen_);
+  short_[j] = keep * short_[j] + now.short_rad;
+  c.ratio = (keep * c.ratio + evidence).max(kLeastRatio);
   c.rest = keep * c.rest + common.squares;
   c.rest2 = keep * c.rest2 + common.squares2;
   c.tracker = keep * c.tracker + mine.min(kMostSquare);
@@ -102,18 +100,17 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   coloured_ = greatest(colour) > kColoured;
   unseen_.setZero();
   widest_.setOnes();
-  relaxed_ *= kRelaxedKept;
   suspected_ = false;
   std::optional<std::size_t> found;
   double most = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     contest(trackers, j, now, common, colour, lag);
     const Contest& c = contest_[j];
-    const double whole = kEvidence - logarithm(trackers.horizon(j) / 5.0);
-    if (!(greatest(c.ratio) > 0.5 * (whole - relaxed_))) continue;
+    const double whole = kEvidence - trackers.log_horizon(j);
+    if (!(greatest(c.ratio) > 0.5 * whole)) continue;
+    suspected_ = true;
     for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-      const double same = same_size(c, a) / c.divisor[a], over = c.ratio[a] - whole + relaxed_;
-      suspected_ = suspected_ || (c.ratio[a] > 0.5 * whole && same > 0.5 * whole);
+      const double same = same_size(c, a) / c.divisor[a], over = c.ratio[a] - whole;
       if (over <= most || same <= logarithm(lag)) continue;
       most = over;
       found = j;
@@ -125,7 +122,6 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   const Lanes larger = 0.5 * (1.0 - 1.0 / kShakingVariance) * capped - kHalfLog;
   shaking_ = (shaking_ + now.mask * larger / unlikely).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
-  short_[kShaking].add(now.short_rad, shaking_, 0.0);
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;
   return found;
 }

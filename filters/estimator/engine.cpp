@@ -19,6 +19,7 @@ Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest,
       rest_(std::move(rest)),
       follow_(axes_, period_s) {
   noise_.fill(Noise(settings.measurement_noise));
+  refresh_shares();
   follow_.moving = settings.follow_manoeuvres && rest_->rate_alone();
 }
 
@@ -36,6 +37,12 @@ void Engine::restart() noexcept {
 
 void Engine::expect_noise(const Axes& share) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) noise_[a] = Noise(share[a] * settings_.measurement_noise);
+  refresh_shares();
+}
+
+void Engine::expect_walk(const std::optional<Axes>& share) noexcept {
+  expected_walk_ = share;
+  refresh_shares();
 }
 
 void Engine::learn_walk(double ratio, double samples) noexcept {
@@ -47,7 +54,7 @@ LearnedNoise Engine::learned() const noexcept {
   LearnedNoise out;
   out.process_noise = settings_.process_noise;
   for (std::size_t a = 0; a < axes_; ++a) out.noise[a] = noise_[a].known();
-  out.measurement_noise = mean_noise();
+  out.measurement_noise = mean_noise_;
   out.samples = learns_walk_ ? walk_.samples() : 0.0;
   return out;
 }
@@ -69,10 +76,14 @@ Lanes Engine::of_noise(double (Noise::*figure)() const noexcept) const noexcept 
 }
 
 double Engine::mean(const Lanes& of) const noexcept {
-  return of.head(static_cast<Eigen::Index>(axes_)).sum() / static_cast<double>(axes_);
+  return (of * mask_of(axes_of_sensor(axes_))).sum() / static_cast<double>(axes_);
 }
 
-Lanes Engine::walk_share() const noexcept { return walk_share_ ? to_lanes(*walk_share_) : noise_share(); }
+void Engine::refresh_shares() noexcept {
+  mean_noise_ = mean(of_noise(&Noise::known));
+  noise_share_ = of_noise(&Noise::known) / mean_noise_;
+  walk_share_ = expected_walk_ ? to_lanes(*expected_walk_) : noise_share_;
+}
 
 // Of the filter at rest, samples; after a move it is as slow as what it has received since is long.
 double Engine::lag() const noexcept {
@@ -137,7 +148,7 @@ void Engine::begin_axes(const Step& s) noexcept {
   if (follows && !f.moving && s.sample.valid != 0 && s.dt_s > kShortGap * period_s_) {
     f.moving = true;
     f.failures = 0.0;
-    f.mix.begin_from_rest();
+    f.mix.begin(0);
     f.change.begin();
   }
   const std::uint32_t first = s.sample.valid & ~started_;
@@ -146,7 +157,7 @@ void Engine::begin_axes(const Step& s) noexcept {
   f.trackers.seed(s.sample.rate, mask_of(first));
   // An axis that comes late is one that begins, and all share one gain.
   if (follows && started_ != 0) {
-    rest_->set_variance(mean_noise());
+    rest_->set_variance(mean_noise_);
     f.since_moved = 0.0;
     f.moving = true;
     f.trackers.begin();
@@ -160,11 +171,10 @@ void Engine::begin_axes(const Step& s) noexcept {
 void Engine::weigh(Step& s) noexcept {
   Sample& m = s.sample;
   const bool smooths = settings_.wideband == "noise";
-  const double projected = rest_->measurement_variance() / mean_noise();
+  const double projected = rest_->measurement_variance() / mean_noise_;
   m.rest_factor = 1.0 + projected / s.noise_scale;
   m.log_rest_factor = logarithm(m.rest_factor);
   m.rest_gain = std::min(1.0, projected / (projected + s.noise_scale));
-  m.slow = std::max(1.0, rest_->rule().measurement_noise() / settings_.measurement_noise);
   m.scale = of_noise(&Noise::tested) * s.noise_scale;
   if (smooths) m.scale *= of_noise(&Noise::heard);
   m.innovation = m.mask * (m.rate - rest_->measurement());
@@ -273,9 +283,10 @@ void Engine::begin_to_move(Step& s) noexcept {
 void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   Follower& f = follow_;
   const bool shaking = tracker == ChangeTest::kShaking;
-  const double horizon = f.trackers.horizon(std::min(tracker, f.trackers.size() - 1));
+  // What nothing predicts may have gone on for as long as anything.
+  const std::size_t foresees = std::min(tracker, f.trackers.size() - 1);
   f.ledger.admit();
-  f.ledger.owe_late(f.change.angle(tracker), std::max(horizon, f.change.span(tracker)), f.settled);
+  f.ledger.owe_late(f.change.angle(foresees), f.trackers.horizon(foresees), f.settled);
   begin_to_move(s);
   f.mix.begin(shaking ? 0 : tracker);
   f.change.begin();
@@ -297,7 +308,6 @@ void Engine::follow_manoeuvre(Step& s) noexcept {
   if (f.mix.rest_found()) {
     f.moving = false;
     f.change.begin();
-    if (f.failures >= kSurelyMoves) f.change.relax();
   }
 }
 
@@ -330,7 +340,7 @@ void Engine::take(Step& s, bool learn) noexcept {
 
 void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
   rest_->shift_to(rate, started_);
-  const double of_all = mean(variance / noise_share());
+  const double of_all = mean(variance / noise_share_);
   // Colour and lines that a larger model has found stay known.
   if (rest_->rate_alone() || of_all > rest_->variance()) rest_->set_variance(of_all);
   follow_.since_moved = 0.0;

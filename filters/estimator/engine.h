@@ -48,7 +48,7 @@ class Engine {
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;
   void expect_noise(const Axes& share) noexcept;
-  void expect_walk(const std::optional<Axes>& share) noexcept { walk_share_ = share; }
+  void expect_walk(const std::optional<Axes>& share) noexcept;
   void learn_walk(double ratio, double samples) noexcept;
   void owe(const Axes& angle_rad) noexcept;
   [[nodiscard]] Axes owed() const noexcept;
@@ -94,18 +94,18 @@ class Engine {
   [[nodiscard]] double lag() const noexcept;
   // Over the axes of the sensor.
   [[nodiscard]] double mean(const Lanes& of) const noexcept;
+  void refresh_shares() noexcept;
   // One figure of each axis' noise; 1 where the sensor has no axis.
   [[nodiscard]] Lanes of_noise(double (Noise::*figure)() const noexcept) const noexcept;
-  [[nodiscard]] double mean_noise() const noexcept { return mean(of_noise(&Noise::known)); }
-  [[nodiscard]] Lanes noise_share() const noexcept { return of_noise(&Noise::known) / mean_noise(); }
-  [[nodiscard]] Lanes walk_share() const noexcept;
 
   FilterSettings settings_;
   std::size_t axes_;
   double period_s_;
   std::unique_ptr<RestFilter> rest_;
   std::array<Noise, kMaxAxes> noise_;
-  std::optional<Axes> walk_share_;
+  double mean_noise_ = 1.0;
+  Lanes noise_share_ = Lanes::Ones(), walk_share_ = Lanes::Ones();  // of each axis, over the mean
+  std::optional<Axes> expected_walk_;
   Walk walk_;
   Follower follow_;
   Unmeasured unmeasured_;

@@ -11,8 +11,6 @@ namespace {
 // Samples between refreshes of the settled filter's lag, by the sequence so that a replay has them where the
 // run had.
 constexpr std::uint64_t kLagEvery = 256;
-// Samples after which a filter that was moved shows how long the trackers have to be.
-constexpr double kReachAfter = 256.0;
 // Trackers as long as this take part whatever the lag: they follow motions that begin slowly.
 constexpr double kLeastReach = 48.0;
 // Largest rate of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 deg/s.
@@ -34,14 +32,13 @@ void Engine::publish_rest(Step& s) noexcept {
   s.gain = rest_->gain();
   s.variance.setConstant(rest_->variance());
   if (!settings_.follow_manoeuvres) return;
-  const Lanes noise = noise_share(), walk = walk_share();
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     double wide = follow_.change.wide(follow_.trackers, a, lag());
     // The width is that of the known noise, of which a filter that follows coloured noise leaves less to its
     // rule.
     if (wide > 1.0) wide *= settings_.measurement_noise / rest_->rule().measurement_noise();
-    s.variance[i] *= 0.5 * (walk[i] * (learns_walk_ ? wide : 1.0) + noise[i] * wide);
+    s.variance[i] *= 0.5 * (walk_share_[i] * (learns_walk_ ? wide : 1.0) + noise_share_[i] * wide);
     s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding();
   }
 }
@@ -49,8 +46,8 @@ void Engine::publish_rest(Step& s) noexcept {
 void Engine::publish_mix(Step& s) noexcept {
   // A measurement's variance as it is heard: what is louder may be noise.
   const Lanes heard = of_noise(&Noise::known) * of_noise(&Noise::louder) * s.noise_scale;
-  const Mix::Published mix = follow_.mix.publish(
-      follow_.trackers, rest_->rate(), rest_->variance() * noise_share(), s.sample.scale.max(heard));
+  const Mix::Published mix = follow_.mix.publish(follow_.trackers, rest_->rate(),
+                                                 rest_->variance() * noise_share_, s.sample.scale.max(heard));
   s.rate = mix.rate;
   s.variance = mix.variance;
   s.gain = mix.gain + follow_.mix.rest_weight() * rest_->gain();
@@ -78,7 +75,7 @@ void Engine::pay(Step& s) noexcept {
   // What a gap hides is no angle.
   const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
   Lanes most = Lanes::Constant(1e300);
-  if (follows) most = kMostPaid * (rest_->variance() * noise_share()).sqrt();
+  if (follows) most = kMostPaid * (rest_->variance() * noise_share_).sqrt();
   const Lanes paid = ledger.pay(most, dt_s);
   s.rate += paid;
   if (follows) s.variance = s.variance.max(paid * paid);
@@ -111,28 +108,29 @@ void Engine::learn(const Step& s) noexcept {
       other = true;
     }
   }
-  if (other) rest_->rule().restart();
+  if (other) {
+    refresh_shares();
+    rest_->rule().restart();
+  }
   if (!learns_walk_) return;
-  settings_.process_noise = found->ratio * mean_noise() / period_s_;
+  settings_.process_noise = found->ratio * mean_noise_ / period_s_;
   rest_->retune(settings_.process_noise);
 }
 
 // The filter's variance is of the axes that are measured.
 void Engine::know_unmeasured(const Step& s, double grown) noexcept {
-  const Lanes walk = walk_share();
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     if ((s.sample.valid >> a & 1U) != 0)
       unmeasured_.measure(a, s.gain, s.variance[i], s.sample.rate[i] - s.rate[i], s.sample.scale[i]);
     else if (s.sample.valid == 0 && !follow_.moving)
-      unmeasured_.miss_with_all(a, grown * walk[i]);
+      unmeasured_.miss_with_all(a, grown * walk_share_[i]);
     else if ((started_ >> a & 1U) != 0)
-      unmeasured_.miss(a, grown * walk[i], to_axes(s.rate), to_axes(s.variance));
+      unmeasured_.miss(a, grown * walk_share_[i], to_axes(s.rate), to_axes(s.variance));
   }
 }
 
 void Engine::publish(const Step& s) noexcept {
-  const Lanes share = noise_share();
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     const double variance = unmeasured_.variance(a, s.variance[i]);
@@ -141,7 +139,8 @@ void Engine::publish(const Step& s) noexcept {
     // does.
     s.out.variance_rad2ps2[a] = variance >= 0.0 ? variance : settings_.measurement_noise;
     s.out.gain[a] = s.gain;
-    s.out.innovation_variance[a] = rest_->covariance() * (settings_.follow_manoeuvres ? share[i] : 1.0);
+    s.out.innovation_variance[a] =
+        rest_->covariance() * (settings_.follow_manoeuvres ? noise_share_[i] : 1.0);
     health_.measurement_noise[a] =
         settings_.follow_manoeuvres
             ? rest_->rule().measurement_noise() * noise_[a].known() / settings_.measurement_noise
@@ -160,8 +159,7 @@ void Engine::refresh_lag() noexcept {
   if (!std::isfinite(now.lag) || !std::isfinite(now.correlation)) return;
   settled_lag_ = now.lag;
   health_.correlation_time_s = now.correlation * period_s_;
-  if (follow_.since_moved > kReachAfter || !follow_.moving)
-    follow_.trackers.reach(std::max(kLeastReach, lag()));
+  follow_.trackers.reach(std::max(kLeastReach, lag()));
 }
 
 }  // namespace ifog

@@ -37,9 +37,7 @@ class Noise {
       fast_ +=
           (std::min(square, taken_ < kFew ? square : kClip * fast_) - fast_) / std::min(kFast, taken_ + 4.0);
       // The usual level is not learned while it is surely exceeded.
-      if (louder() == 1.0)
-        slow_ += (std::min(square, taken_ < kFew ? square : kClip * slow_) - slow_) /
-                 std::min(kSlow, taken_ + 1.0);
+      if (louder() == 1.0) slow_ += (std::min(square, kClip * slow_) - slow_) / std::min(kSlow, taken_ + 1.0);
       taken_ += 1.0;
     }
     in_row_ = std::min(in_row_ + 1, 3);

@@ -40,7 +40,7 @@ struct Sample {
   Lanes covered_s = Lanes::Zero();
   Lanes short_rad = Lanes::Zero();  // angle that the filter at rest has fallen short of before it
   double rest_factor = 1.0, log_rest_factor = 0.0;  // variance of the filter's innovations over R
-  double rest_gain = 0.0, slow = 1.0;  // slow: R of the filter's rule over the known one, at least 1
+  double rest_gain = 0.0;
 };
 
 [[nodiscard]] inline double greatest(const Lanes& lanes) noexcept { return lanes.maxCoeff(); }
