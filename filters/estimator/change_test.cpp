@@ -127,16 +127,16 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
 }
 
 // Noise of one correlation time has 1 / ((k + b) f(b)) a straight line in the bandwidth b: followed to zero.
-double ChangeTest::wide(const Trackers& trackers, std::size_t axis, double lag) const noexcept {
-  if (!coloured_) return 1.0;
-  const auto a = static_cast<Eigen::Index>(axis);
+Lanes ChangeTest::wide(const Trackers& trackers, double lag) const noexcept {
+  Lanes wide = Lanes::Ones(), inverse_before = Lanes::Zero();
+  if (!coloured_) return wide;
   const double k = 1.0 / (1.0 + lag);
-  double wide = 1.0, before = 0.0, inverse_before = 0.0;
+  double before = 0.0;
   for (std::size_t j = 0; j < trackers.size() && (j <= 1 || trackers.horizon(j) <= 2.0 * lag); ++j) {
     const double b = 1.0 / trackers.horizon(j), both = k + b;
-    const double inverse = 2.0 * b / (both * std::max(contest_[j].wide[a] - 0.5 * k / both, 0.1 * b / both));
-    const double slope = before > b ? (inverse_before - inverse) * b / (before - b) : 0.0;
-    wide = std::max(1.0, 2.0 / std::max(inverse - slope, 0.25 * inverse));
+    const Lanes inverse = 2.0 * b / (both * (contest_[j].wide - 0.5 * k / both).max(0.1 * b / both));
+    const double ahead = before > b ? b / (before - b) : 0.0;
+    wide = (2.0 / (inverse - ahead * (inverse_before - inverse)).max(0.25 * inverse)).max(1.0);
     before = b;
     inverse_before = inverse;
   }

@@ -37,11 +37,9 @@ class ChangeTest {
   [[nodiscard]] const Lanes& angle(std::size_t tracker) const noexcept { return short_[tracker]; }
   void forget_angle() noexcept { short_.fill(Lanes::Zero()); }
   // Variance of a change that may have begun, (rad/s)^2.
-  [[nodiscard]] double unseen(std::size_t axis) const noexcept {
-    return unseen_[static_cast<Eigen::Index>(axis)];
-  }
+  [[nodiscard]] const Lanes& unseen() const noexcept { return unseen_; }
   // Variance of the mean over the filter's memory, over that of white noise.
-  [[nodiscard]] double wide(const Trackers& trackers, std::size_t axis, double lag) const noexcept;
+  [[nodiscard]] Lanes wide(const Trackers& trackers, double lag) const noexcept;
 
  private:
   struct Contest {

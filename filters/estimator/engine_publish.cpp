@@ -32,15 +32,14 @@ void Engine::publish_rest(Step& s) noexcept {
   s.gain = rest_->gain();
   s.variance.setConstant(rest_->variance());
   if (!settings_.follow_manoeuvres) return;
-  for (std::size_t a = 0; a < axes_; ++a) {
-    const auto i = static_cast<Eigen::Index>(a);
-    double wide = follow_.change.wide(follow_.trackers, a, lag());
-    // The width is that of the known noise, of which a filter that follows coloured noise leaves less to its
-    // rule.
-    if (wide > 1.0) wide *= settings_.measurement_noise / rest_->rule().measurement_noise();
-    s.variance[i] *= 0.5 * (walk_share_[i] * (learns_walk_ ? wide : 1.0) + noise_share_[i] * wide);
-    s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding();
-  }
+  Lanes wide = follow_.change.wide(follow_.trackers, lag());
+  // The width is that of the known noise, of which a filter that follows coloured noise leaves less to its
+  // rule.
+  if (greatest(wide) > 1.0)
+    wide = (wide > 1.0).select(wide * settings_.measurement_noise / rest_->rule().measurement_noise(), wide);
+  const Lanes walk = learns_walk_ ? (walk_share_ * wide).eval() : walk_share_;
+  s.variance *= 0.5 * (walk + noise_share_ * wide);
+  s.variance += follow_.change.unseen() + of_noise(&Noise::rounding);
 }
 
 void Engine::publish_mix(Step& s) noexcept {

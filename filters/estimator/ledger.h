@@ -79,16 +79,16 @@ class Ledger {
   }
   // Samples that the followers of a manoeuvre look back on, and the lag of the filter at rest.
   void pace(double followers) noexcept { pace_ = std::max(kQuickest, 0.5 * followers); }
-  void pace_tail(double lag) noexcept { tail_pace_ = std::max(kQuickestTail, lag); }
+  void pace_tail(double lag) noexcept { tail_pace_ = std::max(kQuickest, lag); }
   [[nodiscard]] Lanes owed() const noexcept { return debt_ + late_ + tail_ + doubt_; }
 
  private:
   static constexpr double kQuickest = 16.0;                              // samples
-  static constexpr double kOwedSamples = 1024.0, kQuickestTail = 100.0;  // samples
+  static constexpr double kOwedSamples = 1024.0;  // samples
   // Samples for which an outlier may turn out to have been the edge of a motion.
   static constexpr double kDoubtful = 16.0;
 
-  double period_s_, pace_ = kQuickest, late_pace_ = kQuickest, tail_pace_ = kQuickestTail;
+  double period_s_, pace_ = kQuickest, late_pace_ = kQuickest, tail_pace_ = kQuickest;
   Lanes debt_ = Lanes::Zero(), late_ = Lanes::Zero(), tail_ = Lanes::Zero(), doubt_ = Lanes::Zero(),
         at_rest_ = Lanes::Zero();
 };
