@@ -10,14 +10,10 @@
 namespace ifog {
 namespace {
 
-// Nats: by chance once in 6e7 samples.
-constexpr double kEvidence = 18.0;
 // Shaking: innovations of that variance, in R, and half its logarithm.
 constexpr double kShakingVariance = 4.0, kHalfLog = 0.6931471805599453;
 // Evidence for rest that has to be outweighed at most, nats.
 constexpr double kLeastRatio = -5.0;
-// A square counts for 20 standard deviations at most.
-constexpr double kMostSquare = 400.0;
 // Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
 // worth.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
@@ -27,9 +23,6 @@ constexpr double kWider = 1.25;
 constexpr double kUnseenSquare = 6.25;
 // Mean of a change that grows as a parabola over a horizon to its end: (0.8)^-2.
 constexpr double kAtEnd = 1.55;
-
-// Samples over which the fourth moment of the noise is averaged.
-constexpr double kTailMemory = 8192.0;
 
 }  // namespace
 
@@ -85,7 +78,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   c.ratio = (keep * c.ratio + evidence).max(kLeastRatio);
   c.rest = keep * c.rest + common.squares;
   c.rest2 = keep * c.rest2 + common.squares2;
-  c.tracker = keep * c.tracker + mine.min(kMostSquare);
+  c.tracker = keep * c.tracker + mine.min(kFarSquare);
 }
 
 std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Sample& now, const Lanes& colour,
@@ -94,7 +87,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   common.cap = 2.0 * rarity;
   const double most_deviations = std::min(kMostDeviations, std::sqrt(common.cap));
   common.clipped = (now.innovation * now.inverse.sqrt()).max(-most_deviations).min(most_deviations);
-  common.squares = now.surprise.min(kMostSquare);
+  common.squares = now.surprise.min(kFarSquare);
   common.squares2 = common.squares * common.squares;
   common.rest_evidence = 0.5 * (now.surprise.min(common.cap) + now.log_rest_factor) * now.mask;
   coloured_ = greatest(colour) > kColoured;
@@ -106,11 +99,10 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     contest(trackers, j, now, common, colour, lag);
     const Contest& c = contest_[j];
-    const double whole = kEvidence - trackers.log_horizon(j);
-    if (!(greatest(c.ratio) > 0.5 * whole)) continue;
+    if (!(greatest(c.ratio) > 0.5 * kEvidence)) continue;
     suspected_ = true;
     for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-      const double same = same_size(c, a) / c.divisor[a], over = c.ratio[a] - whole;
+      const double same = same_size(c, a) / c.divisor[a], over = c.ratio[a] - kEvidence;
       if (over <= most || same <= logarithm(lag)) continue;
       most = over;
       found = j;

@@ -7,10 +7,7 @@
 #include "filters/random/log_exp.h"
 
 namespace ifog {
-namespace {
-// Failures of the filter at rest that are a motion: 6 nats each, 18 in all.
-constexpr double kSurelyMoves = 3.0;
-}  // namespace
+namespace {}  // namespace
 
 Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, int axes, double period_s)
     : settings_(settings),
@@ -115,7 +112,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
     publish_rest(s);
   }
   if (settings_.guard) guard(s);
-  if (follow_.moving && follow_.failures >= kSurelyMoves && settings_.follow_manoeuvres &&
+  if (follow_.moving && follow_.failed_nats >= kEvidence && settings_.follow_manoeuvres &&
       follow_.mix.rest_weight() < 0.5)
     out.flags |= kManoeuvre;
   if (rests(s)) out.flags |= kAtRest;
@@ -147,7 +144,7 @@ void Engine::begin_axes(const Step& s) noexcept {
   // What the rate did in a gap nobody knows: the filter at rest has to stand by what is measured now.
   if (follows && !f.moving && s.sample.valid != 0 && s.dt_s > kShortGap * period_s_) {
     f.moving = true;
-    f.failures = 0.0;
+    f.failed_nats = 0.0;
     f.mix.begin(0);
     f.change.begin();
   }
@@ -277,7 +274,7 @@ void Engine::begin_to_move(Step& s) noexcept {
   s.out.flags |= kManoeuvre;
   if (!follow_.moving) ++health_.manoeuvres;
   follow_.moving = true;
-  follow_.failures = kSurelyMoves;
+  follow_.failed_nats = kEvidence;
 }
 
 void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
@@ -303,7 +300,7 @@ void Engine::follow_manoeuvre(Step& s) noexcept {
   if (f.mix.rest_failed()) {
     move_rest(s.rate, s.variance.min(s.sample.scale));
     f.mix.begin_rest();
-    f.failures += 1.0;
+    f.failed_nats += Mix::kFailed;
   }
   if (f.mix.rest_found()) {
     f.moving = false;

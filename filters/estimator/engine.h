@@ -32,9 +32,9 @@ class Follower {
   Mix mix;
   Ledger ledger;
   bool moving = true;  // nobody knows at the beginning: rest has to be found
-  // Of the filter at rest since nothing was known. A start at rest looks like a motion, and is called one only once
-  // there are so many failures (6 nats each) that chance does not explain them (18 nats).
-  double failures = 0.0;
+  // Nats by which the filter at rest has failed since nothing was known. A start at rest looks like a motion, and is
+  // called one only once chance does not explain them.
+  double failed_nats = 0.0;
   double since_moved = 0.0;         // samples that the filter at rest has had since it was moved
   double at_rest_for = 0.0;         // samples since rest was found
   bool settled = false;             // the filter at rest gets back by itself what it lags behind by
@@ -56,8 +56,6 @@ class Engine {
   [[nodiscard]] LearnedNoise learned() const noexcept;
 
  private:
-  // Samples after which a filter that was moved is one at rest again, and that may be lost in a row at rest.
-  static constexpr double kRestMemory = 64.0, kShortGap = 16.0;
   // What one step knows.
   struct Step {
     const EstimatorInput& in;

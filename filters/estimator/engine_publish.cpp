@@ -11,8 +11,6 @@ namespace {
 // Samples between refreshes of the settled filter's lag, by the sequence so that a replay has them where the
 // run had.
 constexpr std::uint64_t kLagEvery = 256;
-// Trackers as long as this take part whatever the lag: they follow motions that begin slowly.
-constexpr double kLeastReach = 48.0;
 // Largest rate of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 deg/s.
 constexpr double kMostRestRate = 0.02;
 // Lags of rest after which the end of a manoeuvre, and where it moved the filter to, have faded.
@@ -22,7 +20,7 @@ constexpr double kMostPaid = 0.5;
 // Known noise is replaced where a stretch differs by this factor.
 constexpr double kOtherNoise = 2.0;
 // Louder noise than is known has to be white for so long, and for two stretches.
-constexpr double kLouder_s = 60.0, kLouderSamples = 8192.0, kStretch = 4096.0;
+constexpr double kLouder_s = 60.0, kLouderSamples = 8192.0;
 
 }  // namespace
 
@@ -94,7 +92,7 @@ void Engine::learn(const Step& s) noexcept {
   const bool rest = (s.out.flags & kAtRest) != 0, gap = s.dt_s > kShortGap * period_s_;
   if (gap || (rest && !follow_.moving && s.noise_scale != 1.0)) walk_.break_off();
   if (s.outlier || (!rest && !follow_.moving)) return;
-  walk_.set_stretch(rest ? kStretch : std::max(kLouderSamples, kLouder_s / period_s_));
+  walk_.set_stretch(rest ? Walk::kStretch : std::max(kLouderSamples, kLouder_s / period_s_));
   walk_.take(s.in.rate_radps, s.sample.valid, rest);
   const std::optional<Walk::Found> found = walk_.take_news();
   if (!found) return;
@@ -158,7 +156,7 @@ void Engine::refresh_lag() noexcept {
   if (!std::isfinite(now.lag) || !std::isfinite(now.correlation)) return;
   settled_lag_ = now.lag;
   health_.correlation_time_s = now.correlation * period_s_;
-  follow_.trackers.reach(std::max(kLeastReach, lag()));
+  follow_.trackers.reach(lag());
 }
 
 }  // namespace ifog

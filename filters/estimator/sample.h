@@ -25,8 +25,20 @@ static_assert(kMaxAxes < Lanes::SizeAtCompileTime);
 // The axes that a sensor of so many has, bit i.
 [[nodiscard]] constexpr std::uint32_t axes_of_sensor(std::size_t axes) noexcept { return (1U << axes) - 1U; }
 
-// An innovation counts for five standard deviations at most where it is taken in or summed.
+// An innovation counts for five standard deviations at most where it is taken in or summed: as a square, and as
+// nats. One beyond is an outlier.
 inline constexpr double kMostDeviations = 5.0;
+inline constexpr double kMostSquare = kMostDeviations * kMostDeviations;
+inline constexpr double kMostNats = 0.5 * kMostSquare;
+// Where outliers are frequent, and where sizes are compared, those up to 20 standard deviations are measurements.
+inline constexpr double kFarSquare = 400.0;
+// Nats of evidence that decide: by chance once in 6e7 samples.
+inline constexpr double kEvidence = 18.0;
+// Samples after which a filter that was moved is one at rest again; and that may be lost in a row, or pass until
+// an outlier is explained.
+inline constexpr double kRestMemory = 64.0, kShortGap = 16.0;
+// Samples over which the shape of the noise is averaged: how often outliers come, and their fourth moment.
+inline constexpr double kTailMemory = 8192.0;
 
 struct Sample {
   std::uint32_t valid = 0;

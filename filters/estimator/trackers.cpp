@@ -32,7 +32,6 @@ Trackers::Trackers(std::size_t axes) noexcept : axes_(mask_of(axes_of_sensor(axe
   for (std::size_t j = 0; j < kMost; ++j) {
     memory_[j] = j == 0 ? 1.0 : kSecond * std::pow(kSpacing, static_cast<double>(j - 1));
     horizon_[j] = std::max(5.0, 3.0 * memory_[j]);
-    log_horizon_[j] = logarithm(horizon_[j] / horizon_[0]);
     fading_[j] = fading_gains(memory_[j]);
   }
   size_ = kAlways;

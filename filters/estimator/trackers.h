@@ -62,8 +62,6 @@ class Trackers {
   [[nodiscard]] double length(std::size_t j) const noexcept { return state_[j].length; }
   // Samples over which it is compared with another filter: its impulse response has decayed.
   [[nodiscard]] double horizon(std::size_t j) const noexcept { return horizon_[j]; }
-  // Logarithm of the horizon over the shortest one.
-  [[nodiscard]] double log_horizon(std::size_t j) const noexcept { return log_horizon_[j]; }
   // Nominal samples since each axis was corrected; 1 when none is missing.
   [[nodiscard]] const Lanes& since() const noexcept { return since_; }
 
@@ -91,7 +89,7 @@ class Trackers {
   // R.
   static constexpr double kMostLengths = 4.0;
   Lanes axes_;  // 1 for those that the sensor has
-  std::array<double, kMost> memory_{}, horizon_{}, log_horizon_{};
+  std::array<double, kMost> memory_{}, horizon_{};
   std::array<Gains, kMost> fading_{};
   std::array<State, kMost> state_{};
   std::size_t size_ = 0;

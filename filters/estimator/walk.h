@@ -36,6 +36,9 @@ class Walk {
     double samples = 0.0;
   };
 
+  // Samples of a stretch at rest: octaves up to 256 samples, and R to 2 %.
+  static constexpr double kStretch = 4096.0;
+
   // A stretch has so many samples.
   explicit Walk(double stretch = kStretch) noexcept;
   // The walk as an earlier run has found it, in so many samples. Doubted once a stretch is surely slower.
@@ -51,7 +54,6 @@ class Walk {
   [[nodiscard]] double samples() const noexcept { return samples_; }
 
  private:
-  static constexpr double kStretch = 4096.0;  // octaves up to 256 samples, and R to 2 %
   static constexpr std::size_t kOctaves = 16, kTrials = 33;
 
   struct Octave {
