@@ -17,9 +17,7 @@ constexpr double kLeastRatio = -5.0;
 // Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
 // worth.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
-// Above a learned width by chance.
-constexpr double kWider = 1.25;
-// Square of two standard deviations: of a sum in which a change may have begun.
+// Square of two and a half standard deviations: of a sum in which a change may have begun.
 constexpr double kUnseenSquare = 6.25;
 // Mean of a change that grows as a parabola over a horizon to its end: (0.8)^-2.
 constexpr double kAtEnd = 1.55;
@@ -58,8 +56,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   c.weight = keep * keep * c.weight + now.mask;
   const Lanes square = c.sum * c.sum;
   Lanes evidence = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
-  Lanes likely = Lanes::Ones();
-  c.divisor.setOnes();
+  Lanes& likely = c.divisor.setOnes();
   if (coloured_) {
     c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
     c.wide += now.mask * (square / c.weight.max(1.0) - c.wide) / (h * (c.horizons + 1.0));
@@ -67,9 +64,8 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
     const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
     likely = (colour > kColoured).select(wide.max(1.0), likely);
-    c.divisor = (colour > kColoured).select(kWider * likely, Lanes::Ones());
-    widest_ = widest_.max(c.divisor);
-    evidence /= c.divisor;
+    widest_ = widest_.max(likely);
+    evidence /= likely;
   }
   const auto large = square > kUnseenSquare * likely * c.weight;
   if (j >= 1 && h <= 2.0 * lag && large.any())

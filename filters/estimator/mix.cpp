@@ -131,7 +131,7 @@ Mix::Published Mix::publish(const Trackers& trackers, const Lanes& rest, const L
 }
 
 double Mix::length(const Trackers& trackers, double lag) const noexcept {
-  double length = rest_weight_ * 0.25 * lag;
+  double length = rest_weight_ * lag;
   for (std::size_t j = 0; j < trackers.size(); ++j) length += weight_[j] * trackers.length(j);
   return length;
 }

@@ -42,6 +42,7 @@ class Noise {
       if (louder() == 1.0)
         slow_ += (std::min(square, kMostSquare * slow_) - slow_) / std::min(kSlow, taken_ + 1.0);
       taken_ += 1.0;
+      refresh_colour();
     }
     in_row_ = std::min(in_row_ + 1, 3);
     last_ = {last_[1], last_[2], rate};
@@ -49,6 +50,7 @@ class Noise {
   void set_known(double noise) noexcept {
     known_ = noise;
     slow_ = fast_;
+    refresh_colour();
   }
   [[nodiscard]] double known() const noexcept { return known_; }
   // R for tests of motion: a rate halfway between two steps of the converter has d^2 / 4 about its mean.
@@ -62,11 +64,7 @@ class Noise {
   // The same without that doubt, 1 at least: for who takes all that is louder for noise.
   [[nodiscard]] double heard() const noexcept { return std::max(1.0, fast_ / usual()); }
   // Variance of the known noise over that of equally rough white noise; 1 within chance.
-  [[nodiscard]] double colour() const noexcept {
-    const double chance = std::sqrt(kThirdVariance / std::clamp(taken_, 1.0, kSlow));
-    const double ratio = known_ / usual();
-    return taken_ >= kFew && ratio > 1.0 + kSurely * chance ? ratio : 1.0;
-  }
+  [[nodiscard]] double colour() const noexcept { return colour_; }
   // Variance of a mean of coarse steps d, averaged over the true level: that of the sawtooth's first harmonic,
   // d / pi exp(-2 pi^2 R / d^2) (Widrow and Kollar, "Quantization Noise", 2008).
   [[nodiscard]] double rounding() const noexcept {
@@ -78,6 +76,11 @@ class Noise {
   }
 
  private:
+  void refresh_colour() noexcept {
+    const double chance = std::sqrt(kThirdVariance / std::clamp(taken_, 1.0, kSlow));
+    const double ratio = known_ / usual();
+    colour_ = taken_ >= kFew && ratio > 1.0 + kSurely * chance ? ratio : 1.0;
+  }
   // Variance of one of the converter's steps.
   [[nodiscard]] double of_steps() const noexcept {
     return std::isfinite(digit_) ? digit_ * digit_ / 12.0 : 0.0;
@@ -93,7 +96,7 @@ class Noise {
   static constexpr double kSurelyLouder = 2.6;
   static constexpr double kNothing = 40.0;  // e^-40 of a variance is less than its rounding
 
-  double known_, slow_, fast_, taken_ = 0.0, digit_ = std::numeric_limits<double>::infinity();
+  double known_, slow_, fast_, taken_ = 0.0, colour_ = 1.0, digit_ = std::numeric_limits<double>::infinity();
   std::array<double, 3> last_{};
   int in_row_ = 0;
 };

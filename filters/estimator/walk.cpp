@@ -155,18 +155,14 @@ double Walk::white_noise(const Axis& axis, double ratio, std::size_t first) cons
   }
   if (!(weighted > 0.0)) return std::nan("");
   const double noise = weighted / total;
-  double misfit = 0.0, tested = 0.0;
   for (std::size_t k = first; k < kOctaves; ++k) {
     const Octave& octave = axis.octaves[k];
     if (octave.count < kFewest) break;
     // The logarithm of a mean of n squares is near normal: mean -1 / n, variance 2 / n.
     const double off = logarithm(octave.squares / octave.count / (noise * shape(k))) + 1.0 / octave.count;
-    const double square = off * off * octave.count / 2.0;
-    misfit += square;
-    tested += 1.0;
-    if (square > kChance * kChance) return 0.0;
+    if (off * off * octave.count / 2.0 > kChance * kChance) return 0.0;
   }
-  return misfit <= tested + kChance * std::sqrt(2.0 * tested) ? noise : 0.0;
+  return noise;
 }
 
 void Walk::judge() noexcept {
