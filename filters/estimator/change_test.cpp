@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "filters/estimator/noise.h"
 #include "filters/random/log_exp.h"
@@ -11,7 +12,7 @@ namespace ifog {
 namespace {
 
 // Shaking: innovations of that variance, in R, and half its logarithm.
-constexpr double kShakingVariance = 4.0, kHalfLog = 0.6931471805599453;
+constexpr double kShakingVariance = 4.0, kHalfLog = std::numbers::ln2;
 // Evidence for rest that has to be outweighed at most, nats.
 constexpr double kLeastRatio = -5.0;
 // Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is

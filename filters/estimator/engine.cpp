@@ -234,15 +234,11 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
   return follow_.outliers.take(most, s.sample, worst, follow_.moving, lag());
 }
 
-// So many measurements that nothing predicts are a new rate: followers begin with the last of them.
+// So many measurements that nothing predicts are a new rate: followers begin with this one.
 void Engine::jump(Step& s) noexcept {
   Follower& f = follow_;
   f.trackers.begin();
   f.trackers.seed(f.published, Lanes::Ones());
-  for (std::size_t i = 0; i + 1 < f.outliers.kept(); ++i) {
-    f.trackers.predict(1.0);
-    f.trackers.correct(f.outliers.kept(i), s.sample.mask);
-  }
   f.trackers.predict(1.0);
   f.ledger.admit();
   f.outliers.end_run();

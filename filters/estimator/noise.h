@@ -34,10 +34,9 @@ class Noise {
     if (steps < 0.5 || steps > 1.5) in_row_ = 0;
     if (in_row_ >= 3) {
       const double third = rate - 3.0 * last_[2] + 3.0 * last_[1] - last_[0];
-      // Once a level is known an outlier counts for at most five standard deviations.
+      // An outlier counts for at most five standard deviations.
       const double square = third * third / kThird;
-      fast_ += (std::min(square, taken_ < kFew ? square : kMostSquare * fast_) - fast_) /
-               std::min(kFast, taken_ + 4.0);
+      fast_ += (std::min(square, kMostSquare * fast_) - fast_) / std::min(kFast, taken_ + 4.0);
       // The usual level is not learned while it is surely exceeded.
       if (louder() == 1.0)
         slow_ += (std::min(square, kMostSquare * slow_) - slow_) / std::min(kSlow, taken_ + 1.0);
@@ -59,7 +58,7 @@ class Noise {
   }
   // By which third differences are now above their usual level: 1 unless by more than chance.
   [[nodiscard]] double louder() const noexcept {
-    return taken_ > kFast && fast_ > kSurelyLouder * usual() ? fast_ / usual() : 1.0;
+    return taken_ > kFast && heard() > kSurelyLouder ? heard() : 1.0;
   }
   // The same without that doubt, 1 at least: for who takes all that is louder for noise.
   [[nodiscard]] double heard() const noexcept { return std::max(1.0, fast_ / usual()); }

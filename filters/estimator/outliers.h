@@ -7,9 +7,7 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
 
 #include "filters/estimator/sample.h"
 #include "filters/random/log_exp.h"
@@ -19,7 +17,6 @@ namespace ifog {
 class Outliers {
  public:
   enum class Verdict { usual, waits, jump };
-  static constexpr std::size_t kKept = 8;
 
   // least: the smallest square of an innovation over its variance that any filter has, the worst axis';
   // now: the measurement; lag: of the filter at rest, samples.
@@ -28,7 +25,7 @@ class Outliers {
     const Lanes& rate = now.rate;
     seen_ = std::min(seen_ + 1.0, kTailMemory);
     // Where they are frequent at rest they may be blows, whose angle counts.
-    const double most = moving ? kFarMoving : share_ > kRare ? kFarSquare : kMostSquare;
+    const double most = !moving && share_ > kRare ? kFarSquare : kMostSquare;
     if (least <= most || seen_ < kYoung) {
       // A run lasts until its own axis is measured again, if that is soon.
       if (run_ > 0 && (now.valid >> axis_ & 1U) == 0 && ++waited_ < kShortGap) return Verdict::usual;
@@ -41,11 +38,11 @@ class Outliers {
       squares_ = least;
     } else {
       squares_ += least;
-      const double apart = rate[axis] - kept_[(run_ - 1) % kKept][axis];
+      const double apart = rate[axis] - last_[axis];
       nearness_ += 0.5 * logarithm(squares_ / static_cast<double>(run_ + 1) /
                                    std::max(2.0, apart * apart / now.scale[axis]));
     }
-    kept_[run_ % kKept] = rate;
+    last_ = rate;
     axis_ = axis;
     waited_ = 0;
     ++run_;
@@ -59,17 +56,13 @@ class Outliers {
     return std::min(kMostNats, -logarithm(std::max(share_, 1e-8)));
   }
   [[nodiscard]] std::size_t run() const noexcept { return run_; }
-  // The i-th of the run's last measurements, oldest first.
-  [[nodiscard]] std::size_t kept() const noexcept { return std::min(run_, kKept); }
-  [[nodiscard]] const Lanes& kept(std::size_t i) const noexcept { return kept_[(run_ - kept() + i) % kKept]; }
   void end_run() noexcept { run_ = 0; }
 
  private:
-  static constexpr double kFarMoving = 30.0;  // a square, in standard deviations
-  static constexpr double kRare = 1e-3;       // share of all measurements
-  static constexpr double kYoung = 16.0;      // samples
+  static constexpr double kRare = 1e-3;   // share of all measurements
+  static constexpr double kYoung = 16.0;  // samples
 
-  std::array<Lanes, kKept> kept_{};
+  Lanes last_ = Lanes::Zero();  // of the run
   double seen_ = 0.0, share_ = 1e-8, nearness_ = 0.0, squares_ = 0.0;
   std::size_t run_ = 0;
   int waited_ = 0;         // samples of other axes since

@@ -95,7 +95,7 @@ class SizedRestFilter final : public RestFilter {
 
   void skip() noexcept override {
     for (Core& core : cores_) core.gain.setZero();
-    gain_ = measurement_gain_ = 0.0;
+    gain_ = 0.0;
     covariance_ = measurement_variance_ + rule_->measurement_noise();
   }
 
@@ -149,9 +149,9 @@ class SizedRestFilter final : public RestFilter {
       // A single state is the rate, and all that is measured.
       measurement_ = rate_;
       measurement_variance_ = variance_;
-      measurement_gain_ = gain_;
     } else {
-      read(cores_[0].h, measurement_, measurement_variance_, measurement_gain_);
+      double gain = 0.0;
+      read(cores_[0].h, measurement_, measurement_variance_, gain);
     }
   }
 

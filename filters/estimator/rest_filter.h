@@ -52,7 +52,6 @@ class RestFilter {
   [[nodiscard]] double gain() const noexcept { return gain_; }
   [[nodiscard]] const Lanes& measurement() const noexcept { return measurement_; }
   [[nodiscard]] double measurement_variance() const noexcept { return measurement_variance_; }
-  [[nodiscard]] double measurement_gain() const noexcept { return measurement_gain_; }
   // The rate is all that is measured: the model knows no colour and no line.
   [[nodiscard]] bool rate_alone() const noexcept { return rate_alone_; }
   [[nodiscard]] double covariance() const noexcept { return covariance_; }  // of the innovation, as used
@@ -65,7 +64,7 @@ class RestFilter {
   std::unique_ptr<Rule> rule_;
   Lanes rate_ = Lanes::Zero(), measurement_ = Lanes::Zero();
   double variance_ = 0.0, gain_ = 0.0, covariance_ = 0.0;
-  double measurement_variance_ = 0.0, measurement_gain_ = 0.0;
+  double measurement_variance_ = 0.0;
   bool rate_alone_ = true;
 };
 

@@ -57,7 +57,6 @@ class Trackers {
   // Prediction variance over R of each axis, whose last measurement is since() samples old.
   [[nodiscard]] Lanes factor(std::size_t j) const noexcept;
   [[nodiscard]] bool predicts(std::size_t j) const noexcept { return state_[j].age >= kParabola; }
-  [[nodiscard]] double age(std::size_t j) const noexcept { return state_[j].age; }
   // What it has of its memory by now, samples.
   [[nodiscard]] double length(std::size_t j) const noexcept { return state_[j].length; }
   // Samples over which it is compared with another filter: its impulse response has decayed.

@@ -22,6 +22,8 @@ constexpr double kChance = 3.3;
 // slower is not told from the motion of a hand.
 constexpr std::size_t kMostColour = 3;
 constexpr double kMostExcess = 8.0;
+// Octaves from here on, 32 samples, are long: shaking has its angle's bound there.
+constexpr std::size_t kLong = 5;
 // -2 log-likelihood by which two stretches surely differ: e^6.
 constexpr double kSurely = 12.0;
 // Difference of −2 log-likelihood that is one standard error wide.
@@ -155,13 +157,20 @@ double Walk::white_noise(const Axis& axis, double ratio, std::size_t first) cons
   }
   if (!(weighted > 0.0)) return std::nan("");
   const double noise = weighted / total;
+  double long_off = 0.0, long_count = 0.0;
   for (std::size_t k = first; k < kOctaves; ++k) {
     const Octave& octave = axis.octaves[k];
     if (octave.count < kFewest) break;
     // The logarithm of a mean of n squares is near normal: mean -1 / n, variance 2 / n.
     const double off = logarithm(octave.squares / octave.count / (noise * shape(k))) + 1.0 / octave.count;
     if (off * off * octave.count / 2.0 > kChance * kChance) return 0.0;
+    if (k < kLong) continue;
+    long_off += off * octave.count;
+    long_count += 2.0 * octave.count;
   }
+  // What is bounded is below in all long octaves, what turns above in all: together that shows sooner than in
+  // one.
+  if (long_off * long_off > kChance * kChance * long_count) return 0.0;
   return noise;
 }
 
