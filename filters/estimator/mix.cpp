@@ -82,7 +82,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   // the choice does not depend on the noise of what it is made for.
   const auto compare = [&](std::size_t j) {
     link_[j] += now.mask * (0.5 * (risk[j - 1] - risk[j])).max(-kMostNats).min(kMostNats) -
-                link_[j] / std::max(5.0, 3.0 * trackers.length(j - 1));
+                link_[j] * (1.0 / std::max(5.0, 3.0 * trackers.length(j - 1)));
   };
   compare(1);
   trackers.correct(now.rate, now.mask);
@@ -100,7 +100,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
     compared_[j] = std::min(compared_[j] + 1.0, 6.0 * trackers.length(j));
     const Lanes apart = trackers.rate(j) - trackers.rate(j - 1);
     const double common = kCommon * std::max(0.0, trackers.gains(j - 1).output - trackers.gains(j).output);
-    bias_[j] += now.mask * (apart * apart - common * now.scale - bias_[j]) / compared_[j];
+    bias_[j] += now.mask * (apart * apart - common * now.scale - bias_[j]) * (1.0 / compared_[j]);
   }
 }
 
