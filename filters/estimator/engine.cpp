@@ -145,7 +145,7 @@ void Engine::begin_axes(const Step& s) noexcept {
   if (follows && !f.moving && s.sample.valid != 0 && s.dt_s > kShortGap * period_s_) {
     f.moving = true;
     f.failed_nats = 0.0;
-    f.mix.begin(0);
+    f.mix.begin_from_rest();
     f.change.begin();
   }
   const std::uint32_t first = s.sample.valid & ~started_;
@@ -220,8 +220,8 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
     return Outliers::Verdict::usual;
   }
   Lanes least = s.sample.surprise;
-  // At rest the raw one, a parabola through three measurements, predicts nothing better than others.
-  for (std::size_t j = follow_.moving ? 0 : 1; j < trackers.size(); ++j) {
+  // The raw one, a parabola through three measurements, predicts nothing better than others.
+  for (std::size_t j = 1; j < trackers.size(); ++j) {
     if (!trackers.predicts(j)) {
       least.setZero();
       break;
@@ -229,6 +229,8 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
     const Lanes error = s.sample.rate - trackers.rate(j);
     least = least.min(error * error * s.sample.inverse / trackers.factor(j));
   }
+  // What shaking makes is no outlier among the like.
+  if (follow_.moving) least /= of_noise(&Noise::shaken);
   Eigen::Index worst = 0;
   const double most = least.maxCoeff(&worst);
   return follow_.outliers.take(most, s.sample, worst, follow_.moving, lag());

@@ -30,6 +30,11 @@ class Mix {
 
   // found: the tracker that predicts the motion.
   void begin(std::size_t found) noexcept;
+  // The filter at rest has been right until now, and is left as soon as a measurement contradicts it.
+  void begin_from_rest() noexcept {
+    begin(0);
+    rest_ratio_.setConstant(kFound);
+  }
   // Corrects the trackers. coloured: 1 where R is above what third differences say.
   void take(Trackers& trackers, const Sample& now, const Lanes& colour) noexcept;
   // rest, rest_variance: of the filter at rest; scale: R.
