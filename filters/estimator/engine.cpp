@@ -38,7 +38,7 @@ void Engine::expect_noise(const Axes& share) noexcept {
 }
 
 void Engine::expect_walk(const std::optional<Axes>& share) noexcept {
-  expected_walk_ = share;
+  shares_.expected_walk = share;
   refresh_shares();
 }
 
@@ -51,7 +51,7 @@ LearnedNoise Engine::learned() const noexcept {
   LearnedNoise out;
   out.process_noise = settings_.process_noise;
   for (std::size_t a = 0; a < axes_; ++a) out.noise[a] = noise_[a].known();
-  out.measurement_noise = mean_noise_;
+  out.measurement_noise = shares_.mean_noise;
   out.samples = learns_walk_ ? walk_.samples() : 0.0;
   return out;
 }
@@ -77,9 +77,9 @@ double Engine::mean(const Lanes& of) const noexcept {
 }
 
 void Engine::refresh_shares() noexcept {
-  mean_noise_ = mean(of_noise(&Noise::known));
-  noise_share_ = of_noise(&Noise::known) / mean_noise_;
-  walk_share_ = expected_walk_ ? to_lanes(*expected_walk_) : noise_share_;
+  shares_.mean_noise = mean(of_noise(&Noise::known));
+  shares_.noise = of_noise(&Noise::known) / shares_.mean_noise;
+  shares_.walk = shares_.expected_walk ? to_lanes(*shares_.expected_walk) : shares_.noise;
 }
 
 // Of the filter at rest, samples; after a move it is as slow as what it has received since is long.
@@ -154,7 +154,7 @@ void Engine::begin_axes(const Step& s) noexcept {
   f.trackers.seed(s.sample.rate, mask_of(first));
   // An axis that comes late is one that begins, and all share one gain.
   if (follows && started_ != 0) {
-    rest_->set_variance(mean_noise_);
+    rest_->set_variance(shares_.mean_noise);
     f.since_moved = 0.0;
     f.moving = true;
     f.trackers.begin();
@@ -168,7 +168,7 @@ void Engine::begin_axes(const Step& s) noexcept {
 void Engine::weigh(Step& s) noexcept {
   Sample& m = s.sample;
   const bool smooths = settings_.wideband == "noise";
-  const double projected = rest_->measurement_variance() / mean_noise_;
+  const double projected = rest_->measurement_variance() / shares_.mean_noise;
   m.rest_factor = 1.0 + projected / s.noise_scale;
   m.log_rest_factor = logarithm(m.rest_factor);
   m.rest_gain = std::min(1.0, projected / (projected + s.noise_scale));
@@ -335,7 +335,7 @@ void Engine::take(Step& s, bool learn) noexcept {
 
 void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
   rest_->shift_to(rate, started_);
-  const double of_all = mean(variance / noise_share_);
+  const double of_all = mean(variance / shares_.noise);
   // Colour and lines that a larger model has found stay known.
   if (rest_->rate_alone() || of_all > rest_->variance()) rest_->set_variance(of_all);
   follow_.since_moved = 0.0;

@@ -68,6 +68,13 @@ class Engine {
     bool outlier = false;
   };
 
+  // The noise of each axis and its walk, over the means of all axes.
+  struct Shares {
+    double mean_noise = 1.0;  // (rad/s)^2
+    Lanes noise = Lanes::Ones(), walk = Lanes::Ones();
+    std::optional<Axes> expected_walk;
+  };
+
   void screen(Step& s) noexcept;
   void weigh(Step& s) noexcept;
   void begin_axes(const Step& s) noexcept;
@@ -101,9 +108,7 @@ class Engine {
   double period_s_;
   std::unique_ptr<RestFilter> rest_;
   std::array<Noise, kMaxAxes> noise_;
-  double mean_noise_ = 1.0;
-  Lanes noise_share_ = Lanes::Ones(), walk_share_ = Lanes::Ones();  // of each axis, over the mean
-  std::optional<Axes> expected_walk_;
+  Shares shares_;
   Walk walk_;
   Follower follow_;
   Unmeasured unmeasured_;

@@ -35,16 +35,16 @@ void Engine::publish_rest(Step& s) noexcept {
   // rule.
   if (greatest(wide) > 1.0)
     wide = (wide > 1.0).select(wide * settings_.measurement_noise / rest_->rule().measurement_noise(), wide);
-  const Lanes walk = learns_walk_ ? (walk_share_ * wide).eval() : walk_share_;
-  s.variance *= 0.5 * (walk + noise_share_ * wide);
+  const Lanes walk = learns_walk_ ? (shares_.walk * wide).eval() : shares_.walk;
+  s.variance *= 0.5 * (walk + shares_.noise * wide);
   s.variance += follow_.change.unseen() + of_noise(&Noise::rounding);
 }
 
 void Engine::publish_mix(Step& s) noexcept {
   // A measurement's variance as it is heard: what is louder may be noise.
   const Lanes heard = of_noise(&Noise::known) * of_noise(&Noise::louder) * s.noise_scale;
-  const Mix::Published mix = follow_.mix.publish(follow_.trackers, rest_->rate(),
-                                                 rest_->variance() * noise_share_, s.sample.scale.max(heard));
+  const Mix::Published mix = follow_.mix.publish(
+      follow_.trackers, rest_->rate(), rest_->variance() * shares_.noise, s.sample.scale.max(heard));
   s.rate = mix.rate;
   s.variance = mix.variance;
   s.gain = mix.gain + follow_.mix.rest_weight() * rest_->gain();
@@ -72,7 +72,7 @@ void Engine::pay(Step& s) noexcept {
   // What a gap hides is no angle.
   const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
   Lanes most = Lanes::Constant(1e300);
-  if (follows) most = kMostPaid * (rest_->variance() * noise_share_).sqrt();
+  if (follows) most = kMostPaid * (rest_->variance() * shares_.noise).sqrt();
   const Lanes paid = ledger.pay(most, dt_s);
   s.rate += paid;
   if (follows) s.variance = s.variance.max(paid * paid);
@@ -110,7 +110,7 @@ void Engine::learn(const Step& s) noexcept {
     rest_->rule().restart();
   }
   if (!learns_walk_) return;
-  settings_.process_noise = found->ratio * mean_noise_ / period_s_;
+  settings_.process_noise = found->ratio * shares_.mean_noise / period_s_;
   rest_->retune(settings_.process_noise);
 }
 
@@ -121,9 +121,9 @@ void Engine::know_unmeasured(const Step& s, double grown) noexcept {
     if ((s.sample.valid >> a & 1U) != 0)
       unmeasured_.measure(a, s.gain, s.variance[i], s.sample.rate[i] - s.rate[i], s.sample.scale[i]);
     else if (s.sample.valid == 0 && !follow_.moving)
-      unmeasured_.miss_with_all(a, grown * walk_share_[i]);
+      unmeasured_.miss_with_all(a, grown * shares_.walk[i]);
     else if ((started_ >> a & 1U) != 0)
-      unmeasured_.miss(a, grown * walk_share_[i], to_axes(s.rate), to_axes(s.variance));
+      unmeasured_.miss(a, grown * shares_.walk[i], to_axes(s.rate), to_axes(s.variance));
   }
 }
 
@@ -137,7 +137,7 @@ void Engine::publish(const Step& s) noexcept {
     s.out.variance_rad2ps2[a] = variance >= 0.0 ? variance : settings_.measurement_noise;
     s.out.gain[a] = s.gain;
     s.out.innovation_variance[a] =
-        rest_->covariance() * (settings_.follow_manoeuvres ? noise_share_[i] : 1.0);
+        rest_->covariance() * (settings_.follow_manoeuvres ? shares_.noise[i] : 1.0);
     health_.measurement_noise[a] =
         settings_.follow_manoeuvres
             ? rest_->rule().measurement_noise() * noise_[a].known() / settings_.measurement_noise
