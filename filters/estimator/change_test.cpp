@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "filters/estimator/noise.h"
 #include "filters/random/log_exp.h"
@@ -10,28 +11,17 @@
 namespace ifog {
 namespace {
 
-// Nats: by chance once in 6e7 samples.
-constexpr double kEvidence = 18.0;
 // Shaking: innovations of that variance, in R, and half its logarithm.
-constexpr double kShakingVariance = 4.0, kHalfLog = 0.6931471805599453;
+constexpr double kShakingVariance = 4.0, kHalfLog = std::numbers::ln2;
 // Evidence for rest that has to be outweighed at most, nats.
 constexpr double kLeastRatio = -5.0;
-// A square counts for 20 standard deviations at most.
-constexpr double kMostSquare = 400.0;
 // Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
 // worth.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
-// Above a learned width by chance; a single sum counts for four standard deviations.
-constexpr double kWider = 1.25, kMostSum = 16.0;
-// Nats that an earlier manoeuvre still counts for fade over so many samples.
-constexpr double kRelaxedKept = 0.999;
-// Square of two standard deviations: of a sum in which a change may have begun.
+// Square of two and a half standard deviations: of a sum in which a change may have begun.
 constexpr double kUnseenSquare = 6.25;
 // Mean of a change that grows as a parabola over a horizon to its end: (0.8)^-2.
 constexpr double kAtEnd = 1.55;
-
-// Samples over which the fourth moment of the noise is averaged.
-constexpr double kTailMemory = 8192.0;
 
 }  // namespace
 
@@ -62,32 +52,30 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   const Trackers::Gains& g = trackers.gains(j);
   const double h = trackers.horizon(j), keep = 1.0 - 1.0 / h;
   const Lanes error = now.rate - trackers.rate(j);
-  const Lanes mine = error * error * now.inverse / g.factor;
+  const Lanes mine = error * error * now.inverse * (1.0 / g.factor);
   c.sum = keep * c.sum + common.clipped;
   c.weight = keep * keep * c.weight + now.mask;
   const Lanes square = c.sum * c.sum;
-  c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
-  evidence_ = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
-  c.wide += now.mask * ((square / c.weight.max(1.0)).min(kMostSum * c.wide.max(1.0)) - c.wide) /
-            (h * (c.horizons + 1.0));
-  // Until it is learned the width is the widest that the known noise allows with its third differences.
-  const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
-  const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
-  // Without colour only as far as the filter takes the noise for louder than is known, and is slow by that.
-  const Lanes likely = (colour > kColoured).select(wide, wide.min(now.slow)).max(1.0);
-  c.divisor = (colour > kColoured).select(kWider * likely, Lanes::Ones());
+  Lanes evidence = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
+  Lanes& likely = c.divisor.setOnes();
   if (coloured_) {
-    widest_ = widest_.max(c.divisor);
-    evidence_ /= c.divisor;
+    c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
+    c.wide += now.mask * (square / c.weight.max(1.0) - c.wide) / (h * (c.horizons + 1.0));
+    // Until it is learned the width is the widest that the known noise allows with its third differences.
+    const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
+    const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
+    likely = (colour > kColoured).select(wide.max(1.0), likely);
+    widest_ = widest_.max(likely);
+    evidence /= likely;
   }
-  if (j >= 1 && h <= 2.0 * lag)
-    unseen_ = (square > std::max(0.0, kUnseenSquare - relaxed_) * likely * c.weight)
-                  .select(unseen_.max(now.scale * kAtEnd * square / (c.weight * c.weight).max(1.0)), unseen_);
-  short_[j].add(now.short_rad, c.ratio, keep);
-  c.ratio = (keep * c.ratio + evidence_).max(kLeastRatio);
+  const auto large = square > kUnseenSquare * likely * c.weight;
+  if (j >= 1 && h <= 2.0 * lag && large.any())
+    unseen_ = large.select(unseen_.max(now.scale * kAtEnd * square / c.weight.square().max(1.0)), unseen_);
+  short_[j] = keep * short_[j] + now.short_rad;
+  c.ratio = (keep * c.ratio + evidence).max(kLeastRatio);
   c.rest = keep * c.rest + common.squares;
   c.rest2 = keep * c.rest2 + common.squares2;
-  c.tracker = keep * c.tracker + mine.min(kMostSquare);
+  c.tracker = keep * c.tracker + mine.min(kFarSquare);
 }
 
 std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Sample& now, const Lanes& colour,
@@ -96,24 +84,22 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   common.cap = 2.0 * rarity;
   const double most_deviations = std::min(kMostDeviations, std::sqrt(common.cap));
   common.clipped = (now.innovation * now.inverse.sqrt()).max(-most_deviations).min(most_deviations);
-  common.squares = now.surprise.min(kMostSquare);
+  common.squares = now.surprise.min(kFarSquare);
   common.squares2 = common.squares * common.squares;
   common.rest_evidence = 0.5 * (now.surprise.min(common.cap) + now.log_rest_factor) * now.mask;
   coloured_ = greatest(colour) > kColoured;
   unseen_.setZero();
   widest_.setOnes();
-  relaxed_ *= kRelaxedKept;
   suspected_ = false;
   std::optional<std::size_t> found;
   double most = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     contest(trackers, j, now, common, colour, lag);
     const Contest& c = contest_[j];
-    const double whole = kEvidence - logarithm(trackers.horizon(j) / 5.0);
-    if (!(greatest(c.ratio) > 0.5 * (whole - relaxed_))) continue;
+    if (!(greatest(c.ratio) > 0.5 * kEvidence)) continue;
+    suspected_ = true;
     for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-      const double same = same_size(c, a) / c.divisor[a], over = c.ratio[a] - whole + relaxed_;
-      suspected_ = suspected_ || (c.ratio[a] > 0.5 * whole && same > 0.5 * whole);
+      const double same = same_size(c, a) / c.divisor[a], over = c.ratio[a] - kEvidence;
       if (over <= most || same <= logarithm(lag)) continue;
       most = over;
       found = j;
@@ -125,22 +111,21 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   const Lanes larger = 0.5 * (1.0 - 1.0 / kShakingVariance) * capped - kHalfLog;
   shaking_ = (shaking_ + now.mask * larger / unlikely).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
-  short_[kShaking].add(now.short_rad, shaking_, 0.0);
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;
   return found;
 }
 
 // Noise of one correlation time has 1 / ((k + b) f(b)) a straight line in the bandwidth b: followed to zero.
-double ChangeTest::wide(const Trackers& trackers, std::size_t axis, double lag) const noexcept {
-  if (!coloured_) return 1.0;
-  const auto a = static_cast<Eigen::Index>(axis);
+Lanes ChangeTest::wide(const Trackers& trackers, double lag) const noexcept {
+  Lanes wide = Lanes::Ones(), inverse_before = Lanes::Zero();
+  if (!coloured_) return wide;
   const double k = 1.0 / (1.0 + lag);
-  double wide = 1.0, before = 0.0, inverse_before = 0.0;
+  double before = 0.0;
   for (std::size_t j = 0; j < trackers.size() && (j <= 1 || trackers.horizon(j) <= 2.0 * lag); ++j) {
     const double b = 1.0 / trackers.horizon(j), both = k + b;
-    const double inverse = 2.0 * b / (both * std::max(contest_[j].wide[a] - 0.5 * k / both, 0.1 * b / both));
-    const double slope = before > b ? (inverse_before - inverse) * b / (before - b) : 0.0;
-    wide = std::max(1.0, 2.0 / std::max(inverse - slope, 0.25 * inverse));
+    const Lanes inverse = 2.0 * b / (both * (contest_[j].wide - 0.5 * k / both).max(0.1 * b / both));
+    const double ahead = before > b ? b / (before - b) : 0.0;
+    wide = (2.0 / (inverse - ahead * (inverse_before - inverse)).max(0.25 * inverse)).max(1.0);
     before = b;
     inverse_before = inverse;
   }

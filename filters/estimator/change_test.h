@@ -21,6 +21,8 @@ namespace ifog {
 
 class ChangeTest {
  public:
+  ChangeTest() noexcept { forget_angle(); }
+
   // Index of "no tracker: the measurements are larger than the known noise".
   static constexpr std::size_t kShaking = Trackers::kMost;
 
@@ -30,37 +32,21 @@ class ChangeTest {
                                   double rarity, double lag) noexcept;
   // A manoeuvre was found, or begins with the filter: what is known of the noise stays.
   void begin() noexcept;
-  // Rest was found after a manoeuvre: what is left of that is found by less evidence.
-  void relax() noexcept { relaxed_ = kRelaxed; }
   [[nodiscard]] bool suspected() const noexcept { return suspected_; }
-  // Angle, rad, that the filter at rest has fallen short of since the change began, and the samples that it
-  // came together in.
-  [[nodiscard]] const Lanes& angle(std::size_t tracker) const noexcept { return short_[tracker].angle; }
-  [[nodiscard]] double span(std::size_t tracker) const noexcept { return short_[tracker].span.maxCoeff(); }
-  void forget_angle() noexcept { short_.fill({}); }
+  // Angle, rad, that the filter at rest has fallen short of over the tracker's horizon.
+  [[nodiscard]] const Lanes& angle(std::size_t tracker) const noexcept { return short_[tracker]; }
+  void forget_angle() noexcept { short_.fill(Lanes::Zero()); }
   // Variance of a change that may have begun, (rad/s)^2.
-  [[nodiscard]] double unseen(std::size_t axis) const noexcept {
-    return unseen_[static_cast<Eigen::Index>(axis)];
-  }
+  [[nodiscard]] const Lanes& unseen() const noexcept { return unseen_; }
   // Variance of the mean over the filter's memory, over that of white noise.
-  [[nodiscard]] double wide(const Trackers& trackers, std::size_t axis, double lag) const noexcept;
+  [[nodiscard]] Lanes wide(const Trackers& trackers, double lag) const noexcept;
 
  private:
-  static constexpr double kRelaxed = 10.0;
   struct Contest {
     Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero();
     // Variance of a sum over that of white noise, as learned, and what evidence is divided by for it.
     Lanes wide = Lanes::Ones(), divisor = Lanes::Ones(), horizons = Lanes::Zero();
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
-  };
-  // Summed from where the evidence begins, and fading before it.
-  struct Shortfall {
-    Lanes angle = Lanes::Zero(), span = Lanes::Zero();
-    void add(const Lanes& short_rad, const Lanes& evidence, double keep) noexcept {
-      const Lanes kept = (evidence > 0.0).select(Lanes::Ones(), Lanes::Constant(keep));
-      angle = kept * angle + short_rad;
-      span = kept * span + 1.0;
-    }
   };
   struct Common {
     Lanes clipped, capped, rest_evidence, squares, squares2;
@@ -71,11 +57,10 @@ class ChangeTest {
   [[nodiscard]] double same_size(const Contest& c, Eigen::Index a) const noexcept;
 
   std::array<Contest, Trackers::kMost> contest_{};
-  std::array<Shortfall, kShaking + 1> short_{};
+  std::array<Lanes, Trackers::kMost> short_;
   Lanes shaking_ = Lanes::Zero(), fourth_ = Lanes::Constant(3.0);
   Lanes unseen_ = Lanes::Zero(), widest_ = Lanes::Ones();
-  double relaxed_ = 0.0, seen_ = 64.0;
-  Lanes evidence_ = Lanes::Zero();
+  double seen_ = 64.0;
   bool suspected_ = false, coloured_ = false;
 };
 

@@ -7,11 +7,7 @@
 #include "filters/random/log_exp.h"
 
 namespace ifog {
-namespace {
-// Failures of the filter at rest that are a motion: 6 nats each, 18 in all.
-constexpr double kSurelyMoves = 3.0;
-Lanes to_lanes(const Axes& axes) noexcept { return {axes[0], axes[1], axes[2], 0.0}; }
-}  // namespace
+namespace {}  // namespace
 
 Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, int axes, double period_s)
     : settings_(settings),
@@ -20,6 +16,7 @@ Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest,
       rest_(std::move(rest)),
       follow_(axes_, period_s) {
   noise_.fill(Noise(settings.measurement_noise));
+  refresh_shares();
   follow_.moving = settings.follow_manoeuvres && rest_->rate_alone();
 }
 
@@ -37,6 +34,12 @@ void Engine::restart() noexcept {
 
 void Engine::expect_noise(const Axes& share) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) noise_[a] = Noise(share[a] * settings_.measurement_noise);
+  refresh_shares();
+}
+
+void Engine::expect_walk(const std::optional<Axes>& share) noexcept {
+  shares_.expected_walk = share;
+  refresh_shares();
 }
 
 void Engine::learn_walk(double ratio, double samples) noexcept {
@@ -48,15 +51,14 @@ LearnedNoise Engine::learned() const noexcept {
   LearnedNoise out;
   out.process_noise = settings_.process_noise;
   for (std::size_t a = 0; a < axes_; ++a) out.noise[a] = noise_[a].known();
-  out.measurement_noise = mean_noise();
+  out.measurement_noise = shares_.mean_noise;
   out.samples = learns_walk_ ? walk_.samples() : 0.0;
   return out;
 }
 
 Axes Engine::owed() const noexcept {
   if (!settings_.conserve_angle) return {};
-  const Lanes owed = follow_.ledger.owed();
-  return {owed[0], owed[1], owed[2]};
+  return to_axes(follow_.ledger.owed());
 }
 
 void Engine::owe(const Axes& angle_rad) noexcept {
@@ -64,31 +66,20 @@ void Engine::owe(const Axes& angle_rad) noexcept {
   if (angle.allFinite() && (angle != 0.0).any()) follow_.ledger.owe(angle);
 }
 
-double Engine::mean_noise() const noexcept {
-  double sum = 0.0;
-  for (std::size_t a = 0; a < axes_; ++a) sum += noise_[a].known();
-  return sum / static_cast<double>(axes_);
+Lanes Engine::of_noise(double (Noise::*figure)() const noexcept) const noexcept {
+  Lanes all = Lanes::Ones();
+  for (std::size_t a = 0; a < axes_; ++a) all[static_cast<Eigen::Index>(a)] = (noise_[a].*figure)();
+  return all;
 }
 
-Lanes Engine::noise_share() const noexcept {
-  Lanes share = Lanes::Ones();
-  const double mean = mean_noise();
-  for (std::size_t a = 0; a < axes_; ++a) share[static_cast<Eigen::Index>(a)] = noise_[a].known() / mean;
-  return share;
+double Engine::mean(const Lanes& of) const noexcept {
+  return (of * mask_of(axes_of_sensor(axes_))).sum() / static_cast<double>(axes_);
 }
 
-Lanes Engine::walk_share() const noexcept { return walk_share_ ? to_lanes(*walk_share_) : noise_share(); }
-
-Lanes Engine::colour() const noexcept {
-  Lanes colour = Lanes::Ones();
-  for (std::size_t a = 0; a < axes_; ++a) colour[static_cast<Eigen::Index>(a)] = noise_[a].colour();
-  return colour;
-}
-
-Lanes Engine::rest_rate() const noexcept {
-  Lanes rate = Lanes::Zero();
-  for (std::size_t a = 0; a < axes_; ++a) rate[static_cast<Eigen::Index>(a)] = rest_->rate(a);
-  return rate;
+void Engine::refresh_shares() noexcept {
+  shares_.mean_noise = mean(of_noise(&Noise::known));
+  shares_.noise = of_noise(&Noise::known) / shares_.mean_noise;
+  shares_.walk = shares_.expected_walk ? to_lanes(*shares_.expected_walk) : shares_.noise;
 }
 
 // Of the filter at rest, samples; after a move it is as slow as what it has received since is long.
@@ -111,7 +102,8 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   if (settings_.follow_manoeuvres) {
     follow_.trackers.predict(s.dt_s / period_s_);
     for (std::size_t a = 0; a < axes_; ++a)
-      if ((s.sample.valid >> a & 1U) != 0) noise_[a].take(in.rate_radps[a], follow_.trackers.since(a));
+      if ((s.sample.valid >> a & 1U) != 0)
+        noise_[a].take(in.rate_radps[a], follow_.trackers.since()[static_cast<Eigen::Index>(a)]);
     weigh(s);
     follow(s);
   } else {
@@ -120,7 +112,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
     publish_rest(s);
   }
   if (settings_.guard) guard(s);
-  if (follow_.moving && follow_.failures >= kSurelyMoves && settings_.follow_manoeuvres &&
+  if (follow_.moving && follow_.failed_nats >= kEvidence && settings_.follow_manoeuvres &&
       follow_.mix.rest_weight() < 0.5)
     out.flags |= kManoeuvre;
   if (rests(s)) out.flags |= kAtRest;
@@ -140,7 +132,9 @@ void Engine::screen(Step& s) noexcept {
       continue;
     }
     s.sample.valid |= 1U << a;
+    s.sample.rate[static_cast<Eigen::Index>(a)] = s.in.rate_radps[a];
   }
+  s.sample.mask = mask_of(s.sample.valid);
 }
 
 // The first measurement of an axis sets its state.
@@ -150,23 +144,21 @@ void Engine::begin_axes(const Step& s) noexcept {
   // What the rate did in a gap nobody knows: the filter at rest has to stand by what is measured now.
   if (follows && !f.moving && s.sample.valid != 0 && s.dt_s > kShortGap * period_s_) {
     f.moving = true;
-    f.failures = 0.0;
+    f.failed_nats = 0.0;
     f.mix.begin_from_rest();
     f.change.begin();
   }
   const std::uint32_t first = s.sample.valid & ~started_;
   if (first == 0) return;
-  rest_->shift_to(s.in.rate_radps, first);
-  for (std::size_t a = 0; a < axes_; ++a)
-    if ((first >> a & 1U) != 0) f.trackers.seed(a, s.in.rate_radps[a]);
+  rest_->shift_to(s.sample.rate, first);
+  f.trackers.seed(s.sample.rate, mask_of(first));
   // An axis that comes late is one that begins, and all share one gain.
   if (follows && started_ != 0) {
-    rest_->set_variance(mean_noise());
+    rest_->set_variance(shares_.mean_noise);
     f.since_moved = 0.0;
     f.moving = true;
     f.trackers.begin();
-    for (std::size_t a = 0; a < axes_; ++a)
-      f.trackers.seed(a, (first >> a & 1U) != 0 ? s.in.rate_radps[a] : rest_->rate(a));
+    f.trackers.seed(rest_->rate(), Lanes::Ones());
     f.mix.begin(0);
     f.change.begin();
   }
@@ -176,23 +168,18 @@ void Engine::begin_axes(const Step& s) noexcept {
 void Engine::weigh(Step& s) noexcept {
   Sample& m = s.sample;
   const bool smooths = settings_.wideband == "noise";
-  const double projected = rest_->measurement_variance() / mean_noise();
+  const double projected = rest_->measurement_variance() / shares_.mean_noise;
   m.rest_factor = 1.0 + projected / s.noise_scale;
   m.log_rest_factor = logarithm(m.rest_factor);
   m.rest_gain = std::min(1.0, projected / (projected + s.noise_scale));
-  m.slow = std::max(1.0, rest_->rule().measurement_noise() / settings_.measurement_noise);
-  for (std::size_t a = 0; a < axes_; ++a) {
-    const auto i = static_cast<Eigen::Index>(a);
-    m.scale[i] = noise_[a].tested() * s.noise_scale * (smooths ? noise_[a].heard() : 1.0);
-    if ((m.valid >> a & 1U) == 0) continue;
-    m.mask[i] = 1.0;
-    m.rate[i] = s.in.rate_radps[a];
-    m.innovation[i] = s.in.rate_radps[a] - rest_->measurement(a);
-    m.inverse[i] = 1.0 / m.scale[i];
-    m.covered_s[i] = s.in.covered_s[a] > 0.0 ? s.in.covered_s[a] : s.dt_s;
-  }
+  m.scale = of_noise(&Noise::tested) * s.noise_scale;
+  if (smooths) m.scale *= of_noise(&Noise::heard);
+  m.innovation = m.mask * (m.rate - rest_->measurement());
+  m.inverse = m.mask / m.scale;
+  const Lanes covered = to_lanes(s.in.covered_s);
+  m.covered_s = (covered > 0.0).select(covered, s.dt_s);
   m.surprise = m.innovation * m.innovation * m.inverse / m.rest_factor;
-  s.out.innovation_radps = {m.innovation[0], m.innovation[1], m.innovation[2]};
+  s.out.innovation_radps = to_axes(m.innovation);
 }
 
 void Engine::follow(Step& s) noexcept {
@@ -228,45 +215,36 @@ Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
   // Where nothing follows the motion nothing tells an outlier from it.
   if (follow_.moving && follow_.mix.raw()) return Outliers::Verdict::usual;
   // Nor behind a gap.
-  for (std::size_t a = 0; a < axes_; ++a)
-    if ((s.sample.valid >> a & 1U) != 0 && trackers.since(a) > kShortGap) {
-      follow_.outliers.end_run();
-      return Outliers::Verdict::usual;
-    }
+  if (greatest(s.sample.mask * trackers.since()) > kShortGap) {
+    follow_.outliers.end_run();
+    return Outliers::Verdict::usual;
+  }
   Lanes least = s.sample.surprise;
-  // At rest the raw one, a parabola through three measurements, predicts nothing better than others.
-  for (std::size_t j = follow_.moving ? 0 : 1; j < trackers.size(); ++j) {
+  // The raw one, a parabola through three measurements, predicts nothing better than others.
+  for (std::size_t j = 1; j < trackers.size(); ++j) {
     if (!trackers.predicts(j)) {
       least.setZero();
       break;
     }
     const Lanes error = s.sample.rate - trackers.rate(j);
-    Lanes square = error * error * s.sample.inverse / trackers.gains(j).factor;
-    for (std::size_t a = 0; a < axes_; ++a)  // what was missing is predicted worse
-      if (trackers.since(a) > 1.0)
-        square[static_cast<Eigen::Index>(a)] *= trackers.gains(j).factor / trackers.factor(j, a);
-    least = least.min(square);
+    least = least.min(error * error * s.sample.inverse / trackers.factor(j));
   }
+  // What shaking makes is no outlier among the like.
+  if (follow_.moving) least /= of_noise(&Noise::shaken);
   Eigen::Index worst = 0;
   const double most = least.maxCoeff(&worst);
   return follow_.outliers.take(most, s.sample, worst, follow_.moving, lag());
 }
 
-// So many measurements that nothing predicts are a new rate: followers begin with the last of them.
+// So many measurements that nothing predicts are a new rate: followers begin with this one.
 void Engine::jump(Step& s) noexcept {
   Follower& f = follow_;
   f.trackers.begin();
-  for (std::size_t a = 0; a < axes_; ++a) f.trackers.seed(a, f.published[static_cast<Eigen::Index>(a)]);
-  for (std::size_t i = 0; i + 1 < f.outliers.kept(); ++i) {
-    f.trackers.predict(1.0);
-    f.trackers.correct(f.outliers.kept(i), s.sample.valid);
-  }
+  f.trackers.seed(f.published, Lanes::Ones());
   f.trackers.predict(1.0);
   f.ledger.admit();
   f.outliers.end_run();
-  Lanes rate = f.published;
-  rate = (s.sample.mask > 0.0).select(s.sample.rate, rate);
-  move_rest(rate, s.sample.scale);
+  move_rest((s.sample.mask > 0.0).select(s.sample.rate, f.published), s.sample.scale);
   weigh(s);
   begin_to_move(s);
   f.mix.begin(0);
@@ -277,9 +255,9 @@ void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
   s.sample.short_rad = f.ledger.take_short_at_rest();
   std::optional<std::size_t> found =
-      f.change.take(f.trackers, s.sample, colour(), f.outliers.rarity(), lag());
+      f.change.take(f.trackers, s.sample, of_noise(&Noise::colour), f.outliers.rarity(), lag());
   if (found == ChangeTest::kShaking && settings_.wideband == "noise") found.reset();
-  f.trackers.correct(s.sample.rate, s.sample.valid);
+  f.trackers.correct(s.sample.rate, s.sample.mask);
   if (found) {
     begin_manoeuvre(s, *found);
     take(s, false);
@@ -294,15 +272,16 @@ void Engine::begin_to_move(Step& s) noexcept {
   s.out.flags |= kManoeuvre;
   if (!follow_.moving) ++health_.manoeuvres;
   follow_.moving = true;
-  follow_.failures = kSurelyMoves;
+  follow_.failed_nats = kEvidence;
 }
 
 void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   Follower& f = follow_;
   const bool shaking = tracker == ChangeTest::kShaking;
-  const double horizon = f.trackers.horizon(std::min(tracker, f.trackers.size() - 1));
+  // What nothing predicts may have gone on for as long as anything.
+  const std::size_t foresees = std::min(tracker, f.trackers.size() - 1);
   f.ledger.admit();
-  f.ledger.owe_late(f.change.angle(tracker), std::max(horizon, f.change.span(tracker)), f.settled);
+  f.ledger.owe_late(f.change.angle(foresees), f.trackers.horizon(foresees), f.settled);
   begin_to_move(s);
   f.mix.begin(shaking ? 0 : tracker);
   f.change.begin();
@@ -313,18 +292,17 @@ void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
 
 void Engine::follow_manoeuvre(Step& s) noexcept {
   Follower& f = follow_;
-  f.mix.take(f.trackers, s.sample, colour());
+  f.mix.take(f.trackers, s.sample, of_noise(&Noise::colour));
   take(s, false);
   publish_mix(s);
   if (f.mix.rest_failed()) {
     move_rest(s.rate, s.variance.min(s.sample.scale));
     f.mix.begin_rest();
-    f.failures += 1.0;
+    f.failed_nats += Mix::kFailed;
   }
   if (f.mix.rest_found()) {
     f.moving = false;
     f.change.begin();
-    if (f.failures >= kSurelyMoves) f.change.relax();
   }
 }
 
@@ -335,39 +313,29 @@ void Engine::take(Step& s, bool learn) noexcept {
     rest_->skip();
     return;
   }
-  RestFilter::Measured measured{s.in.rate_radps, m.valid, s.noise_scale, {1.0, 1.0, 1.0}};
+  RestFilter::Measured measured{m.rate, m.valid, s.noise_scale, Lanes::Ones()};
   if (settings_.follow_manoeuvres) {
     const Lanes most = kMostDeviations * (m.scale * m.rest_factor).sqrt();
-    const Lanes clipped = m.innovation.max(-most).min(most);
+    measured.rate += m.innovation.max(-most).min(most) - m.innovation;
     // The mean of all axes, whichever are measured: one gain is for all.
-    double mean = 0.0;
-    for (std::size_t a = 0; a < axes_; ++a) {
-      const auto i = static_cast<Eigen::Index>(a);
-      if ((m.valid >> a & 1U) != 0) measured.rate[a] = m.rate[i] - m.innovation[i] + clipped[i];
-      measured.share[a] = noise_[a].known() * (settings_.wideband == "noise" ? noise_[a].heard() : 1.0);
-      mean += measured.share[a] / static_cast<double>(axes_);
-    }
-    for (double& share : measured.share) share /= mean;
-    measured.noise_scale *= mean / settings_.measurement_noise;
+    measured.share = of_noise(&Noise::known);
+    if (settings_.wideband == "noise") measured.share *= of_noise(&Noise::heard);
+    const double of_all = mean(measured.share);
+    measured.share /= of_all;
+    measured.noise_scale *= of_all / settings_.measurement_noise;
   }
   // The first measurement sets the state: its innovation is zero and no evidence.
   rest_->update(measured, s.in.sequence, learn && follow_.since_moved > 0.0);
   follow_.since_moved += 1.0;
   if (!learn || !(rest_->covariance() > 0.0)) return;
+  const Lanes normalised = m.innovation / (rest_->covariance() * measured.share).sqrt();
   for (std::size_t a = 0; a < axes_; ++a)
-    if ((m.valid >> a & 1U) != 0)
-      grades_.take(
-          a, m.innovation[static_cast<Eigen::Index>(a)] / std::sqrt(rest_->covariance() * measured.share[a]),
-          health_);
+    if ((m.valid >> a & 1U) != 0) grades_.take(a, normalised[static_cast<Eigen::Index>(a)], health_);
 }
 
 void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
-  rest_->shift_to({rate[0], rate[1], rate[2]}, started_);
-  const Lanes share = noise_share();
-  double of_all = 0.0;
-  for (std::size_t a = 0; a < axes_; ++a)
-    of_all += variance[static_cast<Eigen::Index>(a)] / share[static_cast<Eigen::Index>(a)];
-  of_all /= static_cast<double>(axes_);
+  rest_->shift_to(rate, started_);
+  const double of_all = mean(variance / shares_.noise);
   // Colour and lines that a larger model has found stay known.
   if (rest_->rate_alone() || of_all > rest_->variance()) rest_->set_variance(of_all);
   follow_.since_moved = 0.0;

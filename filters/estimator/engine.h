@@ -32,9 +32,9 @@ class Follower {
   Mix mix;
   Ledger ledger;
   bool moving = true;  // nobody knows at the beginning: rest has to be found
-  // Of the filter at rest since nothing was known. A start at rest looks like a motion, and is called one only once
-  // there are so many failures (6 nats each) that chance does not explain them (18 nats).
-  double failures = 0.0;
+  // Nats by which the filter at rest has failed since nothing was known. A start at rest looks like a motion, and is
+  // called one only once chance does not explain them.
+  double failed_nats = 0.0;
   double since_moved = 0.0;         // samples that the filter at rest has had since it was moved
   double at_rest_for = 0.0;         // samples since rest was found
   bool settled = false;             // the filter at rest gets back by itself what it lags behind by
@@ -48,7 +48,7 @@ class Engine {
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
   void restart() noexcept;
   void expect_noise(const Axes& share) noexcept;
-  void expect_walk(const std::optional<Axes>& share) noexcept { walk_share_ = share; }
+  void expect_walk(const std::optional<Axes>& share) noexcept;
   void learn_walk(double ratio, double samples) noexcept;
   void owe(const Axes& angle_rad) noexcept;
   [[nodiscard]] Axes owed() const noexcept;
@@ -56,8 +56,6 @@ class Engine {
   [[nodiscard]] LearnedNoise learned() const noexcept;
 
  private:
-  // Samples after which a filter that was moved is one at rest again, and that may be lost in a row at rest.
-  static constexpr double kRestMemory = 64.0, kShortGap = 16.0;
   // What one step knows.
   struct Step {
     const EstimatorInput& in;
@@ -68,6 +66,13 @@ class Engine {
     Lanes rate = Lanes::Zero(), variance = Lanes::Zero();
     double gain = 0.0;
     bool outlier = false;
+  };
+
+  // The noise of each axis and its walk, over the means of all axes.
+  struct Shares {
+    double mean_noise = 1.0;  // (rad/s)^2
+    Lanes noise = Lanes::Ones(), walk = Lanes::Ones();
+    std::optional<Axes> expected_walk;
   };
 
   void screen(Step& s) noexcept;
@@ -92,18 +97,18 @@ class Engine {
   void refresh_lag() noexcept;
   [[nodiscard]] bool rests(const Step& s) const noexcept;
   [[nodiscard]] double lag() const noexcept;
-  [[nodiscard]] double mean_noise() const noexcept;
-  [[nodiscard]] Lanes noise_share() const noexcept;
-  [[nodiscard]] Lanes walk_share() const noexcept;
-  [[nodiscard]] Lanes colour() const noexcept;
-  [[nodiscard]] Lanes rest_rate() const noexcept;
+  // Over the axes of the sensor.
+  [[nodiscard]] double mean(const Lanes& of) const noexcept;
+  void refresh_shares() noexcept;
+  // One figure of each axis' noise; 1 where the sensor has no axis.
+  [[nodiscard]] Lanes of_noise(double (Noise::*figure)() const noexcept) const noexcept;
 
   FilterSettings settings_;
   std::size_t axes_;
   double period_s_;
   std::unique_ptr<RestFilter> rest_;
   std::array<Noise, kMaxAxes> noise_;
-  std::optional<Axes> walk_share_;
+  Shares shares_;
   Walk walk_;
   Follower follow_;
   Unmeasured unmeasured_;

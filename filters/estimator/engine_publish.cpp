@@ -11,10 +11,6 @@ namespace {
 // Samples between refreshes of the settled filter's lag, by the sequence so that a replay has them where the
 // run had.
 constexpr std::uint64_t kLagEvery = 256;
-// Samples after which a filter that was moved shows how long the trackers have to be.
-constexpr double kReachAfter = 256.0;
-// Trackers as long as this take part whatever the lag: they follow motions that begin slowly.
-constexpr double kLeastReach = 48.0;
 // Largest rate of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 deg/s.
 constexpr double kMostRestRate = 0.02;
 // Lags of rest after which the end of a manoeuvre, and where it moved the filter to, have faded.
@@ -24,36 +20,31 @@ constexpr double kMostPaid = 0.5;
 // Known noise is replaced where a stretch differs by this factor.
 constexpr double kOtherNoise = 2.0;
 // Louder noise than is known has to be white for so long, and for two stretches.
-constexpr double kLouder_s = 60.0, kLouderSamples = 8192.0, kStretch = 4096.0;
+constexpr double kLouder_s = 60.0, kLouderSamples = 8192.0;
 
 }  // namespace
 
 // Half of the variance is the measurements' noise, more where it is coloured, and half the walk's.
 void Engine::publish_rest(Step& s) noexcept {
-  s.rate = rest_rate();
+  s.rate = rest_->rate();
   s.gain = rest_->gain();
   s.variance.setConstant(rest_->variance());
   if (!settings_.follow_manoeuvres) return;
-  const Lanes noise = noise_share(), walk = walk_share();
-  for (std::size_t a = 0; a < axes_; ++a) {
-    const auto i = static_cast<Eigen::Index>(a);
-    double wide = follow_.change.wide(follow_.trackers, a, lag());
-    // The width is that of the known noise, of which a filter that follows coloured noise leaves less to its
-    // rule.
-    if (wide > 1.0) wide *= settings_.measurement_noise / rest_->rule().measurement_noise();
-    s.variance[i] *= 0.5 * (walk[i] * (learns_walk_ ? wide : 1.0) + noise[i] * wide);
-    s.variance[i] += follow_.change.unseen(a) + noise_[a].rounding();
-  }
+  Lanes wide = follow_.change.wide(follow_.trackers, lag());
+  // The width is that of the known noise, of which a filter that follows coloured noise leaves less to its
+  // rule.
+  if (greatest(wide) > 1.0)
+    wide = (wide > 1.0).select(wide * settings_.measurement_noise / rest_->rule().measurement_noise(), wide);
+  const Lanes walk = learns_walk_ ? (shares_.walk * wide).eval() : shares_.walk;
+  s.variance *= 0.5 * (walk + shares_.noise * wide);
+  s.variance += follow_.change.unseen() + of_noise(&Noise::rounding);
 }
 
 void Engine::publish_mix(Step& s) noexcept {
-  Lanes scale = s.sample.scale;
   // A measurement's variance as it is heard: what is louder may be noise.
-  for (std::size_t a = 0; a < axes_; ++a)
-    scale[static_cast<Eigen::Index>(a)] =
-        std::max(scale[static_cast<Eigen::Index>(a)], noise_[a].known() * noise_[a].louder() * s.noise_scale);
-  const Mix::Published mix =
-      follow_.mix.publish(follow_.trackers, rest_rate(), rest_->variance() * noise_share(), scale);
+  const Lanes heard = of_noise(&Noise::known) * of_noise(&Noise::louder) * s.noise_scale;
+  const Mix::Published mix = follow_.mix.publish(
+      follow_.trackers, rest_->rate(), rest_->variance() * shares_.noise, s.sample.scale.max(heard));
   s.rate = mix.rate;
   s.variance = mix.variance;
   s.gain = mix.gain + follow_.mix.rest_weight() * rest_->gain();
@@ -81,7 +72,7 @@ void Engine::pay(Step& s) noexcept {
   // What a gap hides is no angle.
   const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
   Lanes most = Lanes::Constant(1e300);
-  if (follows) most = kMostPaid * (rest_->variance() * noise_share()).sqrt();
+  if (follows) most = kMostPaid * (rest_->variance() * shares_.noise).sqrt();
   const Lanes paid = ledger.pay(most, dt_s);
   s.rate += paid;
   if (follows) s.variance = s.variance.max(paid * paid);
@@ -91,9 +82,7 @@ bool Engine::rests(const Step& s) const noexcept {
   if (!settings_.follow_manoeuvres || follow_.moving || s.outlier || s.sample.valid == 0 ||
       follow_.since_moved < kRestMemory || follow_.change.suspected())
     return false;
-  for (std::size_t a = 0; a < axes_; ++a)
-    if ((started_ >> a & 1U) != 0 && !(std::abs(rest_->rate(a)) <= kMostRestRate)) return false;
-  return true;
+  return (rest_->rate().abs() * mask_of(started_) <= kMostRestRate).all();
 }
 
 // The noise: at rest its walk, and R where that is less than is known; in a manoeuvre R, where what looks
@@ -103,7 +92,7 @@ void Engine::learn(const Step& s) noexcept {
   const bool rest = (s.out.flags & kAtRest) != 0, gap = s.dt_s > kShortGap * period_s_;
   if (gap || (rest && !follow_.moving && s.noise_scale != 1.0)) walk_.break_off();
   if (s.outlier || (!rest && !follow_.moving)) return;
-  walk_.set_stretch(rest ? kStretch : std::max(kLouderSamples, kLouder_s / period_s_));
+  walk_.set_stretch(rest ? Walk::kStretch : std::max(kLouderSamples, kLouder_s / period_s_));
   walk_.take(s.in.rate_radps, s.sample.valid, rest);
   const std::optional<Walk::Found> found = walk_.take_news();
   if (!found) return;
@@ -116,33 +105,29 @@ void Engine::learn(const Step& s) noexcept {
       other = true;
     }
   }
-  if (other) rest_->rule().restart();
+  if (other) {
+    refresh_shares();
+    rest_->rule().restart();
+  }
   if (!learns_walk_) return;
-  settings_.process_noise = found->ratio * mean_noise() / period_s_;
+  settings_.process_noise = found->ratio * shares_.mean_noise / period_s_;
   rest_->retune(settings_.process_noise);
 }
 
 // The filter's variance is of the axes that are measured.
 void Engine::know_unmeasured(const Step& s, double grown) noexcept {
-  const Lanes walk = walk_share();
-  Axes rate{}, variance{};
-  for (std::size_t a = 0; a < axes_; ++a) {
-    rate[a] = s.rate[static_cast<Eigen::Index>(a)];
-    variance[a] = s.variance[static_cast<Eigen::Index>(a)];
-  }
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     if ((s.sample.valid >> a & 1U) != 0)
-      unmeasured_.measure(a, s.gain, variance[a], s.sample.rate[i] - s.rate[i], s.sample.scale[i]);
+      unmeasured_.measure(a, s.gain, s.variance[i], s.sample.rate[i] - s.rate[i], s.sample.scale[i]);
     else if (s.sample.valid == 0 && !follow_.moving)
-      unmeasured_.miss_with_all(a, grown * walk[i]);
+      unmeasured_.miss_with_all(a, grown * shares_.walk[i]);
     else if ((started_ >> a & 1U) != 0)
-      unmeasured_.miss(a, grown * walk[i], rate, variance);
+      unmeasured_.miss(a, grown * shares_.walk[i], to_axes(s.rate), to_axes(s.variance));
   }
 }
 
 void Engine::publish(const Step& s) noexcept {
-  const Lanes share = noise_share();
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     const double variance = unmeasured_.variance(a, s.variance[i]);
@@ -151,7 +136,8 @@ void Engine::publish(const Step& s) noexcept {
     // does.
     s.out.variance_rad2ps2[a] = variance >= 0.0 ? variance : settings_.measurement_noise;
     s.out.gain[a] = s.gain;
-    s.out.innovation_variance[a] = rest_->covariance() * (settings_.follow_manoeuvres ? share[i] : 1.0);
+    s.out.innovation_variance[a] =
+        rest_->covariance() * (settings_.follow_manoeuvres ? shares_.noise[i] : 1.0);
     health_.measurement_noise[a] =
         settings_.follow_manoeuvres
             ? rest_->rule().measurement_noise() * noise_[a].known() / settings_.measurement_noise
@@ -170,8 +156,7 @@ void Engine::refresh_lag() noexcept {
   if (!std::isfinite(now.lag) || !std::isfinite(now.correlation)) return;
   settled_lag_ = now.lag;
   health_.correlation_time_s = now.correlation * period_s_;
-  if (follow_.since_moved > kReachAfter || !follow_.moving)
-    follow_.trackers.reach(std::max(kLeastReach, lag()));
+  follow_.trackers.reach(lag());
 }
 
 }  // namespace ifog

@@ -60,7 +60,7 @@ class Ledger {
   void admit() noexcept { debt_ += std::exchange(doubt_, Lanes::Zero()); }
   // A usual measurement at rest: the outliers before it were none, the less in doubt the longer ago.
   void dismiss() noexcept {
-    const Lanes dismissed = doubt_ / kDoubtful;
+    const Lanes dismissed = doubt_ / kShortGap;
     doubt_ -= dismissed;
     at_rest_ += dismissed;
   }
@@ -79,16 +79,14 @@ class Ledger {
   }
   // Samples that the followers of a manoeuvre look back on, and the lag of the filter at rest.
   void pace(double followers) noexcept { pace_ = std::max(kQuickest, 0.5 * followers); }
-  void pace_tail(double lag) noexcept { tail_pace_ = std::max(kQuickestTail, lag); }
+  void pace_tail(double lag) noexcept { tail_pace_ = std::max(kQuickest, lag); }
   [[nodiscard]] Lanes owed() const noexcept { return debt_ + late_ + tail_ + doubt_; }
 
  private:
-  static constexpr double kQuickest = 16.0;                              // samples
-  static constexpr double kOwedSamples = 1024.0, kQuickestTail = 100.0;  // samples
-  // Samples for which an outlier may turn out to have been the edge of a motion.
-  static constexpr double kDoubtful = 16.0;
+  static constexpr double kQuickest = 16.0;       // samples
+  static constexpr double kOwedSamples = 1024.0;  // samples
 
-  double period_s_, pace_ = kQuickest, late_pace_ = kQuickest, tail_pace_ = kQuickestTail;
+  double period_s_, pace_ = kQuickest, late_pace_ = kQuickest, tail_pace_ = kQuickest;
   Lanes debt_ = Lanes::Zero(), late_ = Lanes::Zero(), tail_ = Lanes::Zero(), doubt_ = Lanes::Zero(),
         at_rest_ = Lanes::Zero();
 };

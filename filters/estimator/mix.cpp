@@ -10,11 +10,9 @@
 namespace ifog {
 namespace {
 
-constexpr double kMostNats = 12.5;    // of one measurement: five standard deviations
-constexpr double kLongerPrior = 2.0;  // nats: motions are smooth more often than not
-constexpr double kRestPrior = 4.0;    // nats that the filter at rest has to be ahead
-constexpr double kMostAhead = 12.0;
-constexpr double kLeastRest = 64.0;  // samples, before rest is believed
+// Nats by which the longer of two neighbours is likelier, as motions are smooth more often than not, and by which the
+// filter at rest is less likely than they are, as something moved.
+constexpr double kPrior = 2.0;
 // Share of the difference of two neighbours' variances that white noise makes in their difference.
 constexpr double kCommon = 0.65;
 // Twice the correlation of neighbours' errors, and what payments for the angle add.
@@ -50,7 +48,7 @@ void Mix::begin_rest() noexcept {
 }
 
 bool Mix::rest_found() const noexcept {
-  return least(rest_ratio_) > kFound && rest_age_ >= std::max(kLeastRest, 3.0 * failed_after_);
+  return least(rest_ratio_) > kFound && rest_age_ >= std::max(kRestMemory, 3.0 * failed_after_);
 }
 
 void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexcept {
@@ -78,21 +76,21 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   const Lanes left = (1.0 - now.rest_gain) * now.innovation;
   const Lanes rest = left * left * now.inverse + 2.0 * now.rest_gain;
   const Lanes ahead = (0.5 * (mean - rest)).max(-kMostNats).min(kMostNats) / colour.sqrt();
-  rest_ratio_ = (now.mask > 0.0).select((rest_ratio_ + ahead).min(kMostAhead), rest_ratio_);
+  rest_ratio_ = (now.mask > 0.0).select((rest_ratio_ + ahead).min(kMostNats), rest_ratio_);
   rest_age_ += 1.0;
   // Whether the raw measurement is better is asked at once, as broadband motion stays no longer; among trackers
   // the choice does not depend on the noise of what it is made for.
   const auto compare = [&](std::size_t j) {
     link_[j] += now.mask * (0.5 * (risk[j - 1] - risk[j])).max(-kMostNats).min(kMostNats) -
-                link_[j] / std::max(5.0, 3.0 * trackers.length(j - 1));
+                link_[j] * (1.0 / std::max(5.0, 3.0 * trackers.length(j - 1)));
   };
   compare(1);
-  trackers.correct(now.rate, now.valid);
-  rest_weight_ = rest_age_ >= 3.0 * failed_after_ ? certain(least(rest_ratio_) - kRestPrior) : 0.0;
+  trackers.correct(now.rate, now.mask);
+  rest_weight_ = rest_age_ >= 3.0 * failed_after_ ? certain(least(rest_ratio_) - kPrior) : 0.0;
   double remains = 1.0 - rest_weight_;
   gain_ = 0.0;
   for (std::size_t j = 0; j < size; ++j) {
-    const double longer = j + 1 < size ? remains * certain(least(link_[j + 1]) + kLongerPrior) : 0.0;
+    const double longer = j + 1 < size ? remains * certain(least(link_[j + 1]) + kPrior) : 0.0;
     weight_[j] = remains - longer;
     remains = longer;
     gain_ += weight_[j] * (trackers.predicts(j) ? trackers.gains(j).rate : 1.0);
@@ -102,7 +100,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
     compared_[j] = std::min(compared_[j] + 1.0, 6.0 * trackers.length(j));
     const Lanes apart = trackers.rate(j) - trackers.rate(j - 1);
     const double common = kCommon * std::max(0.0, trackers.gains(j - 1).output - trackers.gains(j).output);
-    bias_[j] += now.mask * (apart * apart - common * now.scale - bias_[j]) / compared_[j];
+    bias_[j] += now.mask * (apart * apart - common * now.scale - bias_[j]) * (1.0 / compared_[j]);
   }
 }
 
@@ -133,7 +131,7 @@ Mix::Published Mix::publish(const Trackers& trackers, const Lanes& rest, const L
 }
 
 double Mix::length(const Trackers& trackers, double lag) const noexcept {
-  double length = rest_weight_ * 0.25 * lag;
+  double length = rest_weight_ * lag;
   for (std::size_t j = 0; j < trackers.size(); ++j) length += weight_[j] * trackers.length(j);
   return length;
 }

@@ -25,6 +25,9 @@ class Mix {
     double gain = 0.0;
   };
 
+  // The filter at rest is wrong if it is behind by so many nats.
+  static constexpr double kFailed = 6.0;
+
   // found: the tracker that predicts the motion.
   void begin(std::size_t found) noexcept;
   // The filter at rest has been right until now, and is left as soon as a measurement contradicts it.
@@ -50,7 +53,7 @@ class Mix {
  private:
   // Least over the axes measured; 0 before any is.
   [[nodiscard]] double least(const Lanes& lanes) const noexcept;
-  static constexpr double kFailed = 6.0, kFound = 9.0;  // nats
+  static constexpr double kFound = 9.0;  // nats
   static constexpr double kRawGain = 0.7;
 
   std::array<Lanes, Trackers::kMost> link_{}, bias_{};

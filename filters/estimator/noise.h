@@ -11,8 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
+#include "filters/estimator/sample.h"
 #include "filters/random/log_exp.h"
 
 namespace ifog {
@@ -32,15 +34,14 @@ class Noise {
     if (steps < 0.5 || steps > 1.5) in_row_ = 0;
     if (in_row_ >= 3) {
       const double third = rate - 3.0 * last_[2] + 3.0 * last_[1] - last_[0];
-      // Once a level is known an outlier counts for at most five standard deviations.
+      // An outlier counts for at most five standard deviations.
       const double square = third * third / kThird;
-      fast_ +=
-          (std::min(square, taken_ < kFew ? square : kClip * fast_) - fast_) / std::min(kFast, taken_ + 4.0);
+      fast_ += (std::min(square, kMostSquare * fast_) - fast_) / std::min(kFast, taken_ + 4.0);
       // The usual level is not learned while it is surely exceeded.
       if (louder() == 1.0)
-        slow_ += (std::min(square, taken_ < kFew ? square : kClip * slow_) - slow_) /
-                 std::min(kSlow, taken_ + 1.0);
+        slow_ += (std::min(square, kMostSquare * slow_) - slow_) / std::min(kSlow, taken_ + 1.0);
       taken_ += 1.0;
+      refresh_colour();
     }
     in_row_ = std::min(in_row_ + 1, 3);
     last_ = {last_[1], last_[2], rate};
@@ -48,50 +49,55 @@ class Noise {
   void set_known(double noise) noexcept {
     known_ = noise;
     slow_ = fast_;
+    refresh_colour();
   }
   [[nodiscard]] double known() const noexcept { return known_; }
   // R for tests of motion: a rate halfway between two steps of the converter has d^2 / 4 about its mean.
   [[nodiscard]] double tested() const noexcept {
-    return digit_ < kNoDigit ? std::max(known_, 0.25 * digit_ * digit_) : known_;
+    return std::isfinite(digit_) ? std::max(known_, 0.25 * digit_ * digit_) : known_;
   }
   // By which third differences are now above their usual level: 1 unless by more than chance.
   [[nodiscard]] double louder() const noexcept {
-    return taken_ > kFast && fast_ > kSurelyLouder * usual() ? fast_ / usual() : 1.0;
+    return taken_ > kFast && heard() > kSurelyLouder ? heard() : 1.0;
   }
   // The same without that doubt, 1 at least: for who takes all that is louder for noise.
   [[nodiscard]] double heard() const noexcept { return std::max(1.0, fast_ / usual()); }
+  // By which third differences are now above the known noise, 1 at least: broadband motion is in them.
+  [[nodiscard]] double shaken() const noexcept { return std::max(1.0, fast_ / known_); }
   // Variance of the known noise over that of equally rough white noise; 1 within chance.
-  [[nodiscard]] double colour() const noexcept {
-    const double chance = std::sqrt(kThirdVariance / std::clamp(taken_, 1.0, kSlow));
-    const double ratio = known_ / usual();
-    return taken_ >= kFew && ratio > 1.0 + kSurely * chance ? ratio : 1.0;
-  }
+  [[nodiscard]] double colour() const noexcept { return colour_; }
   // Variance of a mean of coarse steps d, averaged over the true level: that of the sawtooth's first harmonic,
   // d / pi exp(-2 pi^2 R / d^2) (Widrow and Kollar, "Quantization Noise", 2008).
   [[nodiscard]] double rounding() const noexcept {
-    if (digit_ >= kNoDigit) return 0.0;
+    if (!std::isfinite(digit_)) return 0.0;
     // R that was learned includes the steps' own d^2 / 12; one that is less than that is of the sensor alone.
     const double d2 = digit_ * digit_, own = of_steps(), white = known_ > 1.2 * own ? known_ - own : known_;
-    const double pi_squared = std::numbers::pi * std::numbers::pi;
-    return d2 / (2.0 * pi_squared) * exponential(-std::min(4.0 * pi_squared * white / d2, 600.0));
+    const double pi_squared = std::numbers::pi * std::numbers::pi, exponent = 4.0 * pi_squared * white / d2;
+    return exponent < kNothing ? d2 / (2.0 * pi_squared) * exponential(-exponent) : 0.0;
   }
 
  private:
+  void refresh_colour() noexcept {
+    const double chance = std::sqrt(kThirdVariance / std::clamp(taken_, 1.0, kSlow));
+    const double ratio = known_ / usual();
+    colour_ = taken_ >= kFew && ratio > 1.0 + kSurely * chance ? ratio : 1.0;
+  }
   // Variance of one of the converter's steps.
-  [[nodiscard]] double of_steps() const noexcept { return digit_ < kNoDigit ? digit_ * digit_ / 12.0 : 0.0; }
+  [[nodiscard]] double of_steps() const noexcept {
+    return std::isfinite(digit_) ? digit_ * digit_ / 12.0 : 0.0;
+  }
   // R by third differences. A converter at rest between two changes of its last digit shows none.
   [[nodiscard]] double usual() const noexcept { return std::max({slow_, 1e-9 * known_, of_steps()}); }
 
   static constexpr double kThird = 20.0;                             // 1 + 9 + 9 + 1
   static constexpr double kFew = 8.0, kFast = 32.0, kSlow = 1024.0;  // samples
-  static constexpr double kClip = 25.0;
   // n overlapping third differences of white noise have a mean square of variance 2 (1 + 1.3) / n R^2.
   static constexpr double kThirdVariance = 4.6, kSurely = 3.0;
   // The mean square of 32 overlapping third differences scatters by 0.4: four standard deviations.
   static constexpr double kSurelyLouder = 2.6;
-  static constexpr double kNoDigit = 1e300;
+  static constexpr double kNothing = 40.0;  // e^-40 of a variance is less than its rounding
 
-  double known_, slow_, fast_, taken_ = 0.0, digit_ = kNoDigit;
+  double known_, slow_, fast_, taken_ = 0.0, colour_ = 1.0, digit_ = std::numeric_limits<double>::infinity();
   std::array<double, 3> last_{};
   int in_row_ = 0;
 };

@@ -7,31 +7,29 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <span>
 
 #include "filters/estimator/sample.h"
+#include "filters/random/log_exp.h"
 
 namespace ifog {
 
 class Outliers {
  public:
   enum class Verdict { usual, waits, jump };
-  static constexpr std::size_t kKept = 8;
 
   // least: the smallest square of an innovation over its variance that any filter has, the worst axis';
   // now: the measurement; lag: of the filter at rest, samples.
   [[nodiscard]] Verdict take(double least, const Sample& now, Eigen::Index axis, bool moving,
                              double lag) noexcept {
     const Lanes& rate = now.rate;
-    seen_ = std::min(seen_ + 1.0, kMemory);
+    seen_ = std::min(seen_ + 1.0, kTailMemory);
     // Where they are frequent at rest they may be blows, whose angle counts.
-    const double most = moving ? kFarMoving : share_ > kRare ? kFarFrequent : kFar;
+    const double most = !moving && share_ > kRare ? kFarSquare : kMostSquare;
     if (least <= most || seen_ < kYoung) {
       // A run lasts until its own axis is measured again, if that is soon.
-      if (run_ > 0 && (now.valid >> axis_ & 1U) == 0 && ++waited_ < kLongestWait) return Verdict::usual;
-      if (!moving) share_ += ((least > kFar ? 1.0 : 0.0) + static_cast<double>(run_) - share_) / seen_;
+      if (run_ > 0 && (now.valid >> axis_ & 1U) == 0 && ++waited_ < kShortGap) return Verdict::usual;
+      if (!moving) share_ += ((least > kMostSquare ? 1.0 : 0.0) + static_cast<double>(run_) - share_) / seen_;
       run_ = 0;
       return Verdict::usual;
     }
@@ -40,38 +38,31 @@ class Outliers {
       squares_ = least;
     } else {
       squares_ += least;
-      const double apart = rate[axis] - kept_[(run_ - 1) % kKept][axis];
-      nearness_ += 0.5 * std::log(squares_ / static_cast<double>(run_ + 1) /
-                                  std::max(2.0, apart * apart / now.scale[axis]));
+      const double apart = rate[axis] - last_[axis];
+      nearness_ += 0.5 * logarithm(squares_ / static_cast<double>(run_ + 1) /
+                                   std::max(2.0, apart * apart / now.scale[axis]));
     }
-    kept_[run_ % kKept] = rate;
+    last_ = rate;
     axis_ = axis;
     waited_ = 0;
     ++run_;
     // Twice the evidence is no noise's, however far apart they are.
     const double evidence = static_cast<double>(run_) * rarity();
-    const bool near = moving || nearness_ >= 0.5 * std::log(lag) || evidence > 2.0 * kEvidence;
+    const bool near = moving || nearness_ >= 0.5 * logarithm(lag) || evidence > 2.0 * kEvidence;
     return evidence > kEvidence && near ? Verdict::jump : Verdict::waits;
   }
   // Nats by which an outlier at rest is rare.
   [[nodiscard]] double rarity() const noexcept {
-    return std::min(kMostRarity, -std::log(std::max(share_, 1e-8)));
+    return std::min(kMostNats, -logarithm(std::max(share_, 1e-8)));
   }
   [[nodiscard]] std::size_t run() const noexcept { return run_; }
-  // The i-th of the run's last measurements, oldest first.
-  [[nodiscard]] std::size_t kept() const noexcept { return std::min(run_, kKept); }
-  [[nodiscard]] const Lanes& kept(std::size_t i) const noexcept { return kept_[(run_ - kept() + i) % kKept]; }
   void end_run() noexcept { run_ = 0; }
 
  private:
-  // Squares of standard deviations.
-  static constexpr double kFar = 25.0, kFarMoving = 30.0, kFarFrequent = 400.0;
-  static constexpr double kMostRarity = 12.5, kEvidence = 18.0;  // nats
-  static constexpr double kRare = 1e-3;                          // share of all measurements
-  static constexpr double kMemory = 8192.0, kYoung = 16.0;       // samples
-  static constexpr int kLongestWait = 16;                        // samples
+  static constexpr double kRare = 1e-3;   // share of all measurements
+  static constexpr double kYoung = 16.0;  // samples
 
-  std::array<Lanes, kKept> kept_{};
+  Lanes last_ = Lanes::Zero();  // of the run
   double seen_ = 0.0, share_ = 1e-8, nearness_ = 0.0, squares_ = 0.0;
   std::size_t run_ = 0;
   int waited_ = 0;         // samples of other axes since

@@ -15,11 +15,30 @@ namespace ifog {
 using Lanes = Eigen::Array<double, 4, 1>;
 static_assert(kMaxAxes < Lanes::SizeAtCompileTime);
 
+[[nodiscard]] inline Lanes to_lanes(const Axes& axes) noexcept { return {axes[0], axes[1], axes[2], 0.0}; }
+[[nodiscard]] inline Axes to_axes(const Lanes& lanes) noexcept { return {lanes[0], lanes[1], lanes[2]}; }
+// 1 in the lane of each axis of the set, else 0.
+[[nodiscard]] inline Lanes mask_of(std::uint32_t axes) noexcept {
+  return {static_cast<double>(axes & 1U), static_cast<double>(axes >> 1U & 1U),
+          static_cast<double>(axes >> 2U & 1U), 0.0};
+}
 // The axes that a sensor of so many has, bit i.
 [[nodiscard]] constexpr std::uint32_t axes_of_sensor(std::size_t axes) noexcept { return (1U << axes) - 1U; }
 
-// An innovation counts for five standard deviations at most where it is taken in or summed.
+// An innovation counts for five standard deviations at most where it is taken in or summed: as a square, and as
+// nats. One beyond is an outlier.
 inline constexpr double kMostDeviations = 5.0;
+inline constexpr double kMostSquare = kMostDeviations * kMostDeviations;
+inline constexpr double kMostNats = 0.5 * kMostSquare;
+// Where outliers are frequent, and where sizes are compared, those up to 20 standard deviations are measurements.
+inline constexpr double kFarSquare = 400.0;
+// Nats of evidence that decide: by chance once in 6e7 samples.
+inline constexpr double kEvidence = 18.0;
+// Samples after which a filter that was moved is one at rest again; and that may be lost in a row, or pass until
+// an outlier is explained.
+inline constexpr double kRestMemory = 64.0, kShortGap = 16.0;
+// Samples over which the shape of the noise is averaged: how often outliers come, and their fourth moment.
+inline constexpr double kTailMemory = 8192.0;
 
 struct Sample {
   std::uint32_t valid = 0;
@@ -33,7 +52,7 @@ struct Sample {
   Lanes covered_s = Lanes::Zero();
   Lanes short_rad = Lanes::Zero();  // angle that the filter at rest has fallen short of before it
   double rest_factor = 1.0, log_rest_factor = 0.0;  // variance of the filter's innovations over R
-  double rest_gain = 0.0, slow = 1.0;  // slow: R of the filter's rule over the known one, at least 1
+  double rest_gain = 0.0;
 };
 
 [[nodiscard]] inline double greatest(const Lanes& lanes) noexcept { return lanes.maxCoeff(); }

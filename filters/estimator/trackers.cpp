@@ -14,9 +14,6 @@ constexpr double kSpacing = 3.1622776601683795;
 // Memory, samples, of the second one: half of the raw measurement's weight. Shorter ones differ from that by
 // nothing.
 constexpr double kSecond = 4.5;
-// A parabola is prolonged over so many of its lengths at most: beyond, its variance exceeds a thousand times
-// R.
-constexpr double kMostLengths = 4.0;
 // Samples over which the usual distance between measurements is averaged.
 constexpr double kUsualMemory = 32.0;
 // The shortest four follow any motion that 200 samples show, whatever the filter at rest is.
@@ -31,7 +28,7 @@ Trackers::Gains fading_gains(double memory) {
 
 }  // namespace
 
-Trackers::Trackers(std::size_t axes) noexcept : axes_(axes) {
+Trackers::Trackers(std::size_t axes) noexcept : axes_(mask_of(axes_of_sensor(axes))) {
   for (std::size_t j = 0; j < kMost; ++j) {
     memory_[j] = j == 0 ? 1.0 : kSecond * std::pow(kSpacing, static_cast<double>(j - 1));
     horizon_[j] = std::max(5.0, 3.0 * memory_[j]);
@@ -86,17 +83,15 @@ void Trackers::set_gains(State& state, std::size_t j) const noexcept {
 
 // An axis that has been missing for longer than its parabola reaches keeps the rate at which that ended.
 void Trackers::prolong(State& state, double steps) const noexcept {
-  for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-    if (since_[a] > kMostLengths * state.length * usual_[a]) state.slope[a] = state.curvature[a] = 0.0;
-    state.rate[a] += steps * (state.slope[a] + steps * state.curvature[a]);
-    state.slope[a] += 2.0 * steps * state.curvature[a];
-  }
+  state.slope = ended(state).select(0.0, state.slope);
+  state.curvature = ended(state).select(0.0, state.curvature);
+  state.rate += steps * (state.slope + steps * state.curvature);
+  state.slope += 2.0 * steps * state.curvature;
 }
 
 [[gnu::flatten]] void Trackers::predict(double steps) noexcept {
   since_ += steps;
-  bool whole = even_ && steps == 1.0;
-  for (std::size_t a = 0; a < axes_; ++a) whole = whole && since_[static_cast<Eigen::Index>(a)] == 1.0;
+  const bool whole = even_ && steps == 1.0 && all_since_last();
   for (std::size_t j = 0; j < size_; ++j) {
     State& state = state_[j];
     if (!state.settled) set_gains(state, j);
@@ -109,10 +104,8 @@ void Trackers::prolong(State& state, double steps) const noexcept {
   }
 }
 
-[[gnu::flatten]] void Trackers::correct(const Lanes& rate, std::uint32_t valid_axes) noexcept {
-  even_ = (axes_of_sensor(axes_) & ~valid_axes) == 0;
-  for (Eigen::Index a = 0; a < static_cast<Eigen::Index>(axes_); ++a)
-    even_ = even_ && since_[a] == 1.0 && usual_[a] == 1.0;
+[[gnu::flatten]] void Trackers::correct(const Lanes& rate, const Lanes& mask) noexcept {
+  even_ = all_since_last() && (axes_ * (1.0 - mask + (usual_ - 1.0).abs())).sum() == 0.0;
   for (std::size_t j = 0; j < size_; ++j) {
     State& state = state_[j];
     const Gains& g = state.gains;
@@ -122,50 +115,45 @@ void Trackers::prolong(State& state, double steps) const noexcept {
       state.slope += g.slope * innovation;
       state.curvature += g.curvature * innovation;
     } else {
-      correct_some(state, rate, valid_axes);
+      correct_some(state, rate, mask);
     }
     state.age += 1.0;
     if (!state.settled) state.length = std::min(memory_[j], state.age / 3.0 + 1.0);
   }
-  for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-    if ((valid_axes >> a & 1U) == 0) continue;
-    usual_[a] += (std::min(since_[a], kUsualMemory) - usual_[a]) / kUsualMemory;
-    if (std::abs(usual_[a] - 1.0) < 1e-3) usual_[a] = 1.0;
-    since_[a] = 0.0;
+  if (!even_) {
+    usual_ += mask * (since_.min(kUsualMemory) - usual_) / kUsualMemory;
+    usual_ = ((usual_ - 1.0).abs() < 1e-3).select(1.0, usual_);
   }
+  since_ *= 1.0 - mask;
 }
 
 // The gains are those of steps of one sample. In units of nominal samples those of slope and curvature fall
 // with the distance of the measurements; left as they are, longer steps would put the poles outside the unit
 // circle.
-void Trackers::correct_some(State& state, const Lanes& rate, std::uint32_t valid_axes) noexcept {
+void Trackers::correct_some(State& state, const Lanes& rate, const Lanes& mask) noexcept {
   const Gains& g = state.gains;
-  for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-    if ((valid_axes >> a & 1U) == 0) continue;
-    const double innovation = rate[a] - state.rate[a], step = std::max(since_[a], usual_[a]);
-    // What a parabola that has ended holds is not corrected but begun again.
-    const bool ended = since_[a] > kMostLengths * state.length * usual_[a];
-    state.rate[a] += (ended ? 1.0 : g.rate) * innovation;
-    state.slope[a] += ended ? 0.0 : g.slope / step * innovation;
-    state.curvature[a] += ended ? 0.0 : g.curvature / (step * step) * innovation;
-  }
+  const Lanes innovation = mask * (rate - state.rate), step = since_.max(usual_);
+  // What a parabola that has ended holds is not corrected but begun again.
+  state.rate += ended(state).select(innovation, g.rate * innovation);
+  state.slope += ended(state).select(0.0, g.slope / step * innovation);
+  state.curvature += ended(state).select(0.0, g.curvature / (step * step) * innovation);
 }
 
 // That of a parabola grows with the fourth power of how far it is prolonged, in lengths of what it goes
 // through.
-double Trackers::factor(std::size_t j, std::size_t axis) const noexcept {
+Lanes Trackers::factor(std::size_t j) const noexcept {
   const State& state = state_[j];
-  const double one = state.gains.factor, far = since(axis);
-  if (far == 1.0 || state.age <= 0.0) return one;
-  const double more = (state.length + far) / (state.length + 1.0), square = more * more;
-  return 1.0 + (one - 1.0) * square * square;
+  const double one = state.gains.factor;
+  if (state.age <= 0.0 || all_since_last()) return Lanes::Constant(one);
+  const Lanes more = (state.length + since_) / (state.length + 1.0);
+  return 1.0 + (one - 1.0) * more.square().square();
 }
 
-void Trackers::seed(std::size_t axis, double rate) noexcept {
-  const auto a = static_cast<Eigen::Index>(axis);
+void Trackers::seed(const Lanes& rate, const Lanes& mask) noexcept {
   for (State& state : state_) {
-    state.rate[a] = rate;
-    state.slope[a] = state.curvature[a] = 0.0;
+    state.rate = (mask > 0.0).select(rate, state.rate);
+    state.slope = (mask > 0.0).select(0.0, state.slope);
+    state.curvature = (mask > 0.0).select(0.0, state.curvature);
   }
 }
 

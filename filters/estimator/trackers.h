@@ -45,26 +45,24 @@ class Trackers {
   void begin_from(std::size_t tracker, std::size_t from) noexcept;
   // One step of so many nominal samples.
   void predict(double steps) noexcept;
-  void correct(const Lanes& rate, std::uint32_t valid_axes) noexcept;
-  // The axis' first measurement: it has no slope yet.
-  void seed(std::size_t axis, double rate) noexcept;
+  // mask: 1 for the axes that are measured, else 0.
+  void correct(const Lanes& rate, const Lanes& mask) noexcept;
+  // First measurements of the axes with mask 1: they have no slope yet.
+  void seed(const Lanes& rate, const Lanes& mask) noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
   // After predict() the rate one step ahead, after correct() the filtered one.
   [[nodiscard]] const Lanes& rate(std::size_t j) const noexcept { return state_[j].rate; }
   [[nodiscard]] const Gains& gains(std::size_t j) const noexcept { return state_[j].gains; }
-  // Prediction variance over R for an axis whose last measurement is since(axis) samples old.
-  [[nodiscard]] double factor(std::size_t j, std::size_t axis) const noexcept;
+  // Prediction variance over R of each axis, whose last measurement is since() samples old.
+  [[nodiscard]] Lanes factor(std::size_t j) const noexcept;
   [[nodiscard]] bool predicts(std::size_t j) const noexcept { return state_[j].age >= kParabola; }
-  [[nodiscard]] double age(std::size_t j) const noexcept { return state_[j].age; }
   // What it has of its memory by now, samples.
   [[nodiscard]] double length(std::size_t j) const noexcept { return state_[j].length; }
   // Samples over which it is compared with another filter: its impulse response has decayed.
   [[nodiscard]] double horizon(std::size_t j) const noexcept { return horizon_[j]; }
-  // Nominal samples since the axis was corrected; 1 when none is missing.
-  [[nodiscard]] double since(std::size_t axis) const noexcept {
-    return since_[static_cast<Eigen::Index>(axis)];
-  }
+  // Nominal samples since each axis was corrected; 1 when none is missing.
+  [[nodiscard]] const Lanes& since() const noexcept { return since_; }
 
  private:
   struct State {
@@ -78,9 +76,18 @@ class Trackers {
   void grow_to(State& state, std::size_t j, double age) const noexcept;
   void set_gains(State& state, std::size_t j) const noexcept;
   void prolong(State& state, double steps) const noexcept;
-  void correct_some(State& state, const Lanes& rate, std::uint32_t valid_axes) noexcept;
+  void correct_some(State& state, const Lanes& rate, const Lanes& mask) noexcept;
+  // Every axis was corrected at the last nominal sample.
+  [[nodiscard]] bool all_since_last() const noexcept { return (axes_ * (since_ - 1.0)).abs().sum() == 0.0; }
+  // Axes that have been missing for longer than the parabola reaches.
+  [[nodiscard]] auto ended(const State& state) const noexcept {
+    return since_ > kMostLengths * state.length * usual_;
+  }
 
-  std::size_t axes_;
+  // A parabola is prolonged over so many of its lengths at most: beyond, its variance exceeds a thousand times
+  // R.
+  static constexpr double kMostLengths = 4.0;
+  Lanes axes_;  // 1 for those that the sensor has
   std::array<double, kMost> memory_{}, horizon_{};
   std::array<Gains, kMost> fading_{};
   std::array<State, kMost> state_{};

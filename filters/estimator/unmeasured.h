@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "filters/settings/axes.h"
+#include "filters/estimator/sample.h"
 
 namespace ifog {
 
@@ -19,11 +19,11 @@ class Unmeasured {
     Lost& lost = lost_[axis];
     if (!lost.now) lost = {true, std::max(lost.variance, variances[axis]), 0.0, rates, variances};
     lost.variance += grown;
-    // What turns about the other axes may turn about this one.
+    // What turns about the other axes, by more than they have walked, may turn about this one.
     for (std::size_t a = 0; a < kMaxAxes; ++a) {
       if (a == axis || lost_[a].now) continue;
       const double moved = rates[a] - lost.rates[a];
-      if (moved * moved > kSurely * kSurely * (variances[a] + lost.variances[a] + lost.variance))
+      if (moved * moved > kMostSquare * (variances[a] + lost.variances[a] + lost.variance))
         lost.moved = std::max(lost.moved, moved * moved);
     }
   }
@@ -48,7 +48,6 @@ class Unmeasured {
   }
 
  private:
-  static constexpr double kSurely = 5.0;  // standard deviations, with what it has walked, that are a motion's
   struct Lost {
     bool now = false;
     double variance = 0.0, moved = 0.0;

@@ -24,20 +24,10 @@ constexpr std::size_t kMostColour = 3;
 constexpr double kMostExcess = 8.0;
 // Octaves from here on, 32 samples, are long: shaking has its angle's bound there.
 constexpr std::size_t kLong = 5;
-// An octave is never said to be further off than a tenth of its deviation, which heavy tails may make.
-constexpr double kTails = 0.1;
-// The likeliest ratio of one stretch scatters by a factor of three.
-constexpr double kStretchRatio = 8.0 * kMostRatio;
 // -2 log-likelihood by which two stretches surely differ: e^6.
 constexpr double kSurely = 12.0;
 // Difference of −2 log-likelihood that is one standard error wide.
 constexpr double kNearly = 1.0;
-// Blocks of all axes that bound a walk.
-constexpr double kLeastBlocks = 16.0;
-// Stretches in a row, 130 000 samples, that contradict what was recalled: it was of another sensor.
-constexpr int kContradicted = 64;
-// An innovation counts for at most three standard deviations once the scale is known.
-constexpr double kClip = 9.0;
 
 }  // namespace
 
@@ -129,9 +119,7 @@ void Walk::work_in(Axis& axis) noexcept {
   }
   const double variance = level.variance + ratios_[k] * kBlock * kBlock, factor = 1.0 + variance;
   const double innovation = axis.mean - level.value;
-  double square = innovation * innovation / factor;
-  if (axis.all.count > kLeastBlocks) square = std::min(square, kClip * axis.all.squares[k] / axis.all.count);
-  axis.lately.squares[k] += square;
+  axis.lately.squares[k] += innovation * innovation / factor;
   axis.lately.logs[k] += logarithm(factor);
   if (k == 0) axis.lately.count += 1.0;
   level.variance = variance / factor;
@@ -169,18 +157,13 @@ double Walk::white_noise(const Axis& axis, double ratio, std::size_t first) cons
   }
   if (!(weighted > 0.0)) return std::nan("");
   const double noise = weighted / total;
-  double misfit = 0.0, tested = 0.0, long_off = 0.0, long_count = 0.0;
+  double long_off = 0.0, long_count = 0.0;
   for (std::size_t k = first; k < kOctaves; ++k) {
     const Octave& octave = axis.octaves[k];
     if (octave.count < kFewest) break;
-    // The logarithm of a mean of n squares is near normal: mean -1 / n, variance 2 / n. That of heavy tails
-    // is wider.
+    // The logarithm of a mean of n squares is near normal: mean -1 / n, variance 2 / n.
     const double off = logarithm(octave.squares / octave.count / (noise * shape(k))) + 1.0 / octave.count;
-    const double square = off * off * octave.count / 2.0;
-    if (std::abs(off) <= kTails) continue;
-    misfit += square;
-    tested += 1.0;
-    if (square > kChance * kChance) return 0.0;
+    if (off * off * octave.count / 2.0 > kChance * kChance) return 0.0;
     if (k < kLong) continue;
     long_off += off * octave.count;
     long_count += 2.0 * octave.count;
@@ -188,13 +171,12 @@ double Walk::white_noise(const Axis& axis, double ratio, std::size_t first) cons
   // What is bounded is below in all long octaves, what turns above in all: together that shows sooner than in
   // one.
   if (long_off * long_off > kChance * kChance * long_count) return 0.0;
-  return misfit <= tested + kChance * std::sqrt(2.0 * tested) ? noise : 0.0;
+  return noise;
 }
 
 void Walk::judge() noexcept {
-  const std::size_t quickest = likeliest(&Axis::lately, 0.0);
-  const double ratio = ratios_[quickest];
-  bool noise = ratio <= kStretchRatio;
+  const double ratio = ratios_[likeliest(&Axis::lately, 0.0)];
+  bool noise = true;
   Found found{{}, ratio_, true, in_stretch_};
   for (std::size_t a = 0; noise && a < kMaxAxes; ++a) {
     if (axes_[a].samples < 0.25 * stretch_) continue;
@@ -234,12 +216,8 @@ void Walk::believe() noexcept {
     while (before + 1 < kTrials && ratios_[before + 1] <= recalled_) ++before;
   }
   const bool differ = misfit(&Axis::lately, before) - misfit(&Axis::lately, here) > kSurely;
-  if (differ && here > before && ++contradictions_ < kContradicted) return;
-  if (!differ || here < before) contradictions_ = 0;
-  if (differ) {
-    recalled_ = recalled_samples_ = samples_ = 0.0;
-    contradictions_ = 0;
-  }
+  if (differ && here > before) return;
+  if (differ) recalled_ = recalled_samples_ = samples_ = 0.0;
   for (Axis& axis : axes_) {
     if (differ) axis.all = {};
     axis.all.add(axis.lately);

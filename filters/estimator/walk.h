@@ -36,10 +36,12 @@ class Walk {
     double samples = 0.0;
   };
 
+  // Samples of a stretch at rest: octaves up to 256 samples, and R to 2 %.
+  static constexpr double kStretch = 4096.0;
+
   // A stretch has so many samples.
   explicit Walk(double stretch = kStretch) noexcept;
-  // The walk as an earlier run has found it, in so many samples. Doubted once stretch after stretch
-  // contradicts it.
+  // The walk as an earlier run has found it, in so many samples. Doubted once a stretch is surely slower.
   void recall(double ratio, double samples) noexcept;
   // The next measurements, rad/s. What is learned of the walk is learned only with `learn`.
   void take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept;
@@ -52,7 +54,6 @@ class Walk {
   [[nodiscard]] double samples() const noexcept { return samples_; }
 
  private:
-  static constexpr double kStretch = 4096.0;  // octaves up to 256 samples, and R to 2 %
   static constexpr std::size_t kOctaves = 16, kTrials = 33;
 
   struct Octave {
@@ -95,7 +96,6 @@ class Walk {
   double stretch_, in_stretch_ = 0.0, samples_ = 0.0;
   double ratio_ = kMostRatio;
   double recalled_ = 0.0, recalled_samples_ = 0.0;  // 0: not recalled
-  int contradictions_ = 0;
   bool learn_ = true;
   std::optional<Found> news_;
 };

@@ -19,7 +19,7 @@ bool struck(std::size_t i) { return i % 200 == 77; }
 TEST(SmoothedOutliers, AreNotInItAtRest) {
   constexpr std::size_t kLength = 60'000;
   constexpr double kRatio = 1e-8;
-  for (const double height : {50.0, 300.0}) {
+  for (const double height : {30.0, 50.0, 300.0}) {
     double struck_square = 0.0, clean_square = 0.0, causal_square = 0.0;
     for (std::uint64_t seed = 61; seed < 64; ++seed) {
       Record r = record(seed, kLength, kRatio);
@@ -34,12 +34,12 @@ TEST(SmoothedOutliers, AreNotInItAtRest) {
   }
 }
 
-// In motion a parabola through three measurements predicts to 4.5 sigma, and both directions have to reject an
-// outlier. Of those of 30 sigma half stay in, of those of 50 none.
+// In motion the shortest parabola that averages predicts to 2 sigma, and both directions have to reject an outlier.
+// Of those of 20 sigma none stay in, of those of 15 some.
 TEST(SmoothedOutliers, AreNotInItInMotion) {
   constexpr std::size_t kLength = 40'000;
   constexpr double kRatio = 1e-8;
-  for (const double height : {50.0, 300.0}) {
+  for (const double height : {20.0, 30.0, 50.0, 300.0}) {
     Record r = record(65, kLength, kRatio, [](int i) { return 1280.0 * std::sin(0.003 * i); });
     for (std::size_t i = 0; i < kLength; ++i)
       if (struck(i)) r.measured[i] += height;
