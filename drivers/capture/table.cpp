@@ -52,24 +52,22 @@ Table parse_table(std::string_view text, const std::string& path, const CsvLayou
 void RowBlock::append(RowBlock& rows) {
   if (size() == 0) return std::swap(*this, rows);
   time_s.insert(time_s.end(), rows.time_s.begin(), rows.time_s.end());
+  lines.insert(lines.end(), rows.lines.begin(), rows.lines.end());
   for (std::size_t c = 0; c < columns.size(); ++c)
     columns[c].insert(columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
 }
 
-std::size_t RowNotes::line_of_row(std::size_t row) const {
-  std::size_t raw = row;
-  for (const Repeated& each : repeated) {
-    if (each.row > raw) break;
-    raw += each.rows;
-  }
-  return line_of_raw_row(raw);
+void RowNotes::add_lines(std::size_t rows, const RowBlock& block) {
+  for (std::size_t i = 0; i < block.lines.size(); ++i)
+    if (lines.empty() || block.lines[i] - lines.back().line != rows + i - lines.back().row)
+      lines.push_back({rows + i, block.lines[i]});
 }
 
-std::size_t RowNotes::line_of_raw_row(std::size_t row) const {
-  if (first_line == 0) return 0;
-  const auto behind = std::upper_bound(skipped.begin(), skipped.end(), row,
-                                       [](std::size_t wanted, const Skipped& s) { return wanted < s.row; });
-  return first_line + row + (behind == skipped.begin() ? 0 : std::prev(behind)->lines);
+std::size_t RowNotes::line_of_row(std::size_t row) const {
+  const auto behind =
+      std::upper_bound(lines.begin(), lines.end(), row,
+                       [](std::size_t wanted, const Lines& each) { return wanted < each.row; });
+  return behind == lines.begin() ? 0 : std::prev(behind)->line + (row - std::prev(behind)->row);
 }
 
 }  // namespace ifog

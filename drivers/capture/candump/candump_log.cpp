@@ -128,8 +128,8 @@ CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface
   Frames frames(file.path(), interface, times_are_differences(file.head()));
   TextPieces pieces([&file](char* to, std::size_t most) { return file.read(to, most); });
   std::size_t number = 0;
-  for (TextRoom room; pieces.next(room);)
-    for (std::string_view text = room.text(); !text.empty();) {
+  for (std::string piece; pieces.next(piece);)
+    for (std::string_view text = piece; !text.empty();) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       const bool ended = end < text.size();
       ++number;

@@ -59,6 +59,7 @@ void RowChecks::behind_clock(RowBlock& rows) {
   look_for_set_clock(rows.time_s);
   last_s_ = rows.time_s.back();
   times_.take(rows.time_s);
+  notes_.add_lines(given_, rows);
   given_ += rows.size();
   if (!all_) return leaps_.take(rows);
   all_->append(rows);

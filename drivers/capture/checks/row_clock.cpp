@@ -73,31 +73,28 @@ bool same_values(const RowBlock& rows, std::size_t a, std::size_t b) {
   return any;
 }
 
-// f(column) for the time and every column that is there.
+// use(of a, of b) for the times, the lines and every column that is there.
 template <typename Use>
-void for_each_column(RowBlock& rows, Use use) {
-  for (std::vector<double>& column : rows.columns)
-    if (!column.empty()) use(column);
-  use(rows.time_s);
+void for_each_column(RowBlock& a, RowBlock& b, Use use) {
+  b.columns.resize(a.columns.size());
+  for (std::size_t c = 0; c < a.columns.size(); ++c)
+    if (!a.columns[c].empty()) use(a.columns[c], b.columns[c]);
+  if (!a.lines.empty()) use(a.lines, b.lines);
+  use(a.time_s, b.time_s);
 }
 
-// The rows held before those that came.
 void put_before(RowBlock& held, RowBlock& rows) {
-  if (held.size() == 0) return;
-  for (std::size_t c = 0; c < rows.columns.size(); ++c)
-    if (!rows.columns[c].empty())
-      rows.columns[c].insert(rows.columns[c].begin(), held.columns[c].begin(), held.columns[c].end());
-  rows.time_s.insert(rows.time_s.begin(), held.time_s.begin(), held.time_s.end());
+  if (held.size() > 0)
+    for_each_column(rows, held,
+                    [](auto& to, const auto& from) { to.insert(to.begin(), from.begin(), from.end()); });
 }
 
 void hold_from(RowBlock& rows, std::size_t from, RowBlock& held) {
   held.origin = rows.origin;
-  held.columns.resize(rows.columns.size());
-  const auto at = static_cast<std::ptrdiff_t>(from);
-  for (std::size_t c = 0; c < rows.columns.size(); ++c)
-    if (!rows.columns[c].empty()) held.columns[c].assign(rows.columns[c].begin() + at, rows.columns[c].end());
-  held.time_s.assign(rows.time_s.begin() + at, rows.time_s.end());
-  for_each_column(rows, [&](std::vector<double>& column) { column.resize(from); });
+  for_each_column(rows, held, [&](auto& column, auto& kept) {
+    kept.assign(column.begin() + static_cast<std::ptrdiff_t>(from), column.end());
+    column.resize(from);
+  });
 }
 
 }  // namespace
@@ -110,29 +107,10 @@ RowClock::RowClock(const std::string& path, std::string time, bool keep_repeats,
       next_(std::move(next)) {}
 
 void RowClock::take(RowBlock& rows) {
-  const std::size_t came = rows.size(), before = held_.size();
   roll_over(rows);
   put_before(held_, rows);
-  const std::vector<double>& time = rows.time_s;
-  raw_rows_ += came;
-  // Nearly every file's steps are all longer than 0.
-  bool plain = within_s_ == 0.0;
-  if (!begun_) {
-    within_s_ = step_within_bursts(time);
-    plain = within_s_ == 0.0;
-    begun_ = true;
-  }
-  if (plain)
-    plain = std::adjacent_find(time.begin() + (before > 0 ? static_cast<std::ptrdiff_t>(before - 1) : 0),
-                               time.end(), [](double a, double b) { return b <= a; }) == time.end() &&
-            before <= 1;
-  if (plain) {
-    if (rows.size() > 1) period_s_ = time.back() - time[time.size() - 2];
-    hold_from(rows, rows.size() - 1, held_);
-    if (rows.size() > 0) next_(rows);
-    return;
-  }
-  drop_repeats(rows);
+  if (!std::exchange(begun_, true)) within_s_ = step_within_bursts(rows.time_s);
+  if (!keep_repeats_) drop_repeats(rows);
   std::size_t begin = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     // The first of rows that were spread keeps its stamp.
@@ -154,7 +132,7 @@ void RowClock::roll_over(RowBlock& rows) {
       last_s = now_s;
       continue;
     }
-    const std::size_t line = notes_.line_of_raw_row(raw_rows_ + i);
+    const std::size_t line = rows.lines.empty() ? 0 : rows.lines[i];
     const auto found = std::find_if(kRollovers.begin(), kRollovers.end(), [&](const Rollover& each) {
       return now_s + each.length_s > last_s && now_s + each.length_s <= last_s + kLate_s;
     });
@@ -173,21 +151,14 @@ void RowClock::roll_over(RowBlock& rows) {
 }
 
 void RowClock::drop_repeats(RowBlock& rows) {
-  if (keep_repeats_) return;
-  const std::size_t first_raw = raw_rows_ - rows.size();
   std::size_t kept = 1;
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    if (rows.time_s[i] == rows.time_s[kept - 1] && same_values(rows, i, kept - 1)) {
-      if (notes_.repeated.empty() ||
-          notes_.repeated.back().row + notes_.repeated.back().rows != first_raw + i)
-        notes_.repeated.push_back({first_raw + i, 0});
-      ++notes_.repeated.back().rows;
-      continue;
-    }
-    if (kept != i) for_each_column(rows, [&](std::vector<double>& column) { column[kept] = column[i]; });
+    if (rows.time_s[i] == rows.time_s[kept - 1] && same_values(rows, i, kept - 1)) continue;
+    if (kept != i) for_each_column(rows, rows, [&](auto& column, auto&) { column[kept] = column[i]; });
     ++kept;
   }
-  if (kept < rows.size()) for_each_column(rows, [&](std::vector<double>& column) { column.resize(kept); });
+  repeated_ += rows.size() - kept;
+  for_each_column(rows, rows, [&](auto& column, auto&) { column.resize(kept); });
 }
 
 void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double next_s) {
@@ -219,12 +190,10 @@ void RowClock::finish() {
 }
 
 void RowClock::say() {
-  std::size_t repeated = 0;
-  for (const RowNotes::Repeated& each : notes_.repeated) repeated += each.rows;
-  if (repeated > 0)
-    notes_.notices.push_back(path_ + ": " + std::to_string(repeated) +
-                             (repeated == 1 ? " row repeats" : " rows repeat") + " the row before and " +
-                             (repeated == 1 ? "is" : "are") +
+  if (repeated_ > 0)
+    notes_.notices.push_back(path_ + ": " + std::to_string(repeated_) +
+                             (repeated_ == 1 ? " row repeats" : " rows repeat") + " the row before and " +
+                             (repeated_ == 1 ? "is" : "are") +
                              " left out; --repeats keep reads them as samples");
   if (spread_ == 0) return;
   const double rate_hz = static_cast<double>(burst_rows_) / bursts_s_;

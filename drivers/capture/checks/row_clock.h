@@ -38,13 +38,12 @@ class RowClock {
   const bool keep_repeats_;
   RowNotes& notes_;
   Next next_;
-  RowBlock held_;             // the rows of the last stamp or burst
-  std::size_t raw_rows_ = 0;  // received
-  double offset_s_ = 0.0;     // of rollovers
-  double within_s_ = 0.0;     // longest step within a burst; 0: only rows of one stamp are spread
-  double period_s_ = 0.0;     // between samples, of the last spread or single row
-  double bursts_s_ = 0.0;     // time that bursts took, and their rows
-  std::size_t burst_rows_ = 0, spread_ = 0;
+  RowBlock held_;          // the rows of the last stamp or burst
+  double offset_s_ = 0.0;  // of rollovers
+  double within_s_ = 0.0;  // longest step within a burst; 0: only rows of one stamp are spread
+  double period_s_ = 0.0;  // between samples, of the last spread or single row
+  double bursts_s_ = 0.0;  // time that bursts took, and their rows
+  std::size_t burst_rows_ = 0, spread_ = 0, repeated_ = 0;
   bool begun_ = false;
 };
 

@@ -113,6 +113,8 @@ class Rows {
   // Columns that were used before have their memory still.
   void begin(std::size_t rows) {
     piece_.rows.time_s.clear();
+    piece_.rows.lines.clear();
+    piece_.rows.lines.reserve(rows);
     for (std::vector<double>& column : piece_.rows.columns) column.clear();
     for (const Place& place : to_)
       if (place.values != nullptr) place.values->reserve(rows);
@@ -142,9 +144,13 @@ class Rows {
           std::to_string(place) + " cells, expected " + std::to_string(to_.size()) + " (a truncated line?)");
     if (header_.time_part != CsvHeader::kNone) take_joined_time(number);
     if (header_.time_place == CsvHeader::kNone) piece_.rows.time_s.push_back(static_cast<double>(rows_));
-    if (untimed_) take_back(line, number);
-    if (!untimed_) ++rows_;
-    return !untimed_;
+    if (untimed_) {
+      take_back(line, number);
+      return false;
+    }
+    piece_.rows.lines.push_back(number);
+    ++rows_;
+    return true;
   }
 
  private:
@@ -293,7 +299,6 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
   rows.begin(text.size() / length + text.size() / length / 16 + 1);
   Lines lines(text, lines_before);
   std::string_view line;
-  std::size_t skipped = 0;
   while (lines.next(line)) {
     if (line.size() > kLongestLine) refuse_long_line(path, lines.number(), line);
     const bool other = header.only_place != CsvHeader::kNone && !is_no_row(line) &&
@@ -304,10 +309,6 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
       ++piece.untimed;
     }
     if (line.starts_with('#')) piece.comments.append(trimmed(line.substr(1))) += '\n';
-    ++skipped;
-    const std::size_t row = piece.rows.time_s.size();
-    if (piece.skipped.empty() || piece.skipped.back().row != row) piece.skipped.push_back({row, skipped});
-    piece.skipped.back().lines = skipped;
   }
   piece.lines = lines.number() - lines_before;
   return piece;

@@ -22,7 +22,6 @@ namespace ifog {
 struct CsvPiece {
   RowBlock rows;                             // times since the stamps' origin and values in the file's units
   std::string comments;                      // as in RowNotes
-  std::vector<RowNotes::Skipped> skipped;    // likewise, from the piece's first row on
   std::vector<ImpossibleValues> impossible;  // by cell of a row; lines of the piece
   std::size_t lines = 0;
   std::size_t row_bytes = 0;  // of the lines that are rows

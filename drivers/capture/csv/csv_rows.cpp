@@ -2,7 +2,6 @@
 #include "drivers/capture/csv/csv_rows.h"
 
 #include <algorithm>
-#include <deque>
 #include <functional>
 #include <future>
 #include <optional>
@@ -11,6 +10,7 @@
 #include <system_error>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "drivers/capture/checks/row_checks.h"
 #include "drivers/capture/csv/csv_header.h"
@@ -32,10 +32,10 @@ class CsvText {
  public:
   CsvText(const ReadBytes& read, std::size_t piece) : pieces_(read, piece) {}
 
-  bool next(TextRoom& to) {
+  bool next(std::string& to) {
     if (!pieces_.next(to)) return false;
     if (!std::exchange(begun_, true)) begin(to);
-    if (!form_.is_plain()) to.assign(form_.rows_of(to.text()));
+    if (!form_.is_plain()) to = form_.rows_of(to);
     return true;
   }
   // Of the lines, once the first piece was handed out.
@@ -43,12 +43,10 @@ class CsvText {
 
  private:
   // However the text is cut, the same of it shows the form.
-  void begin(TextRoom& to) {
-    std::string first(to.text());
-    while (first.size() < kHead && pieces_.next(to)) first += to.text();
+  void begin(std::string& first) {
+    for (std::string more; first.size() < kHead && pieces_.next(more);) first += more;
     if (first.starts_with("\xEF\xBB\xBF")) first.erase(0, 3);  // the byte-order mark
     form_ = LineForm(std::string_view(first).substr(0, kHead));
-    to.assign(first);
   }
 
   TextPieces pieces_;
@@ -74,17 +72,17 @@ class CsvRows {
   }
 
  private:
+  // Its memory is used again for later pieces, because new pages cost as much as the reading.
   struct Piece {
-    TextRoom text;
-    RowBlock used;                                // whose memory the numbers take
+    std::string text;
+    RowBlock rows;
     std::future<std::optional<CsvPiece>> parsed;  // nothing: refused, with lines counted from its own first
   };
 
-  TextRoom begin(CsvText& pieces);
-  void in_order(CsvText& pieces, TextRoom text);
-  [[nodiscard]] std::future<std::optional<CsvPiece>> parse(Piece& piece);
+  std::string begin(CsvText& pieces);
+  void in_order(CsvText& pieces, std::string text);
+  void parse(Piece& piece);
   void deliver(Piece& piece);
-  void merge(const CsvPiece& piece);
   void finish();
   [[nodiscard]] double unit_s() const { return header_.layout.time.value_or(CsvTime{}).unit_s; }
 
@@ -101,33 +99,25 @@ class CsvRows {
   bool decimals_ = false;             // in the first time
   int most_decimals_ = 0;             // of a time
   std::optional<TimeStamps> stamps_;  // once there is a row
-  // Memory of pieces that are done with, used again: making pages for each piece costs as much as the
-  // reading.
-  std::vector<TextRoom> used_texts_;
-  std::vector<RowBlock> used_rows_;
 };
 
 // What follows the header.
-TextRoom CsvRows::begin(CsvText& pieces) {
-  std::string head;
+std::string CsvRows::begin(CsvText& pieces) {
+  std::string head, piece;
   std::size_t plain = 0;
-  TextRoom piece;
   while (plain < kHead && pieces.next(piece)) {
-    const std::string_view text = piece.text();
-    if (head.empty() && begins_as_utf16(text))
+    if (head.empty() && begins_as_utf16(piece))
       throw std::runtime_error(path_ +
                                ": is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
-    head += text;
-    if (!text.starts_with('#')) plain += text.size();
+    head += piece;
+    if (!piece.starts_with('#')) plain += piece.size();
   }
   header_ = read_csv_header(head, pieces.form().names(), path_, layout_, has_lines_);
   Lines lines(head);
   for (std::string_view line; lines.number() < header_.last_line && lines.next(line);) continue;
   lines_ = has_lines_ ? lines.number() : 0;
-  piece.assign(lines.rest());
   notes_.comments = std::move(header_.comments);
   notes_.header_line = lines_;
-  notes_.first_line = lines_ + 1;
   notes_.notices = std::move(header_.notices);
   impossible_.resize(header_.names.size());
   std::vector<FileColumn> columns(header_.names.size());
@@ -138,94 +128,68 @@ TextRoom CsvRows::begin(CsvText& pieces) {
   // Leaps are looked for in every rate, whoever wants it.
   for (CsvCell& cell : header_.cells)
     if (cell.column < header_.names.size()) cell.kept = cell.rate || sink_.wants(cell.column);
-  return piece;
+  return std::string(lines.rest());
 }
 
-void CsvRows::in_order(CsvText& pieces, TextRoom text) {
-  // Each holds its text and its numbers. One more than there are processors, so that none waits while this
-  // thread hands over.
-  const std::size_t at_once = std::clamp(std::thread::hardware_concurrency() + 1, 2U, 8U);
-  std::deque<Piece> under_way;
-  const auto next = [&] {
-    if (used_texts_.empty()) {
-      text = {};
-    } else {
-      text = std::move(used_texts_.back());
-      used_texts_.pop_back();
-    }
-    return pieces.next(text);
-  };
-  for (bool more = !text.text().empty() || next(); more; more = next()) {
-    Piece& piece = under_way.emplace_back();
-    std::swap(piece.text, text);
-    if (!stamps_) stamps_ = stamps_from(piece.text.text(), header_);  // all pieces count from one origin
-    piece.parsed = parse(piece);
-    if (under_way.size() < at_once) continue;
-    deliver(under_way.front());
-    under_way.pop_front();
+void CsvRows::in_order(CsvText& pieces, std::string text) {
+  // One more than there are processors, so that none waits while this thread hands over.
+  std::vector<Piece> ring(std::clamp(std::thread::hardware_concurrency() + 1, 2U, 8U));
+  std::size_t begun = 0, done = 0;
+  for (bool more = !text.empty();; more = false) {
+    if (begun - done == ring.size()) deliver(ring[done++ % ring.size()]);
+    Piece& piece = ring[begun % ring.size()];
+    if (more)
+      piece.text = std::move(text);
+    else if (!pieces.next(piece.text))
+      break;
+    if (!stamps_) stamps_ = stamps_from(piece.text, header_);  // all pieces count from one origin
+    parse(piece);
+    ++begun;
   }
-  for (; !under_way.empty(); under_way.pop_front()) deliver(under_way.front());
+  while (done < begun) deliver(ring[done++ % ring.size()]);
 }
 
-// The piece stays where it is until that is had.
-std::future<std::optional<CsvPiece>> CsvRows::parse(Piece& piece) {
-  if (!used_rows_.empty()) {
-    piece.used = std::move(used_rows_.back());
-    used_rows_.pop_back();
-  }
+void CsvRows::parse(Piece& piece) {
   const auto parsed = [this, &piece, stamps = stamps_.value_or(TimeStamps())]() -> std::optional<CsvPiece> {
     try {
-      return parse_csv_piece(piece.text.text(), header_, stamps, path_, 0, std::move(piece.used));
+      return parse_csv_piece(piece.text, header_, stamps, path_, 0, std::move(piece.rows));
     } catch (const std::runtime_error&) {
       return std::nullopt;
     }
   };
-  const bool worth = piece.text.text().size() >= kWorthAThread;
+  const bool worth = piece.text.size() >= kWorthAThread;
   try {
-    return std::async(worth ? std::launch::async : std::launch::deferred, parsed);
+    piece.parsed = std::async(worth ? std::launch::async : std::launch::deferred, parsed);
   } catch (const std::system_error&) {  // no room for another thread: then when its turn comes
-    return std::async(std::launch::deferred, parsed);
+    piece.parsed = std::async(std::launch::deferred, parsed);
   }
 }
 
 void CsvRows::deliver(Piece& piece) {
   std::optional<CsvPiece> parsed = piece.parsed.get();
   // Here it is known where the piece stands, and so what to say.
-  if (!parsed)
-    parsed = parse_csv_piece(piece.text.text(), header_, stamps_.value_or(TimeStamps()), path_, lines_);
-  used_texts_.push_back(std::move(piece.text));
-  merge(*parsed);
-  lines_ += parsed->lines;
-  untimed_ += parsed->untimed;
-  were_rows_(parsed->row_bytes);
-  RowBlock& rows = parsed->rows;
-  if (rows.size() > 0) {
-    if (checks_->rows() == 0) decimals_ = parsed->decimals;
-    if (header_.layout.sample_rate_hz)
-      for (double& time : rows.time_s)
-        time = (static_cast<double>(checks_->rows()) + time) / *header_.layout.sample_rate_hz;
-    most_decimals_ = std::max(most_decimals_, parsed->most_decimals);
-    checks_->take(rows, ExactSteps(parsed->most_decimals, unit_s()));
-  }
-  used_rows_.push_back(std::move(rows));
-}
-
-void CsvRows::merge(const CsvPiece& piece) {
-  const std::size_t rows = checks_->rows();
-  notes_.comments += piece.comments;
-  const std::size_t skipped = notes_.skipped.empty() ? 0 : notes_.skipped.back().lines;
-  for (const RowNotes::Skipped& here : piece.skipped) {
-    if (notes_.skipped.empty() || notes_.skipped.back().row != rows + here.row)
-      notes_.skipped.push_back({rows + here.row, 0});
-    notes_.skipped.back().lines = skipped + here.lines;
-  }
+  if (!parsed) parsed = parse_csv_piece(piece.text, header_, stamps_.value_or(TimeStamps()), path_, lines_);
+  notes_.comments += parsed->comments;
   for (std::size_t i = 0; i < header_.cells.size(); ++i) {
-    const ImpossibleValues& found = piece.impossible[i];
+    const ImpossibleValues& found = parsed->impossible[i];
     if (found.count == 0 || header_.cells[i].column >= impossible_.size()) continue;
     ImpossibleValues& all = impossible_[header_.cells[i].column];
     if (all.count == 0) all = {0, lines_ + found.line, found.first};
     all.count += found.count;
   }
+  piece.rows = std::move(parsed->rows);
+  RowBlock& rows = piece.rows;
+  for (std::size_t& line : rows.lines) line += lines_;
+  lines_ += parsed->lines;
+  untimed_ += parsed->untimed;
+  were_rows_(parsed->row_bytes);
+  if (rows.size() == 0) return;
+  if (checks_->rows() == 0) decimals_ = parsed->decimals;
+  if (header_.layout.sample_rate_hz)
+    for (double& time : rows.time_s)
+      time = (static_cast<double>(checks_->rows()) + time) / *header_.layout.sample_rate_hz;
+  most_decimals_ = std::max(most_decimals_, parsed->most_decimals);
+  checks_->take(rows, ExactSteps(parsed->most_decimals, unit_s()));
 }
 
 void CsvRows::finish() {

@@ -21,7 +21,8 @@ struct RowBlock {
   std::vector<double> time_s;  // strictly increasing, within and from block to block; never NaN
   // In the order of the names, each as long as time_s; or empty, where the sink does not want it.
   std::vector<std::vector<double>> columns;
-  TimeOrigin origin{};  // what time_s is counted from, the same in all blocks
+  TimeOrigin origin{};               // what time_s is counted from, the same in all blocks
+  std::vector<std::size_t> lines{};  // of each row in its text; empty where rows have none
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
   // What follows; `rows` is spoilt.
@@ -45,28 +46,22 @@ class RowSink {
 
 // What the reading says besides the rows; whole once the last of them was taken.
 struct RowNotes {
-  // Comment and blank lines behind the header: so many all together before this row and those that follow.
-  // Rows in the file, from `row` on, that repeat the one before and are dropped.
-  struct Repeated {
-    std::size_t row, rows;
-  };
-  struct Skipped {
-    std::size_t row, lines;  // row: in the file
+  // Rows from this one on stand on lines that follow one another.
+  struct Lines {
+    std::size_t row, line;
   };
 
-  std::string comments;         // without the '#', each with a line's end behind it
-  std::size_t header_line = 0;  // 0: not read from a text
-  std::size_t first_line = 0;   // of the first row; 0: rows have no lines. Of HDF5 rows are counted from 1
-  std::vector<Skipped> skipped;
-  std::vector<Repeated> repeated;
-  std::vector<std::string> notices;        // of the reading: what may be meant otherwise
-  std::vector<std::string> faults;         // cells read as missing, one line a column
+  std::string comments;              // without the '#', each with a line's end behind it
+  std::size_t header_line = 0;       // 0: not read from a text
+  std::vector<Lines> lines;          // empty: rows have no lines. Rows of HDF5 are counted from 1 instead
+  std::vector<std::string> notices;  // of the reading: what may be meant otherwise
+  std::vector<std::string> faults;   // cells read as missing, one line a column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
 
   // The line of a data row (counted from 0), for messages about its values; 0 where rows have none.
   [[nodiscard]] std::size_t line_of_row(std::size_t row) const;
-  // The same for a row in the file, repeated ones counted.
-  [[nodiscard]] std::size_t line_of_raw_row(std::size_t row) const;
+  // Notes the lines of the rows that follow `rows` others.
+  void add_lines(std::size_t rows, const RowBlock& block);
 };
 
 }  // namespace ifog

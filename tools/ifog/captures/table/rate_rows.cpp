@@ -72,7 +72,8 @@ void keep_rate_rows(LongTable& table, const std::string& name) {
   table.time_s = kept_of(table.time_s, with, false);
   table.outlines.clear();  // of the rows as they came
   // Lines are known by the row as it came.
-  table.header_line = table.first_line = 0;
+  table.header_line = 0;
+  table.lines.clear();
   table.notices.push_back(name + ": " + std::to_string(table.size()) + " of " + std::to_string(before) +
                           " rows have a rate, and only they are read: the others are of a faster sensor");
 }
