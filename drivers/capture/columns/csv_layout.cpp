@@ -168,6 +168,20 @@ void CsvLayout::parse_only(const std::string& text) {
   only_value = text.substr(equals + 1);
 }
 
+bool is_number_of_column(const std::string& header) {
+  return header.size() > 1 && header[0] == '#' &&
+         header.find_first_not_of("0123456789", 1) == std::string::npos;
+}
+
+std::vector<std::string> parts_of_time(const std::string& header,
+                                       const std::function<bool(const std::string&)>& is_column) {
+  if (is_column(header)) return {header};
+  for (std::size_t plus = header.find('+'); plus != std::string::npos; plus = header.find('+', plus + 1))
+    if (is_column(header.substr(0, plus)) && is_column(header.substr(plus + 1)))
+      return {header.substr(0, plus), header.substr(plus + 1)};
+  return {header};
+}
+
 std::string option_for(const CsvColumn& column, const std::string& unit) {
   return "--column " + shell_word(column.name + "=" + column.header + (unit.empty() ? "" : ":" + unit));
 }

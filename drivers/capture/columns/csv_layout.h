@@ -3,6 +3,7 @@
 // --only, --repeats.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,6 +55,13 @@ struct CsvLayout {
     return !columns.empty() || time.has_value() || sample_rate_hz.has_value();
   }
 };
+
+// "#3": the third column.
+bool is_number_of_column(const std::string& header);
+// The columns that a header asks for: "sec+nsec" is two of them, unless a column is called so; for a name may hold
+// a plus itself.
+std::vector<std::string> parts_of_time(const std::string& header,
+                                       const std::function<bool(const std::string&)>& is_column);
 
 // As a user types them.
 std::string option_for(const CsvColumn& column, const std::string& unit);

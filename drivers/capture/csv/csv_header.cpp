@@ -218,19 +218,12 @@ class Chooser {
       }
     if (const std::string unit = other_unit(time); !unit.empty())
       fail(unit_by_name(time.header, unit, option_for(time, unit)));
-    // "sec+nsec": a name may hold a plus itself.
-    const auto is_name = [&](const std::string& name) {
-      return name.starts_with('#') || std::count(names_.begin(), names_.end(), name) == 1;
-    };
-    const std::string& header = time.header;
-    std::size_t plus =
-        std::count(names_.begin(), names_.end(), header) > 0 ? std::string::npos : header.find('+');
-    while (plus != std::string::npos &&
-           !(is_name(header.substr(0, plus)) && is_name(header.substr(plus + 1))))
-      plus = header.find('+', plus + 1);
-    header_.time_place = place(header.substr(0, plus));
-    if (plus != std::string::npos) {
-      header_.time_part = place(header.substr(plus + 1));
+    const std::vector<std::string> parts = parts_of_time(time.header, [&](const std::string& name) {
+      return is_number_of_column(name) || std::count(names_.begin(), names_.end(), name) > 0;
+    });
+    header_.time_place = place(parts.front());
+    if (parts.size() > 1) {
+      header_.time_part = place(parts.back());
       header_.part_digits =
           digits_of_second(names_[header_.time_part], form_.sample.cells[header_.time_part]);
       take_time_cell(header_.time_part, {});

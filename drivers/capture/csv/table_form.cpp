@@ -112,11 +112,6 @@ bool is_capture_header(std::string_view line) {
           std::string_view(",;\t|\" ").find(line[kTime.size()]) != std::string_view::npos);
 }
 
-bool is_number_of_column(const std::string& name) {
-  return name.size() > 1 && name[0] == '#' &&
-         std::all_of(name.begin() + 1, name.end(), [](char c) { return c >= '0' && c <= '9'; });
-}
-
 // The names that the layout asks for; of "sec+nsec" both parts.
 std::vector<std::string> wanted_names(const CsvLayout& layout) {
   std::vector<std::string> wanted;
@@ -128,15 +123,12 @@ std::vector<std::string> wanted_names(const CsvLayout& layout) {
 }
 
 bool has_names(const std::vector<std::string>& cells, const std::vector<std::string>& wanted) {
-  const auto has = [&](std::string_view name) {
+  const auto has = [&](const std::string& name) {
     return std::find(cells.begin(), cells.end(), name) != cells.end();
   };
   return std::all_of(wanted.begin(), wanted.end(), [&](const std::string& name) {
-    if (has(name)) return true;
-    for (std::size_t plus = name.find('+'); plus != std::string::npos; plus = name.find('+', plus + 1))
-      if (has(std::string_view(name).substr(0, plus)) && has(std::string_view(name).substr(plus + 1)))
-        return true;
-    return false;
+    const std::vector<std::string> parts = parts_of_time(name, has);
+    return std::all_of(parts.begin(), parts.end(), has);
   });
 }
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/hdf5/hdf5_rows.h"
 
-#include <algorithm>
-#include <cctype>
 #include <string>
 #include <vector>
 
@@ -14,9 +12,7 @@ namespace ifog {
 RowNotes read_hdf5_rows(InputFile& file, const std::string& group, const CsvLayout& layout, RowSink& sink) {
   Hdf5Wanted wanted{group, {}, true, 0};
   const auto ask = [&](const std::string& header) {
-    const bool number =
-        header.size() > 1 && header[0] == '#' &&
-        std::all_of(header.begin() + 1, header.end(), [](unsigned char c) { return std::isdigit(c); });
+    const bool number = is_number_of_column(header);
     if (!header.empty() && !number) wanted.names.push_back(header);
     wanted.others = wanted.others || number;
   };

@@ -42,7 +42,6 @@ namespace {
 constexpr rlim_t kMostMemory = 2ULL << 30U;  // bytes, besides the program's own and a copy of the file
 // Processor time from one block to the next, and how slowly a chunk may be unpacked besides.
 constexpr std::size_t kMostSeconds = 5, kLeastUnpacked = 32U << 20U;  // s, bytes/s
-constexpr std::size_t kMostValues = 2U << 20U;                        // of a block, all columns together
 constexpr std::size_t kPiece = 1U << 16U;                             // bytes of text, as a pipe holds
 
 std::string reason() { return std::generic_category().message(errno); }
@@ -124,18 +123,19 @@ std::string as_cell(const std::string& name) {
   return name;
 }
 
-void print_head(const Hdf5Header& header, Pipe& out) {
-  for (const std::string& comment : header.comments) out.add("# " + one_line(comment) + "\n");
-  const auto line = [&](const std::vector<std::string>& cells) {
-    for (std::size_t i = 0; i < cells.size(); ++i) out.add((i == 0 ? "" : ",") + cells[i]);
-    out.add("\n");
-  };
-  std::vector<std::string> names, units;
-  for (const std::string& name : header.names) names.push_back(as_cell(name));
-  line(names);
-  // What is no unit known here is nothing that a row of numbers could be taken for.
-  for (const std::string& unit : header.units) units.push_back(is_unit(unit) ? as_cell(unit) : "-");
-  if (std::any_of(header.units.begin(), header.units.end(), is_unit)) line(units);
+void print_head(const Hdf5Columns& columns, Pipe& out) {
+  for (const std::string& comment : columns.comments()) out.add("# " + one_line(comment) + "\n");
+  std::string names, units;
+  bool any_unit = false;
+  for (const Hdf5Column& column : columns.columns()) {
+    // What is no unit known here is nothing that a row of numbers could be taken for.
+    const bool known = is_unit(column.unit);
+    any_unit = any_unit || known;
+    names += (names.empty() ? "" : ",") + as_cell(column.name);
+    units += (units.empty() ? "" : ",") + (known ? as_cell(column.unit) : "-");
+  }
+  out.add(names + "\n");
+  if (any_unit) out.add(units + "\n");
 }
 
 char* print(char* at, char* end, std::uint64_t bits, Hdf5Value value) {
@@ -153,22 +153,20 @@ char* print(char* at, char* end, std::uint64_t bits, Hdf5Value value) {
   return at;
 }
 
-void print_rows(Hdf5Columns& columns, Pipe& out, std::atomic<std::uint64_t>& done) {
-  const std::size_t count = columns.header().names.size();
-  const std::uint64_t all = columns.header().rows;
-  const std::uint64_t most =
-      std::min<std::uint64_t>(columns.block_rows(), std::max<std::size_t>(1, kMostValues / count));
+void print_rows(const Hdf5Columns& columns, Pipe& out, std::atomic<std::uint64_t>& done) {
+  const std::size_t count = columns.columns().size(), most = columns.block_rows();
   std::vector<std::vector<std::uint64_t>> values(count);
   std::array<char, 32> text{};  // the longest double has 24 characters
-  for (std::uint64_t first = 0; first < all; first += most) {
+  for (std::uint64_t first = 0; first < columns.rows(); first += most) {
     for (std::size_t c = 0; c < count; ++c) {
-      values[c].resize(std::min(most, all - first));
-      allow_seconds(columns.chunk_bytes());
-      columns.read(c, first, values[c]);
+      values[c].resize(std::min<std::uint64_t>(most, columns.rows() - first));
+      allow_seconds(std::max(columns.chunk_bytes(), values[c].size() * sizeof(double)));
+      columns.read(columns.columns()[c], first, values[c]);
     }
     for (std::size_t row = 0; row < values[0].size(); ++row)
       for (std::size_t c = 0; c < count; ++c) {
-        char* const end = print(text.data(), text.data() + text.size() - 1, values[c][row], columns.value(c));
+        char* const end =
+            print(text.data(), text.data() + text.size() - 1, values[c][row], columns.columns()[c].value);
         *end = c + 1 == count ? '\n' : ',';
         out.add({text.data(), end + 1});
       }
@@ -216,13 +214,13 @@ void Hdf5Text::begin(const Hdf5Source& source, const Hdf5Wanted& wanted) {
     shut_in(source.image.size());
     allow_seconds();
     try {
-      Hdf5Columns columns(source, wanted);
-      said_->rows = columns.header().rows;
+      const Hdf5Columns columns(source, wanted);
+      said_->rows = columns.rows();
       std::string notices;
-      for (const std::string& notice : columns.header().notices) notices += one_line(notice) + '\n';
+      for (const std::string& notice : columns.notices()) notices += one_line(notice) + '\n';
       keep(notices, said_->notices);
       Pipe out(ends[1]);
-      print_head(columns.header(), out);
+      print_head(columns, out);
       print_rows(columns, out, said_->rows_done);
       out.flush();
     } catch (const std::exception& error) {
