@@ -14,7 +14,7 @@ CanChannel::CanChannel(const std::string& dbc_file, const std::string& signal) {
   std::error_code ignored;
   if (std::filesystem::exists(dbc_file, ignored) && !std::filesystem::is_regular_file(dbc_file, ignored))
     throw std::runtime_error(dbc_file + ": is no regular file, expected a DBC file");
-  const dbc::Database database = dbc::parse_database(read_text_file(dbc_file), dbc_file);
+  const dbc::Database database = dbc::parse_database(read_whole_file(dbc_file), dbc_file);
   const std::vector<dbc::SignalInMessage> found = dbc::find_signals(database, signal);
   if (found.empty())
     throw std::runtime_error(

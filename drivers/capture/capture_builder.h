@@ -49,12 +49,7 @@ class CaptureBuilder {
   Capture finish();
 
   [[nodiscard]] std::size_t impossible() const { return impossible_; }  // values left out so
-  [[nodiscard]] std::size_t missing() const { return times_.missing(); }
-  [[nodiscard]] std::size_t untold() const { return times_.untold(); }
-  [[nodiscard]] std::size_t restarts() const { return times_.restarts(); }
-  [[nodiscard]] std::size_t clock_sets() const { return times_.clock_sets(); }
-  [[nodiscard]] std::size_t repeated() const { return times_.repeated(); }
-  [[nodiscard]] std::size_t mixed() const { return times_.mixed(); }
+  [[nodiscard]] const SampleCounts& counts() const { return times_.counts(); }
   // Samples with a rate treated as missing: at full scale; or beyond what the driver interface allows.
   [[nodiscard]] std::size_t at_full_scale() const { return at_full_scale_; }
   [[nodiscard]] std::size_t implausible() const { return implausible_; }

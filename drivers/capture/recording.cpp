@@ -8,7 +8,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "drivers/capture/candump/candump.h"
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/files/name_ending.h"
 #include "drivers/ifog/quoted.h"
@@ -134,16 +133,11 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
   };
   if (driver.takes_can()) {
     CandumpBuses buses;
-    const CandumpLosses lost =
+    counts.candump =
         for_each_candump_frame(file, interface, [&](const ifog_can_frame& frame, std::string_view from) {
           expect_one_device(buses, driver, frame, from, file.path());
           driver.decode_can(frame, take);
         });
-    counts.remote_frames = lost.remote;
-    counts.error_frames = lost.error;
-    counts.xl_frames = lost.xl;
-    counts.dropped_frames = lost.dropped;
-    counts.cut_off = lost.cut_off;
   } else {
     std::vector<char> bytes(kPiece);
     while (const std::size_t n = file.read(bytes.data(), bytes.size()))
@@ -178,11 +172,11 @@ std::vector<std::string> losses(const RecordingCounts& counts) {
         printable({driver.beyond_name, ::strnlen(driver.beyond_name, sizeof driver.beyond_name)}) + " is " +
         shortest(driver.beyond_value) + ", stated [" + shortest(driver.beyond_minimum) + ", " +
         shortest(driver.beyond_maximum) + "]");
-  say(counts.cut_off ? 1 : 0, "line at the end is no whole frame (is the file cut off?)");
-  say(counts.remote_frames, "CAN remote frames skipped");
-  say(counts.error_frames, "CAN error frames skipped");
-  say(counts.xl_frames, "CAN XL frames skipped");
-  say(counts.dropped_frames, "CAN frames were dropped before candump could read them, as the log says");
+  say(counts.candump.cut_off ? 1 : 0, "line at the end is no whole frame (is the file cut off?)");
+  say(counts.candump.remote, "CAN remote frames skipped");
+  say(counts.candump.error, "CAN error frames skipped");
+  say(counts.candump.xl, "CAN XL frames skipped");
+  say(counts.candump.dropped, "CAN frames were dropped before candump could read them, as the log says");
   return lines;
 }
 

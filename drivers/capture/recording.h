@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/capture/candump/candump.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/host/driver_instance.h"
 
@@ -41,9 +42,7 @@ struct RecordingCounts {
   std::size_t samples = 0;
   ifog_driver_counters driver{};
   std::uint64_t bytes_at_end = 0;  // a frame that the file ends within; also in bytes_skipped
-  std::size_t remote_frames = 0, error_frames = 0, xl_frames = 0;  // of a candump log; not decoded
-  std::uint64_t dropped_frames = 0;  // as such a log says: before they could be read
-  bool cut_off = false;              // a candump log that ends within a line, left out
+  CandumpLosses candump;
 };
 
 // "3 frames with a wrong checksum", … : one line for each counter that says something was lost.

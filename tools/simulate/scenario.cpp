@@ -39,7 +39,7 @@ class Reader {
   explicit Reader(std::string path) : path_(std::move(path)) {}
 
   Scenario read(const std::uint64_t* other_seed) {
-    const toml::table file = parse_toml(read_text_file(path_), path_);
+    const toml::table file = parse_toml(read_whole_file(path_), path_);
     // First, because every drawn number hangs on it.
     if (const toml::node* seed = file.get("seed")) s_.seed = whole(*seed, "seed");
     if (other_seed != nullptr) s_.seed = *other_seed;

@@ -74,8 +74,8 @@ class CandumpClock {
 // Whether a log that begins so has differences for times: one is smaller than that before, or all are the same.
 bool times_are_differences(std::string_view beginning) noexcept;
 
-// On which interface each id was seen first: the same id on another is another device's. Of the first 64 ids;
-// names as far as an interface's goes.
+// On which interface each id was seen first: the same id on another is another device's. Of the first 64 ids.
+// Names are cut to 15 characters, as an interface's are, for which std::string does not allocate.
 class CandumpBuses {
  public:
   // The interface on which frames of this id were received before, or "".
@@ -84,10 +84,9 @@ class CandumpBuses {
  private:
   static constexpr std::size_t kLongestName = 15, kMost = 64;
   struct Seen {
-    std::uint32_t id;
-    bool extended;
-    std::uint8_t length;
-    std::array<char, kLongestName> interface;
+    std::uint32_t id = 0;
+    bool extended = false;
+    std::string interface;
   };
   std::array<Seen, kMost> seen_{};
   std::size_t count_ = 0;

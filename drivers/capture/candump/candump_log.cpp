@@ -84,17 +84,11 @@ bool next_entry(std::string_view& beginning, CandumpEntry& entry) noexcept {
 std::string_view CandumpBuses::other(const ifog_can_frame& frame, std::string_view interface) noexcept {
   interface = interface.substr(0, kLongestName);
   const bool extended = (frame.flags & IFOG_CAN_EXTENDED) != 0;
-  auto* const end = seen_.begin() + count_;
-  auto* const found = std::find_if(
+  const auto end = seen_.begin() + static_cast<std::ptrdiff_t>(count_);
+  const auto found = std::find_if(
       seen_.begin(), end, [&](const Seen& seen) { return seen.id == frame.id && seen.extended == extended; });
-  if (found != end) {
-    const std::string_view before(found->interface.data(), found->length);
-    return before == interface ? std::string_view() : before;
-  }
-  if (count_ == seen_.size()) return {};
-  Seen& seen = seen_[count_++];
-  seen = {frame.id, extended, static_cast<std::uint8_t>(interface.size()), {}};
-  std::copy(interface.begin(), interface.end(), seen.interface.begin());
+  if (found != end) return found->interface == interface ? std::string_view() : found->interface;
+  if (count_ < seen_.size()) seen_[count_++] = {frame.id, extended, std::string(interface)};
   return {};
 }
 

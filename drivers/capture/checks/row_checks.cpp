@@ -49,8 +49,8 @@ RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vect
     all_.emplace();
 }
 
-void RowChecks::take(RowBlock& rows, const ExactSteps& steps) {
-  if (layout_.chooses()) convert(rows, layout_, steps);
+void RowChecks::take(RowBlock& rows) {
+  if (layout_.chooses()) convert(rows, layout_);
   rows_ += rows.size();
   clock_.take(rows);
 }
@@ -65,11 +65,11 @@ void RowChecks::behind_clock(RowBlock& rows) {
   all_->append(rows);
 }
 
-void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known, const ExactSteps& steps) {
+void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known) {
   for (std::size_t c = 0; c < columns_.size(); ++c) tell_impossible(columns_[c], found[c]);
   clock_.finish();
   if (all_) {
-    as_rates(*all_, layout_, steps, notes_, path_);
+    as_rates(*all_, layout_, notes_, path_);
     leaps_.take(*all_);
   }
   leaps_.finish();

@@ -42,14 +42,12 @@ class RowChecks {
   RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns, RowSink& sink,
             RowNotes& notes);
 
-  // The next rows in the file's units, at least one. steps: between their times. Throws std::runtime_error
-  // with one line, as finish().
-  void take(RowBlock& rows, const ExactSteps& steps = {});
+  // The next rows in the file's units, at least one. Throws std::runtime_error with one line, as finish().
+  void take(RowBlock& rows);
   // found: of each column. A value here and there is a fault of the logger, and is missing; where many are, a
   // rate is not what its name says, and is refused. A channel is only missing then: a broken thermometer is
   // no reason to know nothing of the rate. unit_known: the time says its unit by more than its name.
-  // steps: between all times.
-  void finish(std::span<const ImpossibleValues> found, bool unit_known, const ExactSteps& steps = {});
+  void finish(std::span<const ImpossibleValues> found, bool unit_known);
 
   // Rows received, repeated ones included.
   [[nodiscard]] std::size_t rows() const { return rows_; }

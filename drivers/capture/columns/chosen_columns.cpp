@@ -24,8 +24,7 @@ std::string_view unit_of(const std::string& name) {
 // Differences of an angle, by the time between: the mean rate since the row before; of the first row nothing
 // is known. An angle that stays within one turn begins again where it has turned that far, and steps by less
 // than half a turn, or behind a gap by nobody knows what.
-void differentiate(std::vector<double>& angle_rad, const std::vector<double>& time_s,
-                   const ExactSteps& steps) {
+void differentiate(std::vector<double>& angle_rad, const std::vector<double>& time_s) {
   const auto known = [](double value) { return !std::isnan(value); };
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const double angle : angle_rad) {
@@ -41,7 +40,7 @@ void differentiate(std::vector<double>& angle_rad, const std::vector<double>& ti
   for (std::size_t i = 0; i < angle_rad.size(); ++i) {
     const double angle = angle_rad[i];
     const double turned = wraps ? std::remainder(angle - before, kTurn) : angle - before;
-    const double step_s = steps.between(since_s, time_s[i]);
+    const double step_s = time_s[i] - since_s;
     if (known(before)) shortest_s = std::min(shortest_s, step_s);
     const bool told = !wraps || step_s <= kGap * shortest_s || turn_is_known(rate_before, step_s, kTurn);
     angle_rad[i] = told ? turned / step_s : kMissing;
@@ -68,10 +67,10 @@ bool undo_each_other(const std::vector<double>& rate) {
 }
 
 // In which the sensor collects an increment, whenever its rows came: the median of the steps between them.
-double period_of(const std::vector<double>& time_s, const ExactSteps& steps) {
+double period_of(const std::vector<double>& time_s) {
   std::vector<double> between;
   between.reserve(time_s.size());
-  for (std::size_t i = 1; i < time_s.size(); ++i) between.push_back(steps.between(time_s[i - 1], time_s[i]));
+  for (std::size_t i = 1; i < time_s.size(); ++i) between.push_back(time_s[i] - time_s[i - 1]);
   if (between.empty()) return kMissing;
   const auto middle = between.begin() + static_cast<std::ptrdiff_t>(between.size() / 2);
   std::nth_element(between.begin(), middle, between.end());
@@ -90,30 +89,24 @@ UnitConversion conversion_of(const CsvColumn& column) {
   return conversion;
 }
 
-void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps) {
-  const double unit_s = layout.time.value_or(CsvTime{}).unit_s;
-  const double units_a_second = std::round(1.0 / unit_s);
-  if (unit_s != 1.0)
-    for (double& now : rows.time_s)
-      // What is 0.01 s in every unit comes out so.
-      now = units_a_second > 1.0 ? steps.nearest(now / units_a_second) : now * unit_s;
+void convert(RowBlock& rows, const CsvLayout& layout) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const UnitConversion conversion = conversion_of(layout.columns[i]);
+    if (conversion.scale == 1.0 && conversion.offset == 0.0) continue;
     for (double& value : rows.columns[i]) value = value * conversion.scale + conversion.offset;
   }
 }
 
-void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, RowNotes& notes,
-              const std::string& path) {
+void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std::string& path) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const CsvColumn& column = layout.columns[i];
     if (!column.angle_rad()) continue;
     std::vector<double>& values = all.columns[i];
     if (column.is_increment()) {
-      const double period_s = period_of(all.time_s, steps);
+      const double period_s = period_of(all.time_s);
       for (double& value : values) value /= period_s;
     } else {
-      differentiate(values, all.time_s, steps);
+      differentiate(values, all.time_s);
       if (undo_each_other(values))
         notes.notices.push_back(
             path + ": differences of " + printable(column.header) +

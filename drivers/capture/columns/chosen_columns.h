@@ -9,7 +9,6 @@
 
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/times/row_sink.h"
-#include "drivers/capture/times/time_stamps.h"
 #include "drivers/units/units.h"
 
 namespace ifog {
@@ -17,14 +16,13 @@ namespace ifog {
 // Value in the capture = cell * scale + offset; of an angle in rad.
 UnitConversion conversion_of(const CsvColumn& column);
 
-// From the file's units to those of a capture, but for angles, which stay in rad and become rates by
-// as_rates(). steps: between the times of the block.
-void convert(RowBlock& rows, const CsvLayout& layout, const ExactSteps& steps);
+// The columns from the file's units to those of a capture, but for angles, which stay in rad and become rates by
+// as_rates().
+void convert(RowBlock& rows, const CsvLayout& layout);
 
 // Needs all rows, because only the whole says whether an angle stays within one turn.
 // Says in the notes where differences of an angle undo each other, as those of increments do.
-void as_rates(RowBlock& all, const CsvLayout& layout, const ExactSteps& steps, RowNotes& notes,
-              const std::string& path);
+void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std::string& path);
 
 // Times that are whole numbers one apart are a count of rows, unless their unit is given; further apart
 // and written without decimals they are more often milliseconds than samples of a second each. It is said,

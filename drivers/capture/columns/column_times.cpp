@@ -155,26 +155,16 @@ std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t 
   return out;
 }
 
-constexpr std::array<std::pair<std::string_view, int>, 14> kParts{{{"nsec", 9},
-                                                                   {"nsecs", 9},
-                                                                   {"nanosec", 9},
-                                                                   {"nanosecs", 9},
-                                                                   {"nanosecond", 9},
-                                                                   {"nanoseconds", 9},
-                                                                   {"ns", 9},
-                                                                   {"usec", 6},
-                                                                   {"usecs", 6},
-                                                                   {"us", 6},
-                                                                   {"microsec", 6},
-                                                                   {"microseconds", 6},
-                                                                   {"ms", 3},
-                                                                   {"msec", 3}}};
-
-// Digits behind the point of a word that names a part of a second; 0 for any other word.
-int digits_of(const std::string& word) {
-  const auto found =
-      std::find_if(kParts.begin(), kParts.end(), [&](const auto& each) { return each.first == word; });
-  return found == kParts.end() ? 0 : found->second;
+// Digits behind the point of a word that names a part of a second (nsec, nanoseconds, us, msecs); 0 for any other.
+int digits_of(std::string_view word) {
+  for (const auto& [prefix, digits] :
+       {std::pair{"nano", 9}, {"micro", 6}, {"milli", 3}, {"n", 9}, {"u", 6}, {"m", 3}}) {
+    if (!word.starts_with(prefix)) continue;
+    const std::string_view rest = word.substr(std::string_view(prefix).size());
+    if (rest == "s" || rest == "sec" || rest == "secs" || rest == "second" || rest == "seconds")
+      return digits;
+  }
+  return 0;
 }
 
 std::vector<std::string> words_of(const std::string& name) {

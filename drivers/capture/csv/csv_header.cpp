@@ -68,10 +68,7 @@ class Chooser {
   CsvHeader choose() {
     header_.cells.resize(names_.size());
     for (std::size_t i = 0; i < names_.size(); ++i) header_.cells[i].name = names_[i];
-    if (reads_as_named())
-      choose_as_named();
-    else
-      choose_as_asked();
+    choose_columns();
     if (!header_.layout.only_header.empty())
       header_.only_place = place(header_.layout.only_header);
     else
@@ -118,15 +115,13 @@ class Chooser {
     return readings_of(form_.sample, timed).ways.empty();
   }
 
-  void choose_as_named() {
+  void expect_every_name_once() const {
     std::set<std::string> seen;
     for (const std::string& name : names_) {
       if (name.empty()) fail("a column has no name");
       if (!seen.insert(name).second) fail("column " + in_quotes(name) + " stands twice");
     }
     (void)under_own_name(0);
-    take_time(CsvTime{});
-    for (std::size_t i = 1; i < names_.size(); ++i) take(i, under_own_name(i));
   }
 
   // A row of units says what the name leaves out.
@@ -141,15 +136,17 @@ class Chooser {
     return {*name, names_[i], ""};
   }
 
-  void choose_as_asked() {
+  void choose_columns() {
     CsvLayout& layout = header_.layout;
-    const bool timed = layout.time.has_value(),
-               own_names =
-                   layout.columns.empty() && std::any_of(names_.begin(), names_.end(), is_rate_column);
-    if (!timed && !layout.sample_rate_hz && std::count(names_.begin(), names_.end(), "time_s") == 1)
+    const bool named = reads_as_named();
+    if (named) expect_every_name_once();
+    // With --time alone the others stand under their own names, too.
+    const bool own_names = named || (layout.time && layout.columns.empty() &&
+                                     std::any_of(names_.begin(), names_.end(), is_rate_column));
+    if (!layout.time && !layout.sample_rate_hz && std::count(names_.begin(), names_.end(), "time_s") == 1)
       layout.time = CsvTime{};
-    if (timed && own_names) {
-      for (std::size_t i = 0; i < names_.size(); ++i)  // --time alone: the others stand under their own names
+    if (own_names) {
+      for (std::size_t i = 0; i < names_.size(); ++i)
         if (names_[i] != layout.time->header) layout.columns.push_back(under_own_name(i));
     } else if (layout.columns.empty() || (!layout.time && !layout.sample_rate_hz)) {
       take_reading();
@@ -158,7 +155,7 @@ class Chooser {
       layout.time.reset();
     else
       take_time(*layout.time);
-    if (layout.other_rates)
+    if (layout.other_rates && !named)
       for (const CsvColumn& other : rates_not_chosen(form_.sample, layout)) layout.columns.push_back(other);
     for (CsvColumn& column : layout.columns) {
       const std::size_t at = place(column.header);

@@ -173,7 +173,7 @@ class Rows {
         if (to.range.holds(value)) [[likely]] {
           if (to.values != nullptr) to.values->push_back(value);
         } else {
-          keep(place, value, 0.0, {at, behind}, line);
+          keep(place, value, {at, behind}, line);
         }
         return behind;
       }
@@ -189,7 +189,7 @@ class Rows {
       keep_other(to, PointDigits(text, separator_ != ','));
     else
       keep(place, number(path_, line, header_.cells[place].name, text, PointDigits(text, separator_ != ',')),
-           0.0, text, line);
+           text, line);
     return behind;
   }
 
@@ -224,13 +224,11 @@ class Rows {
               printable(header_.cells[place].name) + " is " + in_quotes(text) +
                   ", a date, which says its own unit, expected no other one of --time");
     double since = 0.0;
-    if (!stamps_.since(digits, since, piece_.most_decimals)) {
+    if (!stamps_.since(digits, since))
       since = stamps_.since(number(path_, line, header_.cells[place].name, text, digits));
-      piece_.most_decimals = kAnyDecimals;
-    }
     if (std::isnan(since))
       fail_at(path_, line, printable(header_.cells[place].name) + " is missing, expected a time");
-    if (!to_[place].range.holds(since + stamps_.absolute(0.0)))
+    if (!time_range_.holds(stamps_.origin().told(since)))
       fail_at(path_, line, what_no_sensor_measures(header_.cells[place].name, text, to_[place].range));
     if (rows_ == 0) piece_.decimals = text.find('.') != std::string_view::npos || digits.is_date();
     piece_.rows.time_s.push_back(since);
@@ -243,9 +241,9 @@ class Rows {
     if (to.values != nullptr) to.values->push_back(known ? value : kMissing);
   }
 
-  void keep(std::size_t place, double value, double origin, std::string_view text, std::size_t line) {
+  void keep(std::size_t place, double value, std::string_view text, std::size_t line) {
     const Place& to = to_[place];
-    const bool possible = std::isnan(value) || to.range.holds(value + origin);
+    const bool possible = std::isnan(value) || to.range.holds(value);
     if (to.values != nullptr) to.values->push_back(possible ? value : kMissing);
     if (possible) return;
     ImpossibleValues& impossible = piece_.impossible[place];
@@ -259,6 +257,7 @@ class Rows {
   char separator_;
   const TimeStamps& stamps_;
   double unit_s_;
+  const Measurable time_range_ = measurable("time_s");
   const std::string& path_;
   std::vector<Place> to_;  // by cell of a row
   JoinedTime joined_;
@@ -275,12 +274,12 @@ std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& he
     if (is_no_row(line)) continue;
     if (header.time_place == CsvHeader::kNone) return TimeStamps();
     JoinedTime joined;
-    joined.put(false, cell_at(line, header.time_place, header.separator));
-    if (header.time_part != CsvHeader::kNone)
+    std::string_view first = cell_at(line, header.time_place, header.separator);
+    if (header.time_part != CsvHeader::kNone) {
+      joined.put(false, first);
       joined.put(true, cell_at(line, header.time_part, header.separator));
-    const std::string_view first = header.time_part == CsvHeader::kNone
-                                       ? cell_at(line, header.time_place, header.separator)
-                                       : joined.text(header.part_digits);
+      first = joined.text(header.part_digits);
+    }
     if (first.empty()) continue;
     return TimeStamps(TimeDigits(first, header.separator != ','),
                       header.layout.time.value_or(CsvTime{}).unit_s);

@@ -27,7 +27,6 @@ struct CsvPiece {
   std::size_t row_bytes = 0;  // of the lines that are rows
   std::size_t untimed = 0;    // rows of another sensor, which have no time of this one
   bool decimals = false;      // in the first time
-  int most_decimals = 0;      // of a time, or kAnyDecimals
 };
 
 // The stamps that count from the text's first time; nothing where it has no row.

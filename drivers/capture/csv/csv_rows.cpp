@@ -84,7 +84,6 @@ class CsvRows {
   void parse(Piece& piece);
   void deliver(Piece& piece);
   void finish();
-  [[nodiscard]] double unit_s() const { return header_.layout.time.value_or(CsvTime{}).unit_s; }
 
   const std::string& path_;
   const CsvLayout& layout_;
@@ -97,7 +96,6 @@ class CsvRows {
   std::optional<RowChecks> checks_;
   std::size_t lines_ = 0, untimed_ = 0;
   bool decimals_ = false;             // in the first time
-  int most_decimals_ = 0;             // of a time
   std::optional<TimeStamps> stamps_;  // once there is a row
 };
 
@@ -188,8 +186,7 @@ void CsvRows::deliver(Piece& piece) {
   if (header_.layout.sample_rate_hz)
     for (double& time : rows.time_s)
       time = (static_cast<double>(checks_->rows()) + time) / *header_.layout.sample_rate_hz;
-  most_decimals_ = std::max(most_decimals_, parsed->most_decimals);
-  checks_->take(rows, ExactSteps(parsed->most_decimals, unit_s()));
+  checks_->take(rows);
 }
 
 void CsvRows::finish() {
@@ -198,7 +195,7 @@ void CsvRows::finish() {
     notes_.notices.push_back(path_ + ": " + std::to_string(untimed_) + " rows without " +
                              in_quotes(header_.cells[header_.time_place].name) +
                              " are of another sensor and dropped");
-  checks_->finish(impossible_, decimals_ || header_.time_unit_known, ExactSteps(most_decimals_, unit_s()));
+  checks_->finish(impossible_, decimals_ || header_.time_unit_known);
 }
 
 }  // namespace

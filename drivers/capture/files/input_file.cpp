@@ -73,27 +73,6 @@ std::deque<std::string> recordings_in(const std::string& folder) {
 constexpr std::size_t kMostGrowth = 100;
 constexpr std::size_t kGrowthFree = 256U << 20U;
 
-// Follows where the last line begins, block by block: no second look at each byte.
-class LineLength {
- public:
-  // Checks text whose last n bytes are new. Throws when a line is too long, also one without its end so far.
-  void check(const std::string& path, std::string_view text, std::size_t n) {
-    const std::size_t from = text.size() - n;
-    const std::size_t first = std::min(text.find('\n', from), text.size());
-    if (first - line_ > kLongestLine) refuse(path, text);
-    const std::size_t last = text.rfind('\n');
-    if (last != std::string_view::npos && last >= from) line_ = last + 1;
-    if (text.size() - line_ > kLongestLine) refuse(path, text);
-  }
-
- private:
-  [[noreturn]] void refuse(const std::string& path, std::string_view text) const {
-    const auto number = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(line_), '\n') + 1;
-    refuse_long_line(path, static_cast<std::size_t>(number), text.substr(line_));
-  }
-  std::size_t line_ = 0;
-};
-
 }  // namespace
 
 void refuse_long_line(const std::string& path, std::size_t number, std::string_view line) {
@@ -222,18 +201,6 @@ void InputFile::read_to_the_end() {
   std::vector<char> block(1U << 18U);
   while (read(block.data(), block.size()) > 0) {
   }
-}
-
-std::string InputFile::text() {
-  std::string all;
-  LineLength lines;
-  // No larger than a line may be: then only lines that cross the end of a block can be too long.
-  std::vector<char> block(kLongestLine);
-  while (const std::size_t n = read(block.data(), block.size())) {
-    all.append(block.data(), n);
-    lines.check(path_, all, n);
-  }
-  return all;
 }
 
 }  // namespace ifog

@@ -47,9 +47,8 @@ class InputFile {
   void were_rows(std::size_t bytes) { rows_ += bytes; }
   // Reads on to the end, for who hears: a library that reads by the name leaves all of it.
   void read_to_the_end();
-  // All of the rest. Of a text a line longer than kLongestLine is refused with its number.
+  // All of the rest.
   std::string bytes();
-  std::string text();
 
   // From here on `told` hears how many bytes of the file, as it lies on the disk, have been read, and of how
   // many; 0 where that is not known. Nothing ends it.

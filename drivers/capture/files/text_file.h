@@ -14,9 +14,8 @@ struct z_stream_s;  // zlib's
 
 namespace ifog {
 
-// InputFile's text() and bytes(); "-" is standard input.
-inline std::string read_text_file(const std::string& path) { return InputFile(path).text(); }
-inline std::string read_bytes_file(const std::string& path) { return InputFile(path).bytes(); }
+// "-" is standard input.
+inline std::string read_whole_file(const std::string& path) { return InputFile(path).bytes(); }
 
 // A text that is written while it is made. Compresses when the name ends in .gz; the bytes are the same
 // however the text is cut. "-" is standard output. Throws as OutputFile does.

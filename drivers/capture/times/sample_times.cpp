@@ -154,21 +154,21 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   else
     step = timeline_.next(frame_of(sample));
   if (step.out_of_turn) {
-    ++(timeline_.two_devices() ? mixed_ : repeated_);
+    ++(timeline_.two_devices() ? counts_.mixed : counts_.repeated);
     return std::nullopt;
   }
   const std::uint64_t steps = first || anew ? 0 : step.samples;
   const bool timed_anew =
       step.restarted && (restarts_ || clock_ != Clock::device || sample.device_wrap_ns > 0);
   count_ += steps;
-  if (steps > 1) missing_ += steps - 1;
-  if (steps > 1 && step.untold) untold_ += steps - 1;
-  if (timed_anew) ++restarted_;
+  if (steps > 1) counts_.missing += steps - 1;
+  if (steps > 1 && step.untold) counts_.untold += steps - 1;
+  if (timed_anew) ++counts_.restarts;
   device_ns_ = step.time_ns;
   anew = anew || (timed_anew && clock_ == Clock::device);
   if (anew) begin_anew(sample);
   broken_ = false;
-  if (step.clock_set) ++clock_sets_;
+  if (step.clock_set) ++counts_.clock_sets;
   // Where the device's clock has stood still while it measured, by the sum of its steps; where it was set
   // while the device counted on, by the counter.
   if (!first && !anew && clock_ == Clock::device && (timeline_.clock_stood() || step.by_count))
@@ -180,7 +180,7 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   if (!first && now <= last_s_) {
     if (!restarts_) refuse(now);
     if (now == last_s_) {
-      ++repeated_;
+      ++counts_.repeated;
       return std::nullopt;
     }
     anew = true;

@@ -22,6 +22,16 @@
 
 namespace ifog {
 
+// What the times say of the samples.
+struct SampleCounts {
+  std::size_t missing = 0;     // were not there by the device's counter, or by its clock where it has none
+  std::size_t untold = 0;      // of these: the clock may have been set instead, and nothing decides
+  std::size_t restarts = 0;    // the counter or the clock jumped back without a discontinuity
+  std::size_t clock_sets = 0;  // the clock was set while the counter, which then gives the time, continued
+  std::size_t repeated = 0;    // dropped as duplicates or because a later one had arrived
+  std::size_t mixed = 0;       // dropped because two devices send on one line
+};
+
 class SampleTimes {
  public:
   explicit SampleTimes(const ifog_description& description);
@@ -51,18 +61,7 @@ class SampleTimes {
 
   // What times are counted from; known from the first sample on.
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
-  // Samples that were not there by the device's counter, or by its clock where it has none.
-  [[nodiscard]] std::size_t missing() const { return missing_; }
-  // Those of the restarts that may also be a clock that was set: neither counter nor arrival times decide.
-  [[nodiscard]] std::size_t untold() const { return untold_; }
-  // Number of restarts: the counter or the clock jumped back without a discontinuity.
-  [[nodiscard]] std::size_t restarts() const { return restarted_; }
-  // Number of times the device's clock was set while its counter continued; the counter then gives the time.
-  [[nodiscard]] std::size_t clock_sets() const { return clock_sets_; }
-  // Samples dropped as duplicates or because a later one had arrived.
-  [[nodiscard]] std::size_t repeated() const { return repeated_; }
-  // Samples dropped because two devices send on one line.
-  [[nodiscard]] std::size_t mixed() const { return mixed_; }
+  [[nodiscard]] const SampleCounts& counts() const { return counts_; }
 
  private:
   enum class Clock { undecided, device, counter, arrival, number };
@@ -82,8 +81,8 @@ class SampleTimes {
   std::int64_t device_ns_ = 0;  // the device's clock at the sample at hand, over its wraps
   std::uint64_t count_ = 0;     // the unwrapped counter, or the number of the sample
   std::int64_t first_arrival_ns_ = 0, last_arrival_ns_ = 0;
-  std::size_t taken_ = 0, missing_ = 0, untold_ = 0, repeated_ = 0, mixed_ = 0, restarted_ = 0,
-              clock_sets_ = 0;
+  std::size_t taken_ = 0;
+  SampleCounts counts_;
   double last_s_ = 0.0;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
   bool broken_ = false, restarts_ = false;

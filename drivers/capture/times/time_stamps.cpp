@@ -104,11 +104,12 @@ std::optional<SaidTime> SaidTime::parse(std::string_view said) {
   return SaidTime{value, 0.0};
 }
 
-TimeStamps::TimeStamps(std::string_view first, double unit_s) {
+TimeStamps::TimeStamps(std::string_view first, double unit_s)
+    : unit_s_(unit_s), units_a_second_(whole(1.0 / unit_s)) {
   Plain time;
   if (!read_plain(first, time) || std::abs(static_cast<double>(time.whole)) * unit_s < kFineTimes_s) return;
   const std::int64_t below = time.whole - (time.fraction < 0 ? 1 : 0);
-  const auto part = std::find(kTen.begin(), kTen.begin() + 10, whole(1.0 / unit_s));  // of a second: a unit
+  const auto part = std::find(kTen.begin(), kTen.begin() + 10, units_a_second_);  // of a second: a unit
   if (part != kTen.begin() + 10 && *part > 0) {
     const std::int64_t of_second = *part, ns_a_unit = kNsPerSecond / of_second;
     whole_ = below;
@@ -126,26 +127,32 @@ TimeStamps::TimeStamps(std::string_view first, double unit_s) {
   }
 }
 
-double TimeStamps::beyond() const {
-  return static_cast<double>(fraction_) / static_cast<double>(ten_to(decimals_));
+// One division, so that what is 0.01 s in every unit comes out so.
+double TimeStamps::seconds(double value, double parts_of_unit) const {
+  return units_a_second_ > 0 ? value / (parts_of_unit * static_cast<double>(units_a_second_))
+                             : value / parts_of_unit * unit_s_;
 }
 
-bool TimeStamps::since(std::string_view text, double& value, int& decimals) const {
+double TimeStamps::since(double absolute) const {
+  const double beyond = static_cast<double>(fraction_) / static_cast<double>(ten_to(decimals_));
+  return seconds(absolute - static_cast<double>(whole_) - beyond, 1.0);
+}
+
+bool TimeStamps::since(std::string_view text, double& value) const {
   Plain time;
   if (!read_plain(text, time)) return false;
   const int behind = std::max(time.decimals, decimals_);
-  decimals = std::max(decimals, behind);
   const std::int64_t since = time.whole - whole_;
   const std::int64_t fraction =
       time.fraction * ten_to(behind - time.decimals) - fraction_ * ten_to(behind - decimals_);
   const auto ten = static_cast<double>(ten_to(behind));
   // Then the one division is all that rounds.
   if (behind <= kExactPower && std::abs(static_cast<double>(since)) < kWholeDoubles / ten - 2.0) {
-    value = static_cast<double>(since * ten_to(behind) + fraction) / ten;
+    value = seconds(static_cast<double>(since * ten_to(behind) + fraction), ten);
     return true;
   }
   if (origin_ == TimeOrigin{}) return false;
-  value = static_cast<double>(since) + static_cast<double>(fraction) / ten;
+  value = seconds(static_cast<double>(since) + static_cast<double>(fraction) / ten, 1.0);
   return true;
 }
 
@@ -168,28 +175,6 @@ void append_time(std::string& out, const TimeOrigin& origin, double since_s) {
     complement(fraction);
   }
   if (!fraction.empty()) (out += '.') += fraction;
-}
-
-ExactSteps::ExactSteps(int decimals, double unit_s) {
-  const std::int64_t of_second = whole(1.0 / unit_s);
-  if (decimals <= kExactPower && of_second != 0)
-    ticks_per_s_ = static_cast<double>(of_second) * static_cast<double>(ten_to(decimals));
-}
-
-// By doubles of that size.
-bool ExactSteps::told_apart(double time_s) const {
-  constexpr double kRounding = std::numeric_limits<double>::epsilon();
-  return ticks_per_s_ > 0.0 && std::abs(time_s) * kRounding * ticks_per_s_ < 0.25;
-}
-
-double ExactSteps::between(double before_s, double now_s) const {
-  const double step = now_s - before_s;
-  if (!told_apart(before_s) || !told_apart(now_s)) return step;
-  return std::round(step * ticks_per_s_) / ticks_per_s_;
-}
-
-double ExactSteps::nearest(double time_s) const {
-  return told_apart(time_s) ? std::round(time_s * ticks_per_s_) / ticks_per_s_ : time_s;
 }
 
 }  // namespace ifog

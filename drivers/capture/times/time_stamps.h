@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -64,51 +63,26 @@ class TimeStamps {
   // first: a time that is not after any other, which may be no number; unit_s: seconds in one.
   TimeStamps(std::string_view first, double unit_s);
 
-  // Stamps of whole numbers.
-  TimeStamps(std::int64_t first, double unit_s) : TimeStamps(std::to_string(first), unit_s) {}
-
-  // So many in the text's unit since the origin, each within the rounding of one double: nothing but the
+  // Seconds since the origin, each within the rounding of one double: nothing but the
   // difference is rounded. False where the text is no number in plain digits, of which there may be other
-  // ways to write one. `decimals` becomes the digits behind the point where that is more.
-  [[nodiscard]] bool since(std::string_view text, double& value, int& decimals) const;
-  // Seconds since the first for a time that was read otherwise.
-  [[nodiscard]] double since(double absolute) const {
-    return absolute - static_cast<double>(whole_) - beyond();
-  }
-  [[nodiscard]] double absolute(double since) const {
-    return static_cast<double>(whole_) + (since + beyond());
-  }
+  // ways to write one.
+  [[nodiscard]] bool since(std::string_view text, double& value) const;
+  // The same for a time that was read otherwise.
+  [[nodiscard]] double since(double absolute) const;
   [[nodiscard]] TimeOrigin origin() const { return origin_; }
 
  private:
-  [[nodiscard]] double beyond() const;
+  [[nodiscard]] double seconds(double value, double parts_of_unit) const;
 
+  double unit_s_ = 1.0;
+  std::int64_t units_a_second_ = 1;  // 0: no whole number
   // In the text's unit: whole_ + fraction_ / 10^decimals_.
   std::int64_t whole_ = 0, fraction_ = 0;
   int decimals_ = 0;
   TimeOrigin origin_;
 };
 
-// Decimals of a time that was written in no plain digits: any number of them.
-inline constexpr int kAnyDecimals = std::numeric_limits<int>::max();
-
 // Appends the time in decimal digits, exactly as many as tell since_s from other doubles.
 void append_time(std::string& out, const TimeOrigin& origin, double since_s);
-
-// Steps between times that are whole ticks, each to the last bit of what the digits say.
-class ExactSteps {
- public:
-  ExactSteps() = default;  // times may lie anywhere
-  // Steps of a column with so many decimals in units of unit_s.
-  ExactSteps(int decimals, double unit_s);
-  [[nodiscard]] double between(double before_s, double now_s) const;
-  // The tick that a time is, which was rounded on its way.
-  [[nodiscard]] double nearest(double time_s) const;
-
- private:
-  [[nodiscard]] bool told_apart(double time_s) const;
-
-  double ticks_per_s_ = 0.0;  // whole; 0: none
-};
 
 }  // namespace ifog

@@ -66,7 +66,7 @@ TEST(CaptureBuilder, OfAnAngleOverASilenceNoRateIsMadeUp) {
       sample.sequence = static_cast<std::uint32_t>(n) % 256U;
       builder.add(sample);
     }
-    EXPECT_EQ(builder.missing(), 5000U) << wrap;
+    EXPECT_EQ(builder.counts().missing, 5000U) << wrap;
     const Capture made = builder.finish();
     ASSERT_EQ(made.size(), 5000U) << wrap;
     int without = 0;
@@ -98,8 +98,8 @@ TEST(CaptureBuilder, AClockOfMillisecondsAtFiveKilohertzLosesNoSample) {
       sample.value[0] = 1e-3 * (n % 7);
       builder.add(sample);
     }
-    EXPECT_EQ(builder.missing(), 0U) << modulus;
-    EXPECT_EQ(builder.repeated(), 0U) << modulus;
+    EXPECT_EQ(builder.counts().missing, 0U) << modulus;
+    EXPECT_EQ(builder.counts().repeated, 0U) << modulus;
     const Capture made = builder.finish();
     ASSERT_EQ(made.size(), 20'000U) << modulus;
     for (std::size_t i = 1; i < made.size(); ++i) ASSERT_GT(made.time_s[i], made.time_s[i - 1]) << i;

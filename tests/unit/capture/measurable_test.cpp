@@ -5,10 +5,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include "drivers/capture/capture.h"
-#include "drivers/capture/checks/leaps.h"
 
 namespace ifog {
 namespace {
@@ -115,12 +115,11 @@ TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {
             "a.csv:3: time_s is '1e30', which no sensor measur");
 }
 
-std::size_t leaps(const std::vector<double>& time_s, const std::vector<double>& rate_radps) {
-  Leaps found({0}, [](RowBlock&) {});
-  RowBlock rows{time_s, {rate_radps}};
-  found.take(rows);
-  found.finish();
-  return found.found()[0].count;
+std::size_t leaps(double step_s, const std::function<double(int)>& rate_radps) {
+  std::string text = "time_s,rate_radps\n";
+  for (int i = 0; i < 100; ++i)
+    text += std::to_string(step_s * i) + "," + std::to_string(rate_radps(i)) + "\n";
+  return parse_capture(text, "a.csv").faults.size();
 }
 
 // 999 rad/s for a tenth of a second are 16 turns, from standstill to standstill.
@@ -131,18 +130,10 @@ TEST(Measurable, ARateThatLeapsOverHalfATurnIsMissing) {
   EXPECT_NE(read.faults[0].find("a.csv:72: rate_radps says more than half a turn"), std::string::npos);
   // A fifth of a turn may be; and a table that spins up stays, however fast.
   EXPECT_TRUE(parse_capture(capture("rate_radps,t_degC", 2, 70, 0, "12"), "a.csv").faults.empty());
-  std::vector<double> time, spin;
-  for (int i = 0; i < 100; ++i) {
-    time.push_back(0.01 * i);
-    spin.push_back(i < 40 || i > 60 ? 0.0 : 900.0);
-  }
-  EXPECT_EQ(leaps(time, spin), 0U);
+  EXPECT_EQ(leaps(0.01, [](int i) { return i < 40 || i > 60 ? 0.0 : 900.0; }), 0U);
+  EXPECT_EQ(leaps(0.01, [](int i) { return i == 40 ? 900.0 : 0.0; }), 1U);
   // Dwells of a rate table, a row each.
-  for (int i = 0; i < 100; ++i) {
-    time[static_cast<std::size_t>(i)] = 5.0 * i;
-    spin[static_cast<std::size_t>(i)] = i % 2 == 0 ? 0.0 : 3.0;
-  }
-  EXPECT_EQ(leaps(time, spin), 0U);
+  EXPECT_EQ(leaps(5.0, [](int i) { return i % 2 == 0 ? 0.0 : 3.0; }), 0U);
 }
 
 }  // namespace

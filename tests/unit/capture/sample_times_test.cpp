@@ -92,8 +92,8 @@ TEST(SampleTimes, OfADeliveryEverySampleHasATimeOfItsOwn) {
       last_s = taken->since_s;
       if (i == kSamples / 2) half_s = last_s;
     }
-    EXPECT_EQ(times.repeated(), 0U);
-    EXPECT_EQ(times.missing(), 0U);
+    EXPECT_EQ(times.counts().repeated, 0U);
+    EXPECT_EQ(times.counts().missing, 0U);
     EXPECT_NEAR((kSamples / 2 - 1) / (last_s - half_s), line.rate_hz, 5e-4 * line.rate_hz);
   }
 }
@@ -156,7 +156,7 @@ TEST(SampleTimes, WhatComesTwiceHasNoTimeAndWhatGoesBackIsRefused) {
   EXPECT_THROW(times.next(sample(kEpoch_ns, 2)), std::runtime_error);
   times.allow_restarts();
   EXPECT_FALSE(times.next(sample(kEpoch_ns + kStep_ns, 3)));
-  EXPECT_EQ(times.repeated(), 1U);
+  EXPECT_EQ(times.counts().repeated, 1U);
 }
 
 }  // namespace

@@ -55,23 +55,6 @@ TEST_F(HostileFile, ALongCellIsNamedAndNotEchoed) {
   EXPECT_LT(refusal(read_by_name).size(), 200U);
 }
 
-TEST_F(HostileFile, ALineHasALongestLength) {
-  const std::string expected = "a line of more than 1048576 bytes, begins '" + std::string(60, '7') + "'";
-  for (const std::size_t before : {0U, 1U, 1'000'000U, 5'000'000U}) {
-    std::string text = before == 0 ? "" : std::string(before - 1, '#') + "\n";
-    for (std::size_t i = 100'000; i < text.size(); i += 100'000) text[i] = '\n';
-    const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-    text += std::string(ifog::kLongestLine + 1, '7');
-    for (const char* end : {"", "\n", "\nmore\n"}) {
-      std::ofstream(path_) << text << end;
-      EXPECT_EQ(refusal(ifog::read_text_file), ":" + std::to_string(lines + 1) + ": " + expected) << before;
-    }
-    text.pop_back();
-    std::ofstream(path_) << text << "\n";
-    EXPECT_EQ(ifog::read_text_file(path_.string()).size(), text.size() + 1) << before;
-  }
-}
-
 TEST_F(HostileFile, AGzipBombStopsAtItsFirstLine) {
   pack(std::string(1U << 20U, '0'), 256);
   rusage before{}, after{};
@@ -88,11 +71,11 @@ TEST_F(HostileFile, AGzipBombOfShortLinesStopsToo) {
   EXPECT_EQ(refusal(read_by_name),
             ": grows to more than 256 MiB, 100 times its size, when unpacked, expected a "
             "recording");
-  EXPECT_EQ(refusal(ifog::read_bytes_file),
+  EXPECT_EQ(refusal(ifog::read_whole_file),
             ": grows to more than 256 MiB, 100 times its size, when unpacked, expected a "
             "recording");
   pack(lines, 200);
-  EXPECT_EQ(ifog::read_bytes_file(path_.string()).size(), 200 * lines.size());
+  EXPECT_EQ(ifog::read_whole_file(path_.string()).size(), 200 * lines.size());
 }
 
 // A wide header over short rows must not ask for rows × columns before it has seen them.

@@ -15,15 +15,13 @@
 
 namespace {
 
-using ifog::ExactSteps;
 using ifog::SaidTime;
 using ifog::TimeOrigin;
 using ifog::TimeStamps;
 
 double since(const std::string& first, double unit_s, const std::string& text) {
-  int decimals = 0;
   double value = std::nan("");
-  EXPECT_TRUE(TimeStamps(first, unit_s).since(text, value, decimals)) << text;
+  EXPECT_TRUE(TimeStamps(first, unit_s).since(text, value)) << text;
   return value;
 }
 
@@ -38,17 +36,16 @@ TEST(TimeStamps, LoseNoDigitOfAnEpoch) {
   EXPECT_EQ(since("1700000000.123456789", 1.0, "1700086399.999999999"), 86399.87654321);
   EXPECT_EQ(since("1700000000.123456789", 1.0, "1700000000.2"), 0.076543211);
   EXPECT_EQ(since("1700000000.5", 1.0, "1700000000.1234567890125"), -0.3765432109875);
-  EXPECT_EQ(since("1700000000123456789", 1e-9, "1700000000123456790"), 1.0);
-  EXPECT_EQ(since("1700000000123.5", 1e-3, "1700000000124.25"), 0.75);
+  EXPECT_EQ(since("1700000000123456789", 1e-9, "1700000000123456790"), 1e-9);
+  EXPECT_EQ(since("1700000000123.5", 1e-3, "1700000000124.25"), 0.00075);
   EXPECT_EQ(since("345678.25", 1.0, "345678.26"), 0.01);
   EXPECT_EQ(since("-1700000000.5", 1.0, "-1700000000.49"), 0.01);
   EXPECT_EQ(since("-1700000000.5", 1.0, "-1699999999.5"), 1.0);
   EXPECT_EQ(TimeStamps("-1700000000.5", 1.0).origin(), (TimeOrigin{-1700000001, 500'000'000}));
   EXPECT_EQ(TimeStamps("1700000000123456789", 1e-9).origin(), (TimeOrigin{1700000000, 123'456'789}));
-  EXPECT_EQ(TimeStamps(1700000000123456789, 1e-9).origin(), (TimeOrigin{1700000000, 123'456'789}));
   // No more than whole ns are counted from.
   EXPECT_EQ(TimeStamps("1700000000123.4567891", 1e-3).origin(), (TimeOrigin{1700000000, 123'456'789}));
-  EXPECT_EQ(since("1700000000123.4567891", 1e-3, "1700000000123.4567891"), 1e-7);
+  EXPECT_EQ(since("1700000000123.4567891", 1e-3, "1700000000123.4567891"), 1e-10);
   EXPECT_EQ(TimeStamps("28333333", 60.0).origin(), (TimeOrigin{28333333LL * 60, 0}));
 }
 
@@ -60,16 +57,15 @@ TEST(TimeStamps, StandAsTheyAreWhereADoubleHoldsThem) {
 }
 
 TEST(TimeStamps, LeaveWhatIsNotPlainToOthers) {
-  int decimals = 0;
   double value = 0.0;
   for (const std::string text : {"", "-", ".", "1e3", "nan", "1.5x", " 1", "99999999999999999999"})
-    EXPECT_FALSE(TimeStamps().since(text, value, decimals)) << text;
+    EXPECT_FALSE(TimeStamps().since(text, value)) << text;
 }
 
 TEST(TimeStamps, AreHeldToWhatHasRoom) {
   EXPECT_EQ(TimeStamps("4500000000000000000", 3600.0).origin(), TimeOrigin{});
   EXPECT_EQ(TimeStamps("9223372036854775807", 1e-9).origin(), TimeOrigin{});
-  EXPECT_EQ(since("-4599999999999999999", 1e-9, "4599999999999999999"), 9199999999999999999.0);
+  EXPECT_EQ(since("-4599999999999999999", 1e-9, "4599999999999999999"), 9199999999.999999999);
   EXPECT_EQ(TimeOrigin::of(INT64_MIN), (TimeOrigin{-9223372037, 145'224'192}));
   EXPECT_EQ(TimeOrigin::of(INT64_MAX), (TimeOrigin{9223372036, 854'775'807}));
   EXPECT_EQ(TimeOrigin::of(INT64_MIN).in_ns(0.0), INT64_MIN);
@@ -113,18 +109,6 @@ TEST(SaidTime, IsBeforeAndBehindWhatItSays) {
   EXPECT_FALSE(SaidTime::parse("-0.5")->is_after({}, -0.5));
   EXPECT_TRUE(SaidTime::parse("1e300")->is_after(origin, 1e9));
   for (const std::string text : {"", "x", "1s", "inf", "nan"}) EXPECT_FALSE(SaidTime::parse(text)) << text;
-}
-
-TEST(ExactSteps, AreThoseOfTheDigits) {
-  const ExactSteps of_ms(3, 1.0), of_ns(0, 1e-9);
-  // Each is rounded by as much as 7e-12 here.
-  EXPECT_NE(86400.003 - 86400.002, 0.001);
-  EXPECT_EQ(of_ms.between(86400.002, 86400.003), 0.001);
-  EXPECT_EQ(of_ns.between(86400.002, 86400.003), 0.001);
-  EXPECT_EQ(ExactSteps().between(0.25, 0.75), 0.5);
-  // Ticks that the doubles do not tell apart.
-  EXPECT_EQ(of_ns.between(1.7e9, 1.7e9 + 0.25), 0.25);
-  EXPECT_EQ(of_ms.nearest(std::nextafter(0.123, 1.0)), 0.123);
 }
 
 // What a file of times since `start` (in ticks of a ns) says, in a unit of `of_second` a second.
@@ -188,7 +172,7 @@ TEST(TimeStamps, OfAnyStartAndUnitMakeTheSameRates) {
         const Stamped got = turned(start_ns, unit.of_second, unit.name, piece);
         ASSERT_EQ(got.rate.size(), from_0.rate.size());
         for (std::size_t i = 1; i < got.rate.size(); ++i) {
-          ASSERT_EQ(got.rate[i], from_0.rate[i]) << start_ns << " " << unit.name << " row " << i;
+          ASSERT_NEAR(got.rate[i], from_0.rate[i], 1e-12) << start_ns << " " << unit.name << " row " << i;
           const std::int64_t ns = start_ns + static_cast<std::int64_t>(i) * 10'000'000;
           ASSERT_EQ(got.time_s[i],
                     static_cast<double>(ns - got.origin.s * 1'000'000'000 - got.origin.ns) / 1e9)

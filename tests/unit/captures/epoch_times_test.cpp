@@ -30,7 +30,7 @@ std::string written(const LongTable& table, const std::string& ending = ".csv") 
   const auto path =
       std::filesystem::temp_directory_path() / ("epoch_times_" + std::to_string(getpid()) + ending);
   write_columns(table, "a.csv", path.string());
-  const std::string text = read_bytes_file(path.string());
+  const std::string text = read_whole_file(path.string());
   std::filesystem::remove(path);
   return text;
 }

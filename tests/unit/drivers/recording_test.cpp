@@ -83,7 +83,7 @@ class Recording : public testing::Test {
     ifog::InputFile recorded(file);
     counts_ =
         ifog::decode_recording(recorded, in, "", [&](const ifog_sample& sample) { builder.add(sample); });
-    missing_ = builder.missing();
+    missing_ = builder.counts().missing;
     return builder.finish();
   }
 

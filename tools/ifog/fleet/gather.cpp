@@ -47,7 +47,7 @@ void add_noise(const nlohmann::json& noise, const std::string& axis, std::size_t
 // Noise of each axis for which the model has it. Throws std::runtime_error with one line.
 std::map<std::string, nlohmann::json> noise_by_axis(const std::string& path, const Model& model) {
   try {
-    const nlohmann::json noise = parse_json(read_text_file(path), path).at("noise");
+    const nlohmann::json noise = parse_json(read_whole_file(path), path).at("noise");
     const bool single = model.noise.size() == 1;
     std::map<std::string, nlohmann::json> by_axis;
     for (const auto& [axis, terms] : model.noise) by_axis[axis] = single ? noise : noise.at(axis);

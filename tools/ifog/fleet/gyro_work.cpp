@@ -126,7 +126,7 @@ void add_files(std::string& text, const DriverSettings& settings) {
   for (const auto& [key, value] : settings) {
     std::error_code none;
     if (std::filesystem::is_regular_file(value, none))
-      add(text, "file", key + " " + sha256_hex(read_bytes_file(value)));
+      add(text, "file", key + " " + sha256_hex(read_whole_file(value)));
   }
 }
 

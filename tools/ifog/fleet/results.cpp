@@ -46,7 +46,7 @@ auto read_marker(const std::string& path, const std::string& schema, Read&& read
   std::error_code none;
   if (!fs::is_regular_file(path, none)) return std::nullopt;
   try {
-    const nlohmann::json json = parse_json(read_text_file(path), path);
+    const nlohmann::json json = parse_json(read_whole_file(path), path);
     if (json.at("schema") != schema) return std::nullopt;
     return read(json);
   } catch (const std::exception&) {
