@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/capture.h"
 
-#include <algorithm>
-#include <span>
 #include <string_view>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/csv/csv_writer.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
@@ -80,35 +77,6 @@ Capture read_capture(InputFile& file, const CsvLayout& layout) {
 
 Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout) {
   return capture_of(parse_table(text, path, layout), path);
-}
-
-void write_capture(const Capture& capture, const std::string& path) {
-  std::vector<std::pair<std::string, const std::vector<double>*>> columns;
-  columns.emplace_back("time_s", &capture.time_s);
-  const auto named = [](const std::string& prefix, const std::string& axis) {
-    return axis.empty() ? prefix + "_radps" : prefix + "_" + axis + "_radps";
-  };
-  for (std::size_t i = 0; i < capture.axes.size(); ++i)
-    columns.emplace_back(named("rate", capture.axes[i]), &capture.rate_radps[i]);
-  for (std::size_t i = 0; i < capture.reference_rate_radps.size(); ++i)
-    if (!capture.reference_rate_radps[i].empty())
-      columns.emplace_back(named("reference_rate", capture.axes[i]), &capture.reference_rate_radps[i]);
-  for (const CaptureColumn& channel : capture.channels) columns.emplace_back(channel.name, &channel.values);
-
-  std::vector<std::string> names;
-  names.reserve(columns.size());
-  for (const auto& column : columns) names.push_back(column.first);
-  std::string comments;
-  for (const std::string& comment : capture.comments) comments += comment + '\n';
-  CsvWriter file(path, comments, names);
-  constexpr std::size_t kRows = std::size_t{1} << 14U;
-  std::vector<std::span<const double>> piece(columns.size());
-  for (std::size_t row = 0; row < capture.size(); row += kRows) {
-    for (std::size_t c = 0; c < columns.size(); ++c)
-      piece[c] = std::span(*columns[c].second).subspan(row, std::min(kRows, capture.size() - row));
-    file.rows(piece, capture.origin);
-  }
-  file.finish();
 }
 
 }  // namespace ifog

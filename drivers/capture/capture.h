@@ -80,7 +80,4 @@ struct CaptureShape {
 CaptureShape capture_shape(const std::vector<std::string>& names, const std::string& path,
                            const RowNotes& notes);
 
-// Shortest text that reads back as the same double. Writes beside the target, fsyncs, renames.
-void write_capture(const Capture& capture, const std::string& path);
-
 }  // namespace ifog

@@ -58,14 +58,13 @@ void RowChecks::take(RowBlock& rows) {
 void RowChecks::behind_clock(RowBlock& rows) {
   look_for_set_clock(rows.time_s);
   last_s_ = rows.time_s.back();
-  times_.take(rows.time_s);
   notes_.add_lines(given_, rows);
   given_ += rows.size();
   if (!all_) return leaps_.take(rows);
   all_->append(rows);
 }
 
-void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known) {
+void RowChecks::finish(std::span<const ImpossibleValues> found) {
   for (std::size_t c = 0; c < columns_.size(); ++c) tell_impossible(columns_[c], found[c]);
   clock_.finish();
   if (all_) {
@@ -75,9 +74,6 @@ void RowChecks::finish(std::span<const ImpossibleValues> found, bool unit_known)
   leaps_.finish();
   tell_leaps();
   tell_set_clock();
-  if (layout_.sample_rate_hz) return;
-  const CsvTime time = layout_.time.value_or(CsvTime{});
-  if (const auto notice = times_.notice(path_, time, unit_known); notice) notes_.notices.push_back(*notice);
 }
 
 void RowChecks::look_for_set_clock(const std::vector<double>& time_s) {

@@ -18,13 +18,6 @@
 
 namespace ifog {
 
-// A column of the file, not the time.
-struct FileColumn {
-  std::string name;   // in the file
-  Measurable range;   // in the file's unit
-  bool rate = false;  // of the capture: a rate or its reference
-};
-
 // Values of a column that no sensor measures, read as missing.
 struct ImpossibleValues {
   std::size_t count = 0;
@@ -46,8 +39,8 @@ class RowChecks {
   void take(RowBlock& rows);
   // found: of each column. A value here and there is a fault of the logger, and is missing; where many are, a
   // rate is not what its name says, and is refused. A channel is only missing then: a broken thermometer is
-  // no reason to know nothing of the rate. unit_known: the time says its unit by more than its name.
-  void finish(std::span<const ImpossibleValues> found, bool unit_known);
+  // no reason to know nothing of the rate.
+  void finish(std::span<const ImpossibleValues> found);
 
   // Rows received, repeated ones included.
   [[nodiscard]] std::size_t rows() const { return rows_; }
@@ -67,7 +60,6 @@ class RowChecks {
   Leaps leaps_;
   RowClock clock_;
   std::optional<RowBlock> all_;  // where angles become rates
-  WholeTimes times_;
   std::size_t rows_ = 0;
   std::size_t given_ = 0;                 // rows behind the clock
   double last_s_ = 0.0;                   // time of the last of them, once there is one

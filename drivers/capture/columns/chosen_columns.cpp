@@ -122,26 +122,4 @@ void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std
   }
 }
 
-void WholeTimes::take(const std::vector<double>& time_s) {
-  if (rows == 0) first_s = time_s.front();
-  rows += time_s.size();
-  last_s = time_s.back();
-  whole = whole && std::all_of(time_s.begin(), time_s.end(), [](double t) { return t == std::floor(t); });
-}
-
-std::optional<std::string> WholeTimes::notice(const std::string& path, const CsvTime& time,
-                                              bool unit_known) const {
-  constexpr std::size_t kFew = 10;
-  if (rows < kFew || !whole || (time.unit_s != 1.0)) return std::nullopt;
-  const double step = (last_s - first_s) / static_cast<double>(rows - 1);
-  const std::string name = printable(time.header);
-  if (step == 1.0 && (time.header != "time_s" || !unit_known))
-    return path + ": " + name +
-           " is whole numbers one apart, as a count of the rows is, and is read as seconds; if it is a "
-           "count: --sample-rate HZ";
-  if (unit_known || time.told) return std::nullopt;
-  return path + ": " + name + " is whole numbers, " + shortest(step) +
-         " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms");
-}
-
 }  // namespace ifog

@@ -14,6 +14,8 @@
 #include "drivers/capture/columns/column_words.h"
 #include "drivers/capture/times/date_time.h"
 #include "drivers/ifog/decimal.h"
+#include "drivers/ifog/quoted.h"
+#include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"
 
 namespace ifog {
@@ -277,6 +279,26 @@ int digits_of_second(const std::string& name, const std::vector<std::string>& ce
   double most = 0.0;
   for (const double value : numbers_in(cells)) most = std::max(most, value);
   return most >= 1e6 ? 9 : most >= 1e3 ? 6 : 3;
+}
+
+std::string whole_times_notice(const TableSample& table, std::size_t place, const CsvTime& time) {
+  constexpr std::size_t kFew = 10;
+  const std::vector<std::string> cells = filled(table.cells[place]);
+  const std::vector<double> values = numbers_in(cells);
+  if (values.size() < std::max(kFew, cells.size()) || time.unit_s != 1.0 ||
+      !std::all_of(values.begin(), values.end(), [](double t) { return t == std::floor(t); }))
+    return "";
+  const bool unit_known =
+      time_unit(table.stated_unit(place)).has_value() || cells[0].find('.') != std::string::npos;
+  const double step = (values.back() - values.front()) / static_cast<double>(values.size() - 1);
+  const std::string name = printable(time.header);
+  if (step == 1.0 && (time.header != "time_s" || !unit_known))
+    return name +
+           " is whole numbers one apart, as a count of the rows is, and is read as seconds; if it is a "
+           "count: --sample-rate HZ";
+  if (unit_known || time.told) return "";
+  return name + " is whole numbers, " + shortest(step) +
+         " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms");
 }
 
 std::optional<double> stated_rate_hz(const std::vector<std::string>& comments) {

@@ -31,6 +31,11 @@ std::string name_of_seconds(double unit_s);
 // nanoseconds, by its name or its values; 0 where the two are a date and a time of day.
 int digits_of_second(const std::string& name, const std::vector<std::string>& cells);
 
+// What to say of a time column of whole numbers: one apart they are a count of rows, unless their unit is given;
+// further apart and without decimals they are more often milliseconds than samples of a second each. It is
+// said, not changed. "" for nothing.
+std::string whole_times_notice(const TableSample& table, std::size_t place, const CsvTime& time);
+
 // A stated sample rate, as loggers write it above the table: "Output Rate,200.0"; nothing where none is.
 std::optional<double> stated_rate_hz(const std::vector<std::string>& comments);
 

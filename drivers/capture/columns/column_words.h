@@ -19,7 +19,6 @@ struct Words {
 
   [[nodiscard]] bool has(std::string_view word) const;
   [[nodiscard]] std::string_view first() const { return words.empty() ? std::string_view() : words.front(); }
-  [[nodiscard]] std::string_view last() const { return words.empty() ? std::string_view() : words.back(); }
   [[nodiscard]] std::size_t size() const { return words.size(); }
 };
 

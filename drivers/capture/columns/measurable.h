@@ -18,6 +18,13 @@ struct Measurable {
   [[nodiscard]] bool holds(double value) const { return value >= least && value <= most; }
 };
 
+// A column of a file, not the time.
+struct FileColumn {
+  std::string name;   // in the file
+  Measurable range;   // in the file's unit
+  bool rate = false;  // of the capture: a rate or its reference
+};
+
 // The unit that a column's name ends in; empty where it may be no unit at all.
 std::string_view stated_unit(std::string_view column);
 

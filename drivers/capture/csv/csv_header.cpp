@@ -211,7 +211,6 @@ class Chooser {
         time.unit_s = *unit_s;
         time.told = true;
         if (header_.layout.time) header_.layout.time = time;
-        header_.time_unit_known = true;
       }
     if (const std::string unit = other_unit(time); !unit.empty())
       fail(unit_by_name(time.header, unit, option_for(time, unit)));
@@ -223,24 +222,21 @@ class Chooser {
       header_.time_part = place(parts.back());
       header_.part_digits =
           digits_of_second(names_[header_.time_part], form_.sample.cells[header_.time_part]);
-      take_time_cell(header_.time_part, {});
+      header_.cells[header_.time_part].column = CsvCell::kTime;
     }
-    take_time_cell(header_.time_place, measurable_in_file(time));
-  }
-
-  void take_time_cell(std::size_t at, const Measurable& range) {
-    header_.cells[at].range = range;
-    header_.cells[at].column = CsvCell::kTime;
+    header_.cells[header_.time_place].column = CsvCell::kTime;
+    if (const std::string notice = whole_times_notice(form_.sample, header_.time_place, time);
+        parts.size() == 1 && !notice.empty())
+      header_.notices.push_back(path_ + ": " + notice);
   }
 
   void take(std::size_t at, const CsvColumn& column) {
-    CsvCell& cell = header_.cells[at];
-    cell.range = measurable_in_file(column);
-    cell.rate = is_rate_column(column.name);
-    if (cell.rate && ++rates_ > kInputLimits.csv_rates)
+    const bool rate = is_rate_column(column.name);
+    if (rate && ++rates_ > kInputLimits.csv_rates)
       fail("more than " + std::to_string(kInputLimits.csv_rates) + " rates, expected at most that");
-    cell.column = header_.names.size();
+    header_.cells[at].column = header_.names.size();
     header_.names.push_back(column.name);
+    header_.columns.push_back({names_[at], measurable_in_file(column), rate});
   }
 
   TableForm form_;

@@ -20,8 +20,6 @@ struct CsvCell {
   static constexpr std::size_t kTime = kPassedOver - 1;
 
   std::string name;                  // in the file
-  Measurable range;                  // in the file's unit
-  bool rate = false;                 // of the capture: a rate or its reference
   std::size_t column = kPassedOver;  // of the capture, not counting the time
   bool kept = true;                  // else it is checked only
 };
@@ -29,16 +27,16 @@ struct CsvCell {
 struct CsvHeader {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-  std::vector<CsvCell> cells;      // in the file's order
-  std::vector<std::string> names;  // of the capture's columns without the time
-  CsvLayout layout;                // that reads it
+  std::vector<CsvCell> cells;       // in the file's order
+  std::vector<std::string> names;   // of the capture's columns without the time
+  std::vector<FileColumn> columns;  // of each, where it is from
+  CsvLayout layout;                 // that reads it
   char separator = ',';
   std::string comments;              // that stood before it, as in RowNotes
   std::size_t last_line = 0;         // number of the line above the first row
   std::size_t time_place = kNone;    // which cell is the time; kNone where rows are even
   std::size_t time_part = kNone;     // a second cell of the time: digits behind the point, or a time of day
   int part_digits = 0;               // of it; 0: a time of day
-  bool time_unit_known = false;      // by a row of units
   std::size_t only_place = kNone;    // which cell says whether a row is read
   std::vector<std::string> notices;  // how a foreign header was read, and what rows are in turn
 };

@@ -93,26 +93,28 @@ class Rows {
         unit_s_(header.layout.time.value_or(CsvTime{}).unit_s),
         path_(path) {
     piece_.rows.columns.resize(header.names.size());
-    piece_.impossible.resize(header.cells.size());
-    for (std::size_t i = 0; i < header.cells.size(); ++i) {
-      const CsvCell& cell = header.cells[i];
-      const bool time = cell.column == CsvCell::kTime, none = cell.column == CsvCell::kPassedOver;
-      const bool other = !time && !none && is_other_rate(header.names[cell.column]);
-      to_.push_back({none                                   ? Meaning::kNothing
-                     : other                                ? Meaning::kOther
-                     : !time                                ? Meaning::kNumber
-                     : header.time_part == CsvHeader::kNone ? Meaning::kTime
-                                                            : Meaning::kPartOfTime,
-                     cell.range,
-                     none || !cell.kept ? nullptr
-                     : time             ? &piece_.rows.time_s
-                                        : &piece_.rows.columns[cell.column]});
+    piece_.impossible.resize(header.names.size());
+    for (const CsvCell& cell : header.cells) {
+      if (cell.column == CsvCell::kTime) {
+        to_.push_back({header.time_part == CsvHeader::kNone ? Meaning::kTime : Meaning::kPartOfTime,
+                       {},
+                       nullptr,
+                       nullptr});
+      } else if (cell.column == CsvCell::kPassedOver) {
+        to_.push_back({Meaning::kNothing, {}, nullptr, nullptr});
+      } else {
+        to_.push_back({is_other_rate(header.names[cell.column]) ? Meaning::kOther : Meaning::kNumber,
+                       header.columns[cell.column].range,
+                       cell.kept ? &piece_.rows.columns[cell.column] : nullptr,
+                       &piece_.impossible[cell.column]});
+      }
     }
   }
 
   // Columns that were used before have their memory still.
   void begin(std::size_t rows) {
     piece_.rows.time_s.clear();
+    piece_.rows.time_s.reserve(rows);
     piece_.rows.lines.clear();
     piece_.rows.lines.reserve(rows);
     for (std::vector<double>& column : piece_.rows.columns) column.clear();
@@ -160,6 +162,7 @@ class Rows {
     Meaning means;
     Measurable range;
     std::vector<double>* values;  // null: nobody wants them
+    ImpossibleValues* impossible;
   };
 
   // The cell that begins there, of the row that ends at `end`; where it ends itself.
@@ -229,8 +232,9 @@ class Rows {
     if (std::isnan(since))
       fail_at(path_, line, printable(header_.cells[place].name) + " is missing, expected a time");
     if (!time_range_.holds(stamps_.origin().told(since)))
-      fail_at(path_, line, what_no_sensor_measures(header_.cells[place].name, text, to_[place].range));
-    if (rows_ == 0) piece_.decimals = text.find('.') != std::string_view::npos || digits.is_date();
+      fail_at(path_, line,
+              what_no_sensor_measures(header_.cells[place].name, text,
+                                      measurable_in_file(header_.layout.time.value_or(CsvTime{}))));
     piece_.rows.time_s.push_back(since);
   }
 
@@ -246,7 +250,7 @@ class Rows {
     const bool possible = std::isnan(value) || to.range.holds(value);
     if (to.values != nullptr) to.values->push_back(possible ? value : kMissing);
     if (possible) return;
-    ImpossibleValues& impossible = piece_.impossible[place];
+    ImpossibleValues& impossible = *to.impossible;
     if (impossible.count++ > 0) return;
     impossible.line = line;
     impossible.first = text;

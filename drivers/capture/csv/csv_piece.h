@@ -22,11 +22,10 @@ namespace ifog {
 struct CsvPiece {
   RowBlock rows;                             // times since the stamps' origin and values in the file's units
   std::string comments;                      // as in RowNotes
-  std::vector<ImpossibleValues> impossible;  // by cell of a row; lines of the piece
+  std::vector<ImpossibleValues> impossible;  // by column; lines of the piece
   std::size_t lines = 0;
   std::size_t row_bytes = 0;  // of the lines that are rows
   std::size_t untimed = 0;    // rows of another sensor, which have no time of this one
-  bool decimals = false;      // in the first time
 };
 
 // The stamps that count from the text's first time; nothing where it has no row.

@@ -95,7 +95,6 @@ class CsvRows {
   std::vector<ImpossibleValues> impossible_;  // by column
   std::optional<RowChecks> checks_;
   std::size_t lines_ = 0, untimed_ = 0;
-  bool decimals_ = false;             // in the first time
   std::optional<TimeStamps> stamps_;  // once there is a row
 };
 
@@ -118,14 +117,12 @@ std::string CsvRows::begin(CsvText& pieces) {
   notes_.header_line = lines_;
   notes_.notices = std::move(header_.notices);
   impossible_.resize(header_.names.size());
-  std::vector<FileColumn> columns(header_.names.size());
-  for (const CsvCell& cell : header_.cells)
-    if (cell.column < columns.size()) columns[cell.column] = {cell.name, cell.range, cell.rate};
-  checks_.emplace(path_, header_.layout, std::move(columns), sink_, notes_);
+  checks_.emplace(path_, header_.layout, header_.columns, sink_, notes_);
   sink_.begin(header_.names);
   // Leaps are looked for in every rate, whoever wants it.
   for (CsvCell& cell : header_.cells)
-    if (cell.column < header_.names.size()) cell.kept = cell.rate || sink_.wants(cell.column);
+    if (cell.column < header_.names.size())
+      cell.kept = header_.columns[cell.column].rate || sink_.wants(cell.column);
   return std::string(lines.rest());
 }
 
@@ -168,12 +165,10 @@ void CsvRows::deliver(Piece& piece) {
   // Here it is known where the piece stands, and so what to say.
   if (!parsed) parsed = parse_csv_piece(piece.text, header_, stamps_.value_or(TimeStamps()), path_, lines_);
   notes_.comments += parsed->comments;
-  for (std::size_t i = 0; i < header_.cells.size(); ++i) {
-    const ImpossibleValues& found = parsed->impossible[i];
-    if (found.count == 0 || header_.cells[i].column >= impossible_.size()) continue;
-    ImpossibleValues& all = impossible_[header_.cells[i].column];
-    if (all.count == 0) all = {0, lines_ + found.line, found.first};
-    all.count += found.count;
+  for (std::size_t c = 0; c < impossible_.size(); ++c) {
+    const ImpossibleValues& found = parsed->impossible[c];
+    if (impossible_[c].count == 0) impossible_[c] = {0, lines_ + found.line, found.first};
+    impossible_[c].count += found.count;
   }
   piece.rows = std::move(parsed->rows);
   RowBlock& rows = piece.rows;
@@ -182,7 +177,6 @@ void CsvRows::deliver(Piece& piece) {
   untimed_ += parsed->untimed;
   were_rows_(parsed->row_bytes);
   if (rows.size() == 0) return;
-  if (checks_->rows() == 0) decimals_ = parsed->decimals;
   if (header_.layout.sample_rate_hz)
     for (double& time : rows.time_s)
       time = (static_cast<double>(checks_->rows()) + time) / *header_.layout.sample_rate_hz;
@@ -195,7 +189,7 @@ void CsvRows::finish() {
     notes_.notices.push_back(path_ + ": " + std::to_string(untimed_) + " rows without " +
                              in_quotes(header_.cells[header_.time_place].name) +
                              " are of another sensor and dropped");
-  checks_->finish(impossible_, decimals_ || header_.time_unit_known);
+  checks_->finish(impossible_);
 }
 
 }  // namespace

@@ -93,11 +93,7 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
     begin();
     return;
   }
-  file_.reset(gzdopen(fd, "rb"));
-  if (!file_) {
-    ::close(fd);
-    throw std::runtime_error(path_ + ": cannot open: " + reason());
-  }
+  unpack_from(fd, path_);
   gzbuffer(file_.get(), 1U << 18U);
   if (S_ISREG(info.st_mode)) total_ = static_cast<std::size_t>(info.st_size);
   if (S_ISREG(info.st_mode) && gzdirect(file_.get()) == 0)
@@ -110,6 +106,13 @@ InputFile::InputFile(std::string path) : path_(std::move(path)) {
 InputFile::InputFile(std::string path, std::deque<std::string> files)
     : path_(std::move(path)), more_(std::move(files)) {
   begin();
+}
+
+void InputFile::unpack_from(int fd, const std::string& path) {
+  file_.reset(gzdopen(fd, "rb"));
+  if (file_) return;
+  ::close(fd);
+  throw std::runtime_error(path + ": cannot open: " + reason());
 }
 
 void InputFile::begin() {
@@ -140,11 +143,7 @@ bool InputFile::open_next() {
     throw std::runtime_error(path + ": is no recording of this folder alone, expected a file with one name");
   }
   if (file_) behind_ += static_cast<std::size_t>(std::max<z_off_t>(0, gzoffset(file_.get())));
-  file_.reset(gzdopen(fd, "rb"));
-  if (!file_) {
-    ::close(fd);
-    throw std::runtime_error(path + ": cannot open: " + reason());
-  }
+  unpack_from(fd, path);
   return true;
 }
 

@@ -72,6 +72,7 @@ class InputFile {
     void operator()(gzFile_s* file) const;
   };
   std::size_t unpack(char* to, std::size_t most);
+  void unpack_from(int fd, const std::string& path);
   bool open_next();
   void begin();
 

@@ -4,9 +4,32 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
+#include <span>
+#include <string>
+#include <vector>
 
+#include "drivers/capture/csv/csv_writer.h"
 #include "drivers/capture/files/text_file.h"
 #include "tests/bench/undeclared/sensor.h"
+
+// Of one axis, as all that is made here.
+static void write(const ifog::Capture& capture, const std::string& path) {
+  std::vector<std::string> names{"time_s", "rate_radps"};
+  std::vector<std::span<const double>> columns{capture.time_s, capture.rate_radps[0]};
+  if (!capture.reference_rate_radps[0].empty()) {
+    names.emplace_back("reference_rate_radps");
+    columns.emplace_back(capture.reference_rate_radps[0]);
+  }
+  for (const ifog::CaptureColumn& channel : capture.channels) {
+    names.push_back(channel.name);
+    columns.emplace_back(channel.values);
+  }
+  std::string comments;
+  for (const std::string& comment : capture.comments) comments += comment + '\n';
+  ifog::CsvWriter file(path, comments, names);
+  file.rows(columns, capture.origin);
+  file.finish();
+}
 
 int main(int argc, char** argv) {
   using namespace ifog::undeclared;
@@ -33,9 +56,9 @@ int main(int argc, char** argv) {
     std::filesystem::create_directories(folder);
     std::filesystem::create_directories(truth);
     for (int c = 0; c < captures; ++c)
-      ifog::write_capture(record(sensor, c).capture, folder + "/capture" + std::to_string(c + 1) + ".csv");
+      write(record(sensor, c).capture, folder + "/capture" + std::to_string(c + 1) + ".csv");
     const Record next = record(sensor, 50);
-    ifog::write_capture(next.capture, folder + "/next.csv");
+    write(next.capture, folder + "/next.csv");
     ifog::Capture hidden;  // the sum of the true effects in next.csv, as a rate
     hidden.time_s = next.capture.time_s;
     hidden.axes = {""};
@@ -43,7 +66,7 @@ int main(int argc, char** argv) {
     hidden.reference_rate_radps = {{}};
     for (const auto& effect : next.effects)
       for (std::size_t k = 0; k < hidden.size(); ++k) hidden.rate_radps[0][k] += effect[k];
-    ifog::write_capture(hidden, truth + "/next_effect.csv");
+    write(hidden, truth + "/next_effect.csv");
     ifog::write_text_file(truth + "/truth.json", truth_text(sensor));
     return 0;
   }
