@@ -39,8 +39,7 @@ struct Capture {
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
 
-// The columns as they stand in the file, whatever they are called; `ifog denoise` writes such a file without
-// a rate.
+// All columns of a file under their own names. A rate is not needed: `ifog denoise` writes files without one.
 struct Table : RowNotes {
   TimeOrigin origin;  // that time_s is counted from
   std::vector<double> time_s;

@@ -33,15 +33,15 @@ class CaptureBuilder {
 
   // As of SampleTimes.
   void discontinuity() { times_.discontinuity(); }
-  // The driver's options are others from the next sample on, which does not join what came. Throws
-  // std::runtime_error with one line where the columns would not be the same.
+  // The driver's options change with the next sample, which does not continue the samples before. Throws
+  // std::runtime_error with one line if the columns would change.
   void go_on_as(const ifog_description& description);
   void allow_restarts() { times_.allow_restarts(); }
   void keep_stamps(std::optional<std::int64_t> zero_ns) { times_.keep_stamps(zero_ns); }
 
   // The columns in the order of next_rows(): rates by axis, then channels.
   [[nodiscard]] std::vector<std::string> names() const;
-  // Rows that wait to be taken away, and their taking: for who does not want the whole at the end.
+  // The number of rows since the last call of next_rows(), which moves them out.
   [[nodiscard]] std::size_t waiting() const { return capture_.size(); }
   void next_rows(RowBlock& rows);
 
@@ -67,13 +67,12 @@ class CaptureBuilder {
   std::vector<Measurable> channel_range_;
 };
 
-// In the words of every command: samples whose rate reaches the full scale, whose rate no sensor measures,
-// and of the missing ones those of which nothing says whether the clock was set instead. One line each, none
-// for none.
+// What every command says about samples without a rate: at full scale, beyond what a sensor measures, and missing
+// by a clock that may have been set instead. One line for each count that is not 0.
 std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible,
                                                std::size_t untold);
 
-// Hands what a builder has made to a sink, some thousand rows at a time.
+// Passes the rows of a builder to a sink, some thousand at a time.
 class BuiltRows {
  public:
   BuiltRows(CaptureBuilder& builder, RowSink& sink) : builder_(builder), sink_(sink) {

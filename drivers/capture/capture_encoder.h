@@ -34,11 +34,10 @@ class CaptureEncoder {
   CaptureEncoder(const Capture& capture, DriverInstance& driver, double rate_hz,
                  const std::string& axis = {});
 
-  // The capture's columns hold the rows that follow now.
+  // The caller has replaced the rows of the capture by those that follow.
   void go_on();
 
-  // One line for each column that the format has no place for, and for each that it has but the capture
-  // lacks.
+  // One line for the columns that the format cannot carry, and one for the fields that the capture lacks.
   [[nodiscard]] const std::vector<std::string>& notices() const { return notices_; }
 
   // The next row, encoded and appended. False after the last row. Throws std::runtime_error with the row's
@@ -47,15 +46,15 @@ class CaptureEncoder {
   bool next(std::vector<ifog_can_frame>& frames);
 
   [[nodiscard]] std::size_t rows_done() const { return rows_before_ + row_; }
-  // Rows without a rate, in a format that cannot say so: sent as nothing, which is a gap in the counter.
+  // Rows without a rate in a format that cannot mark one as invalid: not sent, which leaves a gap in the counter.
   [[nodiscard]] std::size_t rows_left_out() const { return left_out_; }
-  // Time of the rows so far that whoever reads the frames will not know of, s: of a format without a clock
-  // the counter and the nominal rate are all of its time, and a counter's whole rounds do not show. More than
-  // 0: missing from it; less: added. 0 where the format, or a log of its frames, carries times.
+  // Time in s that a reader of the frames cannot see: without a clock in the format, time is the counter over the
+  // nominal rate, and complete rollovers of the counter are invisible. Positive: the reader's time is too short;
+  // negative: too long. 0 if the format, or a log of its frames, carries times.
   [[nodiscard]] double time_lost_s() const { return timed_ ? 0.0 : elapsed_s_ - told_s_; }
   [[nodiscard]] double elapsed_s() const { return elapsed_s_; }  // from the first row to the last
   [[nodiscard]] double rate_hz() const { return rate_hz_; }      // that the frames are read by
-  // Rows whose rate reaches the driver's full scale: sent, and missing to whoever reads the frames.
+  // Rows whose rate reaches the driver's full scale. They are sent, and a reader treats them as missing.
   [[nodiscard]] std::size_t rows_at_full_scale() const { return at_full_scale_; }
 
  private:

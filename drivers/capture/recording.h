@@ -59,7 +59,7 @@ std::string two_interfaces(const std::string& path, std::string_view one, std::s
 // interfaces, are refused. Throws std::runtime_error with one line (file, line, what was expected).
 RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const std::string& interface,
                                  const std::function<void(const ifog_sample&)>& sink);
-// The end of a recording, after which what the driver still waited for never comes: into the counts.
+// Ends a recording: bytes that the driver still waits to complete are counted.
 void finish_recording(DriverInstance& driver, RecordingCounts& counts);
 
 }  // namespace ifog

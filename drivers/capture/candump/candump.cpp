@@ -3,10 +3,11 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
+#include <charconv>
 #include <span>
 
 #include "drivers/capture/times/date_time.h"
+#include "drivers/capture/times/text_cursor.h"
 
 namespace ifog {
 namespace {
@@ -16,82 +17,20 @@ constexpr std::uint32_t kExtendedFlag = 0x80000000U,
 constexpr std::size_t kClassicBytes = 8, kFdBytes = 64;
 constexpr std::size_t kEpochDigits = 10;
 
-// Reads a line from its left, a token at a time.
-class Cursor {
- public:
-  explicit Cursor(std::string_view text) : rest_(text) {}
-
-  bool literal(char c) {
-    if (rest_.empty() || rest_.front() != c) return false;
-    rest_.remove_prefix(1);
-    return true;
-  }
-  // Blanks, at least one.
-  bool blanks() {
-    const std::size_t before = rest_.size();
-    while (!rest_.empty() && (rest_.front() == ' ' || rest_.front() == '\t')) rest_.remove_prefix(1);
-    return rest_.size() < before;
-  }
-  std::string_view word() {
-    const std::size_t end = std::min(rest_.find_first_of(" \t"), rest_.size());
-    const std::string_view found = rest_.substr(0, end);
-    rest_.remove_prefix(end);
-    return found;
-  }
-  // Decimal digits, as many as there are; false for none or an overflow.
-  bool decimal(std::uint64_t& value, std::size_t& digits) {
-    value = 0;
-    digits = 0;
-    while (!rest_.empty() && rest_.front() >= '0' && rest_.front() <= '9') {
-      if (value > (std::numeric_limits<std::int64_t>::max() - 9) / 10) return false;
-      value = value * 10 + static_cast<std::uint64_t>(rest_.front() - '0');
-      rest_.remove_prefix(1);
-      ++digits;
-    }
-    return digits > 0;
-  }
-  bool hex(std::uint32_t& digit) {
-    if (rest_.empty()) return false;
-    const char c = rest_.front();
-    if (c >= '0' && c <= '9')
-      digit = static_cast<std::uint32_t>(c - '0');
-    else if (c >= 'A' && c <= 'F')
-      digit = static_cast<std::uint32_t>(c - 'A' + 10);
-    else if (c >= 'a' && c <= 'f')
-      digit = static_cast<std::uint32_t>(c - 'a' + 10);
-    else
-      return false;
-    rest_.remove_prefix(1);
-    return true;
-  }
-  // What is before that, or nothing where it does not come.
-  std::string_view until(char c) {
-    const std::size_t end = rest_.find(c);
-    if (end == std::string_view::npos) return {};
-    const std::string_view found = rest_.substr(0, end);
-    rest_.remove_prefix(end);
-    return found;
-  }
-  bool text(std::string_view what) {
-    if (!rest_.starts_with(what)) return false;
-    rest_.remove_prefix(what.size());
-    return true;
-  }
-  [[nodiscard]] bool has(std::size_t at, char c) const { return rest_.size() > at && rest_[at] == c; }
-  [[nodiscard]] bool at(char c) const { return !rest_.empty() && rest_.front() == c; }
-  [[nodiscard]] bool done() const { return rest_.empty(); }
-
- private:
-  std::string_view rest_;
-};
+// Decimal digits, as many as there are; false for none or an overflow.
+bool decimal(TextCursor& in, std::uint64_t& value, std::size_t& digits) {
+  const std::string_view found = in.digits();
+  digits = found.size();
+  return std::from_chars(found.begin(), found.end(), value).ec == std::errc();
+}
 
 // "2026-05-01 12:00:00.123456)" of candump -t A.
-bool parse_date(Cursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
+bool parse_date(TextCursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
   std::array<char, kLongestDate> digits{};
-  Cursor date(date_in_digits(in.until(')'), digits));
+  TextCursor date(date_in_digits(in.until(')'), digits));
   std::uint64_t seconds = 0, fraction = 0;
   std::size_t places = 0;
-  if (!date.decimal(seconds, second_digits) || !date.literal('.') || !date.decimal(fraction, places) ||
+  if (!decimal(date, seconds, second_digits) || !date.literal('.') || !decimal(date, fraction, places) ||
       places > 9 || !date.done() || !in.literal(')'))
     return false;
   for (; places < 9; ++places) fraction *= 10;
@@ -100,20 +39,20 @@ bool parse_date(Cursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
   return true;
 }
 
-bool parse_time(Cursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
+bool parse_time(TextCursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
   std::uint64_t seconds = 0, fraction = 0;
   std::size_t digits = 0;
   constexpr std::uint64_t kMostSeconds = 9'000'000'000;  // what an int64 of nanoseconds holds
   if (!in.literal('(')) return false;
   if (in.has(4, '-')) return parse_date(in, time_ns, second_digits);
-  if (!in.decimal(seconds, second_digits) || seconds > kMostSeconds) return false;
-  if (!in.literal('.') || !in.decimal(fraction, digits) || digits > 9 || !in.literal(')')) return false;
+  if (!decimal(in, seconds, second_digits) || seconds > kMostSeconds) return false;
+  if (!in.literal('.') || !decimal(in, fraction, digits) || digits > 9 || !in.literal(')')) return false;
   for (; digits < 9; ++digits) fraction *= 10;
   time_ns = static_cast<std::int64_t>(seconds * 1'000'000'000 + fraction);
   return true;
 }
 
-bool parse_data(Cursor& in, std::size_t most, ifog_can_frame& frame) {
+bool parse_data(TextCursor& in, std::size_t most, ifog_can_frame& frame) {
   std::size_t n = 0;
   std::uint32_t high = 0, low = 0;
   while (in.hex(high)) {
@@ -125,7 +64,7 @@ bool parse_data(Cursor& in, std::size_t most, ifog_can_frame& frame) {
   return true;
 }
 
-bool parse_id(Cursor& in, ifog_can_frame& frame, bool& error) {
+bool parse_id(TextCursor& in, ifog_can_frame& frame, bool& error) {
   std::uint32_t id = 0, digit = 0;
   std::size_t digits = 0;
   for (; digits < 8 && in.hex(digit); ++digits) id = id << 4U | digit;
@@ -138,7 +77,7 @@ bool parse_id(Cursor& in, ifog_can_frame& frame, bool& error) {
 }
 
 // Behind "#" of a line of the log.
-CandumpLine parse_log(Cursor& in, ifog_can_frame& frame) {
+CandumpLine parse_log(TextCursor& in, ifog_can_frame& frame) {
   std::uint32_t digit = 0;
   bool remote = false;
   if (in.literal('#')) {
@@ -161,7 +100,7 @@ CandumpLine parse_log(Cursor& in, ifog_can_frame& frame) {
 constexpr char kSwapped = '`';  // between the bytes, last first, of candump -S
 
 // Two digits, or eight of candump -i.
-bool parse_byte(Cursor& in, std::uint8_t& byte) {
+bool parse_byte(TextCursor& in, std::uint8_t& byte) {
   std::uint32_t value = 0, bits = 0, digit = 0;
   int n = 0;
   for (bool binary = true; in.hex(digit); ++n) {
@@ -175,14 +114,14 @@ bool parse_byte(Cursor& in, std::uint8_t& byte) {
 }
 
 // Behind the id of a line of the screen: "[8]  11 22 …", the raw DLC as "{8}", 9 … F for a length of 8.
-CandumpLine parse_screen(Cursor& in, ifog_can_frame& frame) {
+CandumpLine parse_screen(TextCursor& in, ifog_can_frame& frame) {
   std::uint64_t length = 0;
   std::size_t digits = 0;
   std::uint32_t raw = 0;
   if (in.literal('{')) {
     if (!in.hex(raw) || !in.literal('}')) return CandumpLine::malformed;
     length = std::min<std::uint64_t>(raw, kClassicBytes);
-  } else if (!in.literal('[') || !in.decimal(length, digits) || !in.literal(']')) {
+  } else if (!in.literal('[') || !decimal(in, length, digits) || !in.literal(']')) {
     return CandumpLine::malformed;
   }
   if (digits == 2) frame.flags |= IFOG_CAN_FD;
@@ -208,9 +147,9 @@ CandumpLine parse_screen(Cursor& in, ifog_can_frame& frame) {
 }
 
 // "DROPCOUNT: dropped 5 CAN frames on 'can0' socket (total drops 12)" of candump -d.
-bool parse_drops(Cursor in, CandumpEntry& entry) {
+bool parse_drops(TextCursor in, CandumpEntry& entry) {
   std::size_t digits = 0;
-  if (!in.text("DROPCOUNT: dropped ") || !in.decimal(entry.dropped, digits) || !in.text(" CAN frame"))
+  if (!in.text("DROPCOUNT: dropped ") || !decimal(in, entry.dropped, digits) || !in.text(" CAN frame"))
     return false;
   in.literal('s');
   if (!in.text(" on '")) return false;
@@ -219,19 +158,19 @@ bool parse_drops(Cursor in, CandumpEntry& entry) {
 }
 
 // Behind the interface: "123 [0016] (00|81:00:12345678) …" on the screen, "00123#81:00:12345678#…" in a log.
-bool is_xl(Cursor in) {
+bool is_xl(TextCursor in) {
   std::uint32_t digit = 0;
   std::uint64_t length = 0;
   std::size_t ids = 0, digits = 0;
   while (in.hex(digit)) ++ids;
   if (ids == 5 && in.literal('#')) return in.hex(digit) && in.hex(digit) && in.at(':');
-  return ids == 3 && in.blanks() && in.literal('[') && in.decimal(length, digits) && digits == 4 &&
+  return ids == 3 && in.blanks() && in.literal('[') && decimal(in, length, digits) && digits == 4 &&
          in.text("] (");
 }
 
 // "RX - -" or "TX B E" of candump -x.
-bool pass_direction(Cursor& in) {
-  Cursor ahead = in;
+bool pass_direction(TextCursor& in) {
+  TextCursor ahead = in;
   const std::string_view direction = ahead.word();
   if (direction != "RX" && direction != "TX") return true;
   for (int i = 0; i < 2; ++i)
@@ -252,7 +191,7 @@ CandumpLine parse_candump_line(std::string_view line, CandumpEntry& entry) noexc
   frame = ifog_can_frame{};
   entry.stamp = CandumpStamp::none;
   entry.dropped = 0;
-  Cursor in(line);
+  TextCursor in(line);
   if (in.at('D') && parse_drops(in, entry)) return CandumpLine::drops;
   (void)in.blanks();
   std::size_t digits = 0;

@@ -33,7 +33,7 @@ inline constexpr const char* kCandumpExpected =
 // candump -t d (since the frame before) and -t z (since the first) look alike: short, of 3 digits for the
 // seconds.
 enum class CandumpStamp { none, since, absolute };
-// Arrival of a short stamp of zero, as 0 means no time.
+// The arrival time of a short stamp of zero, because an arrival of 0 means no time.
 inline constexpr std::int64_t kShortStampsFrom_ns = 1'000'000'000;
 
 struct CandumpEntry {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the rows of every format go through on their way to whom they are for: chosen columns are converted,
-// angles become rates, and what no sensor measures becomes missing and is reported, or is refused.
+// What is done to the rows of every format between parser and sink: chosen columns are converted, angles become
+// rates, and values that no sensor measures become missing and are reported, or are refused.
 #pragma once
 
 #include <cstddef>
@@ -37,9 +37,9 @@ class RowChecks {
 
   // The next rows in the file's units, at least one. Throws std::runtime_error with one line, as finish().
   void take(RowBlock& rows);
-  // found: of each column. A value here and there is a fault of the logger, and is missing; where many are, a
-  // rate is not what its name says, and is refused. A channel is only missing then: a broken thermometer is
-  // no reason to know nothing of the rate.
+  // found: of each column. A few such values are faults of the logger and become missing. A rate with more than one
+  // in a hundred is not what its name says and is refused. A channel only becomes missing, because a broken
+  // thermometer does not make the rate useless.
   void finish(std::span<const ImpossibleValues> found);
 
   // Rows received, repeated ones included.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a cell of a capture can mean. Beyond it there is no measurement, whatever wrote the number: one such
-// cell would be all that a fit sees. The one home of it for every command that reads a capture.
+// The range that a value in a capture can have. A number outside of it is no measurement, and a single one would
+// dominate a fit. Every command that reads a capture uses these ranges.
 #pragma once
 
 #include <limits>

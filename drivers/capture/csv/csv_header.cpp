@@ -50,6 +50,13 @@ std::set<std::string>::const_iterator the_gyro(const std::set<std::string>& name
   return found == names.end() ? names.begin() : found;
 }
 
+// The options of each reading, where none of them is taken.
+std::string options_in_words(const Readings& readings) {
+  std::string text;
+  for (const Reading& way : readings.ways) text += (text.empty() ? "; to read it: " : "; or: ") + way.options;
+  return text;
+}
+
 class Chooser {
  public:
   Chooser(TableForm form, const std::string& path, const CsvLayout& layout, bool has_lines)
@@ -248,12 +255,6 @@ class Chooser {
 };
 
 }  // namespace
-
-std::string options_in_words(const Readings& readings) {
-  std::string text;
-  for (const Reading& way : readings.ways) text += (text.empty() ? "; to read it: " : "; or: ") + way.options;
-  return text;
-}
 
 CsvHeader read_csv_header(std::string_view text, const std::vector<std::string>& given,
                           const std::string& path, const CsvLayout& layout, bool has_lines) {

@@ -47,7 +47,4 @@ struct CsvHeader {
 CsvHeader read_csv_header(std::string_view text, const std::vector<std::string>& given,
                           const std::string& path, const CsvLayout& layout, bool has_lines);
 
-// What readings of a foreign table say to the user where none of them is taken: the options of each.
-[[nodiscard]] std::string options_in_words(const Readings& readings);
-
 }  // namespace ifog

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of a CSV file's text as numbers, a piece of it at a time: pieces know nothing of one another, so that
-// several are read at once.
+// Rows of a CSV file's text as numbers, one piece of the text at a time. Pieces are independent of one another, so
+// that several threads parse them.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +32,7 @@ struct CsvPiece {
 std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& header);
 
 // text: whole lines. stamps: of the whole file's times. lines_before: of the file. Where rows are even, times
-// are the numbers of the rows. used: rows that are done with, whose memory is used again. Throws
+// are the numbers of the rows. used: a block whose memory is used again. Throws
 // std::runtime_error with one line: file, line, column, value, what was expected.
 CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const TimeStamps& stamps,
                          const std::string& path, std::size_t lines_before, RowBlock used = {});

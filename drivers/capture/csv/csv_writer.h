@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture's text, written while its rows come.
+// Writes a capture as CSV, block by block.
 #pragma once
 
 #include <span>
@@ -17,8 +17,8 @@ class CsvWriter {
   // comments: as in RowNotes. Throws as OutputFile does, all of it.
   CsvWriter(const std::string& path, const std::string& comments, const std::vector<std::string>& names);
 
-  // By column, in the order of the names, all of one length. origin: that the first, a time, is counted
-  // from; with one it has as many digits as tell it from other doubles since then.
+  // By column, in the order of the names, all of one length. origin: what the first column, the time, is counted
+  // from. Times have as many digits as are needed to read the same double back.
   void rows(std::span<const std::span<const double>> columns, const TimeOrigin& origin = {});
   // Without it a regular file stays as it was.
   void finish() { file_.finish(); }

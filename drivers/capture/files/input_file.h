@@ -42,29 +42,29 @@ class InputFile {
   // gzip stream that ends early or is damaged, a packed file that grows beyond 256 MiB and 100 times its
   // size without were_rows(), which no recording does and which would fill the memory; a device's error.
   std::size_t read(char* to, std::size_t most);
-  // So many of the bytes read were rows of numbers, whose reader keeps no text of them: of columns that stay
-  // as they are a thousand times a packed file's size, and not held against it.
+  // So many of the bytes read were rows of numbers, whose text is not kept. They do not count towards that limit,
+  // because constant columns pack into a thousandth.
   void were_rows(std::size_t bytes) { rows_ += bytes; }
-  // Reads on to the end, for who hears: a library that reads by the name leaves all of it.
+  // Reads to the end for the listener of hear(), after a library has read the file by its name.
   void read_to_the_end();
   // All of the rest.
   std::string bytes();
 
-  // From here on `told` hears how many bytes of the file, as it lies on the disk, have been read, and of how
-  // many; 0 where that is not known. Nothing ends it.
+  // From here on `told` is called with the bytes of the file on the disk that have been read, and their total; 0 if
+  // the total is unknown.
   using Told = std::function<void(std::size_t done, std::size_t total)>;
   void tell(Told told) { told_ = std::move(told); }
-  // By who reads the file in a way of its own.
+  // For a reader that does not use read().
   void told(std::size_t done, std::size_t total) const {
     if (told_) told_(done, total);
   }
 
-  // From here on `heard` hears all that is read, as it is given.
+  // From here on `heard` is called with all bytes that read() and bytes() return.
   using Heard = std::function<void(std::string_view bytes)>;
   void hear(Heard heard) { heard_ = std::move(heard); }
 
-  // Whether path() opened again gives the same bytes: a regular file that is not packed. For libraries that
-  // want a name.
+  // Whether path() can be opened again for the same bytes: a regular file that is not packed. For libraries that
+  // open files by name.
   [[nodiscard]] bool reopens() const { return reopens_; }
 
  private:

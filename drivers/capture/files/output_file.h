@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one way by which anything here is written. A regular file is never seen half-written: its bytes go into
-// a file without a name, are synced, and take the name at the end. Links are followed to the file they lead
-// to; devices, FIFOs and open descriptors (/dev/stdout) are written as they are, never replaced.
+// All output is written by this class. A regular file is never visible half-written: the bytes go into an unnamed
+// file, which is synced and gets the name at the end. Links are followed; devices, FIFOs and open descriptors
+// (/dev/stdout) are written directly and never replaced.
 #pragma once
 
 #include <cstdint>
@@ -41,8 +41,8 @@ class OutputFile {
   int fd_ = -1;
 };
 
-// The regular file that a path leads to, through links and open descriptors ("-" is standard output), or
-// would make: what two names of one file have in common.
+// Identifies the regular file that a path leads to through links and open descriptors ("-" is standard output), or
+// that it would create. Two names of one file have the same identity.
 struct FileIdentity {
   std::uintmax_t device = 0, inode = 0;
   std::string name;  // of a file that is not there yet: in the folder that device and inode are of
@@ -50,7 +50,7 @@ struct FileIdentity {
   bool operator==(const FileIdentity&) const = default;
 };
 
-// Nothing for a device, a pipe, a folder, and for what leads nowhere: they are no file to be lost.
+// nullopt for a device, a pipe, a folder and a path that leads nowhere, which cannot be overwritten by mistake.
 [[nodiscard]] std::optional<FileIdentity> file_identity(const std::string& path);
 
 // "-", /dev/stdout, /dev/fd/1 and whatever else leads to descriptor 1.

@@ -2,15 +2,13 @@
 // Whole files, plain or gzip by their first bytes. Reading gives the content; writing is all or nothing.
 #pragma once
 
-#include <memory>
 #include <string>
 #include <string_view>
-#include <vector>
 
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/files/output_file.h"
 
-struct z_stream_s;  // zlib's
+struct gzFile_s;  // zlib's
 
 namespace ifog {
 
@@ -31,11 +29,11 @@ class TextOutput {
   void finish();
 
  private:
-  void deflate(std::string_view text, bool last);
+  [[noreturn]] void fail(int error) const;
 
+  std::string path_;
   OutputFile file_;
-  std::unique_ptr<z_stream_s> stream_;  // null: as it is
-  std::vector<unsigned char> block_;
+  gzFile_s* packed_ = nullptr;  // null: as it is
 };
 
 // Compresses when the name ends in .gz; "-" is standard output. Throws as OutputFile does.

@@ -7,54 +7,18 @@
 #include <cstdint>
 #include <optional>
 
+#include "drivers/capture/times/text_cursor.h"
+
 namespace ifog {
 namespace {
 
-// What is still to be read of a text.
-class Rest {
- public:
-  explicit Rest(std::string_view text) : text_(text) {}
-
-  // Exactly so many digits.
-  bool number(std::size_t digits, int& value) { return number(digits, digits, value); }
-  bool number(std::size_t fewest, std::size_t most, int& value) {
-    value = 0;
-    std::size_t count = 0;
-    for (; count < most && count < text_.size() && text_[count] >= '0' && text_[count] <= '9'; ++count)
-      value = 10 * value + (text_[count] - '0');
-    text_.remove_prefix(count);
-    return count >= fewest;
-  }
-  bool one_of(std::string_view wanted) {
-    if (text_.empty() || wanted.find(text_.front()) == std::string_view::npos) return false;
-    text_.remove_prefix(1);
-    return true;
-  }
-  bool word(std::string_view wanted) {
-    if (!text_.starts_with(wanted)) return false;
-    text_.remove_prefix(wanted.size());
-    return true;
-  }
-  // An English month's first three letters.
-  bool month(int& value) {
-    constexpr std::string_view kMonths = "JanFebMarAprMayJunJulAugSepOctNovDec";
-    const std::size_t at = text_.size() < 3 ? std::string_view::npos : kMonths.find(text_.substr(0, 3));
-    if (at == std::string_view::npos || at % 3 != 0) return false;
-    value = static_cast<int>(at / 3) + 1;
-    text_.remove_prefix(3);
-    return true;
-  }
-  std::string_view digits() {
-    const std::size_t end = std::min(text_.find_first_not_of("0123456789"), text_.size());
-    const std::string_view found = text_.substr(0, end);
-    text_.remove_prefix(end);
-    return found;
-  }
-  [[nodiscard]] bool ended() const { return text_.empty(); }
-
- private:
-  std::string_view text_;
-};
+// An English month's first three letters.
+bool month_name(TextCursor& rest, int& value) {
+  constexpr std::string_view kMonths = "JanFebMarAprMayJunJulAugSepOctNovDec";
+  for (value = 1; value <= 12; ++value)
+    if (rest.text(kMonths.substr(3 * static_cast<std::size_t>(value - 1), 3))) return true;
+  return false;
+}
 
 struct Moment {
   std::int64_t s = 0;
@@ -62,18 +26,18 @@ struct Moment {
 };
 
 // hh:mm, hh:mm:ss or hh:mm:ss.f…, of twelve hours with AM or PM behind it
-bool time_of_day(Rest& rest, bool seconds_needed, Moment& moment) {
+bool time_of_day(TextCursor& rest, bool seconds_needed, Moment& moment) {
   int hours = 0, minutes = 0, seconds = 0;
-  if (!rest.number(1, 2, hours) || !rest.one_of(":_") || !rest.number(2, minutes)) return false;
+  if (!rest.number(1, 2, hours) || !rest.one_of(":_") || !rest.number(2, 2, minutes)) return false;
   const bool told = rest.one_of(":_");
-  if (told ? !rest.number(2, seconds) : seconds_needed) return false;
+  if (told ? !rest.number(2, 2, seconds) : seconds_needed) return false;
   if (hours > 23 || minutes > 59 || seconds > 60) return false;
   if (told && rest.one_of(".,")) {
     moment.fraction = rest.digits();
     if (moment.fraction.empty()) return false;
   }
-  const bool after_noon = rest.word(" PM") || rest.word(" pm");
-  if (after_noon || rest.word(" AM") || rest.word(" am")) {
+  const bool after_noon = rest.text(" PM") || rest.text(" pm");
+  if (after_noon || rest.text(" AM") || rest.text(" am")) {
     if (hours < 1 || hours > 12) return false;
     hours = hours % 12 + (after_noon ? 12 : 0);
   }
@@ -90,16 +54,16 @@ std::optional<std::chrono::sys_days> valid_day(int year, int month, int day) {
 
 // "2026-05-01" or "2026/05/01"; as spreadsheets write it "1.5.2026", the day first, and "5/1/2026", the month
 // first unless only the other way is a date; as MATLAB does "01-May-2026".
-std::optional<std::chrono::sys_days> day_of(Rest& rest) {
+std::optional<std::chrono::sys_days> day_of(TextCursor& rest) {
   int first = 0, second = 0, third = 0;
   if (!rest.number(1, 4, first)) return std::nullopt;
-  const char* const between = rest.word("-")   ? "-"
-                              : rest.word("/") ? "/"
-                              : rest.word(".") ? "."
-                              : rest.word("_") ? "_"
+  const char* const between = rest.text("-")   ? "-"
+                              : rest.text("/") ? "/"
+                              : rest.text(".") ? "."
+                              : rest.text("_") ? "_"
                                                : nullptr;
   if (between == nullptr) return std::nullopt;
-  const bool named = rest.month(second);
+  const bool named = month_name(rest, second);
   if ((!named && !rest.number(1, 2, second)) || !rest.one_of(between) || !rest.number(1, 4, third))
     return std::nullopt;
   if (first > 31) return *between == '.' ? std::nullopt : valid_day(first, second, third);
@@ -110,13 +74,13 @@ std::optional<std::chrono::sys_days> day_of(Rest& rest) {
 }
 
 // What local time is ahead of UTC by.
-std::optional<std::int64_t> offset_s(Rest& rest) {
+std::optional<std::int64_t> offset_s(TextCursor& rest) {
   rest.one_of(" ");
-  if (rest.ended() || rest.one_of("Zz") || rest.word("UTC")) return 0;
+  if (rest.done() || rest.one_of("Zz") || rest.text("UTC")) return 0;
   const bool behind = rest.one_of("-");
   int hours = 0, minutes = 0;
-  if ((!behind && !rest.one_of("+")) || !rest.number(2, hours)) return std::nullopt;
-  if (!rest.ended() && ((rest.one_of(":"), !rest.number(2, minutes)))) return std::nullopt;
+  if ((!behind && !rest.one_of("+")) || !rest.number(2, 2, hours)) return std::nullopt;
+  if (!rest.done() && ((rest.one_of(":"), !rest.number(2, 2, minutes)))) return std::nullopt;
   if (hours > 23 || minutes > 59) return std::nullopt;
   const std::int64_t by_s = (hours * 60 + minutes) * 60;
   return behind ? -by_s : by_s;
@@ -124,16 +88,16 @@ std::optional<std::int64_t> offset_s(Rest& rest) {
 
 std::optional<Moment> moment_of(std::string_view text) {
   Moment moment;
-  Rest rest(text);
+  TextCursor rest(text);
   if (text.size() > 2 && (text[1] == ':' || text[2] == ':'))
-    return time_of_day(rest, true, moment) && rest.ended() ? std::optional(moment) : std::nullopt;
+    return time_of_day(rest, true, moment) && rest.done() ? std::optional(moment) : std::nullopt;
   const auto day = day_of(rest);
   if (!day) return std::nullopt;
   moment.s = std::chrono::sys_seconds(*day).time_since_epoch().count();
-  if (rest.ended()) return moment;
+  if (rest.done()) return moment;
   if (!rest.one_of("Tt _") || !time_of_day(rest, false, moment)) return std::nullopt;
   const auto ahead_s = offset_s(rest);
-  if (!ahead_s || !rest.ended()) return std::nullopt;
+  if (!ahead_s || !rest.done()) return std::nullopt;
   moment.s -= *ahead_s;
   return moment;
 }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture on its way in pieces: what reads one hands blocks of rows to what works on them, so that no
-// command has to hold the whole. Every format is read through this.
+// A capture in blocks of rows: every reader passes them to a sink, so that no command has to hold the whole.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +24,7 @@ struct RowBlock {
   std::vector<std::size_t> lines{};  // of each row in its text; empty where rows have none
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
-  // What follows; `rows` is spoilt.
+  // Appends the rows that follow. `rows` has unspecified values afterwards.
   void append(RowBlock& rows);
 };
 
@@ -34,17 +33,17 @@ class RowSink {
   virtual ~RowSink() = default;
   // Once, before the first rows: the columns without the time, as in a capture's header (rate_x_radps, …).
   virtual void begin(const std::vector<std::string>& names) = 0;
-  // After that: whether it looks at the column. What it does not is checked all the same, and may come or
-  // not.
+  // After that: whether the sink needs the column. A column that it does not need is checked, too, and may be
+  // empty.
   [[nodiscard]] virtual bool wants(std::size_t column) const {
     (void)column;
     return true;
   }
-  // The next rows, at least one; the sink may keep or spoil them.
+  // The next rows, at least one. The sink may move or change them.
   virtual void take(RowBlock& rows) = 0;
 };
 
-// What the reading says besides the rows; whole once the last of them was taken.
+// What a reader reports besides the rows. Complete after the last row.
 struct RowNotes {
   // Rows from this one on stand on lines that follow one another.
   struct Lines {

@@ -40,7 +40,7 @@ class SampleTimes {
     double since_s = 0.0;    // since origin()
     double elapsed_s = 0.0;  // since the sample before; NaN of the first
     double period_s = 0.0;   // of the sample itself, also behind a gap
-    bool anew = false;       // it does not continue the samples before
+    bool anew = false;       // the device or the recording restarted before this sample
   };
   // nullopt: a duplicate, or overtaken by a later one. Throws std::runtime_error with one line when time
   // does not go on (the sample's number, both times, the cause), or where there is none.
