@@ -68,15 +68,12 @@ CaptureShape capture_shape(const std::vector<std::string>& names, const std::str
 
 Capture read_capture(const std::string& path) {
   InputFile file(path);
-  return read_capture(file);
-}
-
-Capture read_capture(InputFile& file, const CsvLayout& layout) {
-  return capture_of(read_table(file, layout), file.path());
+  return capture_of(read_table(file), path);
 }
 
 Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout) {
-  return capture_of(parse_table(text, path, layout), path);
+  InputFile file(path, std::string(text));
+  return capture_of(read_table(file, layout), path);
 }
 
 }  // namespace ifog

@@ -53,13 +53,11 @@ struct Table : RowNotes {
 // `layout` says what a file means that is no capture by its header; where a header is nearly one, the message
 // has the options to type.
 Capture read_capture(const std::string& path);
-Capture read_capture(InputFile& file, const CsvLayout& layout = {});
 
 // The same of a text already at hand; `path` stands for the file in messages. A table needs no rate column.
 Table read_table(InputFile& file, const CsvLayout& layout = {});
 // The table of the rows that `read` delivers into its sink.
 Table table_of(const std::function<RowNotes(RowSink&)>& read);
-Table parse_table(std::string_view text, const std::string& path, const CsvLayout& layout = {});
 Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout = {});
 
 // The capture in a table. Throws std::runtime_error with one line: no rate, a reference without its rate.

@@ -44,11 +44,6 @@ Table read_table(InputFile& file, const CsvLayout& layout) {
   return table_of([&](RowSink& sink) { return read_csv_rows(file, layout, sink); });
 }
 
-Table parse_table(std::string_view text, const std::string& path, const CsvLayout& layout) {
-  InputFile file(path, std::string(text));
-  return read_table(file, layout);
-}
-
 void RowBlock::append(RowBlock& rows) {
   if (size() == 0) return std::swap(*this, rows);
   time_s.insert(time_s.end(), rows.time_s.begin(), rows.time_s.end());

@@ -13,7 +13,6 @@
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/column_words.h"
 #include "drivers/capture/times/date_time.h"
-#include "drivers/ifog/decimal.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"
@@ -23,13 +22,6 @@ namespace {
 
 constexpr double kSlowest_hz = 1.0, kFastest_hz = 10'000.0;  // at which gyros are logged
 constexpr std::size_t kFewRows = 8;                          // too few to say what a column is
-
-std::optional<double> number_in(const std::string& cell) {
-  double value = 0.0;
-  const char* const end = cell.data() + cell.size();
-  const auto [at, error] = read_decimal(cell.data(), end, value);
-  return error == std::errc() && at == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
-}
 
 // Without the rows of another sensor, which leave this one's columns empty.
 std::vector<std::string> filled(const std::vector<std::string>& cells) {

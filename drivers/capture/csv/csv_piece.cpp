@@ -45,35 +45,6 @@ double number(const std::string& path, std::size_t line, const std::string& colu
 
 bool is_no_row(std::string_view line) { return trimmed(line).empty() || line.front() == '#'; }
 
-// A time that stands in two cells, as digits: a whole second and its digits behind the point, or a date and a
-// time of day.
-class JoinedTime {
- public:
-  // Loggers that hold all in one kind of number write 570443003.0.
-  void put(bool part, std::string_view cell) {
-    if (cell.ends_with(".0")) cell.remove_suffix(2);
-    (part ? part_ : whole_) = cell;
-  }
-  [[nodiscard]] bool is_empty() const { return whole_.empty() && part_.empty(); }
-  // part_digits: of the second cell; 0: a time of day. Empty where that is no such number.
-  std::string_view text(int part_digits) {
-    std::string_view part = part_;
-    const bool digits = !part.empty() && part.find_first_not_of("0123456789") == std::string_view::npos;
-    const auto wanted = static_cast<std::size_t>(part_digits);
-    if (wanted > 0 && (!digits || part.size() > wanted)) return {};
-    if (whole_.size() + part.size() + wanted + 1 > room_.size()) return {};
-    char* end = std::copy(whole_.begin(), whole_.end(), room_.begin());
-    *end++ = wanted > 0 ? '.' : ' ';
-    if (wanted > 0) end = std::fill_n(end, wanted - part.size(), '0');
-    end = std::copy(part.begin(), part.end(), end);
-    return {room_.data(), static_cast<std::size_t>(end - room_.data())};
-  }
-
- private:
-  std::string_view whole_, part_;
-  std::array<char, 128> room_{};
-};
-
 std::string_view cell_at(std::string_view line, std::size_t place, char separator) {
   for (; place > 0 && !line.empty(); --place) {
     line.remove_prefix(std::min(cell_end(line, separator) + 1, line.size()));
@@ -81,6 +52,35 @@ std::string_view cell_at(std::string_view line, std::size_t place, char separato
   }
   return unquoted(line.substr(0, cell_end(line, separator)));
 }
+
+// The time of a row as digits. It may stand in two cells: a whole second and its digits behind the point, or a date
+// and a time of day.
+class RowTime {
+ public:
+  explicit RowTime(const CsvHeader& header) : header_(header) {}
+
+  // Empty if the row has no time, nullopt if the second cell is no part of a second. Valid until the next call.
+  std::optional<std::string_view> text_in(std::string_view line) {
+    std::string_view whole = cell_at(line, header_.time_place, header_.separator);
+    if (header_.time_part == CsvHeader::kNone) return whole;
+    std::string_view part = cell_at(line, header_.time_part, header_.separator);
+    if (whole.empty() && part.empty()) return whole;
+    // Loggers that hold all in one kind of number write 570443003.0.
+    for (std::string_view* cell : {&whole, &part})
+      if (cell->ends_with(".0")) cell->remove_suffix(2);
+    joined_ = whole;
+    if (header_.part_digits == 0) return joined_.append(" ").append(part);
+    const auto wanted = static_cast<std::size_t>(header_.part_digits);
+    if (part.empty() || part.size() > wanted ||
+        part.find_first_not_of("0123456789") != std::string_view::npos)
+      return std::nullopt;
+    return joined_.append(".").append(wanted - part.size(), '0').append(part);
+  }
+
+ private:
+  const CsvHeader& header_;
+  std::string joined_;
+};
 
 // One row after the other, into the columns of a piece.
 class Rows {
@@ -91,23 +91,17 @@ class Rows {
         separator_(header.separator),
         stamps_(stamps),
         unit_s_(header.layout.time.value_or(CsvTime{}).unit_s),
-        path_(path) {
+        path_(path),
+        time_(header) {
     piece_.rows.columns.resize(header.names.size());
     piece_.impossible.resize(header.names.size());
     for (const CsvCell& cell : header.cells) {
-      if (cell.column == CsvCell::kTime) {
-        to_.push_back({header.time_part == CsvHeader::kNone ? Meaning::kTime : Meaning::kPartOfTime,
-                       {},
-                       nullptr,
-                       nullptr});
-      } else if (cell.column == CsvCell::kPassedOver) {
-        to_.push_back({Meaning::kNothing, {}, nullptr, nullptr});
-      } else {
-        to_.push_back({is_other_rate(header.names[cell.column]) ? Meaning::kOther : Meaning::kNumber,
-                       header.columns[cell.column].range,
-                       cell.kept ? &piece_.rows.columns[cell.column] : nullptr,
-                       &piece_.impossible[cell.column]});
-      }
+      Place& to = to_.emplace_back();
+      if (cell.column >= header.names.size()) continue;
+      to.means = is_other_rate(header.names[cell.column]) ? Meaning::kOther : Meaning::kNumber;
+      to.range = header.columns[cell.column].range;
+      to.values = cell.kept ? &piece_.rows.columns[cell.column] : nullptr;
+      to.impossible = &piece_.impossible[cell.column];
     }
   }
 
@@ -124,7 +118,6 @@ class Rows {
 
   // False: a row of another sensor, which leaves the time and all columns of this one empty.
   bool add(std::string_view line, std::size_t number) {
-    untimed_ = false;
     const char *at = line.data(), *const end = at + line.size();
     std::size_t place = 0;
     for (;; ++at) {
@@ -144,9 +137,9 @@ class Rows {
       fail_at(
           path_, number,
           std::to_string(place) + " cells, expected " + std::to_string(to_.size()) + " (a truncated line?)");
-    if (header_.time_part != CsvHeader::kNone) take_joined_time(number);
-    if (header_.time_place == CsvHeader::kNone) piece_.rows.time_s.push_back(static_cast<double>(rows_));
-    if (untimed_) {
+    if (header_.time_place == CsvHeader::kNone) {
+      piece_.rows.time_s.push_back(static_cast<double>(rows_));
+    } else if (!take_time(line, number)) {
       take_back(line, number);
       return false;
     }
@@ -157,12 +150,12 @@ class Rows {
 
  private:
   // kOther: nobody chose it, so that text in it is no fault of the file but a missing value.
-  enum class Meaning : unsigned char { kNothing, kOther, kNumber, kTime, kPartOfTime };
+  enum class Meaning : unsigned char { kNothing, kOther, kNumber };
   struct Place {
-    Meaning means;
-    Measurable range;
-    std::vector<double>* values;  // null: nobody wants them
-    ImpossibleValues* impossible;
+    Meaning means = Meaning::kNothing;
+    Measurable range{};
+    std::vector<double>* values = nullptr;  // null: nobody wants them
+    ImpossibleValues* impossible = nullptr;
   };
 
   // The cell that begins there, of the row that ends at `end`; where it ends itself.
@@ -184,11 +177,7 @@ class Rows {
     const char* const behind = at + cell_end({at, end}, separator_);
     if (to.means == Meaning::kNothing) return behind;
     const std::string_view text = unquoted({at, behind});
-    if (to.means == Meaning::kTime)
-      take_time(place, text, line);
-    else if (to.means == Meaning::kPartOfTime)
-      joined_.put(place == header_.time_part, text);
-    else if (to.means == Meaning::kOther)
+    if (to.means == Meaning::kOther)
       keep_other(to, PointDigits(text, separator_ != ','));
     else
       keep(place, number(path_, line, header_.cells[place].name, text, PointDigits(text, separator_ != ',')),
@@ -202,47 +191,39 @@ class Rows {
       if (to_[i].means == Meaning::kNumber && !cell_at(line, i, separator_).empty())
         fail_at(path_, number,
                 printable(header_.cells[header_.time_place].name) + " is missing, expected a time");
-      const bool value = to_[i].means == Meaning::kNumber || to_[i].means == Meaning::kOther;
-      if (value && to_[i].values != nullptr) to_[i].values->pop_back();
+      if (to_[i].values != nullptr) to_[i].values->pop_back();
     }
   }
 
-  void take_joined_time(std::size_t line) {
-    untimed_ = joined_.is_empty();
-    if (untimed_) return;
-    const std::string_view text = joined_.text(header_.part_digits);
-    if (text.empty())
+  // False: the row has none.
+  bool take_time(std::string_view row, std::size_t line) {
+    const std::optional<std::string_view> found = time_.text_in(row);
+    if (!found)
       fail_at(path_, line,
               printable(header_.cells[header_.time_part].name) + " is no whole number of at most " +
                   std::to_string(header_.part_digits) + " digits, expected the part of a second");
-    take_time(header_.time_place, text, line);
-  }
-
-  void take_time(std::size_t place, std::string_view text, std::size_t line) {
-    untimed_ = text.empty();
-    if (untimed_) return;
+    const std::string_view text = *found;
+    if (text.empty()) return false;
+    const std::string& name = header_.cells[header_.time_place].name;
     const TimeDigits digits(text, separator_ != ',');
     if (digits.is_date() && unit_s_ != 1.0)
       fail_at(path_, line,
-              printable(header_.cells[place].name) + " is " + in_quotes(text) +
+              printable(name) + " is " + in_quotes(text) +
                   ", a date, which says its own unit, expected no other one of --time");
     double since = 0.0;
-    if (!stamps_.since(digits, since))
-      since = stamps_.since(number(path_, line, header_.cells[place].name, text, digits));
-    if (std::isnan(since))
-      fail_at(path_, line, printable(header_.cells[place].name) + " is missing, expected a time");
+    if (!stamps_.since(digits, since)) since = stamps_.since(number(path_, line, name, text, digits));
+    if (std::isnan(since)) fail_at(path_, line, printable(name) + " is missing, expected a time");
     if (!time_range_.holds(stamps_.origin().told(since)))
-      fail_at(path_, line,
-              what_no_sensor_measures(header_.cells[place].name, text,
-                                      measurable_in_file(header_.layout.time.value_or(CsvTime{}))));
+      fail_at(
+          path_, line,
+          what_no_sensor_measures(name, text, measurable_in_file(header_.layout.time.value_or(CsvTime{}))));
     piece_.rows.time_s.push_back(since);
+    return true;
   }
 
   static void keep_other(const Place& to, std::string_view digits) {
-    double value = 0.0;
-    const auto [end, error] = read_decimal(digits.data(), digits.data() + digits.size(), value);
-    const bool known = error == std::errc() && end == digits.data() + digits.size() && to.range.holds(value);
-    if (to.values != nullptr) to.values->push_back(known ? value : kMissing);
+    const double value = number_in(digits).value_or(kMissing);
+    if (to.values != nullptr) to.values->push_back(to.range.holds(value) ? value : kMissing);
   }
 
   void keep(std::size_t place, double value, std::string_view text, std::size_t line) {
@@ -264,28 +245,22 @@ class Rows {
   const Measurable time_range_ = measurable("time_s");
   const std::string& path_;
   std::vector<Place> to_;  // by cell of a row
-  JoinedTime joined_;
+  RowTime time_;
   std::size_t rows_ = 0;  // that were added
-  bool untimed_ = false;  // the row at hand has no time
 };
 
 }  // namespace
 
 std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& header) {
   Lines lines(text);
+  RowTime time(header);
   std::string_view line;
   while (lines.next(line)) {
     if (is_no_row(line)) continue;
     if (header.time_place == CsvHeader::kNone) return TimeStamps();
-    JoinedTime joined;
-    std::string_view first = cell_at(line, header.time_place, header.separator);
-    if (header.time_part != CsvHeader::kNone) {
-      joined.put(false, first);
-      joined.put(true, cell_at(line, header.time_part, header.separator));
-      first = joined.text(header.part_digits);
-    }
-    if (first.empty()) continue;
-    return TimeStamps(TimeDigits(first, header.separator != ','),
+    const std::optional<std::string_view> first = time.text_in(line);
+    if (!first || first->empty()) continue;
+    return TimeStamps(TimeDigits(*first, header.separator != ','),
                       header.layout.time.value_or(CsvTime{}).unit_s);
   }
   return std::nullopt;
@@ -304,14 +279,15 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
   std::string_view line;
   while (lines.next(line)) {
     if (line.size() > kLongestLine) refuse_long_line(path, lines.number(), line);
-    const bool other = header.only_place != CsvHeader::kNone && !is_no_row(line) &&
-                       cell_at(line, header.only_place, header.separator) != header.layout.only_value;
-    if (!other && !is_no_row(line)) {
-      piece.row_bytes += line.size() + 1;
-      if (rows.add(line, lines.number())) continue;
-      ++piece.untimed;
+    if (is_no_row(line)) {
+      if (line.starts_with('#')) piece.comments.append(trimmed(line.substr(1))) += '\n';
+      continue;
     }
-    if (line.starts_with('#')) piece.comments.append(trimmed(line.substr(1))) += '\n';
+    if (header.only_place == CsvHeader::kNone ||
+        cell_at(line, header.only_place, header.separator) == header.layout.only_value) {
+      piece.row_bytes += line.size() + 1;
+      if (!rows.add(line, lines.number())) ++piece.untimed;
+    }
   }
   piece.lines = lines.number() - lines_before;
   return piece;

@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 
 #include "drivers/capture/times/text_cursor.h"
+#include "drivers/ifog/decimal.h"
 
 namespace ifog {
 namespace {
@@ -122,6 +124,13 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
     end = std::copy(moment->fraction.begin(), moment->fraction.end(), end);
   }
   return {to.data(), static_cast<std::size_t>(end - to.data())};
+}
+
+std::optional<double> number_in(std::string_view text) {
+  double value = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto [at, error] = read_decimal(text.data(), end, value);
+  return error == std::errc() && at == end && std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
 PointDigits::PointDigits(std::string_view cell, bool decimal_comma) : digits_(cell) {

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -24,6 +25,9 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
   std::array<char, kLongestDate> digits;
   return !date_in_digits(text, digits).empty();
 }
+
+// The finite number that all of a text is; nothing for any other text.
+[[nodiscard]] std::optional<double> number_in(std::string_view text);
 
 // What a cell says, a decimal comma as a point.
 class PointDigits {

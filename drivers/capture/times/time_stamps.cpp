@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "drivers/capture/times/date_time.h"
-#include "drivers/ifog/decimal.h"
 
 namespace ifog {
 namespace {
@@ -97,11 +96,8 @@ std::optional<SaidTime> SaidTime::parse(std::string_view said) {
   if (Plain time; read_plain(text, time))
     return SaidTime{static_cast<double>(time.whole),
                     static_cast<double>(time.fraction) / static_cast<double>(ten_to(time.decimals))};
-  double value = 0.0;
-  const char* const end = text.data() + text.size();
-  const auto [at, error] = read_decimal(text.data(), end, value);
-  if (error != std::errc() || at != end || !std::isfinite(value)) return std::nullopt;
-  return SaidTime{value, 0.0};
+  const std::optional<double> value = number_in(text);
+  return value ? std::optional(SaidTime{*value, 0.0}) : std::nullopt;
 }
 
 TimeStamps::TimeStamps(std::string_view first, double unit_s)

@@ -16,6 +16,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+ifog::Table table_in(const std::string& text, const std::string& path) {
+  ifog::InputFile file(path, text);
+  return ifog::read_table(file);
+}
+
 class CaptureFile : public testing::Test {
  protected:
   void SetUp() override {
@@ -118,7 +123,7 @@ TEST_F(CaptureFile, GzipReadsBackTheSameBitsAndATruncatedOneIsRefused) {
 
 TEST(CaptureText, ARowsLineIsKnownWithoutASecondLook) {
   const ifog::Table table =
-      ifog::parse_table("# a\n\ntime_s,rate_radps\n0,1\n# b\n1,1\n\n\n2,1\n3,1\n# end\n", "t.csv");
+      table_in("# a\n\ntime_s,rate_radps\n0,1\n# b\n1,1\n\n\n2,1\n3,1\n# end\n", "t.csv");
   EXPECT_EQ(table.header_line, 3U);
   const std::size_t lines[] = {4, 6, 9, 10};
   for (std::size_t row = 0; row < 4; ++row) EXPECT_EQ(table.line_of_row(row), lines[row]);

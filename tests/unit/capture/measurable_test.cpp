@@ -45,7 +45,8 @@ TEST(Measurable, OneImpossibleCellIsMissingAndTold) {
         Case{"rate_radps,case_degF", "-500"}, Case{"rate_radps,temperature_K", "-1"},
         Case{"rate_radps,ramp_counts", "1e21"}, Case{"rate_radps,rate_y_radps", "-1e30"},
         Case{"rate_radps,reference_rate_radps", "20000"}}) {
-    const Table table = parse_table(capture(each.columns, 2, 100, 1, each.cell), "a.csv");
+    InputFile file("a.csv", capture(each.columns, 2, 100, 1, each.cell));
+    const Table table = read_table(file);
     EXPECT_TRUE(std::isnan(table.columns[1].values[100])) << each.columns << each.cell;
     EXPECT_FALSE(std::isnan(table.columns[1].values[99]));
     ASSERT_EQ(table.faults.size(), 1U) << each.columns << each.cell;
