@@ -162,20 +162,19 @@ void RowClock::drop_repeats(RowBlock& rows) {
 }
 
 void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double next_s) {
-  const auto count = static_cast<double>(end - begin);
-  const double first_s = rows.time_s[begin];
-  double step_s = (next_s - first_s) / count;
-  if (period_s_ > 0.0 && step_s > kHole * period_s_)
+  const double first_s = rows.time_s[begin], length_s = next_s - first_s;
+  const std::size_t count = end - begin;
+  double step_s = count == 1 ? length_s : length_s / static_cast<double>(count);
+  if (period_s_ > 0.0 && step_s > kHole * period_s_) {
     step_s = period_s_;
-  else {
+  } else {
     period_s_ = step_s;
-    bursts_s_ += next_s - first_s;
-    burst_rows_ += end - begin;
+    bursts_s_ += length_s;
+    burst_rows_ += count;
   }
-  for (std::size_t i = begin + 1; i < end; ++i) {
-    spread_ += 1;
+  spread_ += count - 1;
+  for (std::size_t i = begin + 1; i < end; ++i)
     rows.time_s[i] = first_s + static_cast<double>(i - begin) * step_s;
-  }
 }
 
 void RowClock::finish() {

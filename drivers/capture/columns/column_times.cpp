@@ -34,7 +34,7 @@ std::vector<std::string> filled(const std::vector<std::string>& cells) {
 std::vector<double> numbers_in(const std::vector<std::string>& cells) {
   std::vector<double> values;
   for (const std::string& cell : cells)
-    if (const auto value = number_in(cell)) values.push_back(*value);
+    if (const auto value = finite_number(cell)) values.push_back(*value);
   return values;
 }
 

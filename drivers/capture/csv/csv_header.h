@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -36,7 +37,7 @@ struct CsvHeader {
   std::size_t last_line = 0;         // number of the line above the first row
   std::size_t time_place = kNone;    // which cell is the time; kNone where rows are even
   std::size_t time_part = kNone;     // a second cell of the time: digits behind the point, or a time of day
-  int part_digits = 0;               // of it; 0: a time of day
+  std::optional<int> part_digits;    // of it, if there is one; 0: a time of day
   std::size_t only_place = kNone;    // which cell says whether a row is read
   std::vector<std::string> notices;  // how a foreign header was read, and what rows are in turn
 };

@@ -55,31 +55,25 @@ std::string_view cell_at(std::string_view line, std::size_t place, char separato
 
 // The time of a row as digits. It may stand in two cells: a whole second and its digits behind the point, or a date
 // and a time of day.
-class RowTime {
- public:
-  explicit RowTime(const CsvHeader& header) : header_(header) {}
+struct RowTime {
+  std::string_view whole, part;  // the cells of the row at hand
+  std::string joined;
 
-  // Empty if the row has no time, nullopt if the second cell is no part of a second. Valid until the next call.
-  std::optional<std::string_view> text_in(std::string_view line) {
-    std::string_view whole = cell_at(line, header_.time_place, header_.separator);
-    if (header_.time_part == CsvHeader::kNone) return whole;
-    std::string_view part = cell_at(line, header_.time_part, header_.separator);
-    if (whole.empty() && part.empty()) return whole;
+  // digits: of the second cell, 0 if it is a time of day, nullopt if there is none. Empty if the row has no time,
+  // nullopt if the second cell is no part of a second. Valid until the next call.
+  std::optional<std::string_view> text(std::optional<int> digits) {
+    if (!digits || (whole.empty() && part.empty())) return whole;
     // Loggers that hold all in one kind of number write 570443003.0.
     for (std::string_view* cell : {&whole, &part})
       if (cell->ends_with(".0")) cell->remove_suffix(2);
-    joined_ = whole;
-    if (header_.part_digits == 0) return joined_.append(" ").append(part);
-    const auto wanted = static_cast<std::size_t>(header_.part_digits);
+    joined = whole;
+    if (*digits == 0) return joined.append(" ").append(part);
+    const auto wanted = static_cast<std::size_t>(*digits);
     if (part.empty() || part.size() > wanted ||
         part.find_first_not_of("0123456789") != std::string_view::npos)
       return std::nullopt;
-    return joined_.append(".").append(wanted - part.size(), '0').append(part);
+    return joined.append(".").append(wanted - part.size(), '0').append(part);
   }
-
- private:
-  const CsvHeader& header_;
-  std::string joined_;
 };
 
 // One row after the other, into the columns of a piece.
@@ -91,12 +85,13 @@ class Rows {
         separator_(header.separator),
         stamps_(stamps),
         unit_s_(header.layout.time.value_or(CsvTime{}).unit_s),
-        path_(path),
-        time_(header) {
+        path_(path) {
     piece_.rows.columns.resize(header.names.size());
     piece_.impossible.resize(header.names.size());
-    for (const CsvCell& cell : header.cells) {
+    for (std::size_t i = 0; i < header.cells.size(); ++i) {
+      const CsvCell& cell = header.cells[i];
       Place& to = to_.emplace_back();
+      if (cell.column == CsvCell::kTime) to.time = i == header.time_place ? &time_.whole : &time_.part;
       if (cell.column >= header.names.size()) continue;
       to.means = is_other_rate(header.names[cell.column]) ? Meaning::kOther : Meaning::kNumber;
       to.range = header.columns[cell.column].range;
@@ -139,7 +134,7 @@ class Rows {
           std::to_string(place) + " cells, expected " + std::to_string(to_.size()) + " (a truncated line?)");
     if (header_.time_place == CsvHeader::kNone) {
       piece_.rows.time_s.push_back(static_cast<double>(rows_));
-    } else if (!take_time(line, number)) {
+    } else if (!take_time(number)) {
       take_back(line, number);
       return false;
     }
@@ -156,6 +151,7 @@ class Rows {
     Measurable range{};
     std::vector<double>* values = nullptr;  // null: nobody wants them
     ImpossibleValues* impossible = nullptr;
+    std::string_view* time = nullptr;  // of a time: its cell
   };
 
   // The cell that begins there, of the row that ends at `end`; where it ends itself.
@@ -175,9 +171,11 @@ class Rows {
       }
     }
     const char* const behind = at + cell_end({at, end}, separator_);
-    if (to.means == Meaning::kNothing) return behind;
+    if (to.means == Meaning::kNothing && to.time == nullptr) return behind;
     const std::string_view text = unquoted({at, behind});
-    if (to.means == Meaning::kOther)
+    if (to.time != nullptr)
+      *to.time = text;
+    else if (to.means == Meaning::kOther)
       keep_other(to, PointDigits(text, separator_ != ','));
     else
       keep(place, number(path_, line, header_.cells[place].name, text, PointDigits(text, separator_ != ',')),
@@ -196,12 +194,12 @@ class Rows {
   }
 
   // False: the row has none.
-  bool take_time(std::string_view row, std::size_t line) {
-    const std::optional<std::string_view> found = time_.text_in(row);
+  bool take_time(std::size_t line) {
+    const std::optional<std::string_view> found = time_.text(header_.part_digits);
     if (!found)
       fail_at(path_, line,
               printable(header_.cells[header_.time_part].name) + " is no whole number of at most " +
-                  std::to_string(header_.part_digits) + " digits, expected the part of a second");
+                  std::to_string(header_.part_digits.value_or(0)) + " digits, expected the part of a second");
     const std::string_view text = *found;
     if (text.empty()) return false;
     const std::string& name = header_.cells[header_.time_place].name;
@@ -222,7 +220,7 @@ class Rows {
   }
 
   static void keep_other(const Place& to, std::string_view digits) {
-    const double value = number_in(digits).value_or(kMissing);
+    const double value = finite_number(digits).value_or(kMissing);
     if (to.values != nullptr) to.values->push_back(to.range.holds(value) ? value : kMissing);
   }
 
@@ -253,12 +251,14 @@ class Rows {
 
 std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& header) {
   Lines lines(text);
-  RowTime time(header);
+  RowTime time;
   std::string_view line;
   while (lines.next(line)) {
     if (is_no_row(line)) continue;
     if (header.time_place == CsvHeader::kNone) return TimeStamps();
-    const std::optional<std::string_view> first = time.text_in(line);
+    time.whole = cell_at(line, header.time_place, header.separator);
+    if (header.part_digits) time.part = cell_at(line, header.time_part, header.separator);
+    const std::optional<std::string_view> first = time.text(header.part_digits);
     if (!first || first->empty()) continue;
     return TimeStamps(TimeDigits(*first, header.separator != ','),
                       header.layout.time.value_or(CsvTime{}).unit_s);

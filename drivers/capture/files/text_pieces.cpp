@@ -12,10 +12,12 @@ TextPieces::TextPieces(ReadBytes read, std::size_t piece)
     : read_(std::move(read)), piece_(std::max<std::size_t>(1, piece)) {}
 
 bool TextPieces::next(std::string& to) {
-  to.assign(tail_);
+  // A string that is used again is filled anew by what is read, and not by zeros before.
+  std::size_t before = tail_.size();
+  if (to.size() < before) to.resize(before);
+  std::copy(tail_.begin(), tail_.end(), to.begin());
   tail_.clear();
   while (!ended_) {
-    const std::size_t before = to.size();
     to.resize(before + piece_);
     const std::size_t n = read_(to.data() + before, piece_);
     to.resize(before + n);
@@ -23,12 +25,14 @@ bool TextPieces::next(std::string& to) {
     const std::size_t last = to.rfind('\n');
     if (last == std::string::npos || last < before) {
       if (to.size() > kLongestLine) return true;
+      before = to.size();
       continue;
     }
     tail_.assign(to, last + 1);
     to.resize(last + 1);
     return true;
   }
+  to.resize(before);
   return !to.empty();
 }
 

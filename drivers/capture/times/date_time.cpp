@@ -126,7 +126,7 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
   return {to.data(), static_cast<std::size_t>(end - to.data())};
 }
 
-std::optional<double> number_in(std::string_view text) {
+std::optional<double> finite_number(std::string_view text) {
   double value = 0.0;
   const char* const end = text.data() + text.size();
   const auto [at, error] = read_decimal(text.data(), end, value);

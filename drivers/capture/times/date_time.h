@@ -27,7 +27,7 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
 }
 
 // The finite number that all of a text is; nothing for any other text.
-[[nodiscard]] std::optional<double> number_in(std::string_view text);
+[[nodiscard]] std::optional<double> finite_number(std::string_view text);
 
 // What a cell says, a decimal comma as a point.
 class PointDigits {

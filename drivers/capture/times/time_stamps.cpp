@@ -96,7 +96,7 @@ std::optional<SaidTime> SaidTime::parse(std::string_view said) {
   if (Plain time; read_plain(text, time))
     return SaidTime{static_cast<double>(time.whole),
                     static_cast<double>(time.fraction) / static_cast<double>(ten_to(time.decimals))};
-  const std::optional<double> value = number_in(text);
+  const std::optional<double> value = finite_number(text);
   return value ? std::optional(SaidTime{*value, 0.0}) : std::nullopt;
 }
 
