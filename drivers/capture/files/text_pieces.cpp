@@ -14,6 +14,7 @@ TextPieces::TextPieces(ReadBytes read, std::size_t piece)
 bool TextPieces::next(std::string& to) {
   // A string that is used again is filled anew by what is read, and not by zeros before.
   std::size_t before = tail_.size();
+  to.reserve(before + piece_ + piece_ / 16);
   if (to.size() < before) to.resize(before);
   std::copy(tail_.begin(), tail_.end(), to.begin());
   tail_.clear();
