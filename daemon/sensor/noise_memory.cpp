@@ -46,7 +46,7 @@ NoiseMemory::NoiseMemory(const std::string& folder, const std::string& sensor, c
       kept_.learned = found.learned;
       remark_ = in_words(found);
     } else {
-      remark_ = path_ + ": belongs to driver \"" + printable(found.driver) + "\", " + std::to_string(found.axes) +
+      remark_ = path_ + ": is for driver \"" + printable(found.driver) + "\", " + std::to_string(found.axes) +
                 " axes at " + std::to_string(found.sample_rate_hz) + " Hz: learned again";
     }
   } catch (const std::exception& error) {

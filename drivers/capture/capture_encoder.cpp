@@ -111,11 +111,11 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
   std::fill(std::begin(sample_.environment), std::end(sample_.environment), kMissing);
 }
 
-void CaptureEncoder::go_on() { rows_before_ += std::exchange(row_, 0); }
+void CaptureEncoder::go_on() { rows_.before += std::exchange(rows_.at, 0); }
 
 ifog_sample CaptureEncoder::next_sample() {
   const ifog_description& d = driver_.description();
-  const double now = capture_.time_s[row_];
+  const double now = capture_.time_s[rows_.at];
   const bool first = rows_done() == 0;
   const double elapsed = first ? 1.0 / rate_hz_ : now - before_s_;
   const double periods = elapsed * rate_hz_;
@@ -141,7 +141,7 @@ ifog_sample CaptureEncoder::next_sample() {
   std::fill(std::begin(sample_.value), std::end(sample_.value), kMissing);
   bool at_full_scale = false;
   for (std::size_t i = 0; i < axis_of_.size(); ++i) {
-    const double rate = capture_.rate_radps[i][row_];
+    const double rate = capture_.rate_radps[i][rows_.at];
     const double full_scale = d.full_scale[axis_of_[i]];
     at_full_scale = at_full_scale || (full_scale > 0.0 && std::abs(rate) >= full_scale);
     double value = rate;
@@ -154,11 +154,11 @@ ifog_sample CaptureEncoder::next_sample() {
     sample_.value[axis_of_[i]] = value;
     sample_.valid_axes |= 1U << axis_of_[i];
   }
-  at_full_scale_ += at_full_scale ? 1 : 0;
+  rows_.at_full_scale += at_full_scale ? 1 : 0;
   sample_.environment_fresh = 0;
   for (std::uint32_t i = 0; i < channels_.size(); ++i) {
-    if (channels_[i] == nullptr || std::isnan((*channels_[i])[row_])) continue;
-    sample_.environment[i] = (*channels_[i])[row_];
+    if (channels_[i] == nullptr || std::isnan((*channels_[i])[rows_.at])) continue;
+    sample_.environment[i] = (*channels_[i])[rows_.at];
     sample_.environment_fresh |= 1U << i;
   }
   return sample_;
@@ -166,19 +166,19 @@ ifog_sample CaptureEncoder::next_sample() {
 
 template <typename Out>
 bool CaptureEncoder::encode_next(Out& out, void (DriverInstance::*encode)(const ifog_sample&, Out&)) {
-  if (row_ == capture_.size()) return false;
+  if (rows_.at == capture_.size()) return false;
   ifog_sample sample = next_sample();
   const ifog_description& d = driver_.description();
   const auto refuse = [&](const std::runtime_error& error) {
     std::string at;
-    append_time(at, capture_.origin, capture_.time_s[row_]);
+    append_time(at, capture_.origin, capture_.time_s[rows_.at]);
     throw std::runtime_error("at " + at + " s: " + error.what());
   };
   try {
     (driver_.*encode)(sample, out);
   } catch (const std::runtime_error& error) {
     if (sample.valid_axes == 0) {
-      ++left_out_;
+      ++rows_.dropped;
     } else if (d.kind == IFOG_ANGLE && d.angle_wrap_rad > 0.0) {
       // An unsigned angle runs from 0, not from minus half a turn.
       for (double& value : sample.value)
@@ -192,7 +192,7 @@ bool CaptureEncoder::encode_next(Out& out, void (DriverInstance::*encode)(const 
       refuse(error);
     }
   }
-  before_s_ = capture_.time_s[row_++];
+  before_s_ = capture_.time_s[rows_.at++];
   return true;
 }
 

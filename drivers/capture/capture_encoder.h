@@ -45,9 +45,9 @@ class CaptureEncoder {
   bool next(std::vector<std::uint8_t>& bytes);
   bool next(std::vector<ifog_can_frame>& frames);
 
-  [[nodiscard]] std::size_t rows_done() const { return rows_before_ + row_; }
+  [[nodiscard]] std::size_t rows_done() const { return rows_.before + rows_.at; }
   // Rows without a rate in a format that cannot mark one as invalid: not sent, which leaves a gap in the counter.
-  [[nodiscard]] std::size_t rows_left_out() const { return left_out_; }
+  [[nodiscard]] std::size_t rows_left_out() const { return rows_.dropped; }
   // Time in s that a reader of the frames cannot see: without a clock in the format, time is the counter over the
   // nominal rate, and complete rollovers of the counter are invisible. Positive: the reader's time is too short;
   // negative: too long. 0 if the format, or a log of its frames, carries times.
@@ -55,7 +55,7 @@ class CaptureEncoder {
   [[nodiscard]] double elapsed_s() const { return elapsed_s_; }  // from the first row to the last
   [[nodiscard]] double rate_hz() const { return rate_hz_; }      // that the frames are read by
   // Rows whose rate reaches the driver's full scale. They are sent, and a reader treats them as missing.
-  [[nodiscard]] std::size_t rows_at_full_scale() const { return at_full_scale_; }
+  [[nodiscard]] std::size_t rows_at_full_scale() const { return rows_.at_full_scale; }
 
  private:
   template <typename Out>
@@ -70,12 +70,13 @@ class CaptureEncoder {
   std::vector<double> angle_;  // by the capture's axis
   std::int64_t later_s_ = 0;   // whole seconds that are added to every time, for none to be before 0
   ifog_sample sample_{};
-  std::size_t row_ = 0;
-  std::size_t rows_before_ = 0;            // in pieces before this one
+  struct Rows {
+    std::size_t at = 0, before = 0;  // in this piece; in those before it
+    std::size_t dropped = 0, at_full_scale = 0;
+  } rows_;
   double before_s_ = 0.0;                  // time of the row before
   double elapsed_s_ = 0.0, told_s_ = 0.0;  // since the first row, by the capture and by the format
   bool timed_ = false;
-  std::size_t left_out_ = 0, at_full_scale_ = 0;
   std::uint64_t count_ = 0;
   double rate_hz_ = 0.0;
 };

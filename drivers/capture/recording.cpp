@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/files/name_ending.h"
+#include "drivers/capture/files/file_kind.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""No source file is longer than a sitting, no function of a script longer than a screen, and no folder has more files of C++
-than a reader looks through. (Functions in C++: clang-tidy, readability-function-size.)
+"""No source file is longer than a sitting, no function of a script longer than a screen, no folder has more files of C++ than a
+reader looks through, and no class more members than a reader keeps in mind. (Functions in C++: clang-tidy,
+readability-function-size.)
 
 usage: tests/layout/check_lengths.py [TREE]      the tree's root; default: this one
 
@@ -10,12 +11,14 @@ One line a violation, FILE or FOLDER: what; exit 1 when there is one.
 import ast
 import collections
 import pathlib
+import re
 import subprocess
 import sys
 
 MOST_OF_A_FILE = 400
 MOST_OF_A_FUNCTION = 60
 MOST_OF_A_FOLDER = 24  # files of C++
+MOST_OF_A_CLASS = 15  # data members, whose names end with _
 SOURCES = {".cpp", ".h", ".c", ".py", ".java", ".sh", ".cmake"}
 
 
@@ -33,10 +36,34 @@ def sources(tree):
             yield name, path.read_text()
 
 
+def classes(text):
+    """Name and own statements of each class: without comments, texts, and all that stands in inner braces."""
+    text = re.sub(r'//[^\n]*|"(?:[^"\\\n]|\\.)*"', "", text)
+    for begin in re.finditer(r"\bclass (\w+)[^;{}()]*\{", text):
+        own, depth = [], 1
+        for character in text[begin.end():]:
+            depth += (character == "{") - (character == "}")
+            if depth == 0:
+                break
+            if depth == 1:
+                own.append(character)
+        yield begin[1], "".join(own)
+
+
+def members(own):
+    for statement in re.split("[;}]", own):
+        if "(" not in statement and not re.match(r"\s*(static|using|friend)\b", statement):
+            yield from re.findall(r"\b[a-z]\w*_\b", statement)
+
+
 def violations(name, text):
     lines = text.count("\n")
     if lines > MOST_OF_A_FILE:
         yield f"{lines} lines, at most {MOST_OF_A_FILE}"
+    if name.endswith((".cpp", ".h")):
+        for of, own in classes(text):
+            if (count := len(set(members(own)))) > MOST_OF_A_CLASS:
+                yield f"class {of} has {count} members, at most {MOST_OF_A_CLASS}"
     if not name.endswith(".py") and not text.startswith("#!/usr/bin/env python3"):
         return
     for node in ast.walk(ast.parse(text)):

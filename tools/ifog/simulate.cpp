@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "drivers/capture/files/name_ending.h"
+#include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/files/output_file.h"
 #include "drivers/capture/files/text_file.h"
 #include "drivers/capture/recording.h"

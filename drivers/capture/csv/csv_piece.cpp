@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -160,8 +161,8 @@ class Rows {
     if (to.means == Meaning::kNumber) {
       // Nearly every cell is a number in digits and nothing else: where they end the cell does.
       double value = 0.0;
-      const char* const behind = decimal::short_number(at, end, value);
-      if (behind != nullptr && (behind == end || *behind == separator_)) {
+      const auto [behind, error] = std::from_chars(at, end, value);
+      if (error == std::errc() && (behind == end || *behind == separator_) && std::isfinite(value)) {
         if (to.range.holds(value)) [[likely]] {
           if (to.values != nullptr) to.values->push_back(value);
         } else {

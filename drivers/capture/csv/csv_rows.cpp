@@ -16,7 +16,7 @@
 #include "drivers/capture/csv/csv_header.h"
 #include "drivers/capture/csv/csv_piece.h"
 #include "drivers/capture/csv/line_form.h"
-#include "drivers/capture/files/name_ending.h"
+#include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/files/text_pieces.h"
 #include "drivers/ifog/quoted.h"
 

@@ -10,7 +10,7 @@
 #include <system_error>
 #include <utility>
 
-#include "drivers/capture/files/name_ending.h"
+#include "drivers/capture/files/file_kind.h"
 
 namespace ifog {
 

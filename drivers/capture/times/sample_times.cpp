@@ -43,14 +43,14 @@ void SampleTimes::go_on_as(const ifog_description& description) {
 }
 
 void SampleTimes::choose_clock(const ifog_sample& sample) {
-  first_arrival_ns_ = sample.arrival_ns;
+  arrivals_.first_ns = sample.arrival_ns;
   const bool rate_known = description_.nominal_rate_hz > 0.0;
   if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) != 0) {
     clock_ = Clock::device;
     device_from_ = TimeOrigin::of(sample.device_time_ns);
   } else if ((sample.flags & IFOG_SAMPLE_SEQUENCE) != 0 && rate_known) {
     clock_ = Clock::counter;
-  } else if (sample.arrival_ns != 0 || zero_of_stamps_ns_) {
+  } else if (sample.arrival_ns != 0 || arrivals_.zero_of_stamps_ns) {
     clock_ = Clock::arrival;
   } else if (rate_known) {
     clock_ = Clock::number;
@@ -63,12 +63,12 @@ void SampleTimes::choose_clock(const ifog_sample& sample) {
 void SampleTimes::count_from(const ifog_sample& sample) {
   if (clock_ == Clock::device) {
     origin_ = device_from_;
-  } else if (zero_of_stamps_ns_) {
-    const std::int64_t stamp_ns = sample.arrival_ns - *zero_of_stamps_ns_;
+  } else if (arrivals_.zero_of_stamps_ns) {
+    const std::int64_t stamp_ns = sample.arrival_ns - *arrivals_.zero_of_stamps_ns;
     origin_ = TimeOrigin::of(stamp_ns);
     const std::int64_t since_ns = ns_since(origin_, stamp_ns);
     if (clock_ == Clock::arrival) {
-      first_arrival_ns_ -= since_ns;
+      arrivals_.first_ns -= since_ns;
       return;
     }
     // As samples where it is a whole number of them: then no time is a sum of two that were rounded.
@@ -82,7 +82,7 @@ void SampleTimes::count_from(const ifog_sample& sample) {
 
 Timeline::Frame SampleTimes::frame_of(const ifog_sample& sample) const {
   Timeline::Frame frame = timeline_frame(sample, description_.axes);
-  frame.recorded = zero_of_stamps_ns_.has_value();
+  frame.recorded = arrivals_.zero_of_stamps_ns.has_value();
   return frame;
 }
 
@@ -91,7 +91,7 @@ double SampleTimes::seconds(const ifog_sample& sample) const {
     case Clock::device:
       return static_cast<double>(ns_since(device_from_, device_ns_)) / kNsPerSecondExact + offset_s_;
     case Clock::arrival:
-      return static_cast<double>(sample.arrival_ns - first_arrival_ns_) / kNsPerSecondExact + offset_s_;
+      return static_cast<double>(sample.arrival_ns - arrivals_.first_ns) / kNsPerSecondExact + offset_s_;
     default:
       return static_cast<double>(count_) / description_.nominal_rate_hz + offset_s_;
   }
@@ -100,10 +100,10 @@ double SampleTimes::seconds(const ifog_sample& sample) const {
 // The sample's clock is set so that it comes as much later than the one before as it arrived later.
 void SampleTimes::begin_anew(const ifog_sample& sample) {
   broken_ = false;
-  const double later_s = static_cast<double>(sample.arrival_ns - last_arrival_ns_) * 1e-9;
+  const double later_s = static_cast<double>(sample.arrival_ns - arrivals_.last_ns) * 1e-9;
   const double rate_hz = description_.nominal_rate_hz;
   const double least_s = rate_hz > 0.0 ? 1.0 / rate_hz : 1e-6;
-  const bool known = zero_of_stamps_ns_ || (sample.arrival_ns != 0 && last_arrival_ns_ != 0);
+  const bool known = arrivals_.zero_of_stamps_ns || (sample.arrival_ns != 0 && arrivals_.last_ns != 0);
   offset_s_ += last_s_ + std::max(known ? later_s : 0.0, least_s) - seconds(sample);
 }
 
@@ -117,14 +117,14 @@ double SampleTimes::spread(const ifog_sample& sample, const Timeline::Step& step
   constexpr double kResolution_s = 1e-9;        // of times of arrival
   const double period_s = 1.0 / description_.nominal_rate_hz;
   const double next_s = last_s_ + period_s, late_s = arrived_s - next_s;
-  const double elapsed_s = static_cast<double>(sample.arrival_ns - last_arrival_ns_) / kNsPerSecondExact;
+  const double elapsed_s = static_cast<double>(sample.arrival_ns - arrivals_.last_ns) / kNsPerSecondExact;
   const bool delayed = step.late_s > 0.0;
-  bunched_ = bunched_ || elapsed_s < kEven * period_s || sample.at_once > 1 || delayed;
+  arrivals_.bunched = arrivals_.bunched || elapsed_s < kEven * period_s || sample.at_once > 1 || delayed;
   if (delayed) return next_s;
   if (step.gap || step.clock_moved || std::abs(late_s) < kResolution_s) return arrived_s;
   // Each by itself: its arrival, without a leap to where the first ones were behind it, or before it where
   // more come than the rate says.
-  if (!bunched_ && taken_ >= kShows)
+  if (!arrivals_.bunched && taken_ >= kShows)
     return std::clamp(arrived_s, last_s_ + elapsed_s / kMost,
                       last_s_ + kMost * std::max(period_s, elapsed_s));
   return last_s_ + std::clamp(period_s + kFollows * late_s, kLeast * period_s, kMost * period_s);
@@ -175,8 +175,9 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
     offset_s_ += last_s_ + step.dt_s - seconds(sample);
   double now = seconds(sample);
   const bool by_arrival =
-      clock_ == Clock::arrival && !zero_of_stamps_ns_ && description_.nominal_rate_hz > 0.0;
-  if (!first && !anew && by_arrival && sample.arrival_ns >= last_arrival_ns_) now = spread(sample, step, now);
+      clock_ == Clock::arrival && !arrivals_.zero_of_stamps_ns && description_.nominal_rate_hz > 0.0;
+  if (!first && !anew && by_arrival && sample.arrival_ns >= arrivals_.last_ns)
+    now = spread(sample, step, now);
   if (!first && now <= last_s_) {
     if (!restarts_) refuse(now);
     if (now == last_s_) {
@@ -192,10 +193,10 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
   taken.elapsed_s = first ? std::numeric_limits<double>::quiet_NaN() : now - last_s_;
   taken.anew = anew;
   taken.period_s = taken.elapsed_s / static_cast<double>(std::max<std::uint64_t>(steps, 1));
-  if ((first || anew || bunched_) && description_.nominal_rate_hz > 0.0)
+  if ((first || anew || arrivals_.bunched) && description_.nominal_rate_hz > 0.0)
     taken.period_s = 1.0 / description_.nominal_rate_hz;
   last_s_ = now;
-  last_arrival_ns_ = sample.arrival_ns;
+  arrivals_.last_ns = sample.arrival_ns;
   ++taken_;
   return taken;
 }

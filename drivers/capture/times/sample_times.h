@@ -57,7 +57,7 @@ class SampleTimes {
   void allow_restarts() { restarts_ = true; }
   // The arrival times are the stamps of a log whose lines all have one, that of a stamp of zero being
   // zero_ns. Nothing: they have none. Before the first sample.
-  void keep_stamps(std::optional<std::int64_t> zero_ns) { zero_of_stamps_ns_ = zero_ns; }
+  void keep_stamps(std::optional<std::int64_t> zero_ns) { arrivals_.zero_of_stamps_ns = zero_ns; }
 
   // What times are counted from; known from the first sample on.
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
@@ -80,14 +80,16 @@ class SampleTimes {
   TimeOrigin device_from_;      // of the device's clock, that its times are counted from
   std::int64_t device_ns_ = 0;  // the device's clock at the sample at hand, over its wraps
   std::uint64_t count_ = 0;     // the unwrapped counter, or the number of the sample
-  std::int64_t first_arrival_ns_ = 0, last_arrival_ns_ = 0;
+  struct Arrivals {
+    std::int64_t first_ns = 0, last_ns = 0;
+    bool bunched = false;  // several samples have one time of arrival, or times that scatter
+    std::optional<std::int64_t> zero_of_stamps_ns;
+  } arrivals_;
   std::size_t taken_ = 0;
   SampleCounts counts_;
   double last_s_ = 0.0;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
   bool broken_ = false, restarts_ = false;
-  bool bunched_ = false;  // several samples have one time of arrival, or times that scatter
-  std::optional<std::int64_t> zero_of_stamps_ns_;
 };
 
 }  // namespace ifog

@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kSeriesPoints = 4000;
 
+// NaN where less than half of the block was measured.
 double mean_of_block(const BlockGrid& grid, std::span<const double> error, std::size_t block) {
   const double samples = grid.block_s / grid.sample_s;
   const auto from =
@@ -22,10 +23,9 @@ double mean_of_block(const BlockGrid& grid, std::span<const double> error, std::
   const auto to =
       std::min(error.size(), static_cast<std::size_t>(std::lround(static_cast<double>(block + 1) * samples)));
   const auto [sum, n] = finite_sum(error.subspan(from, to - from));
-  return n > 0.0 ? sum / n : std::numeric_limits<double>::quiet_NaN();
+  return 2.0 * n >= samples ? sum / n : std::numeric_limits<double>::quiet_NaN();
 }
 
-// How well the deviation after is known.
 void add_allan_band(const EvenError& error, double sample_s, const NoiseTerms& noise,
                     std::span<const std::size_t> counts, DiagnosisSeries& series) {
   constexpr double kOneSigma = 0.6826894921370859;

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/capture/files/name_ending.h"
+#include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/console/options/wrong_usage.h"

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "drivers/capture/capture_builder.h"
-#include "drivers/capture/files/foreign_file.h"
+#include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/series/samples.h"

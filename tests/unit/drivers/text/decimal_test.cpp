@@ -4,14 +4,9 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <limits>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -28,50 +23,6 @@ TEST(Decimal, ReadsWhatADoubleHoldsToTheLastBit) {
   for (const char* text : {"0", "-0", "1", "-2.5e-7", "4.9406564584124654e-324", "1e-310", "-1e-310",
                            "2.2250738585072011e-308", "1.7976931348623157e308", "0e999", ".5", "5."})
     EXPECT_EQ(all_of(text), std::strtod(text, nullptr)) << text;
-}
-
-// Against the C library's correctly rounded reading, bit by bit: numbers of every length about those that a
-// double and a power of ten hold exactly, and doubles in all their digits.
-TEST(Decimal, IsTheNearestDoubleWhateverTheDigits) {
-  std::mt19937_64 random(7);
-  std::array<char, 64> room{};
-  for (int i = 0; i < 200000; ++i) {
-    std::string text = random() % 2 == 0 ? "-" : "";
-    if (i % 4 == 0) {
-      double value = 0.0;
-      const std::uint64_t bits = random();
-      std::memcpy(&value, &bits, sizeof value);
-      if (!std::isfinite(value)) continue;
-      std::snprintf(room.data(), room.size(), "%.*g", static_cast<int>(random() % 18), std::abs(value));
-      text += room.data();
-    } else {
-      const std::size_t digits = 1 + random() % 22, point = random() % (digits + 2);
-      for (std::size_t k = 0; k < digits; ++k) {
-        if (k == point) text += '.';
-        text += static_cast<char>('0' + random() % 10);
-      }
-      if (i % 4 == 1) text += (random() % 2 == 0 ? "e" : "E-") + std::to_string(random() % 30);
-    }
-    const double expected = std::strtod(text.c_str(), nullptr), read = all_of(text);
-    if (std::isinf(expected)) continue;  // rounded up by its few digits
-    ASSERT_EQ(std::memcmp(&read, &expected, sizeof read), 0) << text;
-  }
-}
-
-TEST(Decimal, EightDigitsAreEightDigits) {
-  std::mt19937 random(8);
-  std::array<char, 16> room{};
-  for (int i = 0; i < 20000; ++i) {
-    const auto number = static_cast<unsigned>(random() % 100'000'000U);
-    std::snprintf(room.data(), room.size(), "%08u", number);
-    std::uint64_t whole = 0;
-    ASSERT_TRUE(ifog::decimal::eight_digits(room.data(), whole)) << room.data();
-    ASSERT_EQ(whole, number);
-    const auto other = static_cast<char>(random() % 256);
-    if (other >= '0' && other <= '9') continue;
-    room[random() % 8] = other;
-    ASSERT_FALSE(ifog::decimal::eight_digits(room.data(), whole)) << room.data();
-  }
 }
 
 TEST(Decimal, StopsWhereTheNumberDoes) {

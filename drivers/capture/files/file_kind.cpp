@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/files/foreign_file.h"
+#include "drivers/capture/files/file_kind.h"
 
 #include <array>
 

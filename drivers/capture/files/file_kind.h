@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the name of a file says by its end, in small letters or capitals: GYRO.CSV is as much a CSV as
-// gyro.csv.
+// What a file is, by the end of its name (in small letters or capitals: GYRO.CSV is as much a CSV as gyro.csv) and by
+// its first bytes: also what makes a readable one of another program's.
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 
 namespace ifog {
@@ -28,5 +29,12 @@ constexpr std::string_view unpacked_name(std::string_view name) {
 constexpr bool begins_as_utf16(std::string_view head) {
   return head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");
 }
+
+// What makes a candump log of a CAN log of another program, "" for what is none.
+[[nodiscard]] std::string foreign_can_log(std::string_view head);
+
+// What makes columns of a container of another program (a spreadsheet, MATLAB before 7.3, ROS, PX4, ArduPilot, NumPy),
+// by its first bytes; "" for what is none.
+[[nodiscard]] std::string foreign_container(std::string_view head);
 
 }  // namespace ifog
