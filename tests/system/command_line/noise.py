@@ -171,7 +171,7 @@ class Noise:
         """A turn in the middle: which part it was is said, and std and deviation are those of allan's rest."""
         path = self.turned("turned.csv", 100, 148)
         found, allan = self.json("compare", path), self.json("allan", path, "--tau", "0.1,1,10")["axes"][0]
-        assert "moving in" in found["motion"] and "of the rest alone" in found["motion"], found["motion"]
+        assert "moving in" in found["motion"] and "at rest alone" in found["motion"], found["motion"]
         assert found["samples_at_rest"] == allan["samples"] < found["samples"]
         for tau, value in zip(("0.1", "1", "10"), allan["adev_radps"]):
             assert abs(found["raw"][0]["adev_radps"][tau] / value - 1) < 1e-9, (tau, value, found["raw"][0])
