@@ -345,15 +345,15 @@ void Hdf5Columns::add(Hdf5Column column) {
   std::array<hsize_t, 2> chunk{1, 1};
   if (H5Pget_nfilters(properties) > 0 && H5Pget_layout(properties) == H5D_CHUNKED &&
       H5Pget_chunk(properties, 2, chunk.data()) > 0) {
-    std::uint64_t bytes = 0, unpacked = 0;
+    std::uint64_t bytes = 0, all = 0;  // of one chunk; as numbers, of all columns
     chunk_rows_ = std::max<std::size_t>(chunk_rows_, chunk[static_cast<std::size_t>(column.along)]);
     if (__builtin_mul_overflow(chunk[0], chunk[1], &bytes) ||
         __builtin_mul_overflow(bytes, H5Tget_size(type), &bytes) || bytes > kMostUnpacked ||
-        __builtin_mul_overflow(chunk_rows_, (columns_.size() + 1) * sizeof(double), &unpacked) ||
-        unpacked > kMostUnpacked)
-      refuse(in_quotes(column.name) + " is packed in chunks of " + std::to_string(bytes >> 20U) +
-             " MiB, expected at most " + std::to_string(kMostUnpacked >> 20U) +
-             " MiB in all columns; 'h5repack -l CHUNK=65536' makes smaller ones");
+        __builtin_mul_overflow(chunk_rows_, (columns_.size() + 1) * sizeof(double), &all) ||
+        all > kMostUnpacked)
+      refuse(in_quotes(column.name) + " is packed in chunks of " +
+             std::to_string(std::max(bytes, all) >> 20U) + " MiB, expected at most " +
+             std::to_string(kMostUnpacked >> 20U) + " MiB in all columns; 'h5repack -l CHUNK=65536' helps");
     chunk_bytes_ = std::max<std::size_t>(chunk_bytes_, bytes);
   }
   columns_.push_back(std::move(column));
