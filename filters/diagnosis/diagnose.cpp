@@ -24,6 +24,7 @@
 #include "filters/diagnosis/residual/dead_zone.h"
 #include "filters/diagnosis/residual/hysteresis.h"
 #include "filters/diagnosis/residual/lines.h"
+#include "filters/diagnosis/residual/periodogram.h"
 #include "filters/diagnosis/residual/unexplained.h"
 #include "filters/diagnosis/search/earth_rate.h"
 #include "filters/diagnosis/search/plausible.h"
@@ -125,6 +126,8 @@ class Run {
   // peak that slow noise or an effect made is no line once both are in the fit.
   void separate_lines() {
     if (!data_.grid.dwells) lines_ = coherent_lines(errors_, data_.grid, options_.significance * kOfLines);
+    if (std::ranges::any_of(errors_, [](const auto& one) { return one.before.size() > kMostTransformed; }))
+      say("lines are sought in the first " + std::to_string(kMostTransformed) + " samples of a record");
     take_out(lines_.fast, data_.grid.sample_s, errors_);
     while (!lines_.slow.empty()) {
       search(lines_.slow);

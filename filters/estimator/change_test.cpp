@@ -11,8 +11,8 @@
 namespace ifog {
 namespace {
 
-// Shaking: innovations of that variance, in R, and half its logarithm.
-constexpr double kShakingVariance = 4.0, kHalfLog = std::numbers::ln2;
+// Shaking: innovations of that variance, in R; half its logarithm is ln 2.
+constexpr double kShakingVariance = 4.0;
 // Evidence for rest that has to be outweighed at most, nats.
 constexpr double kLeastRatio = -5.0;
 // Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
@@ -108,7 +108,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   // Tails and colour make large innovations come together.
   seen_ = std::min(seen_ + 1.0, kTailMemory);
   const Lanes capped = now.surprise.min(common.cap), unlikely = (fourth_ / 3.0).max(1.0) * widest_;
-  const Lanes larger = 0.5 * (1.0 - 1.0 / kShakingVariance) * capped - kHalfLog;
+  const Lanes larger = 0.5 * (1.0 - 1.0 / kShakingVariance) * capped - std::numbers::ln2;
   shaking_ = (shaking_ + now.mask * larger / unlikely).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;

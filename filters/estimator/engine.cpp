@@ -7,7 +7,6 @@
 #include "filters/random/log_exp.h"
 
 namespace ifog {
-namespace {}  // namespace
 
 Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, int axes, double period_s)
     : settings_(settings),

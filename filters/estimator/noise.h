@@ -73,7 +73,7 @@ class Noise {
     // R that was learned includes the steps' own d^2 / 12; one that is less than that is of the sensor alone.
     const double d2 = digit_ * digit_, own = of_steps(), white = known_ > 1.2 * own ? known_ - own : known_;
     const double pi_squared = std::numbers::pi * std::numbers::pi, exponent = 4.0 * pi_squared * white / d2;
-    return exponent < kNothing ? d2 / (2.0 * pi_squared) * exponential(-exponent) : 0.0;
+    return exponent < 600.0 ? d2 / (2.0 * pi_squared) * exponential(-exponent) : 0.0;
   }
 
  private:
@@ -95,7 +95,6 @@ class Noise {
   static constexpr double kThirdVariance = 4.6, kSurely = 3.0;
   // The mean square of 32 overlapping third differences scatters by 0.4: four standard deviations.
   static constexpr double kSurelyLouder = 2.6;
-  static constexpr double kNothing = 40.0;  // e^-40 of a variance is less than its rounding
 
   double known_, slow_, fast_, taken_ = 0.0, colour_ = 1.0, digit_ = std::numeric_limits<double>::infinity();
   std::array<double, 3> last_{};

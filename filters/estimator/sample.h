@@ -47,8 +47,7 @@ struct Sample {
   Lanes innovation = Lanes::Zero();  // of the filter at rest, rad/s; 0 where not valid
   Lanes scale = Lanes::Ones();       // R of this measurement, (rad/s)^2
   Lanes inverse = Lanes::Zero();     // 1 / scale; 0 where not valid
-  Lanes surprise =
-      Lanes::Zero();  // square of the innovation over the variance that the filter at rest predicts
+  Lanes surprise = Lanes::Zero();    // square of the innovation over its predicted variance
   Lanes covered_s = Lanes::Zero();
   Lanes short_rad = Lanes::Zero();  // angle that the filter at rest has fallen short of before it
   double rest_factor = 1.0, log_rest_factor = 0.0;  // variance of the filter's innovations over R

@@ -28,6 +28,7 @@ constexpr std::size_t kLong = 5;
 constexpr double kSurely = 12.0;
 // Difference of −2 log-likelihood that is one standard error wide.
 constexpr double kNearly = 1.0;
+constexpr int kContradicted = 64;  // quicker stretches in a row: what was known is of another sensor
 
 }  // namespace
 
@@ -216,7 +217,8 @@ void Walk::believe() noexcept {
     while (before + 1 < kTrials && ratios_[before + 1] <= recalled_) ++before;
   }
   const bool differ = misfit(&Axis::lately, before) - misfit(&Axis::lately, here) > kSurely;
-  if (differ && here > before) return;
+  quicker_ = differ && here > before ? (quicker_ + 1) % kContradicted : 0;
+  if (quicker_ > 0) return;
   if (differ) recalled_ = recalled_samples_ = samples_ = 0.0;
   for (Axis& axis : axes_) {
     if (differ) axis.all = {};

@@ -41,7 +41,7 @@ class Walk {
 
   // A stretch has so many samples.
   explicit Walk(double stretch = kStretch) noexcept;
-  // The walk as an earlier run has found it, in so many samples. Doubted once a stretch is surely slower.
+  // The walk as an earlier run has found it, in so many samples. Doubted by a slower stretch, or 64 quicker.
   void recall(double ratio, double samples) noexcept;
   // The next measurements, rad/s. What is learned of the walk is learned only with `learn`.
   void take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept;
@@ -96,6 +96,7 @@ class Walk {
   double stretch_, in_stretch_ = 0.0, samples_ = 0.0;
   double ratio_ = kMostRatio;
   double recalled_ = 0.0, recalled_samples_ = 0.0;  // 0: not recalled
+  int quicker_ = 0;                                 // stretches in a row
   bool learn_ = true;
   std::optional<Found> news_;
 };

@@ -22,6 +22,7 @@ constexpr std::size_t kFewest = 100;      // values, that tell what is usual
 constexpr std::size_t kFewValues = 5;     // of a switch, or of states
 constexpr double kPlaceholder = 30.0;     // interquartile ranges from the median
 constexpr double kMostFaults = 0.1;       // of the readings: what is more often is a state of the channel
+constexpr double kLongest_s = 60.0;       // of an interpolation
 constexpr std::size_t kLearned = 1000;    // samples that the rule learns from before it judges the first one
 
 using Flags = std::vector<std::uint8_t>;
@@ -67,7 +68,8 @@ Flags refused(const Record& record, std::span<const double> column, const Channe
   return found;
 }
 
-// Linear in time between the readings before and behind each run of faults; held where one of them is missing.
+// Linear in time between the readings before and behind each run of faults; one of them where the other is missing.
+// What it was for longer than a minute nobody knows.
 Samples interpolated(const Record& record, std::span<const double> column, const Flags& fault) {
   Samples values(column);
   const auto believed = [&](std::size_t i) { return std::isfinite(column[i]) && !fault[i]; };
@@ -79,11 +81,12 @@ Samples interpolated(const Record& record, std::span<const double> column, const
     while (behind < values.size() && !believed(behind)) ++behind;
     const bool ends = behind == values.size();
     const std::size_t from = before.value_or(behind), to = ends ? from : behind;
+    const bool brief = record.time_s[behind - 1] - record.time_s[i] <= kLongest_s;
     for (; i < behind; ++i) {
       if (!fault[i]) continue;
       const double span_s = record.time_s[to] - record.time_s[from];
       const double share = span_s > 0.0 ? (record.time_s[i] - record.time_s[from]) / span_s : 0.0;
-      values[i] = column[from] + share * (column[to] - column[from]);
+      values[i] = brief ? column[from] + share * (column[to] - column[from]) : std::nan("");
     }
     if (!ends) before = behind;
   }
@@ -116,7 +119,7 @@ RepairedChannel repaired_channel(const Record& record, const RecordChannel& chan
   return {interpolated(record, column, fault),
           channel.name + where +
               printed(" leaps away and back %zu time(s), for %zu sample(s) in all, first to %.6g: taken for "
-                      "faults of logging and interpolated",
+                      "faults of logging, interpolated for up to a minute",
                       times, samples, column[first])};
 }
 

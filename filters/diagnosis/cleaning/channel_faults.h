@@ -8,7 +8,8 @@
 namespace ifog {
 
 // Readings that the daemon's own rule would refuse (plausible_reading.h), with the range that the channel
-// usually has, are interpolated between those next to them. The daemon sees only what came before; here the
+// usually has, are interpolated between those next to them for up
+// to a minute, and missing where they last longer. The daemon sees only what came before; here the
 // rule is asked in both directions of time, so that a step to another level stays. Channels of a few values
 // are left alone: a switch may be off for an hour. Missing values stay missing.
 OwnedRecords repair_channels(OwnedRecords given);

@@ -35,11 +35,9 @@ std::string too_few(const std::vector<Record>& records, std::size_t blocks, doub
           (record.reference_radps.empty() || std::isfinite(record.reference_radps[i])))
         ++samples;
   return printed(
-      "%zu samples with a rate, and with a reference if there is one, and %zu blocks of %.3g s that have "
-      "half of "
-      "theirs: expected at least %zu of either. Where a long hole or empty cells are the reason, each side "
-      "of the "
-      "hole (--from, --to, or captures of their own) or the rows without empty cells can be diagnosed",
+      "%zu samples with a rate (and a reference, if there is one) in %zu blocks of %.3g s that are at least "
+      "half full: expected at least %zu of each. A long hole: diagnose each side by itself (--from, --to, or "
+      "captures of their own). Rows with empty cells: drop them",
       samples, blocks, block_s, kLeastBlocks);
 }
 

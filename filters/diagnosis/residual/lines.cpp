@@ -37,18 +37,13 @@ Complex wave_at(double cycles) {
 // Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. of: cycles a
 // sample.
 std::vector<Complex> demodulate(std::span<const double> error, double mean, double of, std::size_t pieces) {
-  constexpr std::size_t kTurns = 4096;  // of one carrier, before rounding is taken out of it
   const Complex turn = wave_at(of);
   std::vector<Complex> sums(pieces);
   for (std::size_t p = 0; p < pieces; ++p) {
     const std::size_t from = p * error.size() / pieces, to = (p + 1) * error.size() / pieces;
-    double cosine = 0.0, sine = 0.0, real = 0.0, imaginary = 0.0;
+    const Complex wave = wave_at(of * static_cast<double>(from));
+    double cosine = wave.real(), sine = wave.imag(), real = 0.0, imaginary = 0.0;
     for (std::size_t i = from; i < to; ++i) {
-      if ((i - from) % kTurns == 0) {
-        const Complex wave = wave_at(of * static_cast<double>(i));
-        cosine = wave.real();
-        sine = wave.imag();
-      }
       const double value = std::isfinite(error[i]) ? error[i] - mean : 0.0;
       real += value * cosine;
       imaginary += value * sine;

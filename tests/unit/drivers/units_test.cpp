@@ -54,7 +54,6 @@ const std::pair<double, const char*> kSpelled[] = {
     {kDegree / 3600.0e3, "mas/s"},
 };
 
-// What stands between bars.
 std::vector<std::string> split(const std::string& texts) {
   std::vector<std::string> out;
   std::istringstream in(texts);
