@@ -2,7 +2,6 @@
 #include "drivers/transport/transport.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <system_error>
 #include <utility>
 
@@ -61,10 +60,10 @@ std::string Transport::take_answers() {
 }
 
 Delivery Transport::read(std::chrono::nanoseconds timeout) noexcept {
-  const std::int64_t entered_ns = arrival_clock_ns();
   const std::int64_t until = monotonic_ns() + timeout.count();
   if (stopped() || state() == TransportState::ended) return {};
   if (!link_.open && !regain(until)) return {};
+  const std::int64_t entered_ns = arrival_clock_ns();
   Delivery delivery = receive(until);
   if (delivery.read_ns == 0) delivery.read_ns = arrival_clock_ns();
   if (!times_are_recorded() && backlog_.read(entered_ns, delivery.read_ns, timeout.count())) {
@@ -101,6 +100,7 @@ bool Transport::regain(std::int64_t until_ns) noexcept {
     }
     link_.open = true;
     link_.since_ns = monotonic_ns();
+    backlog_ = {};  // nothing piles up in a device that is away
     enter(TransportState::open, 0);
     if (std::exchange(link_.once, true)) {
       link_.returning = true;

@@ -10,7 +10,7 @@ namespace ifog {
 namespace {
 
 constexpr double kSlowest_s = 0.101;  // between samples: 10 Hz, however its times are rounded
-constexpr double kStandstill = 0.01;  // of the leap, the most beside it
+constexpr double kStandstill = 0.01;  // of the leap, at most, in the rows next to it
 
 }  // namespace
 
@@ -38,7 +38,7 @@ void Leaps::hand_on(const RowBlock* behind) {
   next_(held_);
 }
 
-// All rows but the record's first and last, by the shorter of the steps to the rows beside.
+// All rows but the record's first and last, by the shorter of the steps to the rows next to it.
 void Leaps::look_at(std::size_t r, const RowBlock* behind) {
   std::vector<double>& rate = held_.columns[rates_[r]];
   const std::vector<double>& time_s = held_.time_s;

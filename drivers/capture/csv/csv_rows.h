@@ -16,8 +16,8 @@ namespace ifog {
 // What the number in a message about a row is: its line, or of a format that has none, counted from 1, the row.
 enum class RowsAre { lines, numbered };
 
-// Refuses what read_capture refuses, in the same words, except that no rate is needed. The sink may have received
-// rows before an error further down is found. Angles that become rates need all rows: they arrive as one block. `path` stands for the file in messages.
+// Refuses what read_capture refuses, in the same words, but needs no rate. The sink may have received rows before
+// an error further down is found; angles that become rates arrive as one block. `path`: the file in messages.
 RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const CsvLayout& layout, RowSink& sink,
                        std::size_t piece = kTextPiece, RowsAre rows = RowsAre::lines);
 // The same of what remains of a file.

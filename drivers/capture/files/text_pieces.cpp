@@ -12,7 +12,7 @@ TextPieces::TextPieces(ReadBytes read, std::size_t piece)
     : read_(std::move(read)), piece_(std::max<std::size_t>(1, piece)) {}
 
 bool TextPieces::next(std::string& to) {
-  // A string that is used again is filled anew by what is read, and not by zeros before.
+  // A string that is used again is overwritten by what is read, without zeros before that.
   std::size_t before = tail_.size();
   to.reserve(before + piece_ + piece_ / 16);
   if (to.size() < before) to.resize(before);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Captures as every diagnosis and measurement takes them: stamps that scatter set even, angles without their
-// wraps, channels' faults repaired, differences of channels added, knocks of the rate left out, a late
-// reference shifted, the other axes added, turns left out, the part to fit cut, ramps taken out.
+// wraps, channels' faults repaired, differences of channels added, knocks of the rate dropped, a late
+// reference shifted, the other axes added, turns dropped, the part to fit cut, ramps subtracted.
 #pragma once
 
 #include <vector>

@@ -7,8 +7,8 @@
 
 namespace ifog {
 
-// Turned parts become missing, and what is at rest is known; a record stays as given where a reference stands
-// beside. What is only shaken stays: its means are right.
+// Turned parts become missing, and what is at rest is known; a record with a reference
+// stays as given. What is only shaken stays: its means are right.
 // Throws std::invalid_argument with one line when a record was turned and less than half of it is at rest.
 OwnedRecords without_turns(OwnedRecords given);
 

@@ -323,20 +323,6 @@ TEST_F(Recording, AClockThatShowsTheEpochMakesTheRatesOfOneThatBeginsAtZero) {
   for (std::size_t i = 1; i < 200; ++i) ASSERT_EQ(one.columns[0][i], other.columns[0][i]) << i;
 }
 
-TEST_F(Recording, TimeThatStandsStillIsRefused) {
-  ifog_description d{};
-  d.axes = 1;
-  ifog::CaptureBuilder builder(d);
-  ifog_sample sample{};
-  sample.arrival_ns = 1'000'000'000;
-  sample.valid_axes = 1;
-  builder.add(sample);
-  EXPECT_THROW(builder.add(sample), std::runtime_error);
-  ifog::CaptureBuilder timeless(d);
-  sample.arrival_ns = 0;
-  EXPECT_THROW(timeless.add(sample), std::runtime_error);
-}
-
 // As of a capture's own cells: no temperature is below absolute zero.
 TEST_F(Recording, AChannelsValueThatCannotBeIsMissingAndCounted) {
   ifog_description d{};

@@ -9,15 +9,6 @@
 namespace ifog {
 namespace {
 
-TEST(Nearest, Distances) {
-  EXPECT_EQ(edits_between("", ""), 0U);
-  EXPECT_EQ(edits_between("", "abc"), 3U);
-  EXPECT_EQ(edits_between("allan", "alan"), 1U);
-  EXPECT_EQ(edits_between("modle", "model"), 1U);  // neighbours swapped
-  EXPECT_EQ(edits_between("kitten", "sitting"), 3U);
-  EXPECT_EQ(edits_between("ca", "abc"), 3U);  // no part is edited twice
-}
-
 TEST(Nearest, TheFirstOfTheNearestAndNothingThatIsFar) {
   const std::vector<std::string> names{"denoise", "diagnose", "drivers", "tune"};
   EXPECT_EQ(did_you_mean("denoize", names), ", did you mean 'denoise'?");
@@ -27,12 +18,6 @@ TEST(Nearest, TheFirstOfTheNearestAndNothingThatIsFar) {
   EXPECT_EQ(did_you_mean("t", names), "");  // of one letter anything could be meant
   EXPECT_EQ(did_you_mean("", names), "");
   EXPECT_EQ(did_you_mean(std::string(1000, 'd'), names), "");
-}
-
-TEST(Nearest, WhoIsFarFromAllIsToldAll) {
-  const std::vector<std::string> names{"tune", "drivers"};
-  EXPECT_EQ(meant_or_known("tnue", names), ", did you mean 'tune'? Known here: tune, drivers");
-  EXPECT_EQ(meant_or_known("plot", names), ", expected one of: tune, drivers");
 }
 
 TEST(Nearest, AValueThatIsNoneOfItsWordsIsToldAllAndTheNear) {
