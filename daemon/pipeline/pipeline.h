@@ -56,9 +56,9 @@ class Pipeline {
   // ready to run, "reader" or "filter"; null: neither.
   [[nodiscard]] const char* starved();
   // What the transport could not get and does without, once; "" for nothing new.
-  std::string take_transport_warning() { return reader_.transport().take_warning(); }
+  std::string take_transport_warning() { return reader_.transport().notices().take_warning(); }
   // How the device has answered to its set-up, likewise.
-  std::string take_transport_answers() { return reader_.transport().take_answers(); }
+  std::string take_transport_answers() { return reader_.transport().notices().take_answers(); }
   // Next event of either thread.
   bool take_event(Event& out) noexcept { return reader_events_.take(out) || filter_events_.take(out); }
   [[nodiscard]] std::uint64_t events_lost() const noexcept {

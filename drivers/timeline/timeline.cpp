@@ -139,10 +139,9 @@ void Timeline::look_at_clock(const Frame& frame, Look& now) const noexcept {
   now.time_ns = ns_after(last_.time_ns, step_ns);
 }
 
-// More than the elapsed time holds.
-bool Timeline::contradicts(double claimed_s, const Look& now) const noexcept {
-  const double most_s = std::max(now.elapsed_s, now.quiet_s) + now.slack_s;
-  return now.timed && claimed_s > most_s + kClocksApart * claimed_s;
+bool Timeline::Look::contradicts(double claimed_s) const noexcept {
+  const double most_s = std::max(elapsed_s, quiet_s) + slack_s;
+  return timed && claimed_s > most_s + kClocksApart * claimed_s;
 }
 
 // A duplicate, or overtaken by what was taken: counter or clock go back by little without a silence.
@@ -158,7 +157,7 @@ bool Timeline::out_of_turn(const Frame& frame, const Look& now) const noexcept {
   const std::uint64_t most = std::min<std::uint64_t>(RecentFrames::kMost, modulus_ / 2);
   if (modulus_ - now.ahead > most || now.passed_s > 0.0 || (frame.reopened && !now.timed)) return false;
   const Had was = recent_.had(modulus_ - now.ahead, now.digest);
-  const bool usual = now.timed && !delay_ && !contradicts(pace_.time_s(now.ahead), now);
+  const bool usual = now.timed && !delay_ && !now.contradicts(pace_.time_s(now.ahead));
   return was == Had::same || (was == Had::no && !usual);
 }
 
@@ -172,7 +171,7 @@ void Timeline::restart(const Look& now, Step& step) const noexcept {
 bool Timeline::clock_is_wrong(const Look& now) const noexcept {
   const double grain_s = ticks_.grain_s();
   const double counted_s = pace_.time_s(now.counted_samples);
-  if (now.passed_s < 0.0 || contradicts(now.passed_s - grain_s, now)) return true;
+  if (now.passed_s < 0.0 || now.contradicts(now.passed_s - grain_s)) return true;
   if (!now.counted || now.silent || delay_) return false;
   if (!now.timed) return now.ahead == 1 && now.passed_s > counted_s + kNoSetting_s;
   // Where clock and counter disagree, the one nearer to the elapsed time is right.
@@ -225,7 +224,7 @@ void Timeline::by_counter(const Frame& frame, const Look& now, Step& step) const
   const double claimed_s = pace_.time_s(step.samples);
   const bool never_timed = due_ns_ == 0 && now.ahead > modulus_ / 2;
   const bool short_of = now.silent && claimed_s < now.elapsed_s - now.slack_s;
-  const bool wrong = step.samples > 1 && (never_timed || short_of || contradicts(claimed_s, now));
+  const bool wrong = step.samples > 1 && (never_timed || short_of || now.contradicts(claimed_s));
   step.dt_s = static_cast<double>(step.samples) * pace_.nominal_s();
   if (wrong && now.ahead == 1) {  // kept by the line while nobody read it, for all that is known
     step.samples = 1;

@@ -76,6 +76,9 @@ class Timeline {
     double passed_s = 0.0;                  // of the device's clock
     std::int64_t time_ns = 0;
     std::uint64_t digest = 0;
+
+    // claimed_s is more than the elapsed time holds.
+    [[nodiscard]] bool contradicts(double claimed_s) const noexcept;
   };
   struct Last {
     std::uint32_t sequence = 0;
@@ -96,7 +99,6 @@ class Timeline {
   void look_at_arrival(const Frame& frame, Look& now) const noexcept;
   void look_at_clock(const Frame& frame, Look& now) const noexcept;
   [[nodiscard]] std::uint64_t rolled_over(const Look& now, bool reopened) const noexcept;
-  [[nodiscard]] bool contradicts(double claimed_s, const Look& now) const noexcept;
   [[nodiscard]] bool out_of_turn(const Frame& frame, const Look& now) const noexcept;
   [[nodiscard]] bool clock_is_wrong(const Look& now) const noexcept;
   [[nodiscard]] std::uint64_t samples_by_clock(const Look& now) const noexcept;

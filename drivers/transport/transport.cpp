@@ -32,31 +32,10 @@ void Transport::open(std::span<const std::uint8_t> opening) {
     backoff_.failed(monotonic_ns());
     throw;
   }
-  keep_warning(std::move(warning));
+  notices_.keep_warning(std::move(warning));
   link_.open = link_.once = true;
   link_.since_ns = monotonic_ns();
   enter(TransportState::open, 0);
-}
-
-void Transport::keep_warning(std::string&& warning) {
-  const std::lock_guard lock(notices_.mutex);
-  notices_.new_warning = notices_.new_warning || (!warning.empty() && warning != notices_.warning);
-  notices_.warning = std::move(warning);
-}
-
-std::string Transport::take_warning() {
-  const std::lock_guard lock(notices_.mutex);
-  return std::exchange(notices_.new_warning, false) ? notices_.warning : std::string();
-}
-
-void Transport::keep_answers(const std::string& answers) {
-  const std::lock_guard lock(notices_.mutex);
-  notices_.answers = answers;
-}
-
-std::string Transport::take_answers() {
-  const std::lock_guard lock(notices_.mutex);
-  return std::exchange(notices_.answers, {});
 }
 
 Delivery Transport::read(std::chrono::nanoseconds timeout) noexcept {
@@ -91,7 +70,7 @@ bool Transport::regain(std::int64_t until_ns) noexcept {
     try {
       std::string warning;
       if (!connect(warning, until_ns)) return false;
-      keep_warning(std::move(warning));
+      notices_.keep_warning(std::move(warning));
     } catch (const std::exception& error) {
       const auto* refused = dynamic_cast<const OpenError*>(&error);
       enter(TransportState::gone, refused != nullptr ? refused->reason : ENOMEM);

@@ -3,14 +3,13 @@
 // interface.
 //
 // Threads: open() and read() belong to the reader thread. stop(), stopped(), state(), reason(), counters(),
-// fault() and take_warning() may be called from any thread, stop() also from a signal handler.
+// fault() and notices() may be called from any thread, stop() also from a signal handler.
 #pragma once
 
 #include <array>
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <mutex>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -22,6 +21,7 @@
 #include "drivers/transport/backlog.h"
 #include "drivers/transport/backoff.h"
 #include "drivers/transport/counter.h"
+#include "drivers/transport/notices.h"
 #include "drivers/transport/stoppable_wait.h"
 
 namespace ifog {
@@ -114,11 +114,8 @@ class Transport {
   [[nodiscard]] int reason() const { return reason_.load(std::memory_order_relaxed); }
   [[nodiscard]] TransportCounters counters() const;
   [[nodiscard]] TransportFault fault() const;
-  // What opening the device, for the first time or again, could not get and can do without. Each text once,
-  // however often the device is opened again with the same; "" when there is nothing new.
-  [[nodiscard]] std::string take_warning();
-  // How the device has answered to its set-up, once each time; "" for nothing new.
-  [[nodiscard]] std::string take_answers();
+  // What opening the device, for the first time or again, said.
+  [[nodiscard]] Notices& notices() { return notices_; }
 
  protected:
   using Wake = StoppableWait::Wake;
@@ -136,10 +133,6 @@ class Transport {
   [[nodiscard]] virtual bool more_waits() noexcept { return false; }
 
   [[nodiscard]] std::span<const std::uint8_t> opening() const { return opening_; }
-  // For take_warning().
-  void keep_warning(std::string&& warning);
-  // For take_answers().
-  void keep_answers(const std::string& answers);
   // The device went away: connect() will be tried again.
   void lost(int reason) noexcept;
   // It is open but nobody is at its other end until the next delivery.
@@ -158,12 +151,6 @@ class Transport {
   bool regain(std::int64_t until_ns) noexcept;
   void enter(TransportState state, int reason) noexcept;
 
-  // What opening said. The mutex is taken when a device opens, never while it is read.
-  struct Notices {
-    std::mutex mutex;
-    std::string warning, answers;
-    bool new_warning = false;
-  };
   struct Link {
     std::int64_t since_ns = 0;  // of CLOCK_MONOTONIC
     bool open = false, once = false;

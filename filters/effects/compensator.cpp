@@ -125,7 +125,8 @@ Compensator::Value Compensator::at_rates(const Term& term, const Axes& rates) co
 
 double Compensator::correction(std::size_t axis, const Axes& rates) const noexcept {
   double sum = 0.0;
-  for (const Term& term : terms_of(axis)) {
+  for (std::size_t i = of_axis_[axis].begin; i < of_axis_[axis].end; ++i) {
+    const Term& term = terms_[i];
     if (!term.usable) continue;
     sum += term.coefficient * (term.of_rate ? at_rates(term, rates).value : term.channels.value);
   }

@@ -165,9 +165,6 @@ class Compensator {
   // Where a factor's channel is, which has had a value.
   [[nodiscard]] std::optional<Reach> reach_of_factor(Factor& factor, double dt_s,
                                                      std::uint32_t& flags) const noexcept;
-  [[nodiscard]] std::span<const Term> terms_of(std::size_t axis) const noexcept {
-    return std::span(terms_).subspan(of_axis_[axis].begin, of_axis_[axis].end - of_axis_[axis].begin);
-  }
   // The whole term at these rates of the axes; the channels' part alone for a term that does not depend on
   // them. Zero while another axis it depends on has no value.
   [[nodiscard]] Value at_rates(const Term& term, const Axes& rates) const noexcept;

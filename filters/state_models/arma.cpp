@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/state_models/arma.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+
+#include "filters/state_models/poles.h"
 
 namespace ifog {
 
@@ -27,21 +28,21 @@ Arma::Arma(std::vector<double> phi, std::vector<double> theta, double nominal_pe
   }
   driving_ = period_s_ * shock * shock.transpose();
 
-  const Eigen::VectorXcd roots = Eigen::EigenSolver<Eigen::MatrixXd>(transition_, false).eigenvalues();
-  const double largest = roots.cwiseAbs().maxCoeff();
+  const double largest = poles(transition_).cwiseAbs().maxCoeff();
   if (!(largest < 1.0)) {
     throw std::invalid_argument("state_parameters: autoregression with a root of modulus " +
                                 std::to_string(largest) + ", expected a stationary one, all below 1");
   }
-  // vec(P) = (I - A (x) A)^-1 vec(Q), the stationary solution of P = A P A' + Q.
-  Eigen::MatrixXd system = Eigen::MatrixXd::Identity(n * n, n * n);
-  for (int i = 0; i < n; ++i) {
-    for (int j = 0; j < n; ++j) system.block(i * n, j * n, n, n) -= transition_(i, j) * transition_;
+  // P = Q + A Q A' + A² Q A'² + …, twice as many terms each time. Where that has no end, the root is as good as 1.
+  constexpr int kMostDoublings = 64;
+  FewStates power = transition_, sum = driving_;
+  for (int i = 0; i < kMostDoublings; ++i) {
+    const FewStates more = power.lazyProduct(sum.lazyProduct(power.transpose()).eval());
+    sum += more;
+    power = power.lazyProduct(power).eval();
+    if (more.norm() <= 1e-17 * sum.norm()) break;
   }
-  const Eigen::MatrixXd driving = driving_;
-  const Eigen::VectorXd solved = system.partialPivLu().solve(driving.reshaped());
-  stationary_ = solved.reshaped(n, n);
-  stationary_ = 0.5 * (stationary_ + stationary_.transpose()).eval();
+  stationary_ = 0.5 * (sum + sum.transpose());
 }
 
 void Arma::discretise(double dt_s, StateMatrixRef transition, StateMatrixRef driving) const noexcept {
@@ -49,8 +50,7 @@ void Arma::discretise(double dt_s, StateMatrixRef transition, StateMatrixRef dri
   // anyway.
   constexpr long kMostSteps = 4096;
   const long steps = std::clamp(std::lround(std::min(dt_s / period_s_, 1e6)), 1L, kMostSteps);
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStates, kMaxStates> a = transition_;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStates, kMaxStates> q = driving_;
+  FewStates a = transition_, q = driving_;
   for (long i = 1; i < steps; ++i) {
     q = (transition_.lazyProduct(q.lazyProduct(transition_.transpose()).eval()) + driving_).eval();
     a = transition_.lazyProduct(a).eval();

@@ -25,10 +25,12 @@ class Arma final : public StateModel {
   [[nodiscard]] Eigen::VectorXd diffuse() const override { return Eigen::VectorXd::Zero(states_); }
 
  private:
+  using FewStates = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStates, kMaxStates>;
+
   int states_;
   double period_s_;
   std::vector<double> phi_;
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxStates, kMaxStates> transition_, driving_;
+  FewStates transition_, driving_;
   Eigen::MatrixXd stationary_;
 };
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/tune/choice.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
 #include <memory>
 
+#include "filters/state_models/poles.h"
 #include "filters/state_models/state_model.h"
 
 namespace ifog {
@@ -58,12 +58,10 @@ double memories_in_record(const FilterSettings& settings, double period_s, doubl
   Eigen::MatrixXd transition(n, n), driving(n, n);
   model->discretise(period_s, transition, driving);
   // The level comes first and is a block of its own.
-  const Eigen::MatrixXd noise = transition.bottomRightCorner(n - 1, n - 1);
-  const Eigen::VectorXcd poles = noise.eigenvalues();
   double nearest = std::numeric_limits<double>::infinity();
   // A line is undamped by its definition, no autoregression is.
   constexpr double kUndamped = 1e-9;
-  for (const auto& pole : poles) {
+  for (const auto& pole : poles(transition.bottomRightCorner(n - 1, n - 1))) {
     const double damping = 1.0 - std::abs(pole);
     nearest = std::min(nearest, damping < kUndamped ? std::abs(1.0 - pole) : damping);
   }

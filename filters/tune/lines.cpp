@@ -5,7 +5,8 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
+
+#include "filters/linear/fourier.h"
 
 namespace ifog {
 namespace {
@@ -26,11 +27,8 @@ std::vector<double> tapered_power(const std::vector<std::vector<double>>& axes) 
     for (std::size_t k = 0; k < n; ++k)
       tapered[k] = (axis[k] - mean) *
                    (0.5 - 0.5 * std::cos(kTurn * (static_cast<double>(k) + 0.5) / static_cast<double>(n)));
-    std::vector<std::complex<double>> bins;
-    Eigen::FFT<double> fft;
-    fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-    fft.fwd(bins, tapered);
-    for (std::size_t k = 0; k < power.size(); ++k) power[k] += std::norm(bins[k]);
+    const std::vector<double> of_axis = power_spectrum(tapered);
+    for (std::size_t k = 0; k < power.size(); ++k) power[k] += of_axis[k];
   }
   return power;
 }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
 
+#include "filters/linear/fourier.h"
 #include "filters/tune/lines.h"
 
 namespace ifog {
@@ -52,8 +52,7 @@ std::vector<double> cosine_squares(std::span<const double> values) {
   for (std::size_t i = 0; 2 * i < n; ++i) folded[i] = values[2 * i];
   for (std::size_t i = 0; 2 * i + 1 < n; ++i) folded[n - 1 - i] = values[2 * i + 1];
   std::vector<std::complex<double>> bins;
-  Eigen::FFT<double> fft;
-  fft.fwd(bins, folded);
+  Fourier().forward(bins, folded);
   std::vector<double> squares(n);
   for (std::size_t k = 0; k < n; ++k) {
     const double turn = -kPi * static_cast<double>(k) / (2.0 * static_cast<double>(n));

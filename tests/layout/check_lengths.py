@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 """No source file is longer than a sitting, no function of a script longer than a screen, no folder has more files of C++ than a
-reader looks through, and no class more members than a reader keeps in mind. (Functions in C++: clang-tidy,
+reader looks through, and no class more members and methods than a reader keeps in mind. (Functions in C++: clang-tidy,
 readability-function-size.)
 
 usage: tests/layout/check_lengths.py [TREE]      the tree's root; default: this one
@@ -19,6 +19,7 @@ MOST_OF_A_FILE = 400
 MOST_OF_A_FUNCTION = 60
 MOST_OF_A_FOLDER = 24  # files of C++
 MOST_OF_A_CLASS = 15  # data members, whose names end with _
+MOST_METHODS = 25  # without constructors, destructor and operators
 SOURCES = {".cpp", ".h", ".c", ".py", ".java", ".sh", ".cmake"}
 
 
@@ -56,6 +57,13 @@ def members(own):
             yield from re.findall(r"\b[a-z]\w*_\b", statement)
 
 
+def methods(of, own):
+    for statement in re.split("[;}]", own):
+        named = re.search(r"(~?\w+)\s*\(", re.sub(r"<[^<>]*>", "", statement))
+        if named and named[1] not in (of, "~" + of) and "operator" not in statement and not re.match(r"\s*(using|friend|static_assert)\b", statement):
+            yield named[1]
+
+
 def violations(name, text):
     lines = text.count("\n")
     if lines > MOST_OF_A_FILE:
@@ -64,6 +72,8 @@ def violations(name, text):
         for of, own in classes(text):
             if (count := len(set(members(own)))) > MOST_OF_A_CLASS:
                 yield f"class {of} has {count} members, at most {MOST_OF_A_CLASS}"
+            if (count := len(list(methods(of, own)))) > MOST_METHODS:
+                yield f"class {of} has {count} methods, at most {MOST_METHODS}"
     if not name.endswith(".py") and not text.startswith("#!/usr/bin/env python3"):
         return
     for node in ast.walk(ast.parse(text)):

@@ -108,7 +108,8 @@ bool SerialTransport::set_up(std::int64_t until_ns) {
     if (monotonic_ns() >= until_ns) return false;
   }
   tried_ = true;
-  if (!dialogue_->answers().empty()) keep_answers(name() + ": set up, it answered " + dialogue_->answers());
+  if (!dialogue_->answers().empty())
+    notices().keep_answers(name() + ": set up, it answered " + dialogue_->answers());
   return true;
 }
 
@@ -122,7 +123,7 @@ void SerialTransport::refuse_answer() {
   port_.reset();
   dialogue_.reset();
   // What open() throws is logged by its caller.
-  if (std::exchange(tried_, true)) keep_warning(error.what());
+  if (std::exchange(tried_, true)) notices().keep_warning(error.what());
   throw error;
 }
 

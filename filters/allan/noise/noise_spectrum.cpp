@@ -8,9 +8,9 @@
 #include <numbers>
 #include <numeric>
 #include <span>
-#include <unsupported/Eigen/FFT>
 
 #include "filters/allan/noise/angle_means.h"
+#include "filters/linear/fourier.h"
 
 namespace ifog {
 namespace {
@@ -26,7 +26,7 @@ constexpr double kBottomOfLevel = 1.0 / 32.0;  // averaging folds next to nothin
 // A windowed segment: its power, and what each term makes of it.
 class Segment {
  public:
-  explicit Segment(std::size_t size) : size_(size), window_(size), from_(size), into_(size) {
+  explicit Segment(std::size_t size) : size_(size), window_(size) {
     for (std::size_t i = 0; i < size; ++i)
       window_[i] = std::sin(std::numbers::pi * (static_cast<double>(i) + 0.5) / static_cast<double>(size));
     fill_expected();
@@ -42,11 +42,12 @@ class Segment {
   }
 
   // rate: size() samples, spoilt. Adds the power of every bin below the Nyquist frequency.
-  void add_power(std::vector<double>& rate, std::vector<double>& power) {
+  void add_power(std::vector<double>& rate, Fourier& fourier, std::vector<double>& power) const {
     detrend(rate);
-    for (std::size_t i = 0; i < size_; ++i) from_[i] = rate[i] * window_[i];
-    fft_.fwd(into_, from_);
-    for (std::size_t k = 0; k < power.size(); ++k) power[k] += std::norm(into_[k]);
+    for (std::size_t i = 0; i < size_; ++i) rate[i] *= window_[i];
+    std::vector<std::complex<double>> bins;
+    fourier.forward(bins, rate);
+    for (std::size_t k = 0; k < power.size(); ++k) power[k] += std::norm(bins[k]);
   }
 
   // Samples' worth of information in `segments` of them `hop` apart: (Σu)²/Σu², u the sum of squared windows.
@@ -84,6 +85,7 @@ class Segment {
     const std::size_t twice = 2 * size_, bins = size_ / 2;
     expected_.assign(kLevels, std::vector<TermVariances>(bins));
     std::vector<std::complex<double>> u(size_), spectrum, correlation;
+    Fourier fourier;
     for (std::size_t k = 1; k < bins; ++k) {
       u.assign(size_, {});
       for (std::size_t i = 0; i < size_; ++i)
@@ -91,9 +93,9 @@ class Segment {
                                           static_cast<double>(size_));
       detrend(u);
       u.resize(twice);
-      fft_.fwd(spectrum, u);
+      fourier.forward(spectrum, u);
       for (auto& s : spectrum) s = std::norm(s);
-      fft_.inv(correlation, spectrum);
+      fourier.inverse(correlation, spectrum);
       for (int level = 0; level < kLevels; ++level) {
         // Above the lowest, only low frequencies are used.
         if (level > 0 && static_cast<double>(k) > kTopOfLevel * static_cast<double>(size_)) break;
@@ -107,10 +109,8 @@ class Segment {
   }
 
   std::size_t size_;
-  std::vector<double> window_, from_;
-  std::vector<std::complex<double>> into_;
+  std::vector<double> window_;
   std::vector<std::vector<TermVariances>> expected_;  // by level and bin
-  Eigen::FFT<double> fft_;
 };
 
 // How far up a stretch is averaged before its slow part is taken.
@@ -206,7 +206,7 @@ std::array<SlowPart, 2> slow_parts(const AngleMeans& means, std::size_t samples)
 // Spectrum of one level: all stretches that are long enough, and not below their own slow part.
 class Level {
  public:
-  Level(Segment& segment, int level) : segment_(segment), level_(level), power_(segment.size() / 2) {
+  Level(const Segment& segment, int level) : segment_(segment), level_(level), power_(segment.size() / 2) {
     bins_.resize(power_.size());
   }
 
@@ -223,7 +223,7 @@ class Level {
     for (std::size_t s = 0; s < segments; ++s) {
       const auto begin = static_cast<std::size_t>(hop * static_cast<double>(s));
       means.rates(level_, begin, rate);
-      segment_.add_power(rate, power_);
+      segment_.add_power(rate, fourier_, power_);
     }
     const double degrees =
         2.0 / static_cast<double>(size) *
@@ -253,8 +253,9 @@ class Level {
   }
 
  private:
-  Segment& segment_;
+  const Segment& segment_;
   int level_;
+  Fourier fourier_;
   std::vector<double> power_;
   std::vector<SpectralBin> bins_;
 };
@@ -265,7 +266,7 @@ NoiseSpectrum noise_spectrum(const AngleSum& sum) {
   NoiseSpectrum spectrum;
   // Most records have room for whole segments, whose table is made once.
   static const Segment kWhole(kSegment);
-  Segment segment = sum.longest() >= kSegment ? kWhole : Segment(std::bit_floor(sum.longest()));
+  const Segment segment = sum.longest() >= kSegment ? kWhole : Segment(std::bit_floor(sum.longest()));
   std::vector<AngleMeans> means;
   for (const AngleSum::Part& part : sum.parts()) means.emplace_back(sum.angle(), part.first, part.angles);
   for (int l = last_spectrum(sum.longest()); l >= 0; --l) {

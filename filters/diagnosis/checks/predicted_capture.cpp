@@ -91,7 +91,7 @@ bool unseen_though_moved(const Whitened& of, DeniedEffects& found) {
   for (Eigen::Index k = 0; k < of.here.cols(); ++k)
     if (of.here.col(k).squaredNorm() < kAsMuch * of.others.col(k).squaredNorm()) return false;
   const Eigen::MatrixXd all = of.others + of.here;
-  const Eigen::VectorXd c = all.colPivHouseholderQr().solve(of.error);
+  const Eigen::VectorXd c = LeastSquares(all).coefficients(of.error);
   const auto gain = [&](const Eigen::MatrixXd& columns) {
     const Eigen::VectorXd taken = columns * c;
     return taken.dot(2.0 * of.error - taken) / of.variance;

@@ -13,7 +13,6 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
-#include <unsupported/Eigen/FFT>
 #include <vector>
 
 #include "filters/allan/stretches.h"
@@ -22,6 +21,7 @@
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/words.h"
+#include "filters/linear/fourier.h"
 
 namespace ifog {
 namespace {
@@ -91,9 +91,8 @@ std::vector<std::complex<double>> transform(const Series& series, std::size_t si
   Series padded(size, 0.0);
   for (std::size_t i = 0; i < series.size(); ++i)
     if (std::isfinite(series[i])) padded[i] = series[i];
-  Eigen::FFT<double> fft;
   std::vector<std::complex<double>> spectrum;
-  fft.fwd(spectrum, padded);
+  Fourier().forward(spectrum, padded);
   return spectrum;
 }
 
@@ -107,8 +106,7 @@ double coarse_delay(const Pair& pair) {
   const std::vector<std::complex<double>> other = transform(noise.whitened(reference), size);
   for (std::size_t i = 0; i < product.size(); ++i) product[i] = std::conj(product[i]) * other[i];
   Series likeness;
-  Eigen::FFT<double> fft;
-  fft.inv(likeness, product);
+  Fourier().inverse(likeness, product);
   std::ptrdiff_t best = 0;
   const auto at = [&](std::ptrdiff_t lag) {
     return likeness[static_cast<std::size_t>(lag < 0 ? lag + static_cast<std::ptrdiff_t>(size) : lag)];

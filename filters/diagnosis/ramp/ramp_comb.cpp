@@ -6,11 +6,11 @@
 #include <boost/math/tools/minima.hpp>
 #include <complex>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
 
 #include "filters/diagnosis/record/fitted_part.h"
 #include "filters/diagnosis/record/words.h"
 #include "filters/effects/compensate_series.h"
+#include "filters/linear/fourier.h"
 
 namespace ifog {
 namespace {
@@ -80,12 +80,8 @@ AngleSpectrum spectrum_over_angle(const UnbrokenPart& part) {
     const double position = (part.angle_rad[i] - lowest) / out.length * static_cast<double>(bins);
     sums[std::min(static_cast<std::size_t>(position), bins - 1)] += step.error_radps;
   });
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<Complex> transform;
-  fft.fwd(transform, sums);
-  const std::size_t last = std::min(transform.size(), static_cast<std::size_t>(most * out.length) + 1);
-  for (std::size_t i = 0; i < last; ++i) out.power.push_back(std::norm(transform[i]));
+  out.power = power_spectrum(sums);
+  out.power.resize(std::min(out.power.size(), static_cast<std::size_t>(most * out.length) + 1));
   divide_by_floor(out.power);
   return out;
 }

@@ -7,11 +7,11 @@
 #include <complex>
 #include <numbers>
 #include <optional>
-#include <unsupported/Eigen/FFT>
 
 #include "filters/diagnosis/record/words.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/noise_fit.h"
+#include "filters/linear/fourier.h"
 #include "filters/linear/least_squares.h"
 
 namespace ifog {
@@ -45,15 +45,12 @@ Periodogram of_innovations(const BlockGrid& grid, const Columns& columns, const 
   const std::size_t length = std::bit_ceil(grid.longest());
   Periodogram found{std::vector<double>(length / 2 + 1, 0.0),
                     static_cast<double>(grid.used()) / static_cast<double>(length)};
-  Eigen::FFT<double> transform;
-  transform.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<std::complex<double>> bins;
   for (const BlockRange& record : grid.records) {
     std::vector<double> values(length, 0.0);
     for (std::size_t b = record.first; b < record.end; ++b)
       if (grid.valid[b]) values[b - record.first] = left[static_cast<Eigen::Index>(b)];
-    transform.fwd(bins, values);
-    for (std::size_t k = 0; k < found.power.size(); ++k) found.power[k] += std::norm(bins[k]);
+    const std::vector<double> power = power_spectrum(values);
+    for (std::size_t k = 0; k < power.size(); ++k) found.power[k] += power[k];
   }
   const double square = std::max(left.squaredNorm(), 1e-300);
   for (double& power : found.power) power /= square;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "filters/linear/general_solver.h"
+
 namespace ifog {
 namespace {
 
@@ -19,13 +21,13 @@ Eigen::MatrixXd steady_covariance(const Eigen::MatrixXd& f, const Eigen::VectorX
   Eigen::MatrixXd g = s * s.transpose();
   Eigen::MatrixXd h = q.asDiagonal();
   for (int round = 0; round < 60; ++round) {
-    const Eigen::PartialPivLU<Eigen::MatrixXd> lu(one + g * h);
-    const Eigen::MatrixXd wa = lu.solve(a);
-    const Eigen::MatrixXd wg = lu.solve(g);
-    const Eigen::MatrixXd step = a.transpose() * h * wa;
-    g += a * wg * a.transpose();
+    Eigen::MatrixXd both(m, 2 * m);
+    both << a, g;
+    const Eigen::MatrixXd w = solved(one + g * h, both);
+    const Eigen::MatrixXd step = a.transpose() * h * w.leftCols(m);
+    g += a * w.rightCols(m) * a.transpose();
     h += step;
-    a = (a * wa).eval();
+    a = (a * w.leftCols(m)).eval();
     if (step.norm() <= 1e-13 * h.norm()) break;
   }
   return 0.5 * (h + h.transpose());

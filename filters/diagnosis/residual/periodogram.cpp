@@ -5,9 +5,9 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <unsupported/Eigen/FFT>
 
 #include "filters/diagnosis/record/words.h"
+#include "filters/linear/fourier.h"
 #include "filters/series/finite_sum.h"
 
 namespace ifog {
@@ -30,11 +30,7 @@ Periodogram periodogram(std::span<const double> error) {
   std::vector<double> values(out.length);
   for (std::size_t i = 0; i < out.length; ++i)
     values[i] = std::isfinite(error[i]) ? error[i] - out.mean : 0.0;
-  Eigen::FFT<double> fft;
-  fft.SetFlag(Eigen::FFT<double>::HalfSpectrum);
-  std::vector<std::complex<double>> bins;
-  fft.fwd(bins, values);
-  for (const std::complex<double>& bin : bins) out.power.push_back(std::norm(bin));
+  out.power = power_spectrum(values);
   return out;
 }
 

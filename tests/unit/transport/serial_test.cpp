@@ -46,8 +46,8 @@ TEST(SerialTransport, DeliversEveryByteWithItsArrival) {
   Gyro gyro;
   const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
   transport->open({});
-  EXPECT_EQ(transport->take_warning(), "no low latency");
-  EXPECT_EQ(transport->take_warning(), "");
+  EXPECT_EQ(transport->notices().take_warning(), "no low latency");
+  EXPECT_EQ(transport->notices().take_warning(), "");
   EXPECT_FALSE(transport->holds_back());
   std::string all;
   for (int i = 0; i < 256; ++i) all += static_cast<char>(i);

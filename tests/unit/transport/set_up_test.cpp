@@ -119,9 +119,9 @@ class SetUpByLines : public testing::Test {
 TEST_F(SetUpByLines, EachLineIsAnsweredBeforeTheNextAndSaid) {
   EXPECT_EQ(refusal(), "accepted");
   EXPECT_EQ(imu_.asked(), kAsked);
-  EXPECT_EQ(transport_->take_answers(),
+  EXPECT_EQ(transport_->notices().take_answers(),
             "gyro: set up, it answered CONFIG,1; DR,1000; OUTPUTFMT,B; FILTTYPE,G,CHEBY; IS,0815; CONFIG,0");
-  EXPECT_EQ(transport_->take_answers(), "");
+  EXPECT_EQ(transport_->notices().take_answers(), "");
   EXPECT_TRUE(reads_until([&] { return transport_->counters().bytes > 3 * kFrame.size(); }));
 }
 
@@ -140,29 +140,29 @@ TEST_F(SetUpByLines, AnAnswerThatDiffersAndNoneAreRefused) {
     imu_.answer(to, with);
     transport_ = make_serial_transport(set_up(), line_.opener());
     EXPECT_EQ(refusal(), line);
-    EXPECT_EQ(transport_->take_answers(), "");
+    EXPECT_EQ(transport_->notices().take_answers(), "");
   }
 }
 
 // It is off for longer than it ever pauses, and on again; what it then answers otherwise is said once.
 TEST_F(SetUpByLines, WhatHadNoPowerIsSetUpAgain) {
   EXPECT_EQ(refusal(), "accepted");
-  (void)transport_->take_answers();
-  (void)transport_->take_warning();
+  (void)transport_->notices().take_answers();
+  (void)transport_->notices().take_warning();
   imu_.powered = false;
   EXPECT_TRUE(reads_until([&] { return transport_->state() == TransportState::gone; }));
   imu_.answer("=OUTPUTFMT,B", "OUTPUTFMT,A");
   imu_.powered = true;
   std::string said;
   EXPECT_TRUE(reads_until([&] {
-    if (const std::string now = transport_->take_warning(); !now.empty()) said = now;
+    if (const std::string now = transport_->notices().take_warning(); !now.empty()) said = now;
     return said.find("OUTPUTFMT") != std::string::npos;
   })) << said;
   EXPECT_EQ(said, "gyro: answered 'OUTPUTFMT,A' to '=OUTPUTFMT,B': Protocol error, expected 'OUTPUTFMT,B'");
   EXPECT_EQ(transport_->state(), TransportState::gone);
   imu_.answer("=OUTPUTFMT,B", "OUTPUTFMT,B");
   EXPECT_TRUE(reads_until([&] { return transport_->state() == TransportState::open; }));
-  EXPECT_NE(transport_->take_answers().find("OUTPUTFMT,B"), std::string::npos);
+  EXPECT_NE(transport_->notices().take_answers().find("OUTPUTFMT,B"), std::string::npos);
   EXPECT_EQ(transport_->counters().reopened, 1U);
 }
 

@@ -43,7 +43,7 @@ class Vcan : public testing::Test {
   static std::unique_ptr<ifog::Transport> opened(const CanSettings& settings) {
     auto transport = ifog::make_can_transport(settings);
     transport->open({});
-    EXPECT_EQ(transport->take_warning(), "");
+    EXPECT_EQ(transport->notices().take_warning(), "");
     return transport;
   }
   static ifog_can_frame frame(std::uint32_t id, std::uint8_t first, int flags = 0, std::uint8_t length = 8) {
