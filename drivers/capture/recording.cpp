@@ -140,10 +140,11 @@ RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const 
         });
   } else {
     std::vector<char> bytes(kPiece);
-    while (const std::size_t n = file.read(bytes.data(), bytes.size()))
+    while (const std::size_t n = file.read_what_is_there(bytes.data(), bytes.size()))
       driver.decode_bytes({reinterpret_cast<const std::uint8_t*>(bytes.data()), n}, 0, take);
   }
   finish_recording(driver, counts);
+  counts.packed_ends_early = file.ends_early();
   return counts;
 }
 
@@ -172,6 +173,7 @@ std::vector<std::string> losses(const RecordingCounts& counts) {
         printable({driver.beyond_name, ::strnlen(driver.beyond_name, sizeof driver.beyond_name)}) + " is " +
         shortest(driver.beyond_value) + ", stated [" + shortest(driver.beyond_minimum) + ", " +
         shortest(driver.beyond_maximum) + "]");
+  say(counts.packed_ends_early ? 1 : 0, "gzip stream ends early (truncated file); what is there was read");
   say(counts.candump.cut_off ? 1 : 0, "line at the end is no whole frame (is the file cut off?)");
   say(counts.candump.remote, "CAN remote frames skipped");
   say(counts.candump.error, "CAN error frames skipped");

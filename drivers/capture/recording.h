@@ -43,6 +43,7 @@ struct RecordingCounts {
   ifog_driver_counters driver{};
   std::uint64_t bytes_at_end = 0;  // a frame that the file ends within; also in bytes_skipped
   CandumpLosses candump;
+  bool packed_ends_early = false;  // the gzip stream: what is there was read
 };
 
 // "3 frames with a wrong checksum", … : one line for each counter that says something was lost.

@@ -120,7 +120,7 @@ std::string first_interface(std::string_view beginning,
 
 CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink) {
   Frames frames(file.path(), interface, times_are_differences(file.head()));
-  TextPieces pieces([&file](char* to, std::size_t most) { return file.read(to, most); });
+  TextPieces pieces([&file](char* to, std::size_t most) { return file.read_what_is_there(to, most); });
   std::size_t number = 0;
   for (std::string piece; pieces.next(piece);)
     for (std::string_view text = piece; !text.empty();) {

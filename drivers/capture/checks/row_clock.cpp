@@ -107,7 +107,8 @@ RowClock::RowClock(const std::string& path, std::string time, bool keep_repeats,
       next_(std::move(next)) {}
 
 void RowClock::take(RowBlock& rows) {
-  roll_over(rows);
+  unroll(rows);
+  if (rows.size() == 0) return;
   put_before(held_, rows);
   if (!std::exchange(begun_, true)) within_s_ = step_within_bursts(rows.time_s);
   if (!keep_repeats_) drop_repeats(rows);
@@ -123,31 +124,37 @@ void RowClock::take(RowBlock& rows) {
   if (rows.size() > 0) next_(rows);
 }
 
-void RowClock::roll_over(RowBlock& rows) {
+double RowClock::rolled_over_s(double now_s, double last_s, std::size_t line) {
+  const auto found = std::find_if(kRollovers.begin(), kRollovers.end(), [&](const Rollover& each) {
+    return now_s + each.length_s > last_s && now_s + each.length_s <= last_s + kLate_s;
+  });
+  if (found == kRollovers.end()) return 0.0;
+  notes_.notices.push_back(path_ + ":" + std::to_string(line) + ": " + printable(time_) + " rolls over, as " +
+                           found->what + " does: " + shortest(found->length_s) +
+                           " s are added from there on");
+  return found->length_s;
+}
+
+// Leaves only times that do not go back.
+void RowClock::unroll(RowBlock& rows) {
   double last_s = held_.size() > 0 ? held_.time_s.back() : rows.time_s.front() + offset_s_;
+  std::size_t kept = 0;
+  rows_ += rows.size();
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    double& now_s = rows.time_s[i];
-    now_s += offset_s_;
-    if (now_s >= last_s) {
-      last_s = now_s;
+    const double own_s = rows.time_s[i];
+    const std::size_t line = rows.lines.empty() ? 0 : rows.lines[i];
+    if (own_s + offset_s_ < last_s) offset_s_ += rolled_over_s(own_s + offset_s_, last_s, line);
+    if (own_s + offset_s_ < last_s) {
+      if (backward_++ > 0) continue;
+      backward_line_ = line;
+      append_time(backward_what_, rows.origin, own_s);
       continue;
     }
-    const std::size_t line = rows.lines.empty() ? 0 : rows.lines[i];
-    const auto found = std::find_if(kRollovers.begin(), kRollovers.end(), [&](const Rollover& each) {
-      return now_s + each.length_s > last_s && now_s + each.length_s <= last_s + kLate_s;
-    });
-    if (found == kRollovers.end()) {
-      std::string now;
-      append_time(now, rows.origin, now_s - offset_s_);
-      fail_at(path_, line, printable(time_) + " is " + now + " s, expected more than in the row before");
-    }
-    offset_s_ += found->length_s;
-    now_s += found->length_s;
-    last_s = now_s;
-    notes_.notices.push_back(path_ + ":" + std::to_string(line) + ": " + printable(time_) +
-                             " rolls over, as " + found->what + " does: " + shortest(found->length_s) +
-                             " s are added from there on");
+    last_s = own_s + offset_s_;
+    if (kept != i) for_each_column(rows, rows, [&](auto& column, auto&) { column[kept] = column[i]; });
+    rows.time_s[kept++] = last_s;
   }
+  for_each_column(rows, rows, [&](auto& column, auto&) { column.resize(kept); });
 }
 
 void RowClock::drop_repeats(RowBlock& rows) {
@@ -178,6 +185,7 @@ void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double
 }
 
 void RowClock::finish() {
+  say_backward();
   const std::size_t rows = held_.size();
   if (rows > 1) {
     if (!(period_s_ > 0.0))
@@ -186,6 +194,20 @@ void RowClock::finish() {
   }
   if (rows > 0) next_(held_);
   say();
+}
+
+void RowClock::say_backward() {
+  constexpr std::size_t kRowsABackwardOne = 100;
+  if (backward_ == 0) return;
+  const std::string what =
+      printable(time_) + " is " + backward_what_ + " s, expected more than in the row before";
+  if (rows_ < kRowsABackwardOne * backward_)
+    fail_at(path_, backward_line_,
+            what + (backward_ == 1 ? "" : "; so are " + std::to_string(backward_ - 1) + " more rows") +
+                "; --sample-rate HZ reads all rows as even");
+  notes_.faults.push_back(path_ + ":" + std::to_string(backward_line_) + ": " + what + "; " +
+                          (backward_ == 1 ? "this row is" : std::to_string(backward_) + " such rows are") +
+                          " left out");
 }
 
 void RowClock::say() {

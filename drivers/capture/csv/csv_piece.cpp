@@ -27,20 +27,23 @@ bool is_no_value(std::string_view cell) {
   });
 }
 
-double number(const std::string& path, std::size_t line, const std::string& column, std::string_view cell,
-              std::string_view digits) {
+// What is wrong with a row.
+struct Unreadable {
+  std::string what;
+};
+
+double number(const std::string& column, std::string_view cell, std::string_view digits) {
   if (cell.empty()) return kMissing;
   double value = 0.0;
   const auto [end, error] = read_decimal(digits.data(), digits.data() + digits.size(), value);
   if (error == std::errc::result_out_of_range)
-    fail_at(path, line, printable(column) + " is " + in_quotes(cell) + ", outside what a double holds");
+    throw Unreadable{printable(column) + " is " + in_quotes(cell) + ", outside what a double holds"};
   if (error != std::errc() || end != digits.data() + digits.size()) {
     if (is_no_value(cell)) return kMissing;
-    fail_at(path, line,
-            printable(column) + " is " + in_quotes(cell) + ", expected a number, 'nan' or nothing");
+    throw Unreadable{printable(column) + " is " + in_quotes(cell) + ", expected a number, 'nan' or nothing"};
   }
   if (std::isinf(value))
-    fail_at(path, line, printable(column) + " is infinite, expected a finite number, 'nan' or nothing");
+    throw Unreadable{printable(column) + " is infinite, expected a finite number, 'nan' or nothing"};
   return value;
 }
 
@@ -80,13 +83,12 @@ struct RowTime {
 // One row after the other, into the columns of a piece.
 class Rows {
  public:
-  Rows(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps, const std::string& path)
+  Rows(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps)
       : piece_(piece),
         header_(header),
         separator_(header.separator),
         stamps_(stamps),
-        unit_s_(header.layout.time.value_or(CsvTime{}).unit_s),
-        path_(path) {
+        unit_s_(header.layout.time.value_or(CsvTime{}).unit_s) {
     piece_.rows.columns.resize(header.names.size());
     piece_.impossible.resize(header.names.size());
     for (std::size_t i = 0; i < header.cells.size(); ++i) {
@@ -112,8 +114,22 @@ class Rows {
       if (place.values != nullptr) place.values->reserve(rows);
   }
 
-  // False: a row of another sensor, which leaves the time and all columns of this one empty.
-  bool add(std::string_view line, std::size_t number) {
+  // ended: the line has an end, so that nothing of it is missing.
+  void add(std::string_view line, std::size_t number, bool ended) {
+    try {
+      add_cells(line, number);
+    } catch (const Unreadable& row) {
+      leave_out();
+      DamagedLines& damaged = ended ? piece_.damaged : piece_.unended;
+      if (damaged.count++ > 0) return;
+      damaged.line = number;
+      damaged.what = row.what;
+    }
+  }
+
+ private:
+  void add_cells(std::string_view line, std::size_t number) {
+    const std::size_t at_place = piece_.places++;
     const char *at = line.data(), *const end = at + line.size();
     std::size_t place = 0;
     for (;; ++at) {
@@ -123,28 +139,23 @@ class Rows {
       if (place == to_.size() && rest.find(separator_) == std::string_view::npos && trimmed(rest).empty())
         break;
       if (place == to_.size())
-        fail_at(path_, number,
-                "more cells than the " + std::to_string(to_.size()) + " columns of the header");
+        throw Unreadable{"more cells than the " + std::to_string(to_.size()) + " columns of the header"};
       at = take(place, at, end, number);
       ++place;
       if (at == end) break;
     }
     if (place != to_.size())
-      fail_at(
-          path_, number,
-          std::to_string(place) + " cells, expected " + std::to_string(to_.size()) + " (a truncated line?)");
+      throw Unreadable{std::to_string(place) + " cells, expected " + std::to_string(to_.size()) +
+                       " (a truncated line?)"};
     if (header_.time_place == CsvHeader::kNone) {
-      piece_.rows.time_s.push_back(static_cast<double>(rows_));
-    } else if (!take_time(number)) {
-      take_back(line, number);
-      return false;
+      piece_.rows.time_s.push_back(static_cast<double>(at_place));
+    } else if (!take_time()) {
+      of_another_sensor(line);
+      return;
     }
     piece_.rows.lines.push_back(number);
-    ++rows_;
-    return true;
   }
 
- private:
   // kOther: nobody chose it, so that text in it is no fault of the file but a missing value.
   enum class Meaning : unsigned char { kNothing, kOther, kNumber };
   struct Place {
@@ -179,43 +190,47 @@ class Rows {
     else if (to.means == Meaning::kOther)
       keep_other(to, PointDigits(text, separator_ != ','));
     else
-      keep(place, number(path_, line, header_.cells[place].name, text, PointDigits(text, separator_ != ',')),
-           text, line);
+      keep(place, number(header_.cells[place].name, text, PointDigits(text, separator_ != ',')), text, line);
     return behind;
   }
 
-  // The row that has no time.
-  void take_back(std::string_view line, std::size_t number) {
-    for (std::size_t i = 0; i < to_.size(); ++i) {
+  // A row without a time, which leaves all columns of this one empty, too.
+  void of_another_sensor(std::string_view line) {
+    for (std::size_t i = 0; i < to_.size(); ++i)
       if (to_[i].means == Meaning::kNumber && !cell_at(line, i, separator_).empty())
-        fail_at(path_, number,
-                printable(header_.cells[header_.time_place].name) + " is missing, expected a time");
-      if (to_[i].values != nullptr) to_[i].values->pop_back();
-    }
+        throw Unreadable{printable(header_.cells[header_.time_place].name) + " is missing, expected a time"};
+    leave_out();
+    ++piece_.untimed;
+  }
+
+  // The row at hand.
+  void leave_out() {
+    const std::size_t rows = piece_.rows.lines.size();
+    piece_.rows.time_s.resize(rows);
+    for (const Place& place : to_)
+      if (place.values != nullptr) place.values->resize(rows);
   }
 
   // False: the row has none.
-  bool take_time(std::size_t line) {
+  bool take_time() {
     const std::optional<std::string_view> found = time_.text(header_.part_digits);
     if (!found)
-      fail_at(path_, line,
-              printable(header_.cells[header_.time_part].name) + " is no whole number of at most " +
-                  std::to_string(header_.part_digits.value_or(0)) + " digits, expected the part of a second");
+      throw Unreadable{printable(header_.cells[header_.time_part].name) + " is no whole number of at most " +
+                       std::to_string(header_.part_digits.value_or(0)) +
+                       " digits, expected the part of a second"};
     const std::string_view text = *found;
     if (text.empty()) return false;
     const std::string& name = header_.cells[header_.time_place].name;
     const TimeDigits digits(text, separator_ != ',');
     if (digits.is_date() && unit_s_ != 1.0)
-      fail_at(path_, line,
-              printable(name) + " is " + in_quotes(text) +
-                  ", a date, which says its own unit, expected no other one of --time");
+      throw Unreadable{printable(name) + " is " + in_quotes(text) +
+                       ", a date, which says its own unit, expected no other one of --time"};
     double since = 0.0;
-    if (!stamps_.since(digits, since)) since = stamps_.since(number(path_, line, name, text, digits));
-    if (std::isnan(since)) fail_at(path_, line, printable(name) + " is missing, expected a time");
+    if (!stamps_.since(digits, since)) since = stamps_.since(number(name, text, digits));
+    if (std::isnan(since)) throw Unreadable{printable(name) + " is missing, expected a time"};
     if (!time_range_.holds(stamps_.origin().told(since)))
-      fail_at(
-          path_, line,
-          what_no_sensor_measures(name, text, measurable_in_file(header_.layout.time.value_or(CsvTime{}))));
+      throw Unreadable{
+          what_no_sensor_measures(name, text, measurable_in_file(header_.layout.time.value_or(CsvTime{})))};
     piece_.rows.time_s.push_back(since);
     return true;
   }
@@ -242,10 +257,8 @@ class Rows {
   const TimeStamps& stamps_;
   double unit_s_;
   const Measurable time_range_ = measurable("time_s");
-  const std::string& path_;
   std::vector<Place> to_;  // by cell of a row
   RowTime time_;
-  std::size_t rows_ = 0;  // that were added
 };
 
 }  // namespace
@@ -272,7 +285,7 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
   CsvPiece piece;
   piece.rows = std::move(used);
   piece.rows.origin = stamps.origin();
-  Rows rows(piece, header, stamps, path);
+  Rows rows(piece, header, stamps);
   // Rows are about as long as the first, and have at least a separator a column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
   rows.begin(text.size() / length + text.size() / length / 16 + 1);
@@ -287,7 +300,7 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
     if (header.only_place == CsvHeader::kNone ||
         cell_at(line, header.only_place, header.separator) == header.layout.only_value) {
       piece.row_bytes += line.size() + 1;
-      if (!rows.add(line, lines.number())) ++piece.untimed;
+      rows.add(line, lines.number(), !lines.rest().empty() || text.ends_with('\n'));
     }
   }
   piece.lines = lines.number() - lines_before;

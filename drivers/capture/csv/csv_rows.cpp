@@ -83,6 +83,8 @@ class CsvRows {
   void in_order(CsvText& pieces, std::string text);
   void parse(Piece& piece);
   void deliver(Piece& piece);
+  void note(const DamagedLines& found, DamagedLines& all) const;
+  void tell_damaged();
   void finish();
 
   const std::string& path_;
@@ -94,7 +96,8 @@ class CsvRows {
   RowNotes notes_;
   std::vector<ImpossibleValues> impossible_;  // by column
   std::optional<RowChecks> checks_;
-  std::size_t lines_ = 0, untimed_ = 0;
+  DamagedLines damaged_, unended_;
+  std::size_t lines_ = 0, untimed_ = 0, places_ = 0;
   std::optional<TimeStamps> stamps_;  // once there is a row
 };
 
@@ -106,6 +109,12 @@ std::string CsvRows::begin(CsvText& pieces) {
     if (head.empty() && begins_as_utf16(piece))
       throw std::runtime_error(path_ +
                                ": is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
+    if (head.empty() && piece.find('\n') == std::string::npos &&
+        std::count(piece.begin(), piece.end(), '\r') > 1)
+      throw std::runtime_error(
+          path_ +
+          ": its lines end in a carriage return, expected a line feed; \"tr '\\r' '\\n'\" "
+          "makes it");
     head += piece;
     if (!piece.starts_with('#')) plain += piece.size();
   }
@@ -170,20 +179,48 @@ void CsvRows::deliver(Piece& piece) {
     if (impossible_[c].count == 0) impossible_[c] = {0, lines_ + found.line, found.first};
     impossible_[c].count += found.count;
   }
+  note(parsed->damaged, damaged_);
+  note(parsed->unended, unended_);
   piece.rows = std::move(parsed->rows);
   RowBlock& rows = piece.rows;
   for (std::size_t& line : rows.lines) line += lines_;
   lines_ += parsed->lines;
   untimed_ += parsed->untimed;
+  const std::size_t places = std::exchange(places_, places_ + parsed->places);
   were_rows_(parsed->row_bytes);
+  // So many that nothing is gained by looking on.
+  constexpr std::size_t kHopeless = 1000;
+  if (damaged_.count > std::max(kHopeless, checks_->rows() + rows.size())) tell_damaged();
   if (rows.size() == 0) return;
   if (header_.layout.sample_rate_hz)
     for (double& time : rows.time_s)
-      time = (static_cast<double>(checks_->rows()) + time) / *header_.layout.sample_rate_hz;
+      time = (static_cast<double>(places) + time) / *header_.layout.sample_rate_hz;
   checks_->take(rows);
 }
 
+void CsvRows::note(const DamagedLines& found, DamagedLines& all) const {
+  if (all.count == 0) all = {0, lines_ + found.line, found.what};
+  all.count += found.count;
+}
+
+// One line in a hundred is what a serial line, a full disk or a second header leaves, and so is the last line without
+// its end. More are no table of these columns.
+void CsvRows::tell_damaged() {
+  constexpr std::size_t kRowsADamagedLine = 100;
+  const std::size_t rows = checks_->rows();
+  for (const auto& [found, few] :
+       {std::pair{&damaged_, rows >= kRowsADamagedLine * damaged_.count}, {&unended_, rows > 0}}) {
+    if (found->count == 0) continue;
+    if (!few) fail_at(path_, found->line, found->what);
+    notes_.faults.push_back(
+        path_ + ":" + std::to_string(found->line) + ": " + found->what + "; " +
+        (found->count == 1 ? "this line is" : std::to_string(found->count) + " such lines are") +
+        " left out");
+  }
+}
+
 void CsvRows::finish() {
+  tell_damaged();
   if (checks_->rows() == 0) throw std::runtime_error(path_ + ": no rows after the header");
   if (untimed_ > 0)
     notes_.notices.push_back(path_ + ": " + std::to_string(untimed_) + " rows without " +
@@ -200,10 +237,14 @@ RowNotes read_csv_rows(const ReadBytes& read, const std::string& path, const Csv
 }
 
 RowNotes read_csv_rows(InputFile& file, const CsvLayout& layout, RowSink& sink) {
-  const ReadBytes read = [&file](char* to, std::size_t most) { return file.read(to, most); };
-  return CsvRows(file.path(), layout, sink, RowsAre::lines,
-                 [&file](std::size_t bytes) { file.were_rows(bytes); })
-      .read(CsvText(read, kTextPiece));
+  const ReadBytes read = [&file](char* to, std::size_t most) { return file.read_what_is_there(to, most); };
+  RowNotes notes = CsvRows(file.path(), layout, sink, RowsAre::lines, [&file](std::size_t bytes) {
+                     file.were_rows(bytes);
+                   }).read(CsvText(read, kTextPiece));
+  if (file.ends_early())
+    notes.faults.push_back(file.path() +
+                           ": the gzip stream ends early (truncated file); the rows until there are read");
+  return notes;
 }
 
 }  // namespace ifog

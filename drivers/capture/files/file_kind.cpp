@@ -14,7 +14,7 @@ constexpr std::string_view kSpreadsheet =
     "is a spreadsheet or another archive, expected CSV; the program that wrote it saves it so";
 constexpr std::string_view kRos2 =
     "is a bag of ROS 2, expected CSV; 'ros2 bag play' with 'ros2 topic echo --csv TOPIC' makes it";
-constexpr std::array<Container, 10> kContainers{
+constexpr std::array<Container, 15> kContainers{
     {{{"PK\x03\x04", 4}, kSpreadsheet},
      {{"\xD0\xCF\x11\xE0", 4}, kSpreadsheet},
      {"MATLAB 5.0 MAT-file", "is a MATLAB file before version 7.3, expected one of 'save -v7.3'"},
@@ -25,6 +25,15 @@ constexpr std::array<Container, 10> kContainers{
      {"\xA3\x95\x80",
       "is a log of ArduPilot, expected CSV; 'mavlogdump.py --format csv --types IMU' of pymavlink makes it"},
      {"\x93NUMPY", "is an array of NumPy, expected CSV; numpy.savetxt makes it"},
+     {"BZh", "is packed by bzip2, expected a plain or gzip file; 'bunzip2' unpacks it"},
+     {{"\xFD"
+       "7zXZ",
+       5},
+      "is packed by xz, expected a plain or gzip file; 'unxz' unpacks it"},
+     {"\x28\xB5\x2F\xFD", "is packed by zstd, expected a plain or gzip file; 'unzstd' unpacks it"},
+     {"TDSm",
+      "is a TDMS file of LabVIEW, expected CSV; 'tdmsinfo' and to_dataframe().to_csv of nptdms make it"},
+     {"H Product:Blackbox", "is a log of Betaflight, expected CSV; 'blackbox_decode' makes it"},
      {"PAR1", "is a Parquet file, expected CSV; pandas.read_parquet(FILE).to_csv makes it"}}};
 
 }  // namespace
@@ -42,6 +51,10 @@ std::string foreign_can_log(std::string_view head) {
 }
 
 std::string foreign_container(std::string_view head) {
+  // A record's number in six digits, its quality, a blank.
+  if (head.size() > 7 && head.find_first_not_of("0123456789") == 6 && head[7] == ' ' &&
+      std::string_view("DRQM").find(head[6]) != std::string_view::npos)
+    return "is miniSEED, expected CSV; 'mseed2ascii -f 2' makes it";
   for (const Container& one : kContainers)
     if (head.starts_with(one.magic)) return std::string(one.said);
   return "";

@@ -163,17 +163,28 @@ std::size_t InputFile::unpack(char* to, std::size_t most) {
     // gzread also returns short at a truncated stream, and says so only through gzerror.
     int error = Z_OK;
     const char* message = gzerror(file_.get(), &error);
+    ends_early_ = error == Z_BUF_ERROR;
+    if (ends_early_) break;
     if (error != Z_OK && error != Z_STREAM_END)
-      throw std::runtime_error(path_ + ": cannot read: " +
-                               (error == Z_BUF_ERROR ? "the gzip stream ends early (truncated file)"
-                                : error == Z_ERRNO   ? reason()
-                                                     : std::string(message)));
+      throw std::runtime_error(path_ +
+                               ": cannot read: " + (error == Z_ERRNO ? reason() : std::string(message)));
     if (!open_next()) break;
   }
   return done;
 }
 
+void InputFile::refuse_early_end() const {
+  if (ends_early_)
+    throw std::runtime_error(path_ + ": cannot read: the gzip stream ends early (truncated file)");
+}
+
 std::size_t InputFile::read(char* to, std::size_t most) {
+  const std::size_t n = read_what_is_there(to, most);
+  refuse_early_end();
+  return n;
+}
+
+std::size_t InputFile::read_what_is_there(char* to, std::size_t most) {
   const std::size_t ready = std::min(most, held_.size() - taken_);
   std::memcpy(to, held_.data() + taken_, ready);
   taken_ += ready;
@@ -192,6 +203,7 @@ std::string InputFile::bytes() {
     n = unpack(all.data() + before, kBlock);
     all.resize(before + n);
   }
+  refuse_early_end();
   if (heard_) heard_(all);
   return all;
 }

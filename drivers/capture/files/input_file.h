@@ -42,6 +42,9 @@ class InputFile {
   // gzip stream that ends early or is damaged, a packed file that grows beyond 256 MiB and 100 times its
   // size without were_rows(), which no recording does and which would fill the memory; a device's error.
   std::size_t read(char* to, std::size_t most);
+  // The same, but a gzip stream that ends early is read as far as it goes, and ends_early() says so behind it.
+  std::size_t read_what_is_there(char* to, std::size_t most);
+  [[nodiscard]] bool ends_early() const { return ends_early_; }
   // So many of the bytes read were rows of numbers, whose text is not kept. They do not count towards that limit,
   // because constant columns pack into a thousandth.
   void were_rows(std::size_t bytes) { rows_ += bytes; }
@@ -72,6 +75,7 @@ class InputFile {
     void operator()(gzFile_s* file) const;
   };
   std::size_t unpack(char* to, std::size_t most);
+  void refuse_early_end() const;
   void unpack_from(int fd, const std::string& path);
   bool open_next();
   void begin();
@@ -81,7 +85,7 @@ class InputFile {
   std::deque<std::string> more_;  // the folder's other files
   std::string held_;              // at hand: the head, or all of a given text
   std::size_t taken_ = 0;
-  bool reopens_ = false;
+  bool reopens_ = false, ends_early_ = false;
   Told told_;
   Heard heard_;
   std::size_t total_ = 0, behind_ = 0;  // bytes of all files, and of those that were read to their end

@@ -137,7 +137,9 @@ TEST(CsvLayout, SaysWhatIsWrongWithAFile) {
   const CsvLayout by = layout({"rate_radps=w:deg/s"}, "t:s");
   EXPECT_EQ(read("t,g\n0,1\n", by), "a.csv:1: no column 'w', the header has 't', 'g'");
   EXPECT_EQ(read("t,w,w\n0,1,1\n", by), "a.csv:1: more than one column 'w', the header has 't', 'w', 'w'");
-  EXPECT_EQ(read("t,w\n1,1\n0,2\n", by), "a.csv:3: t is 0 s, expected more than in the row before");
+  EXPECT_EQ(
+      read("t,w\n1,1\n0,2\n", by),
+      "a.csv:3: t is 0 s, expected more than in the row before; --sample-rate HZ reads all rows as even");
   EXPECT_EQ(read("t,w\n0,1,5\n", by), "a.csv:2: more cells than the 2 columns of the header");
   EXPECT_EQ(read("t,w\n0,1e9\n", by).substr(0, 46), "a.csv:2: w is '1e9', which no sensor measures,");
   EXPECT_EQ(read("t,w\n0,0\n# note\n1e-9,3\n", layout({"rate_radps=w:rad"}, "t:s")).substr(0, 21),
@@ -176,7 +178,8 @@ TEST(CsvLayout, ARowBelowTheNamesSaysTheUnits) {
       "--column temperature_degC=temperature_degC:K");
   // Lines count on, and what is no row of units is a row.
   EXPECT_EQ(refused("time_s,rate_radps\ns,rad/s\n1,1\n0,2\n"),
-            "a.csv:4: time_s is 0 s, expected more than in the row before");
+            "a.csv:4: time_s is 0 s, expected more than in the row before; --sample-rate HZ reads all rows "
+            "as even");
   EXPECT_EQ(refused("time_s,rate_radps\nnone,NA\n0,1\n"), "a.csv:2: time_s is missing, expected a time");
   EXPECT_EQ(refused("time_s,rate_radps\n0,rad\n").substr(0, 30), "a.csv:2: rate_radps is 'rad', ");
 }

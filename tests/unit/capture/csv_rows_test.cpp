@@ -83,6 +83,11 @@ void expect_same(const Reading& a, const Reading& b, std::size_t piece) {
   EXPECT_EQ(a.notes.notices, b.notes.notices);
 }
 
+std::ptrdiff_t count_of(const std::vector<std::string>& said, const std::string& beginning) {
+  return std::count_if(said.begin(), said.end(),
+                       [&](const std::string& each) { return each.starts_with(beginning); });
+}
+
 constexpr std::size_t kWhole = std::size_t{1} << 24U;
 constexpr std::array<std::size_t, 9> kPieces{1, 2, 7, 31, 100, 1000, 4096, 65536, std::size_t{1} << 20U};
 
@@ -143,13 +148,15 @@ TEST(CsvRows, ChosenColumnsAndAnglesAreTheWholesToo) {
   for (const std::size_t piece : kPieces) expect_same(whole, in_pieces(text, piece, layout), piece);
 }
 
-TEST(CsvRows, SaysWhatIsWrongWithItsLineWhereverThePieceEnds) {
+// One damaged line of thousands is left out and told, wherever the piece ends; one in fifty is another table.
+TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
   const std::string text = long_text(6000);
   const auto with = [&](std::size_t line, const std::string& instead) {
     std::size_t at = 0;
     for (std::size_t i = 1; i < line; ++i) at = text.find('\n', at) + 1;
     return text.substr(0, at) + instead + text.substr(text.find('\n', at));
   };
+  const Reading right = in_pieces(text, kWhole);
   for (const auto& [bad, said] :
        {std::pair<std::string, std::string>{
             "5,1,warm,3", "a.csv:4321: rate_y_radps is 'warm', expected a number, 'nan' or nothing"},
@@ -158,8 +165,28 @@ TEST(CsvRows, SaysWhatIsWrongWithItsLineWhereverThePieceEnds) {
         {"0.5,1,2,3", "a.csv:4321: time_s is 0.5 s, expected more than in the row before"},
         {",1,2,3", "a.csv:4321: time_s is missing, expected a time"}}) {
     const std::string wrong = with(4321, bad);
-    for (const std::size_t piece : kPieces) EXPECT_EQ(in_pieces(wrong, piece).refused, said) << piece;
+    for (const std::size_t piece : kPieces) {
+      const Reading found = in_pieces(wrong, piece);
+      ASSERT_EQ(found.refused, "");
+      EXPECT_EQ(found.got.rows.size() + 1, right.got.rows.size()) << bad << piece;
+      EXPECT_EQ(count_of(found.notes.faults, said + "; this"), 1) << bad << piece;
+    }
+    const std::string often = "time_s,rate_x_radps,rate_y_radps,t_K\n";
+    std::string rows = often;
+    for (int i = 0; i < 300; ++i) rows += i % 50 == 1 ? bad + "\n" : std::to_string(100 + i) + ",1,2,3\n";
+    const std::string first = "a.csv:3" + said.substr(said.find(": "));
+    for (const std::size_t piece : kPieces)
+      EXPECT_TRUE(in_pieces(rows, piece).refused.starts_with(first)) << in_pieces(rows, piece).refused;
   }
+  const std::string last = std::to_string(std::count(text.begin(), text.end(), '\n') + 2);
+  // What power that goes leaves of the last line, and what a file system adds.
+  for (const std::string& rest : {std::string("900000"), std::string("900000,1,"), std::string(4096, '\0')})
+    for (const std::size_t piece : kPieces) {
+      const Reading found = in_pieces(text + "\n" + rest, piece);
+      ASSERT_EQ(found.refused, "");
+      EXPECT_EQ(found.got.rows.size(), right.got.rows.size()) << piece;
+      EXPECT_EQ(count_of(found.notes.faults, "a.csv:" + last + ": "), 1) << piece;
+    }
   // A header may be far down, and wrong there.
   std::string late;
   for (int i = 0; i < 3000; ++i) late += "# a long word of somebody\n";

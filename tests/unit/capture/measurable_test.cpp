@@ -107,10 +107,10 @@ TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {
       refusal_of(text),
       "a.csv:9: rate_radps is '1e30', which no sensor measures, expected -10000 to 10000; nor 4 more of "
       "its cells");
-  EXPECT_EQ(refusal_of(capture("rate_radps,t_degC", 2, 5, 1, "warm")),
-            "a.csv:7: t_degC is 'warm', expected a number, 'nan' or nothing");
-  EXPECT_EQ(refusal_of(capture("rate_radps,t_degC", 2, 5, 1, "inf")),
-            "a.csv:7: t_degC is infinite, expected a finite number, 'nan' or nothing");
+  EXPECT_EQ(refusal_of("time_s,rate_radps,t_degC\n0,1,2\n1,1,warm\n"),
+            "a.csv:3: t_degC is 'warm', expected a number, 'nan' or nothing");
+  EXPECT_EQ(refusal_of("time_s,rate_radps,t_degC\n0,1,2\n1,1,inf\n"),
+            "a.csv:3: t_degC is infinite, expected a finite number, 'nan' or nothing");
   // A time is not to be guessed.
   EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1e30,1\n").substr(0, 49),
             "a.csv:3: time_s is '1e30', which no sensor measur");

@@ -18,6 +18,7 @@
 #include "tools/ifog/allan/logged_rate.h"
 #include "tools/ifog/allan/rate_signal.h"
 #include "tools/ifog/captures/usable_axes.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
@@ -223,7 +224,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
   const Rest rest = rest_of(name, table, rows, clock, options, slow_turns);
   const std::vector<AnalysedRate> rates = rates_of(name, table, rows, options.axis);
   const AnalysedPart part{name, table, rows, time_s, clock, rest, slow_turns};
-  // Side by side; where several refuse, the first is reported.
+  // Side by side. An axis that cannot be analysed costs the others nothing; where none can, the first says why.
   std::vector<AllanRecord> records(rates.size());
   std::vector<std::exception_ptr> refused(rates.size());
   share_out(rates.size(), std::max(kTogether, std::thread::hardware_concurrency()), [&](std::size_t i) {
@@ -233,9 +234,19 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
       refused[i] = std::current_exception();
     }
   });
-  for (const std::exception_ptr& first : refused)
-    if (first) std::rethrow_exception(first);
-  return records;
+  std::vector<AllanRecord> analysed;
+  for (std::size_t i = 0; i < rates.size(); ++i)
+    if (!refused[i]) analysed.push_back(std::move(records[i]));
+  for (const std::exception_ptr& each : refused) {
+    if (!each) continue;
+    if (analysed.empty()) std::rethrow_exception(each);
+    try {
+      std::rethrow_exception(each);
+    } catch (const std::runtime_error& error) {
+      warn("%s: the axis is dropped\n", error.what());
+    }
+  }
+  return analysed;
 }
 
 }  // namespace ifog::tools

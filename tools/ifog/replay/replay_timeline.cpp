@@ -62,6 +62,8 @@ ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
     warn("%s: %zu remote, %zu error and %zu CAN XL frames are not sent\n", source.path.c_str(), lost.remote,
          lost.error, lost.xl);
   if (lost.cut_off) warn("%s: the last line is no whole frame and is not sent\n", source.path.c_str());
+  if (file.ends_early())
+    warn("%s: the gzip stream ends early (truncated file); what is there is sent\n", source.path.c_str());
   if (source.prefer_can && !two.empty()) throw std::runtime_error(two);
   return timeline;
 }
