@@ -89,7 +89,7 @@ void add_picture(const Command& program) {
   command.add_option("--channel", a->channel, "IFOG_<NAME>, where the log has several");
   command.add_option("--axis", a->axis, "Of a sensor with several: x, y or z");
   a->part.add_to(command);
-  command.add_option("--output", a->picture, "Picture, .svg or .png")
+  command.add_option("-o,--output", a->picture, "Picture, .svg or .png")
       .required()
       .check(report::wrong_picture_name)
       .type_name("FILE");

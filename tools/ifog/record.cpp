@@ -135,7 +135,7 @@ void add_record(const Command& program) {
   const Command command =
       program.add_subcommand("record", "Record what the daemon publishes on LCM, for every command to read");
   auto options = std::make_shared<RecordOptions>();
-  command.add_option("--output", options->folder, "Folder of the recordings; made if it is not there")
+  command.add_option("-o,--output", options->folder, "Folder of the recordings; made if it is not there")
       .required()
       .type_name("FOLDER");
   command.add_option("--sensor", options->sensor, "Only this sensor").type_name("NAME");

@@ -72,7 +72,7 @@ void add_simulate(const Command& program) {
       program.add_subcommand("simulate", "Make a capture of a simulated gyro from a scenario file");
   command.add_option("SCENARIO", state->scenario, "Scenario (.toml)").required();
   command
-      .add_option("--output", state->output,
+      .add_option("-o,--output", state->output,
                   "Capture: .csv, .csv.gz, .h5; through a driver .kvh, .bin or .log")
       .required();
   command.add_option("--truth", state->truth,

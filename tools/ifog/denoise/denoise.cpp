@@ -320,7 +320,7 @@ void add_denoise(const Command& program) {
           "log")
       .required();
   command
-      .add_option("--output", options->output,
+      .add_option("-o,--output", options->output,
                   "CSV or HDF5 (.h5): time_s, raw, compensated, denoised, variance by axis")
       .required()
       .type_name("FILE");
