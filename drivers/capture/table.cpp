@@ -52,6 +52,21 @@ void RowBlock::append(RowBlock& rows) {
     columns[c].insert(columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
 }
 
+void RowBlock::move_row(std::size_t from, std::size_t to) {
+  if (from == to) return;
+  time_s[to] = time_s[from];
+  if (!lines.empty()) lines[to] = lines[from];
+  for (std::vector<double>& column : columns)
+    if (!column.empty()) column[to] = column[from];
+}
+
+void RowBlock::keep_first(std::size_t rows) {
+  time_s.resize(rows);
+  if (!lines.empty()) lines.resize(rows);
+  for (std::vector<double>& column : columns)
+    if (!column.empty()) column.resize(rows);
+}
+
 void RowNotes::add_lines(std::size_t rows, const RowBlock& block) {
   for (std::size_t i = 0; i < block.lines.size(); ++i)
     if (lines.empty() || block.lines[i] - lines.back().line != rows + i - lines.back().row)

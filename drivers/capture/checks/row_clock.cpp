@@ -14,19 +14,7 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kFewBursts = 8;
-constexpr double kHole = 1.5;    // times the usual step: a hole, not a longer step
-constexpr double kLate_s = 2.0;  // a rollover comes within it
-
-struct Rollover {
-  double length_s;
-  const char* what;
-};
-constexpr double kTwo32 = 4294967296.0;
-constexpr std::array<Rollover, 5> kRollovers{{{604'800.0, "a GPS week"},
-                                              {86'400.0, "a day"},
-                                              {kTwo32 * 1e-6, "a count of µs in 32 bits"},
-                                              {kTwo32 * 1e-4, "a count of 100 µs in 32 bits"},
-                                              {kTwo32 * 1e-3, "a count of ms in 32 bits"}}};
+constexpr double kHole = 1.5;  // times the usual step: a hole, not a longer step
 
 // The usual of some values.
 double median(std::vector<double> values) {
@@ -101,13 +89,14 @@ void hold_from(RowBlock& rows, std::size_t from, RowBlock& held) {
 
 RowClock::RowClock(const std::string& path, std::string time, bool keep_repeats, RowNotes& notes, Next next)
     : path_(path),
-      time_(std::move(time)),
+      time_(time),
       keep_repeats_(keep_repeats),
       notes_(notes),
-      next_(std::move(next)) {}
+      next_(std::move(next)),
+      order_(path, std::move(time), notes) {}
 
 void RowClock::take(RowBlock& rows) {
-  unroll(rows);
+  order_.take(rows);
   if (rows.size() == 0) return;
   put_before(held_, rows);
   if (!std::exchange(begun_, true)) within_s_ = step_within_bursts(rows.time_s);
@@ -124,48 +113,14 @@ void RowClock::take(RowBlock& rows) {
   if (rows.size() > 0) next_(rows);
 }
 
-double RowClock::rolled_over_s(double now_s, double last_s, std::size_t line) {
-  const auto found = std::find_if(kRollovers.begin(), kRollovers.end(), [&](const Rollover& each) {
-    return now_s + each.length_s > last_s && now_s + each.length_s <= last_s + kLate_s;
-  });
-  if (found == kRollovers.end()) return 0.0;
-  notes_.notices.push_back(path_ + ":" + std::to_string(line) + ": " + printable(time_) + " rolls over, as " +
-                           found->what + " does: " + shortest(found->length_s) +
-                           " s are added from there on");
-  return found->length_s;
-}
-
-// Leaves only times that do not go back.
-void RowClock::unroll(RowBlock& rows) {
-  double last_s = held_.size() > 0 ? held_.time_s.back() : rows.time_s.front() + offset_s_;
-  std::size_t kept = 0;
-  rows_ += rows.size();
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double own_s = rows.time_s[i];
-    const std::size_t line = rows.lines.empty() ? 0 : rows.lines[i];
-    if (own_s + offset_s_ < last_s) offset_s_ += rolled_over_s(own_s + offset_s_, last_s, line);
-    if (own_s + offset_s_ < last_s) {
-      if (backward_++ > 0) continue;
-      backward_line_ = line;
-      append_time(backward_what_, rows.origin, own_s);
-      continue;
-    }
-    last_s = own_s + offset_s_;
-    if (kept != i) for_each_column(rows, rows, [&](auto& column, auto&) { column[kept] = column[i]; });
-    rows.time_s[kept++] = last_s;
-  }
-  for_each_column(rows, rows, [&](auto& column, auto&) { column.resize(kept); });
-}
-
 void RowClock::drop_repeats(RowBlock& rows) {
   std::size_t kept = 1;
   for (std::size_t i = 1; i < rows.size(); ++i) {
     if (rows.time_s[i] == rows.time_s[kept - 1] && same_values(rows, i, kept - 1)) continue;
-    if (kept != i) for_each_column(rows, rows, [&](auto& column, auto&) { column[kept] = column[i]; });
-    ++kept;
+    rows.move_row(i, kept++);
   }
   repeated_ += rows.size() - kept;
-  for_each_column(rows, rows, [&](auto& column, auto&) { column.resize(kept); });
+  rows.keep_first(kept);
 }
 
 void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double next_s) {
@@ -185,7 +140,7 @@ void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double
 }
 
 void RowClock::finish() {
-  say_backward();
+  order_.finish();
   const std::size_t rows = held_.size();
   if (rows > 1) {
     if (!(period_s_ > 0.0))
@@ -194,20 +149,6 @@ void RowClock::finish() {
   }
   if (rows > 0) next_(held_);
   say();
-}
-
-void RowClock::say_backward() {
-  constexpr std::size_t kRowsABackwardOne = 100;
-  if (backward_ == 0) return;
-  const std::string what =
-      printable(time_) + " is " + backward_what_ + " s, expected more than in the row before";
-  if (rows_ < kRowsABackwardOne * backward_)
-    fail_at(path_, backward_line_,
-            what + (backward_ == 1 ? "" : "; so are " + std::to_string(backward_ - 1) + " more rows") +
-                "; --sample-rate HZ reads all rows as even");
-  notes_.faults.push_back(path_ + ":" + std::to_string(backward_line_) + ": " + what + "; " +
-                          (backward_ == 1 ? "this row is" : std::to_string(backward_) + " such rows are") +
-                          " left out");
 }
 
 void RowClock::say() {

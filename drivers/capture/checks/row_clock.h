@@ -2,16 +2,14 @@
 // The times of rows as loggers write them, on their way to times that increase from row to row:
 //   - a row that repeats the one before, time and values, is left out and counted;
 //   - rows of one stamp, and rows that come in bursts (several within a packet, packets evenly apart), are
-//     spread evenly up to the next stamp;
-//   - where a count or a clock of known length rolls over, that length is added from there on;
-//   - a row whose time goes back in another way, as where a clock was set back or the network changed the order, is left
-//     out and counted. Where more than one in a hundred does, the file is refused.
+//     spread evenly up to the next stamp.
 #pragma once
 
 #include <cstddef>
 #include <functional>
 #include <string>
 
+#include "drivers/capture/checks/row_order.h"
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
@@ -29,28 +27,21 @@ class RowClock {
   void finish();
 
  private:
-  // How much longer the clock is where it is earlier than the row before; 0: no clock rolls over so.
-  double rolled_over_s(double now_s, double last_s, std::size_t line);
-  void unroll(RowBlock& rows);
   void drop_repeats(RowBlock& rows);
   void spread(RowBlock& rows, std::size_t begin, std::size_t end, double next_s);
   void say();
-  void say_backward();
 
   const std::string& path_;
   const std::string time_;
   const bool keep_repeats_;
   RowNotes& notes_;
   Next next_;
+  RowOrder order_;
   RowBlock held_;          // the rows of the last stamp or burst
-  double offset_s_ = 0.0;  // of rollovers
   double within_s_ = 0.0;  // longest step within a burst; 0: only rows of one stamp are spread
   double period_s_ = 0.0;  // between samples, of the last spread or single row
   double bursts_s_ = 0.0;  // time that bursts took, and their rows
   std::size_t burst_rows_ = 0, spread_ = 0, repeated_ = 0;
-  // Rows of all, and those that go back; the line of the first of these and what is wrong with it.
-  std::size_t rows_ = 0, backward_ = 0, backward_line_ = 0;
-  std::string backward_what_;
   bool begun_ = false;
 };
 

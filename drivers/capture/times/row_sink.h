@@ -26,6 +26,10 @@ struct RowBlock {
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
   // Appends the rows that follow. `rows` has unspecified values afterwards.
   void append(RowBlock& rows);
+  // Puts a row to where an earlier one was.
+  void move_row(std::size_t from, std::size_t to);
+  // Leaves so many.
+  void keep_first(std::size_t rows);
 };
 
 class RowSink {
