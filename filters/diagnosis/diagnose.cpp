@@ -205,20 +205,7 @@ class Run {
   std::optional<std::size_t> what_makes_it_worse() {
     if (const auto uncertain = least_proven()) return uncertain;
     if (!grows_over_many(result_, errors_)) return std::nullopt;
-    if (const auto harmful =
-            most_harmful_effect(records_, result_, found_.chosen.size(), data_.grid.sample_s, errors_))
-      return harmful;
-    return least_certain();
-  }
-
-  // Of the effects that are corrected the one that the fit would miss least.
-  [[nodiscard]] std::optional<std::size_t> least_certain() const {
-    std::optional<std::size_t> least;
-    for (std::size_t i = 0; i < found_.chosen.size(); ++i) {
-      if (!found_.chosen[i].candidate.corrected()) continue;
-      if (!least || found_.chosen[i].likelihood_ratio < found_.chosen[*least].likelihood_ratio) least = i;
-    }
-    return least;
+    return least_missed_effect(records_, result_, found_.chosen.size(), data_.grid.sample_s);
   }
 
   void report_effects() {
@@ -243,7 +230,8 @@ class Run {
     result_.channel_delays =
         delayed_channels(reconstructed_, candidates_of(found_.chosen), found_.noise.shape);
     for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
-    result_.unexplained = describe_rest(errors_, found_.noise, data_.grid, options_.significance);
+    result_.unexplained =
+        describe_rest(errors_, found_.noise, data_.grid, options_.significance, result_.noise_changes);
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
     say(unexplained_beside_claims(result_, records_.size()));

@@ -315,10 +315,11 @@ void read_covariance(Table& table, std::size_t parameters, Model& model) {
   const std::size_t corrected = rows_in_file(model.effects).size();
   const bool of_all = numbers == parameters * parameters;
   if (!of_all && numbers != corrected * corrected) {
-    table.fail("covariance", nullptr,
-               "expected " + std::to_string(corrected * corrected) +
-                   " numbers, the square of the number of parameters of the effects that are corrected, found " +
-                   std::to_string(numbers));
+    table.fail(
+        "covariance", nullptr,
+        "expected " + std::to_string(corrected * corrected) +
+            " numbers, the square of the number of parameters of the effects that are corrected, found " +
+            std::to_string(numbers));
   }
   if (const std::string flaw = covariance_flaw(model.covariance, of_all ? parameters : corrected);
       !flaw.empty())

@@ -116,8 +116,7 @@ std::string model_text(const Model& model) {
   text.words("sensor", model.sensor);
   if (!model.covariance.empty()) {
     const auto size = static_cast<std::size_t>(std::lround(std::sqrt(double(model.covariance.size()))));
-    const std::vector<double> covariance =
-        of_rows(model.covariance, size, rows_in_file(model.effects));
+    const std::vector<double> covariance = of_rows(model.covariance, size, rows_in_file(model.effects));
     if (!covariance.empty()) text.line("covariance", toml_list(covariance));
   }
   for (const auto& [axis, noise] : model.noise) write_noise(text, axis, noise);

@@ -12,7 +12,7 @@
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/words.h"
 #include "filters/effects/plausible_reading.h"
-#include "filters/rest/glitches.h"
+#include "filters/rest/cleaned_rate.h"
 
 namespace ifog {
 namespace {
@@ -136,19 +136,20 @@ OwnedRecords repair_channels(OwnedRecords given) {
   return given;
 }
 
-OwnedRecords leave_out_knocks(OwnedRecords given) {
+OwnedRecords without_leaping_rates(OwnedRecords given) {
   for (Record& record : given.records) {
     const bool plain = record.reference_radps.empty();
     const Samples less_reference = plain ? Samples() : error_of(record);
     const std::span<const double> error = plain ? record.rate_radps : std::span<const double>(less_reference);
-    const Glitches glitches = find_glitches(error, stretches({}, error, {}));
-    if (glitches.few.empty()) continue;
-    Samples& rate = given.columns.emplace_back(record.rate_radps);
-    for (const Glitches::Leap& leap : glitches.few) rate[leap.sample] = std::nan("");
+    const CleanedRate cleaned =
+        without_leaps(record.rate_radps, error, stretches({}, error, {}),
+                      [&](std::size_t i) { return record.origin.told(record.time_s[i]); });
+    for (const ValueFault& fault : cleaned.faults)
+      given.remarks.push_back("the rate" + given.of_several(record) + ": " + fault.text);
+    if (!cleaned.values) continue;
+    Samples& rate = given.columns.emplace_back(record.rate_radps.size());
+    cleaned.values->read(0, rate);
     record.rate_radps = rate;
-    given.remarks.push_back(
-        "the rate" + given.of_several(record) + ": " +
-        in_words(glitches, [&](std::size_t i) { return record.origin.told(record.time_s[i]); }));
   }
   return given;
 }

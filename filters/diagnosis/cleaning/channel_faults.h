@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faults of logging: a thermometer that says 85 or -127 °C for some seconds (power-on and bus error of the
-// DS18B20), a glitch of the logger; and knocks of the rate.
+// DS18B20), a glitch of the logger; and those of the rate.
 #pragma once
 
 #include "filters/diagnosis/record/owned_records.h"
@@ -14,7 +14,8 @@ namespace ifog {
 // are left alone: a switch may be off for an hour. Missing values stay missing.
 OwnedRecords repair_channels(OwnedRecords given);
 
-// Of the rate, a sample or two that leap by twenty spans and back become missing.
-OwnedRecords leave_out_knocks(OwnedRecords given);
+// The rates without single samples that leap, as every command takes them out (filters/rest/cleaned_rate.h). What
+// repeats is missing since the capture was read.
+OwnedRecords without_leaping_rates(OwnedRecords given);
 
 }  // namespace ifog

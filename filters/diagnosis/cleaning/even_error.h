@@ -19,8 +19,8 @@ struct EvenError {
   SharedSamples rest;           // less ramps, and later lines and a dead zone
   SharedSamples rest_held_out;  // less ramps as fitted without the sample's own part
   SharedSamples after;          // `rest` less the effects
-  SharedSamples held_out;       // `rest_held_out` less what is corrected, fitted without the sample's own part
-  SharedSamples written;        // what the daemon's own correction leaves of `before`, by the model as written
+  SharedSamples held_out;  // `rest_held_out` less what is corrected, fitted without the sample's own part
+  SharedSamples written;   // what the daemon's own correction leaves of `before`, by the model as written
 };
 
 // after, held_out and written: still empty. The records' rates outlive what is made of them. Throws as

@@ -34,7 +34,6 @@ WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const C
   const auto n = static_cast<double>(grid.used());
   square = std::max(square, 1e-12 * gram(0, 0) + 1e-300);
   WhitenedFit fit;
-  fit.residual_square = square;
   fit.white_variance = square / std::max(1.0, n - static_cast<double>(p)) / filter.innovation_variance();
   // With the white variance concentrated out, the determinant of a steady filter cancels its innovations'
   // scale.

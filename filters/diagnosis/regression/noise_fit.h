@@ -9,9 +9,8 @@ namespace ifog {
 
 // What is left of the first column of whitened data after least squares on the others.
 struct WhitenedFit {
-  double log_likelihood = 0.0;   // up to a constant that depends on the number of blocks alone
-  double white_variance = 0.0;   // of a block mean, in the square of the first column's unit
-  double residual_square = 0.0;  // sum of squared innovations
+  double log_likelihood = 0.0;  // up to a constant that depends on the number of blocks alone
+  double white_variance = 0.0;  // of a block mean, in the square of the first column's unit
 };
 
 // columns: measurement, then regressors, not whitened.

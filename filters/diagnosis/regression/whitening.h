@@ -74,7 +74,6 @@ class Whitening {
 
   // Variance of the innovations over the white variance, at least 1.
   [[nodiscard]] double innovation_variance() const { return innovation_variance_; }
-  [[nodiscard]] std::size_t states() const { return gain_.size(); }
 
  private:
   template <int Width>

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "filters/diagnosis/checks/cross_validation.h"
@@ -54,8 +55,7 @@ namespace {
 // Straight between the middles of a record's blocks. at: sample.
 double between_blocks(const BlockGrid& grid, const BlockRange& record, const Eigen::VectorXd& values,
                       std::size_t at) {
-  const double blocks =
-      (static_cast<double>(at) * grid.sample_s + 0.5 * grid.fine_s) / grid.block_s - 0.5;
+  const double blocks = (static_cast<double>(at) * grid.sample_s + 0.5 * grid.fine_s) / grid.block_s - 0.5;
   const double place = std::clamp(blocks, 0.0, static_cast<double>(record.size() - 1));
   const Eigen::Index low = record.row() + static_cast<Eigen::Index>(place);
   const Eigen::Index high = std::min(low + 1, record.row() + record.rows() - 1);
@@ -138,12 +138,10 @@ void subtract_effects(const std::vector<Record>& records, const BlockData& data,
   }
 }
 
-std::optional<std::size_t> most_harmful_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
-                                               std::size_t candidates, double sample_s,
-                                               const std::vector<EvenError>& errors) {
-  double least = 0.0;
-  for (const EvenError& error : errors) least += error_in_means(error.written);
-  std::optional<std::size_t> harmful;
+std::optional<std::size_t> least_missed_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
+                                               std::size_t candidates, double sample_s) {
+  double least = std::numeric_limits<double>::infinity();
+  std::optional<std::size_t> found;
   for (std::size_t i = 0; i < candidates; ++i) {
     const std::optional<Form> form = form_named(diagnosis.effects[i].effect.form);
     if (!form || !carries_over(*form) || diagnosis.effects[i].effect.shown_only) continue;
@@ -159,9 +157,9 @@ std::optional<std::size_t> most_harmful_effect(const std::vector<Record>& record
       without += error_in_means(on_even_grid(record, sample_s, compensated_error(record, model)));
     if (without >= least) continue;
     least = without;
-    harmful = i;
+    found = i;
   }
-  return harmful;
+  return found;
 }
 
 }  // namespace ifog

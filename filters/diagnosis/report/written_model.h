@@ -26,10 +26,9 @@ void name_bias(const BlockGrid& grid, const JointFit& joint, double value, const
 void subtract_effects(const std::vector<Record>& records, const BlockData& data, const SearchResult& found,
                       const Diagnosis& diagnosis, std::vector<EvenError>& errors);
 
-// Of the diagnosis' first `candidates` effects that are corrected online, the one whose absence leaves least
-// of the error, means of a two-thousandth of the record; none where each makes it smaller.
-std::optional<std::size_t> most_harmful_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
-                                               std::size_t candidates, double sample_s,
-                                               const std::vector<EvenError>& errors);
+// Of the diagnosis' first `candidates` effects that are corrected online, the one whose absence leaves least of the
+// error, means of a two-thousandth of the record; none where none is corrected.
+std::optional<std::size_t> least_missed_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
+                                               std::size_t candidates, double sample_s);
 
 }  // namespace ifog

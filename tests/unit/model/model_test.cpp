@@ -196,7 +196,8 @@ TEST(ModelFile, HasTheCovarianceOfWhatIsCorrected) {
   bias.form = "bias";
   bias.parameters = {{"coefficient", 1e-6, 2e-8, "rad/s"}};
   line.form = "line";
-  line.parameters = {{"cosine", 1e-6, 3e-8, "rad/s"}, {"sine", 0.0, 3e-8, "rad/s"}, {"frequency_hz", 5.0, 1e-3, "Hz"}};
+  line.parameters = {
+      {"cosine", 1e-6, 3e-8, "rad/s"}, {"sine", 0.0, 3e-8, "rad/s"}, {"frequency_hz", 5.0, 1e-3, "Hz"}};
   model.effects = {line, bias};
   const std::vector<double> variances = {9e-16, 9e-16, 1e-6, 4e-16};
   model.covariance.assign(16, 0.0);

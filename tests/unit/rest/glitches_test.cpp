@@ -8,7 +8,10 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
+
+#include "filters/rest/cleaned_rate.h"
 
 namespace ifog {
 namespace {
@@ -45,7 +48,8 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
   EXPECT_EQ(found.count, 3U);
   EXPECT_NE(in_words(found, [](std::size_t) { return 0.0; }).find("not used in these figures"),
             std::string::npos);
-  const std::optional<LongSeries> without = without_leaps(rate, found);
+  const auto no_time = [](std::size_t) { return 0.0; };
+  const std::optional<LongSeries> without = without_leaps(rate, rate, all, no_time).values;
   ASSERT_TRUE(without);
   for (std::size_t i = 0; i < before.size(); ++i) {
     const double value = SeriesView(*without).at(i);
@@ -56,14 +60,44 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
     else
       EXPECT_DOUBLE_EQ(value, 0.5 * (before[i - 1] + before[i + 1])) << i;
   }
-  EXPECT_FALSE(without_leaps(before, find_glitches(before, all)));
+  EXPECT_FALSE(without_leaps(before, before, all, no_time).values);
 
   for (std::size_t i = 50; i < rate.size(); i += 500) rate[i] = 1.0;
   const Glitches many = find_glitches(rate, all);
   EXPECT_GT(many.count, 21U);
   EXPECT_TRUE(many.few.empty());
-  EXPECT_FALSE(without_leaps(rate, many));
+  EXPECT_FALSE(without_leaps(rate, rate, all, no_time).values);
   EXPECT_NE(in_words(many, [](std::size_t) { return 0.0; }).find("take for noise"), std::string::npos);
+}
+
+// A placeholder for some samples, a value that a logger repeats: as far from the noise as it may be.
+TEST(Glitches, RepeatedValuesAreOut) {
+  const std::vector<double> before = white(20000, 4);
+  for (const auto& [value, length, name] :
+       std::initializer_list<std::tuple<double, std::size_t, const char*>>{
+           {-999.0, 3, "leaps"}, {0.0, 20, "stuck"}, {65535.0, 20, "stuck"}, {before[777], 50, "stuck"}}) {
+    std::vector<double> rate = before;
+    std::fill_n(rate.begin() + 5000, length, value);
+    const std::vector<Stretch> all{{0, rate.size()}};
+    const CleanedRate cleaned = without_repeats(rate, all, [](std::size_t i) { return 1e-2 * double(i); });
+    ASSERT_TRUE(cleaned.values) << value;
+    ASSERT_EQ(cleaned.faults.size(), 1U) << value;
+    EXPECT_EQ(cleaned.faults.front().name, name);
+    EXPECT_NE(cleaned.faults.front().text.find("at 50 s"), std::string::npos) << cleaned.faults.front().text;
+    for (std::size_t i = 0; i < rate.size(); ++i) {
+      const double left = SeriesView(*cleaned.values).at(i);
+      if (i < 5000 || i >= 5000 + length)
+        EXPECT_EQ(left, before[i]) << i;
+      else
+        EXPECT_TRUE(std::isnan(left)) << i;
+    }
+  }
+  // A sensor that says each value ten times does nothing else.
+  std::vector<double> slow;
+  for (const double value : white(2000, 5)) slow.insert(slow.end(), 10, value);
+  EXPECT_TRUE(without_repeats(slow, std::vector<Stretch>{{0, slow.size()}}, [](std::size_t) {
+                return 0.0;
+              }).faults.empty());
 }
 
 // What stays where it has gone is a step, what takes several samples a blow: both are rates.

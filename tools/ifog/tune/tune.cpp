@@ -18,7 +18,7 @@
 #include "drivers/system/utc_now.h"
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/model_file/model.h"
-#include "filters/rest/glitches.h"
+#include "filters/rest/cleaned_rate.h"
 #include "filters/rest/noise_change.h"
 #include "filters/rest/rest.h"
 #include "filters/rest/value_faults.h"
@@ -177,8 +177,7 @@ void note_value_faults(const CaptureView& capture, const SampleClock& clock, con
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     const std::span<const double> rate = capture.rate_radps[a];
     for (const ValueFault& found :
-         value_faults(rate, common(stretches(capture.time_s, rate, clock), rest.at_rest), clock.period_s,
-                      [&](std::size_t i) { return capture.told_time_s(i); }))
+         value_faults(rate, common(stretches(capture.time_s, rate, clock), rest.at_rest), clock.period_s))
       notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + found.text);
   }
 }
@@ -188,14 +187,14 @@ void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest&
                      std::vector<LongSeries>& repaired, std::vector<std::string>& notes) {
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     std::span<const double>& rate = capture.rate_radps[a];
-    const Glitches leaps = find_glitches(rate, common(stretches(capture.time_s, rate, clock), rest.at_rest));
-    if (const std::string said = in_words(leaps, [&](std::size_t i) { return capture.told_time_s(i); });
-        !said.empty())
-      notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + said);
-    if (std::optional<LongSeries> without = without_leaps(rate, leaps)) {
-      repaired.push_back(*std::move(without));
-      rate = repaired.back().all();
-    }
+    CleanedRate cleaned =
+        without_leaps(rate, rate, common(stretches(capture.time_s, rate, clock), rest.at_rest),
+                      [&](std::size_t i) { return capture.told_time_s(i); });
+    for (const ValueFault& fault : cleaned.faults)
+      notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + fault.text);
+    if (!cleaned.values) continue;
+    repaired.push_back(*std::move(cleaned.values));
+    rate = repaired.back().all();
   }
 }
 
@@ -304,8 +303,8 @@ void run(const TuneArguments& options) {
   std::vector<std::string> notes;
   std::vector<LongSeries> repaired;
   repaired.reserve(capture.axes.size());
-  note_value_faults(capture, clock, rest, notes);
   leave_out_leaps(capture, clock, rest, repaired, notes);
+  note_value_faults(capture, clock, rest, notes);
   const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
   if (const std::string motion = in_words(rest, period, capture.told_time_s(0)); !motion.empty())
     notes.push_back(motion + "; only the rest is used");
