@@ -41,49 +41,46 @@ struct Replacement {
   double value = 0.0;
 };
 
-// The rate with other values at some samples.
-LongSeries with(const SeriesView& rate, std::vector<Replacement> replacements) {
+std::optional<LongSeries> with(const SeriesView& rate, std::vector<Replacement> replacements) {
+  if (replacements.empty()) return std::nullopt;
   std::sort(replacements.begin(), replacements.end(),
             [](const Replacement& a, const Replacement& b) { return a.sample < b.sample; });
-  LongSeries out;
+  std::optional<LongSeries> out(std::in_place);
   std::vector<double> repaired;
   auto next = replacements.begin();
   for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
     repaired.assign(values.begin(), values.end());
     for (; next != replacements.end() && next->sample < first + values.size(); ++next)
       repaired[next->sample - first] = next->value;
-    out.add(repaired);
+    out->add(repaired);
   });
   return out;
 }
 
 }  // namespace
 
-CleanedRate without_repeats(const SeriesView& rate, std::span<const Stretch> parts,
-                            const TimeOfSample& time_s) {
-  CleanedRate cleaned;
+std::optional<LongSeries> without_repeats(const SeriesView& rate, std::span<const Stretch> parts,
+                                          const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
   const Glitches leaps = find_glitches(rate, parts, LeapOf::kOneValue);
   const std::vector<Stretch> stuck = stuck_runs(rate, parts);
-  if (leaps.count > 0) cleaned.faults.push_back({"leaps", in_words(leaps, time_s)});
-  if (!stuck.empty()) cleaned.faults.push_back({"stuck", in_words(stuck, time_s)});
+  if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
+  if (!stuck.empty()) faults.push_back({"stuck", in_words(stuck, time_s)});
   std::vector<Replacement> missing;
   for (const Glitches::Leap& leap : leaps.few) missing.push_back({leap.sample, std::nan("")});
   for (const Stretch& each : stuck)
     for (std::size_t i = each.begin; i < each.end; ++i) missing.push_back({i, std::nan("")});
-  if (!missing.empty()) cleaned.values = with(rate, std::move(missing));
-  return cleaned;
+  return with(rate, std::move(missing));
 }
 
-CleanedRate without_leaps(const SeriesView& rate, const SeriesView& error, std::span<const Stretch> parts,
-                          const TimeOfSample& time_s) {
-  CleanedRate cleaned;
+std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,
+                                        std::span<const Stretch> parts, const TimeOfSample& time_s,
+                                        std::vector<ValueFault>& faults) {
   const Glitches leaps = find_glitches(error, parts);
-  if (leaps.count > 0) cleaned.faults.push_back({"leaps", in_words(leaps, time_s)});
+  if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
   std::vector<Replacement> between;
   for (const Glitches::Leap& leap : leaps.few)
     between.push_back({leap.sample, leap.between + (rate.at(leap.sample) - error.at(leap.sample))});
-  if (!between.empty()) cleaned.values = with(rate, std::move(between));
-  return cleaned;
+  return with(rate, std::move(between));
 }
 
 }  // namespace ifog

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // A rate without what the logger or the line did to it. Every command takes the same faults out and says so in the
-// same words.
+// same words: each function appends a line to `faults` for what it found, and returns the rate without that, or
+// nothing where there was none.
 #pragma once
 
 #include <cstddef>
@@ -15,22 +16,22 @@
 
 namespace ifog {
 
-struct CleanedRate {
-  std::optional<LongSeries> values;  // none: there was no fault
-  std::vector<ValueFault> faults;    // "leaps", "stuck": a line each
-};
 using TimeOfSample = std::function<double(std::size_t)>;  // s, for the text
 
 // rate: rad/s, NaN where missing; parts: stretches without holes.
 // Before it is asked where the sensor rested, values that the rate repeats are missing: a sensor or logger that did
 // nothing, or a placeholder such as -999. That is eight samples or more, where nine of ten values stand once; or
 // two and more that leap away and back (glitches.h).
-[[nodiscard]] CleanedRate without_repeats(const SeriesView& rate, std::span<const Stretch> parts,
-                                          const TimeOfSample& time_s);
+[[nodiscard]] std::optional<LongSeries> without_repeats(const SeriesView& rate,
+                                                        std::span<const Stretch> parts,
+                                                        const TimeOfSample& time_s,
+                                                        std::vector<ValueFault>& faults);
 
 // Of what is at rest, single samples that leap away and back stand between those next to them, unless there are too
 // many to be no noise. error: the rate less the reference, or the rate itself where there is none.
-[[nodiscard]] CleanedRate without_leaps(const SeriesView& rate, const SeriesView& error,
-                                        std::span<const Stretch> parts, const TimeOfSample& time_s);
+[[nodiscard]] std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,
+                                                      std::span<const Stretch> parts,
+                                                      const TimeOfSample& time_s,
+                                                      std::vector<ValueFault>& faults);
 
 }  // namespace ifog

@@ -142,20 +142,19 @@ void find_implausible(const std::vector<double>& values, double period_s, std::v
 
 }  // namespace
 
-std::vector<ValueFault> value_faults(const SeriesView& rate, std::span<const Stretch> parts,
-                                     double period_s) {
-  std::vector<ValueFault> found;
+void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, double period_s,
+                       std::vector<ValueFault>& found) {
   const std::vector<double> values = values_of(rate, parts);
-  if (values.size() < kFewSamples) return found;
+  if (values.size() < kFewSamples) return;
   std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
-  if (sorted.front() == sorted.back()) return found;
+  if (sorted.front() == sorted.back()) return;
+  const std::size_t before = found.size();
   find_held(values, period_s, found);
   find_wrapped(values, sorted, found);
-  if (found.empty()) find_interleaved(values, found);
+  if (found.size() == before) find_interleaved(values, found);
   find_clipped(std::move(sorted), found);
   find_implausible(values, period_s, found);
-  return found;
 }
 
 }  // namespace ifog

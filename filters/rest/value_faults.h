@@ -19,7 +19,7 @@ struct ValueFault {
 };
 
 // rate: rad/s, NaN where missing; parts: its stretches at rest, without holes. In each stretch at most the first
-// million samples are looked at. Found:
+// million samples are looked at. Appended to `found`:
 //   - held: nine of ten values stand for the same number of samples, two or more;
 //   - clipped: the largest or the smallest value is one sample in a hundred, and three times as frequent as
 //   the next one;
@@ -28,7 +28,7 @@ struct ValueFault {
 //   - interleaved: around the means of every second, third or fourth sample values scatter by less than half of what all do;
 //   - unit: the mean at rest is beyond 5 °/s, the worst bias of a MEMS gyro;
 //   - moving: means of 1 s scatter by more than 0.2 °/s, beyond the noise of any gyro.
-[[nodiscard]] std::vector<ValueFault> value_faults(const SeriesView& rate, std::span<const Stretch> parts,
-                                                   double period_s);
+void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, double period_s,
+                       std::vector<ValueFault>& found);
 
 }  // namespace ifog

@@ -141,14 +141,15 @@ OwnedRecords without_leaping_rates(OwnedRecords given) {
     const bool plain = record.reference_radps.empty();
     const Samples less_reference = plain ? Samples() : error_of(record);
     const std::span<const double> error = plain ? record.rate_radps : std::span<const double>(less_reference);
-    const CleanedRate cleaned =
-        without_leaps(record.rate_radps, error, stretches({}, error, {}),
-                      [&](std::size_t i) { return record.origin.told(record.time_s[i]); });
-    for (const ValueFault& fault : cleaned.faults)
+    std::vector<ValueFault> faults;
+    const std::optional<LongSeries> cleaned = without_leaps(
+        record.rate_radps, error, stretches({}, error, {}),
+        [&](std::size_t i) { return record.origin.told(record.time_s[i]); }, faults);
+    for (const ValueFault& fault : faults)
       given.remarks.push_back("the rate" + given.of_several(record) + ": " + fault.text);
-    if (!cleaned.values) continue;
-    Samples& rate = given.columns.emplace_back(record.rate_radps.size());
-    cleaned.values->read(0, rate);
+    if (!cleaned) continue;
+    Samples& rate = given.columns.emplace_back(cleaned->size());
+    cleaned->read(0, rate);
     record.rate_radps = rate;
   }
   return given;

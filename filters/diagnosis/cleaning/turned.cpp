@@ -27,8 +27,9 @@ std::optional<double> period_of(const Record& record) {
 void note_value_faults(const Record& record, const Rest& rest, std::vector<std::string>& remarks) {
   const SampleClock clock = sample_clock(record.time_s);
   const std::vector<Stretch> parts = common(stretches(record.time_s, record.rate_radps, clock), rest.at_rest);
-  for (const ValueFault& found : value_faults(record.rate_radps, parts, clock.period_s))
-    remarks.push_back(record.name + ": " + found.text);
+  std::vector<ValueFault> faults;
+  find_value_faults(record.rate_radps, parts, clock.period_s, faults);
+  for (const ValueFault& found : faults) remarks.push_back(record.name + ": " + found.text);
 }
 
 }  // namespace

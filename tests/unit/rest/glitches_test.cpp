@@ -48,11 +48,15 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
   EXPECT_EQ(found.count, 3U);
   EXPECT_NE(in_words(found, [](std::size_t) { return 0.0; }).find("not used in these figures"),
             std::string::npos);
-  const auto no_time = [](std::size_t) { return 0.0; };
-  const std::optional<LongSeries> without = without_leaps(rate, rate, all, no_time).values;
-  ASSERT_TRUE(without);
+  const auto without = [&](const std::vector<double>& from) {
+    std::vector<ValueFault> faults;
+    return without_leaps(
+        from, from, all, [](std::size_t) { return 0.0; }, faults);
+  };
+  const std::optional<LongSeries> repaired = without(rate);
+  ASSERT_TRUE(repaired);
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const double value = SeriesView(*without).at(i);
+    const double value = SeriesView(*repaired).at(i);
     if (i == 16384)
       EXPECT_DOUBLE_EQ(value, 0.5 * (before[i - 1] + before[i + 1]));
     else if (i != 300 && i != 302)
@@ -60,13 +64,13 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
     else
       EXPECT_DOUBLE_EQ(value, 0.5 * (before[i - 1] + before[i + 1])) << i;
   }
-  EXPECT_FALSE(without_leaps(before, before, all, no_time).values);
+  EXPECT_FALSE(without(before));
 
   for (std::size_t i = 50; i < rate.size(); i += 500) rate[i] = 1.0;
   const Glitches many = find_glitches(rate, all);
   EXPECT_GT(many.count, 21U);
   EXPECT_TRUE(many.few.empty());
-  EXPECT_FALSE(without_leaps(rate, rate, all, no_time).values);
+  EXPECT_FALSE(without(rate));
   EXPECT_NE(in_words(many, [](std::size_t) { return 0.0; }).find("take for noise"), std::string::npos);
 }
 
@@ -79,13 +83,15 @@ TEST(Glitches, RepeatedValuesAreOut) {
     std::vector<double> rate = before;
     std::fill_n(rate.begin() + 5000, length, value);
     const std::vector<Stretch> all{{0, rate.size()}};
-    const CleanedRate cleaned = without_repeats(rate, all, [](std::size_t i) { return 1e-2 * double(i); });
-    ASSERT_TRUE(cleaned.values) << value;
-    ASSERT_EQ(cleaned.faults.size(), 1U) << value;
-    EXPECT_EQ(cleaned.faults.front().name, name);
-    EXPECT_NE(cleaned.faults.front().text.find("at 50 s"), std::string::npos) << cleaned.faults.front().text;
+    std::vector<ValueFault> faults;
+    const auto time_s = [](std::size_t i) { return 1e-2 * static_cast<double>(i); };
+    const std::optional<LongSeries> cleaned = without_repeats(rate, all, time_s, faults);
+    ASSERT_TRUE(cleaned) << value;
+    ASSERT_EQ(faults.size(), 1U) << value;
+    EXPECT_EQ(faults.front().name, name);
+    EXPECT_NE(faults.front().text.find("at 50 s"), std::string::npos) << faults.front().text;
     for (std::size_t i = 0; i < rate.size(); ++i) {
-      const double left = SeriesView(*cleaned.values).at(i);
+      const double left = SeriesView(*cleaned).at(i);
       if (i < 5000 || i >= 5000 + length)
         EXPECT_EQ(left, before[i]) << i;
       else
@@ -95,9 +101,11 @@ TEST(Glitches, RepeatedValuesAreOut) {
   // A sensor that says each value ten times does nothing else.
   std::vector<double> slow;
   for (const double value : white(2000, 5)) slow.insert(slow.end(), 10, value);
-  EXPECT_TRUE(without_repeats(slow, std::vector<Stretch>{{0, slow.size()}}, [](std::size_t) {
-                return 0.0;
-              }).faults.empty());
+  std::vector<ValueFault> faults;
+  const std::vector<Stretch> all{{0, slow.size()}};
+  EXPECT_FALSE(without_repeats(
+      slow, all, [](std::size_t) { return 0.0; }, faults));
+  EXPECT_TRUE(faults.empty());
 }
 
 // What stays where it has gone is a step, what takes several samples a blow: both are rates.

@@ -191,13 +191,12 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
   const auto told_time_s = [&](std::size_t row) { return logged.told_time_s(row); };
   // A filter leaps of itself, by its gain; what the logger did is in the raw rate.
-  const CleanedRate cleaned =
-      signal == "denoised" ? CleanedRate{} : without_leaps(logged.rate, logged.rate, parts, told_time_s);
-  const SeriesView rate = cleaned.values ? SeriesView(*cleaned.values) : logged.rate;
   record.findings.assign(logged.repeats.begin(), logged.repeats.end());
-  record.findings.insert(record.findings.end(), cleaned.faults.begin(), cleaned.faults.end());
-  if (signal == "rate")
-    for (ValueFault& found : value_faults(rate, parts, period)) record.findings.push_back(std::move(found));
+  std::optional<LongSeries> cleaned;
+  if (signal != "denoised")
+    cleaned = without_leaps(logged.rate, logged.rate, parts, told_time_s, record.findings);
+  const SeriesView rate = cleaned ? SeriesView(*cleaned) : logged.rate;
+  if (signal == "rate") find_value_faults(rate, parts, period, record.findings);
   for (const ValueFault& found : record.findings)
     record.notes.push_back(name + ": " + column + ": " + found.text);
   const AngleSum sum(rate, parts);

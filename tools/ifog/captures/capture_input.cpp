@@ -289,12 +289,9 @@ LongCapture CaptureInput::read_long_capture(const std::string& path, std::string
     *sha256 = hash.hex();
   }
   table.leave_out_repeats();
-  std::vector<std::string> said;
   for (const LongColumn& column : table.columns)
     for (const ValueFault& repeat : column.repeats)
-      said.push_back(path + ": " + column.name + ": " + repeat.text);
-  tell({}, said);
-  table.faults.insert(table.faults.end(), said.begin(), said.end());
+      warn("%s\n", table.faults.emplace_back(path + ": " + column.name + ": " + repeat.text).c_str());
   return {std::move(table), path};
 }
 

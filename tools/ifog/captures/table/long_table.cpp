@@ -39,10 +39,10 @@ void LongTable::leave_out_repeats() {
     LongColumn& column = columns[c];
     std::string axis;
     if (!axis_of(column.name, "rate", axis) && !axis_of(column.name, "raw", axis)) return;
-    CleanedRate cleaned = without_repeats(column.values, stretches({}, column.values, {}),
-                                          [&](std::size_t row) { return origin.told(times.at(row)); });
-    column.repeats = std::move(cleaned.faults);
-    if (cleaned.values) column.values = *std::move(cleaned.values);
+    std::optional<LongSeries> cleaned = without_repeats(
+        column.values, stretches({}, column.values, {}),
+        [&](std::size_t row) { return origin.told(times.at(row)); }, column.repeats);
+    if (cleaned) column.values = *std::move(cleaned);
   });
 }
 

@@ -18,9 +18,8 @@ namespace ifog::tools {
 struct LongColumn {
   std::string name;
   LongSeries values;
-  bool known = false;  // ever a value
-  std::vector<ValueFault> repeats =
-      {};  // of a rate, which are missing in its values; see leave_out_repeats()
+  bool known = false;                    // ever a value
+  std::vector<ValueFault> repeats = {};  // of a rate; see leave_out_repeats()
 };
 
 struct LongTable : RowNotes {
