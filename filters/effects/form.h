@@ -90,7 +90,8 @@ inline constexpr std::string_view kHalfWidth = "half_width";
 [[nodiscard]] std::string_view time_constant_name(Form form);
 // Name of the time constant; a product's is that of its second factor.
 [[nodiscard]] std::string_view time_constant_name(const Effect& effect);
-// Name of the second time constant of a form that may have one: "average_s" of band_power, "second_lag_s" of lagged.
+// Name of the second time constant of a form that may have one: "average_s" of band_power, "second_lag_s" of
+// lagged.
 [[nodiscard]] std::string_view second_time_constant_name(Form form);
 [[nodiscard]] std::string_view second_time_constant_name(const Effect& effect);
 

@@ -70,6 +70,7 @@ std::vector<double> of_all_parameters(const std::vector<double>& in_file,
   const std::size_t size = errors.size();
   std::vector<double> all(size * size, 0.0);
   for (std::size_t i = 0; i < size; ++i) all[i * size + i] = errors[i] * errors[i];
+  if (in_file.empty()) return all;
   const std::vector<std::size_t> rows = rows_in_file(effects);
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (std::size_t j = 0; j < rows.size(); ++j)

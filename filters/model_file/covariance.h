@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// The covariance of a model's parameters: which of it a file has, and whether numbers read from one are such a
-// matrix.
+// SPDX-License-Identifier: Apache-2.0 The covariance of a model's parameters: which of it a file has, and
+// whether numbers read from one are such a matrix.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +24,8 @@ std::vector<std::size_t> rows_in_file(const std::vector<Effect>& effects);
 std::vector<double> of_rows(const std::vector<double>& values, std::size_t size,
                             std::span<const std::size_t> rows);
 
-// The other way: a file's matrix among all parameters of the effects, each of the others by its own error.
+// The other way: a file's matrix among all parameters of the effects, each of the others by its own error, as
+// all are where it is empty.
 std::vector<double> of_all_parameters(const std::vector<double>& in_file, const std::vector<Effect>& effects);
 
 }  // namespace ifog

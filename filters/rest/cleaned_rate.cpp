@@ -37,21 +37,25 @@ std::string in_words(const std::vector<Stretch>& stuck, const TimeOfSample& time
 }
 
 struct Replacement {
-  std::size_t sample = 0;
+  Stretch samples;
   double value = 0.0;
 };
 
 std::optional<LongSeries> with(const SeriesView& rate, std::vector<Replacement> replacements) {
   if (replacements.empty()) return std::nullopt;
   std::sort(replacements.begin(), replacements.end(),
-            [](const Replacement& a, const Replacement& b) { return a.sample < b.sample; });
+            [](const Replacement& a, const Replacement& b) { return a.samples.begin < b.samples.begin; });
   std::optional<LongSeries> out(std::in_place);
   std::vector<double> repaired;
   auto next = replacements.begin();
   for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
+    const std::size_t end = first + values.size();
     repaired.assign(values.begin(), values.end());
-    for (; next != replacements.end() && next->sample < first + values.size(); ++next)
-      repaired[next->sample - first] = next->value;
+    for (; next != replacements.end() && next->samples.begin < end; ++next) {
+      const std::size_t from = std::max(next->samples.begin, first), to = std::min(next->samples.end, end);
+      std::fill_n(repaired.begin() + static_cast<std::ptrdiff_t>(from - first), to - from, next->value);
+      if (next->samples.end > end) break;  // it goes on in the next piece
+    }
     out->add(repaired);
   });
   return out;
@@ -59,17 +63,17 @@ std::optional<LongSeries> with(const SeriesView& rate, std::vector<Replacement> 
 
 }  // namespace
 
-std::optional<LongSeries> without_repeats(const SeriesView& rate, std::span<const Stretch> parts,
-                                          const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
+void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
+  const std::vector<Stretch> parts = stretches({}, rate, {});
   const Glitches leaps = find_glitches(rate, parts, LeapOf::kOneValue);
   const std::vector<Stretch> stuck = stuck_runs(rate, parts);
   if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
   if (!stuck.empty()) faults.push_back({"stuck", in_words(stuck, time_s)});
   std::vector<Replacement> missing;
-  for (const Glitches::Leap& leap : leaps.few) missing.push_back({leap.sample, std::nan("")});
-  for (const Stretch& each : stuck)
-    for (std::size_t i = each.begin; i < each.end; ++i) missing.push_back({i, std::nan("")});
-  return with(rate, std::move(missing));
+  for (const Glitches::Leap& leap : leaps.few)
+    missing.push_back({{leap.sample, leap.sample + 1}, std::nan("")});
+  for (const Stretch& each : stuck) missing.push_back({each, std::nan("")});
+  if (std::optional<LongSeries> cleaned = with(rate, std::move(missing))) rate = *std::move(cleaned);
 }
 
 std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,
@@ -79,7 +83,8 @@ std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView
   if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
   std::vector<Replacement> between;
   for (const Glitches::Leap& leap : leaps.few)
-    between.push_back({leap.sample, leap.between + (rate.at(leap.sample) - error.at(leap.sample))});
+    between.push_back(
+        {{leap.sample, leap.sample + 1}, leap.between + (rate.at(leap.sample) - error.at(leap.sample))});
   return with(rate, std::move(between));
 }
 

@@ -1,7 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0
-// A rate without what the logger or the line did to it. Every command takes the same faults out and says so in the
-// same words: each function appends a line to `faults` for what it found, and returns the rate without that, or
-// nothing where there was none.
+// SPDX-License-Identifier: Apache-2.0 A rate without what the logger or the line did to it. Every command
+// takes the same faults out and says so in the same words: each function appends a line to `faults` for what
+// it found.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +17,14 @@ namespace ifog {
 
 using TimeOfSample = std::function<double(std::size_t)>;  // s, for the text
 
-// rate: rad/s, NaN where missing; parts: stretches without holes.
-// Before it is asked where the sensor rested, values that the rate repeats are missing: a sensor or logger that did
-// nothing, or a placeholder such as -999. That is eight samples or more, where nine of ten values stand once; or
-// two and more that leap away and back (glitches.h).
-[[nodiscard]] std::optional<LongSeries> without_repeats(const SeriesView& rate,
-                                                        std::span<const Stretch> parts,
-                                                        const TimeOfSample& time_s,
-                                                        std::vector<ValueFault>& faults);
+// Before it is asked where the sensor rested, values that the rate (rad/s, NaN where missing) repeats become
+// missing: a sensor or logger that did nothing, or a placeholder such as -999. That is eight samples or more,
+// where nine of ten values stand once; or two and more that leap away and back (glitches.h).
+void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
-// Of what is at rest, single samples that leap away and back stand between those next to them, unless there are too
-// many to be no noise. error: the rate less the reference, or the rate itself where there is none.
+// The rate with what stands between their neighbours in place of single samples that leap away and back,
+// unless there are too many to be no noise; nothing where there are none. error: the rate less the reference,
+// or the rate itself where there is none; parts: stretches at rest.
 [[nodiscard]] std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,
                                                       std::span<const Stretch> parts,
                                                       const TimeOfSample& time_s,

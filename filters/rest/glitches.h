@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0
-// Samples that leap away from those beside them and back, far beyond all noise: a single one, or some that all
-// have one value, as a placeholder has. A fault of the logger or of the line. They are no angle random walk, yet one of 1e5 times the noise makes N of a record a
-// thousand times too large.
+// SPDX-License-Identifier: Apache-2.0 Samples that leap away from those beside them and back, far beyond all
+// noise: a single one, or some that all have one value, as a placeholder has. A fault of the logger or of the
+// line. They are no angle random walk, yet one of 1e5 times the noise makes N of a record a thousand times
+// too large.
 #pragma once
 
 #include <cstddef>
@@ -29,15 +29,14 @@ struct Glitches {
   double most_times = 0.0;
 };
 
-enum class LeapOf {
-  kOneSample,
-  kOneValue
-};  // of two to seven samples: a placeholder, wherever the sensor moved
+// One sample; or two to seven of one value, as a placeholder has, wherever the sensor moved.
+enum class LeapOf { kOneSample, kOneValue };
 
-// parts: without holes, and for one sample at rest, as a blow is one too. What leaps stands between two that differ
-// by less than half of the leap, by more than 30 standard deviations: of Gaussian noise not one in 1e190. The deviation is that of the
-// record, or of the hundred samples about it where those are more than twice as loud: noise that grows louder
-// is no fault of the logger; and half the smallest step of a coarse sensor at least.
+// parts: without holes, and for one sample at rest, as a blow is one too. What leaps stands between two that
+// differ by less than half of the leap, by more than 30 standard deviations: of Gaussian noise not one in
+// 1e190. The deviation is that of the record, or of the hundred samples about it where those are more than
+// twice as loud: noise that grows louder is no fault of the logger; and half the smallest step of a coarse
+// sensor at least.
 [[nodiscard]] Glitches find_glitches(const SeriesView& rate_radps, std::span<const Stretch> parts,
                                      LeapOf of = LeapOf::kOneSample);
 

@@ -89,7 +89,8 @@ void find_wrapped(const std::vector<double>& values, const std::vector<double>& 
                                   " °/s above the others, none between: signed counts read as unsigned"});
 }
 
-// Sensors in turn differ by their biases all along. A dither is not in step with the samples for a whole record.
+// Sensors in turn differ by their biases all along. A dither is not in step with the samples for a whole
+// record.
 void find_interleaved(const std::vector<double>& values, std::vector<ValueFault>& found) {
   const auto variance = [&](std::size_t first, std::size_t apart) {
     double count = 0.0, sum = 0.0, squares = 0.0;

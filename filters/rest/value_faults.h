@@ -18,8 +18,8 @@ struct ValueFault {
   std::string text;  // one line for people
 };
 
-// rate: rad/s, NaN where missing; parts: its stretches at rest, without holes. In each stretch at most the first
-// million samples are looked at. Appended to `found`:
+// rate: rad/s, NaN where missing; parts: its stretches at rest, without holes. In each stretch at most the
+// first million samples are looked at. Appended to `found`:
 //   - held: nine of ten values stand for the same number of samples, two or more;
 //   - clipped: the largest or the smallest value is one sample in a hundred, and three times as frequent as
 //   the next one;

@@ -1,6 +1,5 @@
-// SPDX-License-Identifier: Apache-2.0
-// Cross-validation: effects by coefficients of all blocks, and by those that were fitted without the block's own
-// part of the record.
+// SPDX-License-Identifier: Apache-2.0 Cross-validation: effects by coefficients of all blocks, and by those
+// that were fitted without the block's own part of the record.
 #pragma once
 
 #include <vector>
@@ -17,8 +16,8 @@ std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& gri
                                                             const Columns& columns);
 
 // By block, what the effects that are corrected take more with the coefficients of the other folds than with
-// those of all blocks; about the mean of each record, for without that a channel far from zero would step from
-// fold to fold. coefficients: of all blocks, the constants first.
+// those of all blocks; about the mean of each record, for without that a channel far from zero would step
+// from fold to fold. coefficients: of all blocks, the constants first.
 Eigen::VectorXd held_out_change(const BlockData& data, const std::vector<Candidate>& effects,
                                 const NoiseShape& shape, const Eigen::VectorXd& coefficients);
 

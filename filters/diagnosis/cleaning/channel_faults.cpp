@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/cleaning/channel_faults.h"
+#include "filters/diagnosis/cleaning/steps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -48,8 +48,8 @@ std::optional<ChannelRange> usual_range(std::span<const double> column) {
   return range;
 }
 
-// By sample, whether the rule refuses what the channel says there, forwards in time or backwards. A record may
-// begin with a fault, so the rule learns from its first samples before it judges them.
+// By sample, whether the rule refuses what the channel says there, forwards in time or backwards. A record
+// may begin with a fault, so the rule learns from its first samples before it judges them.
 Flags refused(const Record& record, std::span<const double> column, const ChannelRange& range,
               bool forwards) {
   const std::size_t n = column.size();
@@ -68,8 +68,8 @@ Flags refused(const Record& record, std::span<const double> column, const Channe
   return found;
 }
 
-// Linear in time between the readings before and behind each run of faults; one of them where the other is missing.
-// What it was for longer than a minute nobody knows.
+// Linear in time between the readings before and behind each run of faults; one of them where the other is
+// missing. What it was for longer than a minute nobody knows.
 Samples interpolated(const Record& record, std::span<const double> column, const Flags& fault) {
   Samples values(column);
   const auto believed = [&](std::size_t i) { return std::isfinite(column[i]) && !fault[i]; };

@@ -4,11 +4,8 @@
 #include <utility>
 
 #include "filters/diagnosis/channels/derived_channels.h"
-#include "filters/diagnosis/cleaning/channel_faults.h"
-#include "filters/diagnosis/cleaning/even_stamps.h"
-#include "filters/diagnosis/cleaning/other_axes.h"
 #include "filters/diagnosis/cleaning/reference_delay.h"
-#include "filters/diagnosis/cleaning/turned.h"
+#include "filters/diagnosis/cleaning/steps.h"
 #include "filters/diagnosis/record/blocks.h"
 
 namespace ifog {

@@ -28,11 +28,11 @@ double error_in_means(std::span<const double> error) {
 void name_bias(const BlockGrid& grid, const JointFit& joint, double value, const std::string& axis,
                Diagnosis& diagnosis) {
   constexpr double kClear = 5.0;  // standard deviations
-  // A walk from zero has a third of its last variance on the mean; each Gauss-Markov process keeps its own.
+  // A walk from zero has a third of its last variance on the mean; each process of the flicker keeps its own.
   const double span_s = static_cast<double>(grid.used()) * grid.block_s;
   double variance = joint.covariance(0, 0) / static_cast<double>(grid.records.size());
   for (const NoisePosterior::Part& part : joint.noise.parts)
-    variance += part.weight * (part.white / span_s + part.walk * span_s / 3.0 + part.markov +
+    variance += part.weight * (part.white / span_s + part.walk * span_s / 3.0 +
                                part.flicker * static_cast<double>(joint.noise.flicker_s.size()));
   const double sigma = std::sqrt(variance);
   const bool clear = std::abs(value) > kClear * sigma;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What loggers do to a channel is undone, and what only looks like it is left alone.
-#include "filters/diagnosis/cleaning/channel_faults.h"
+#include "filters/diagnosis/cleaning/steps.h"
 
 #include <gtest/gtest.h>
 

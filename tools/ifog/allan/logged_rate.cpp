@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <stdexcept>
-#include <utility>
 
 #include "filters/allan/noise/curve_miss.h"
 #include "filters/allan/row_times.h"

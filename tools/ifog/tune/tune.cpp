@@ -175,8 +175,8 @@ std::string axis_label(const CaptureView& capture, std::size_t axis) {
   return capture.axes[axis].empty() ? "" : capture.axes[axis] + ": ";
 }
 
-// Single leaps are out of the capture afterwards, repaired holds what is there instead. What else the values say
-// of the program that logged them is noted: what is fitted to such a record is no gyro's noise.
+// Single leaps are out of the capture afterwards, repaired holds what is there instead. What else the values
+// say of the program that logged them is noted: what is fitted to such a record is no gyro's noise.
 void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest& rest,
                      std::vector<LongSeries>& repaired, std::vector<std::string>& notes) {
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {

@@ -36,13 +36,10 @@ void LongTable::leave_out_unknown(const std::string& path) {
 void LongTable::leave_out_repeats() {
   const SeriesView times = time_s;
   share_out(columns.size(), std::thread::hardware_concurrency(), [&](std::size_t c) {
-    LongColumn& column = columns[c];
     std::string axis;
-    if (!axis_of(column.name, "rate", axis) && !axis_of(column.name, "raw", axis)) return;
-    std::optional<LongSeries> cleaned = without_repeats(
-        column.values, stretches({}, column.values, {}),
-        [&](std::size_t row) { return origin.told(times.at(row)); }, column.repeats);
-    if (cleaned) column.values = *std::move(cleaned);
+    if (axis_of(columns[c].name, "rate", axis))
+      ifog::leave_out_repeats(
+          columns[c].values, [&](std::size_t row) { return origin.told(times.at(row)); }, columns[c].repeats);
   });
 }
 
