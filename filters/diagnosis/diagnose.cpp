@@ -52,7 +52,6 @@ class Run {
     look_at_channels();
     separate_dead_zone();
     search({});
-    subtract_found();
     separate_lines();
     separate_hysteresis();
     drop_what_a_capture_denies();
@@ -92,9 +91,27 @@ class Run {
     if (!options_.allow_proxies) doubt_proxies(reconstructed_, found_);
   }
 
-  // `after` and `held_out` of the errors as the chosen effects leave them.
+  // Of the errors, what the effects as the search has them leave.
   void subtract_found() {
-    subtract_effects(data_, candidates_of(found_.chosen), found_.noise.shape, found_.coefficients, errors_);
+    const std::vector<Candidate> chosen = candidates_of(found_.chosen);
+    result_.effects.clear();
+    for (const Effect& effect : effects_of(data_, chosen, found_.coefficients, options_.axis))
+      result_.effects.emplace_back().effect = effect;
+    result_.ranges = ranges_of(data_, result_.effects);
+    if (data_.reference >= 0) result_.bias = ModelParameter{"coefficient", mean_of_corrected(), 0.0, "rad/s"};
+    subtract_effects(records_, data_, found_, result_, errors_);
+  }
+
+  // What the effects that are corrected leave on the mean.
+  [[nodiscard]] double mean_of_corrected() const {
+    const std::vector<Candidate> chosen = candidates_of(found_.chosen);
+    Eigen::VectorXd coefficients = found_.coefficients;
+    Eigen::Index at = data_.grid.constants();
+    for (const Candidate& each : chosen) {
+      if (!each.corrected()) coefficients.segment(at, each.width()).setZero();
+      at += each.width();
+    }
+    return mean_left(data_.grid, design(data_, chosen), coefficients);
   }
 
   // Everything but effect `at` is fitted again.
@@ -125,7 +142,9 @@ class Run {
   // Lines are looked for in what the effects leave; a slow one then competes with them in a second search. A
   // peak that slow noise or an effect made is no line once both are in the fit.
   void separate_lines() {
-    if (!data_.grid.dwells) lines_ = coherent_lines(errors_, data_.grid, options_.significance * kOfLines);
+    if (data_.grid.dwells) return;
+    subtract_found();
+    lines_ = coherent_lines(errors_, data_.grid, options_.significance * kOfLines);
     if (std::ranges::any_of(errors_, [](const auto& one) { return one.before.size() > kMostTransformed; }))
       say("lines are sought in the first " + std::to_string(kMostTransformed) + " samples of a record");
     take_out(lines_.fast, data_.grid.sample_s, errors_);
@@ -136,7 +155,6 @@ class Run {
       if (lines_.slow.size() == before) break;
       if (lines_.slow.empty()) search({});
     }
-    subtract_found();
   }
 
   // A loop is no effect that the daemon corrects, but what it leaves is searched again without it.
@@ -147,7 +165,6 @@ class Run {
     take_out(*result_.hysteresis, reconstructed_, data_.grid);
     reconstructed_.grid.error = data_.grid.error;
     search(lines_.slow);
-    subtract_found();
   }
 
   void drop_what_a_capture_denies() {
@@ -158,28 +175,16 @@ class Run {
         effects.push_back(effect_of(data_, found_.chosen[i].candidate));
       say(denied_in_words(effects, *denied, records_));
       for (std::size_t k = denied->effects.size(); k-- > 0;) drop(denied->effects[k]);
-      subtract_found();
     }
   }
 
   void fit_jointly() {
     joint_ = settle(reconstructed_, found_);
-    subtract_found();
     report_effects();
-    if (data_.reference >= 0)
-      name_bias(data_.grid, joint_, errors_, uncorrected_mean(), options_.axis, result_);
+    if (data_.reference >= 0) name_bias(data_.grid, joint_, mean_of_corrected(), options_.axis, result_);
     result_.covariance = covariance_of(result_.effects, joint_, data_.grid.constants(), parts_.size());
-    count_rates_from_the_bias(errors_, result_.effects, result_.bias.has_value());
-    run_written_model(records_, result_, data_.grid.sample_s, errors_);
-    leave_as_written(errors_);
+    subtract_effects(records_, data_, found_, result_, errors_);
     write_before_and_after(errors_, data_.grid.sample_s, data_.reference >= 0, result_);
-  }
-
-  [[nodiscard]] double uncorrected_mean() const {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < parts_.size(); ++i)
-      if (!found_.chosen[i].candidate.corrected()) sum += parts_[i].mean();
-    return sum;
   }
 
   // Of the effects that are corrected the one that its own error bar leaves to chance; none when there is
@@ -200,20 +205,7 @@ class Run {
   std::optional<std::size_t> what_makes_it_worse() {
     if (const auto uncertain = least_proven()) return uncertain;
     if (!grows_over_many(result_, errors_)) return std::nullopt;
-    if (const auto harmful =
-            most_harmful_effect(records_, result_, found_.chosen.size(), data_.grid.sample_s, errors_))
-      return harmful;
-    return least_certain();
-  }
-
-  // Of the effects that are corrected the one that the fit would miss least.
-  [[nodiscard]] std::optional<std::size_t> least_certain() const {
-    std::optional<std::size_t> least;
-    for (std::size_t i = 0; i < found_.chosen.size(); ++i) {
-      if (!found_.chosen[i].candidate.corrected()) continue;
-      if (!least || found_.chosen[i].likelihood_ratio < found_.chosen[*least].likelihood_ratio) least = i;
-    }
-    return least;
+    return least_missed_effect(records_, result_, found_.chosen.size(), data_.grid.sample_s);
   }
 
   void report_effects() {
@@ -238,7 +230,8 @@ class Run {
     result_.channel_delays =
         delayed_channels(reconstructed_, candidates_of(found_.chosen), found_.noise.shape);
     for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
-    result_.unexplained = describe_rest(errors_, found_.noise, data_.grid, options_.significance);
+    result_.unexplained =
+        describe_rest(errors_, found_.noise, data_.grid, options_.significance, result_.noise_changes);
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
     say(unexplained_beside_claims(result_, records_.size()));

@@ -151,24 +151,11 @@ class Measuring {
     return effects;
   }
 
-  // Mean of what the effects leave: see count_rates_from_the_bias(), which has it of the samples.
-  [[nodiscard]] double bias(const JointFit& joint) const {
-    const BlockGrid& grid = data_.grid;
-    const Columns columns = design(data_, all());
-    const Eigen::Index first = 1 + grid.constants();
-    const Eigen::Index effects = columns.cols() - first;
-    const Eigen::VectorXd left =
-        columns.col(0) - columns.rightCols(effects) * joint.values.segment(grid.constants(), effects);
-    double sum = 0.0;
-    for (std::size_t b = 0; b < grid.size(); ++b)
-      if (grid.valid[b]) sum += left[static_cast<Eigen::Index>(b)];
-    return grid.used() > 0 ? sum / static_cast<double>(grid.used()) : 0.0;
-  }
-
   void report(const JointFit& joint) {
     const auto count = static_cast<Eigen::Index>(model_.size());
     const Eigen::Index first = data_.grid.constants();
-    const double rates_from = bias(joint);
+    // Beside a model without a bias the rates count from what the effects leave on the mean.
+    const double rates_from = mean_left(data_.grid, design(data_, all()), joint.values);
     std::vector<FoundEffect> found;
     for (Eigen::Index i = 0; i < count; ++i) {
       Effect effect = effect_of(data_, model_[static_cast<std::size_t>(i)]);

@@ -37,10 +37,10 @@ void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& mo
     for (std::size_t j = 0; j < old; ++j) covariance[i * (old + added) + j] = model.covariance[i * old + j];
   }
   if (bias) covariance.back() = diagnosis.bias->std_error * diagnosis.bias->std_error;
-  for (std::size_t i = 0; i < fitted; ++i) {
-    for (std::size_t j = 0; j < fitted; ++j) {
+  // Before the joint fit nothing is known of them.
+  for (std::size_t i = 0; i < fitted && diagnosis.covariance.size() == all * all; ++i) {
+    for (std::size_t j = 0; j < fitted; ++j)
       covariance[(old + i) * (old + added) + old + j] = diagnosis.covariance[rows[i] * all + rows[j]];
-    }
   }
   model.covariance = std::move(covariance);
   for (const ChannelRange& range : diagnosis.ranges) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "filters/model_file/effect_parameters.h"
+
 namespace ifog {
 namespace {
 
@@ -64,9 +66,7 @@ bool describes_noise(Form form) { return form >= Form::kGaussMarkov; }
 
 bool is_of_time(Form form) { return form == Form::kWarmUp || form == Form::kRateRamp || form == Form::kBias; }
 
-bool carries_over(Form form) {
-  return (has_channel(form) && form != Form::kDeadZone) || is_of_time(form) || form == Form::kRebuiltRamp;
-}
+bool carries_over(Form form) { return is_corrected(name_of(form)); }
 
 int power_of(Form form) {
   switch (form) {

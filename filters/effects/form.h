@@ -73,10 +73,7 @@ std::string_view name_of(Form form);
 [[nodiscard]] bool describes_noise(Form form);  // nothing to subtract
 [[nodiscard]] bool is_of_time(Form form);       // a function of time alone that is subtracted
 
-// False for what happened once in a record, or has a phase that the next record does not share: it is
-// reported and removed from that record, and not applied online. So is a dead zone: what the sensor did not see
-// nobody can give back. A warm-up's origin is power-up, so it is corrected where that is known. Of a ramp in
-// time the slope carries over, and where it began is a part of the bias.
+// Whether it is corrected online; see is_corrected() in filters/model_file/effect_parameters.h.
 [[nodiscard]] bool carries_over(Form form);
 
 // The power of a polynomial form, 0 for others.
@@ -93,7 +90,8 @@ inline constexpr std::string_view kHalfWidth = "half_width";
 [[nodiscard]] std::string_view time_constant_name(Form form);
 // Name of the time constant; a product's is that of its second factor.
 [[nodiscard]] std::string_view time_constant_name(const Effect& effect);
-// Name of the second time constant of a form that may have one: "average_s" of band_power, "second_lag_s" of lagged.
+// Name of the second time constant of a form that may have one: "average_s" of band_power, "second_lag_s" of
+// lagged.
 [[nodiscard]] std::string_view second_time_constant_name(Form form);
 [[nodiscard]] std::string_view second_time_constant_name(const Effect& effect);
 

@@ -4,6 +4,8 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
+#include "filters/model_file/effect_parameters.h"
+
 namespace ifog {
 namespace {
 
@@ -38,6 +40,42 @@ std::string covariance_flaw(const std::vector<double>& values, std::size_t size)
   correlation.diagonal().array() += kRounding * static_cast<double>(size);
   return correlation.llt().info() == Eigen::Success ? ""
                                                     : "a combination of parameters has a negative variance";
+}
+
+std::vector<std::size_t> rows_in_file(const std::vector<Effect>& effects) {
+  std::vector<std::size_t> rows;
+  std::size_t row = 0;
+  for (const Effect& effect : effects) {
+    const std::size_t end = row + effect.parameters.size();
+    for (; row < end; ++row)
+      if (is_corrected(effect.form)) rows.push_back(row);
+  }
+  return rows;
+}
+
+std::vector<double> of_rows(const std::vector<double>& values, std::size_t size,
+                            std::span<const std::size_t> rows) {
+  std::vector<double> picked;
+  picked.reserve(rows.size() * rows.size());
+  for (const std::size_t row : rows)
+    for (const std::size_t column : rows) picked.push_back(values[row * size + column]);
+  return picked;
+}
+
+std::vector<double> of_all_parameters(const std::vector<double>& in_file,
+                                      const std::vector<Effect>& effects) {
+  std::vector<double> errors;
+  for (const Effect& effect : effects)
+    for (const ModelParameter& each : effect.parameters) errors.push_back(each.std_error);
+  const std::size_t size = errors.size();
+  std::vector<double> all(size * size, 0.0);
+  for (std::size_t i = 0; i < size; ++i) all[i * size + i] = errors[i] * errors[i];
+  if (in_file.empty()) return all;
+  const std::vector<std::size_t> rows = rows_in_file(effects);
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (std::size_t j = 0; j < rows.size(); ++j)
+      all[rows[i] * size + rows[j]] = in_file[i * rows.size() + j];
+  return all;
 }
 
 }  // namespace ifog

@@ -1,10 +1,13 @@
-// SPDX-License-Identifier: Apache-2.0
-// Whether numbers read from outside are a covariance matrix.
+// SPDX-License-Identifier: Apache-2.0 The covariance of a model's parameters: which of it a file has, and
+// whether numbers read from one are such a matrix.
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <string>
 #include <vector>
+
+#include "filters/model_file/model.h"
 
 namespace ifog {
 
@@ -12,5 +15,17 @@ namespace ifog {
 // the row. Correlations are compared, so that units do not matter; what rounding does to a matrix of some
 // hundred rows passes.
 std::string covariance_flaw(const std::vector<double>& values, std::size_t size);
+
+// Of all parameters of the effects in their order, those that a file has covariances of: of effects that are
+// corrected online. Of what is reported only, such as a line, the standard errors say enough.
+std::vector<std::size_t> rows_in_file(const std::vector<Effect>& effects);
+
+// The rows and columns `rows` of a size × size matrix.
+std::vector<double> of_rows(const std::vector<double>& values, std::size_t size,
+                            std::span<const std::size_t> rows);
+
+// The other way: a file's matrix among all parameters of the effects, each of the others by its own error, as
+// all are where it is empty.
+std::vector<double> of_all_parameters(const std::vector<double>& in_file, const std::vector<Effect>& effects);
 
 }  // namespace ifog

@@ -63,6 +63,12 @@ const FormRules* rules_of_form(std::string_view form) {
   return nullptr;
 }
 
+bool is_corrected(std::string_view form) {
+  constexpr std::array<std::string_view, 5> kOthers = {"earth_rate", "rate_ramp", "warm_up", "bias",
+                                                       "rebuilt_ramp"};
+  return is_of_channel(form) || std::find(kOthers.begin(), kOthers.end(), form) != kOthers.end();
+}
+
 bool is_of_channel(std::string_view form) {
   constexpr std::array<std::string_view, 15> kForms = {
       "linear", "quadratic", "cubic",    "quintic", "septic", "rate",       "second_rate", "lagged",

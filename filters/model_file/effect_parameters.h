@@ -26,6 +26,11 @@ const std::vector<FormRules>& form_rules();
 // Null for a form that nobody knows.
 const FormRules* rules_of_form(std::string_view form);
 
+// False for what happened once in a record, or has a phase that the next record does not share: it is
+// reported and not corrected online. So is a dead zone: what the sensor did not see nobody can give back; and
+// what only says of the noise. A warm-up's origin is power-up, so it is corrected where that is known. Of a
+// ramp in time the slope carries over, and where it began is a part of the bias.
+[[nodiscard]] bool is_corrected(std::string_view form);
 // Whether an effect of this form is of a channel, without which nothing can be subtracted.
 [[nodiscard]] bool is_of_channel(std::string_view form);
 // What a product can be with, besides its own channel.

@@ -77,7 +77,9 @@ struct Model {
   std::map<std::string, NoiseTerms> noise;  // by axis
   std::optional<FilterSettings> filter;     // from `ifog tune`
   std::vector<Effect> effects;
-  std::vector<double> covariance;  // of all effect parameters in order, row-major, SI; empty when unknown
+  // Of all effect parameters in order, row-major, SI; empty when unknown. A file has it of the effects that
+  // are corrected online, or, as files had it before, of all.
+  std::vector<double> covariance;
   std::vector<ChannelRange> ranges;
   ModelSource source;
 

@@ -308,6 +308,25 @@ Effect read_effect(Table table) {
   return effect;
 }
 
+// Of the parameters of the effects that are corrected online, or of all.
+void read_covariance(Table& table, std::size_t parameters, Model& model) {
+  const std::size_t numbers = model.covariance.size();
+  if (numbers == 0) return;
+  const std::size_t corrected = rows_in_file(model.effects).size();
+  const bool of_all = numbers == parameters * parameters;
+  if (!of_all && numbers != corrected * corrected) {
+    table.fail(
+        "covariance", nullptr,
+        "expected " + std::to_string(corrected * corrected) +
+            " numbers, the square of the number of parameters of the effects that are corrected, found " +
+            std::to_string(numbers));
+  }
+  if (const std::string flaw = covariance_flaw(model.covariance, of_all ? parameters : corrected);
+      !flaw.empty())
+    table.fail("covariance", nullptr, "expected a covariance matrix, symmetric and positive: " + flaw);
+  if (!of_all) model.covariance = of_all_parameters(model.covariance, model.effects);
+}
+
 }  // namespace
 
 Model parse_model(std::string_view text, const std::string& name) {
@@ -328,14 +347,7 @@ Model parse_model(std::string_view text, const std::string& name) {
     model.effects.push_back(read_effect(std::move(effect)));
     parameters += model.effects.back().parameters.size();
   }
-  if (!model.covariance.empty() && model.covariance.size() != parameters * parameters) {
-    table.fail("covariance", nullptr,
-               "expected " + std::to_string(parameters * parameters) +
-                   " numbers, the square of the number of effect parameters, found " +
-                   std::to_string(model.covariance.size()));
-  }
-  if (const std::string flaw = covariance_flaw(model.covariance, parameters); !flaw.empty())
-    table.fail("covariance", nullptr, "expected a covariance matrix, symmetric and positive: " + flaw);
+  read_covariance(table, parameters, model);
   for (Table& item : table.tables("range")) {
     ChannelRange range;
     range.channel = channel_of(item, "channel", "minus_channel");

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <cstdio>
 #include <type_traits>
 
 #include "filters/model_file/channel_names.h"
+#include "filters/model_file/covariance.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/sha256.h"
 #include "filters/model_file/toml_text.h"
@@ -112,7 +114,11 @@ std::string model_text(const Model& model) {
   Text text;
   text.line("version", std::to_string(Model::kVersion));
   text.words("sensor", model.sensor);
-  if (!model.covariance.empty()) text.line("covariance", toml_list(model.covariance));
+  if (!model.covariance.empty()) {
+    const auto size = static_cast<std::size_t>(std::lround(std::sqrt(double(model.covariance.size()))));
+    const std::vector<double> covariance = of_rows(model.covariance, size, rows_in_file(model.effects));
+    if (!covariance.empty()) text.line("covariance", toml_list(covariance));
+  }
   for (const auto& [axis, noise] : model.noise) write_noise(text, axis, noise);
   if (model.filter) write_filter(text, *model.filter);
   for (const Effect& effect : model.effects) write_effect(text, effect);

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "filters/rest/runs.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
@@ -21,6 +23,7 @@ constexpr double kOfMedian = 1.4826 / 1.224744871391589;
 constexpr std::size_t kNear = 64, kLeast = 16;
 constexpr double kLouder = 2.0;
 constexpr std::size_t kOneInAtMost = 1000;
+constexpr std::size_t kLongest = 7;       // samples of one value: of more it is a value that was repeated
 constexpr double kRounding = 1e-12;       // of a value
 constexpr std::size_t kEnough = 100'000;  // second differences whose median is as good as that of all
 
@@ -118,7 +121,7 @@ class Yardstick {
 
 }  // namespace
 
-Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts) {
+Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, LeapOf of) {
   Glitches out;
   Yardstick yardstick(rate, parts);
   std::size_t samples = 0;
@@ -127,32 +130,21 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts) {
   const std::size_t most = samples / kOneInAtMost + 1;
   std::optional<std::size_t> last;
   const double far = kFar * yardstick.least();
-  for_each_middle(rate, parts, [&](std::size_t i, const Middle& middle) {
-    if (!(middle.away > far) || middle.apart >= 0.5 * middle.away) return;
-    const double deviation = yardstick.at(i);
-    if (!(deviation > 0.0) || middle.away <= kFar * deviation) return;
+  for_each_run(rate, parts, [&](const Run& run) {
+    const double between = 0.5 * (run.before + run.after), away = std::abs(run.value - between);
+    if (run.length > kLongest || (run.length == 1) != (of == LeapOf::kOneSample)) return;
+    if (!(away > far) || std::abs(run.after - run.before) >= 0.5 * away) return;
+    const double deviation = yardstick.at(run.begin);
+    if (!(deviation > 0.0) || away <= kFar * deviation) return;
     // Between two that leap the one in the middle stands apart as well.
-    if (last && *last + 1 == i) return;
-    last = i;
-    if (out.count++ == 0) out.first = i;
-    out.most_times = std::max(out.most_times, middle.away / deviation);
-    if (out.count <= most) out.few.push_back({i, middle.between});
+    if (last && *last + 1 == run.begin) return;
+    last = run.begin + run.length - 1;
+    if (out.count == 0) out.first = run.begin;
+    out.count += run.length;
+    out.most_times = std::max(out.most_times, away / deviation);
+    for (std::size_t i = run.begin; i <= *last && out.count <= most; ++i) out.few.push_back({i, between});
   });
   if (out.count > most) out.few.clear();
-  return out;
-}
-
-std::optional<LongSeries> without_leaps(const SeriesView& rate, const Glitches& glitches) {
-  if (glitches.few.empty()) return std::nullopt;
-  std::optional<LongSeries> out(std::in_place);
-  auto leap = glitches.few.begin();
-  std::vector<double> repaired;
-  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
-    repaired.assign(values.begin(), values.end());
-    for (; leap != glitches.few.end() && leap->sample < first + values.size(); ++leap)
-      repaired[leap->sample - first] = leap->between;
-    out->add(repaired);
-  });
   return out;
 }
 

@@ -1,25 +1,24 @@
-// SPDX-License-Identifier: Apache-2.0
-// Single samples that leap away from those beside them and back, far beyond all noise: a fault of the logger
-// or of the line. They are no angle random walk, yet one of 1e5 times the noise makes N of a record a
-// thousand times too large.
+// SPDX-License-Identifier: Apache-2.0 Samples that leap away from those beside them and back, far beyond all
+// noise: a single one, or some that all have one value, as a placeholder has. A fault of the logger or of the
+// line. They are no angle random walk, yet one of 1e5 times the noise makes N of a record a thousand times
+// too large.
 #pragma once
 
 #include <cstddef>
 #include <functional>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "filters/allan/stretches.h"
-#include "filters/series/long_series.h"
+#include "filters/series/series_view.h"
 
 namespace ifog {
 
 struct Glitches {
   struct Leap {
     std::size_t sample = 0;
-    double between = 0.0;  // the middle of the samples beside it, rad/s
+    double between = 0.0;  // the middle of the values beside it, rad/s
   };
   std::size_t count = 0;
   std::size_t first = 0;  // sample; meaningful when count > 0
@@ -30,18 +29,19 @@ struct Glitches {
   double most_times = 0.0;
 };
 
-// parts: what is at rest and without holes. A sample between two that differ by less than half of its leap,
-// by more than 30 standard deviations: of Gaussian noise not one in 1e190. The deviation is that of the
-// record, or of the hundred samples about it where those are more than twice as loud: noise that grows louder
-// is no fault of the logger; and half the smallest step of a coarse sensor at least.
-[[nodiscard]] Glitches find_glitches(const SeriesView& rate_radps, std::span<const Stretch> parts);
+// One sample; or two to seven of one value, as a placeholder has, wherever the sensor moved.
+enum class LeapOf { kOneSample, kOneValue };
 
-// The rate with what stands between its neighbours in place of each leap; nothing where there is none, or too
-// many to be no noise.
-[[nodiscard]] std::optional<LongSeries> without_leaps(const SeriesView& rate_radps, const Glitches& glitches);
+// parts: without holes, and for one sample at rest, as a blow is one too. What leaps stands between two that
+// differ by less than half of the leap, by more than 30 standard deviations: of Gaussian noise not one in
+// 1e190. The deviation is that of the record, or of the hundred samples about it where those are more than
+// twice as loud: noise that grows louder is no fault of the logger; and half the smallest step of a coarse
+// sensor at least.
+[[nodiscard]] Glitches find_glitches(const SeriesView& rate_radps, std::span<const Stretch> parts,
+                                     LeapOf of = LeapOf::kOneSample);
 
-// "1 sample leaps away and back (at 100.3 s, 1e+05 times the noise); ..." and whether it is left out, as
-// without_leaps() does; empty for none. time_s: of a sample.
+// "1 sample leaps away and back (at 100.3 s, 1e+05 times the noise); ..." and whether it is left out;
+// empty for none. time_s: of a sample.
 [[nodiscard]] std::string in_words(const Glitches& glitches,
                                    const std::function<double(std::size_t)>& time_s);
 

@@ -8,13 +8,12 @@
 #include <map>
 #include <numbers>
 
-#include "filters/units/told_time.h"
+#include "filters/rest/runs.h"
 
 namespace ifog {
 namespace {
 
 constexpr std::size_t kMostSamples = 1'000'000, kFewSamples = 256;
-constexpr std::size_t kStuck = 8;  // equal samples in a row
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMostBias_radps = 5.0 * kDegree, kMostNoise_radps = 0.2 * kDegree;
 
@@ -24,63 +23,31 @@ std::string six(double value) {
   return text.data();
 }
 
-// The values of the stretches, one after the other, with the sample of each.
-struct Values {
-  std::vector<double> rate;
-  std::vector<std::size_t> sample;
-};
-
-Values values_of(const SeriesView& rate, std::span<const Stretch> parts) {
-  Values out;
-  std::vector<double> room;
+// The values of the stretches, one after the other.
+std::vector<double> values_of(const SeriesView& rate, std::span<const Stretch> parts) {
+  std::vector<double> out, room;
   for (const Stretch& part : parts) {
-    const std::size_t count = std::min(part.size(), kMostSamples - out.rate.size());
+    const std::size_t count = std::min(part.size(), kMostSamples - out.size());
     for (std::size_t at = 0; at < count; at += kSeriesPiece) {
       const auto piece = rate.piece(part.begin + at, std::min(kSeriesPiece, count - at), room);
-      out.rate.insert(out.rate.end(), piece.begin(), piece.end());
+      out.insert(out.end(), piece.begin(), piece.end());
     }
-    for (std::size_t i = 0; i < count; ++i) out.sample.push_back(part.begin + i);
   }
   return out;
 }
 
-// Equal values in a row.
-struct Run {
-  std::size_t begin = 0, length = 0;
-};
-std::vector<Run> runs_of(const std::vector<double>& values) {
-  std::vector<Run> runs;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i == 0 || values[i] != values[i - 1]) runs.push_back({i, 0});
-    ++runs.back().length;
-  }
-  return runs;
-}
-
-void find_held(const Values& values, double period_s, const std::function<double(std::size_t)>& time_s,
-               std::vector<ValueFault>& found) {
-  const std::vector<Run> runs = runs_of(values.rate);
+void find_held(const std::vector<double>& values, double period_s, std::vector<ValueFault>& found) {
   std::map<std::size_t, std::size_t> lengths;
-  std::size_t stuck = 0, longest = 0, first = 0;
-  for (const Run& run : runs) {
-    ++lengths[run.length];
-    if (run.length < kStuck) continue;
-    if (stuck++ == 0) first = run.begin;
-    longest = std::max(longest, run.length);
-  }
+  std::size_t runs = 0;
+  const Stretch all{0, values.size()};
+  for_each_run(values, {&all, 1}, [&](const Run& run) { ++runs, ++lengths[run.length]; });
   const auto usual = std::max_element(lengths.begin(), lengths.end(),
                                       [](const auto& a, const auto& b) { return a.second < b.second; });
-  const bool nearly_all = 10 * usual->second >= 9 * runs.size() && runs.size() > 16;
-  if (nearly_all && usual->first > 1)
-    found.push_back({"held", "each value stands " + std::to_string(usual->first) +
-                                 " times: the sensor's own rate is " +
-                                 six(1.0 / (period_s * static_cast<double>(usual->first))) +
-                                 " Hz, and figures below that period are the logger's"});
-  if (nearly_all && usual->first == 1 && stuck > 0)
-    found.push_back({"stuck", "stands still for up to " + std::to_string(longest) + " samples, " +
-                                  std::to_string(stuck) + (stuck == 1 ? " time" : " times") + ", first at " +
-                                  told_time(time_s(values.sample[first])) +
-                                  " s: the sensor or the logger repeated a value"});
+  if (10 * usual->second < 9 * runs || runs <= 16 || usual->first == 1) return;
+  found.push_back({"held", "each value stands " + std::to_string(usual->first) +
+                               " times: the sensor's own rate is " +
+                               six(1.0 / (period_s * static_cast<double>(usual->first))) +
+                               " Hz, and figures below that period are the logger's"});
 }
 
 void find_clipped(std::vector<double> sorted, std::vector<ValueFault>& found) {
@@ -122,7 +89,8 @@ void find_wrapped(const std::vector<double>& values, const std::vector<double>& 
                                   " °/s above the others, none between: signed counts read as unsigned"});
 }
 
-// Sensors in turn differ by their biases all along. A dither is not in step with the samples for a whole record.
+// Sensors in turn differ by their biases all along. A dither is not in step with the samples for a whole
+// record.
 void find_interleaved(const std::vector<double>& values, std::vector<ValueFault>& found) {
   const auto variance = [&](std::size_t first, std::size_t apart) {
     double count = 0.0, sum = 0.0, squares = 0.0;
@@ -175,20 +143,19 @@ void find_implausible(const std::vector<double>& values, double period_s, std::v
 
 }  // namespace
 
-std::vector<ValueFault> value_faults(const SeriesView& rate, std::span<const Stretch> parts, double period_s,
-                                     const std::function<double(std::size_t)>& time_s) {
-  std::vector<ValueFault> found;
-  const Values values = values_of(rate, parts);
-  if (values.rate.size() < kFewSamples) return found;
-  std::vector<double> sorted = values.rate;
+void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, double period_s,
+                       std::vector<ValueFault>& found) {
+  const std::vector<double> values = values_of(rate, parts);
+  if (values.size() < kFewSamples) return;
+  std::vector<double> sorted = values;
   std::sort(sorted.begin(), sorted.end());
-  if (sorted.front() == sorted.back()) return found;
-  find_held(values, period_s, time_s, found);
-  find_wrapped(values.rate, sorted, found);
-  if (found.empty()) find_interleaved(values.rate, found);
+  if (sorted.front() == sorted.back()) return;
+  const std::size_t before = found.size();
+  find_held(values, period_s, found);
+  find_wrapped(values, sorted, found);
+  if (found.size() == before) find_interleaved(values, found);
   find_clipped(std::move(sorted), found);
-  find_implausible(values.rate, period_s, found);
-  return found;
+  find_implausible(values, period_s, found);
 }
 
 }  // namespace ifog

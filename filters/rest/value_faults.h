@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <span>
 #include <string>
 #include <vector>
@@ -15,14 +14,13 @@
 namespace ifog {
 
 struct ValueFault {
-  std::string name;  // held, stuck, clipped, wrapped, interleaved, unit, moving
+  std::string name;  // held, clipped, wrapped, interleaved, unit, moving; of cleaned_rate.h leaps, stuck
   std::string text;  // one line for people
 };
 
-// rate: rad/s, NaN where missing; parts: its stretches at rest, without holes; time_s: of a sample, for the
-// text. In each stretch at most the first million samples are looked at. Found:
+// rate: rad/s, NaN where missing; parts: its stretches at rest, without holes. In each stretch at most the
+// first million samples are looked at. Appended to `found`:
 //   - held: nine of ten values stand for the same number of samples, two or more;
-//   - stuck: eight equal samples or more in a row, where nine of ten neighbours differ;
 //   - clipped: the largest or the smallest value is one sample in a hundred, and three times as frequent as
 //   the next one;
 //   - wrapped: one step in a hundred is most of the range of the values, whose middle is empty: signed counts
@@ -30,8 +28,7 @@ struct ValueFault {
 //   - interleaved: around the means of every second, third or fourth sample values scatter by less than half of what all do;
 //   - unit: the mean at rest is beyond 5 °/s, the worst bias of a MEMS gyro;
 //   - moving: means of 1 s scatter by more than 0.2 °/s, beyond the noise of any gyro.
-[[nodiscard]] std::vector<ValueFault> value_faults(const SeriesView& rate, std::span<const Stretch> parts,
-                                                   double period_s,
-                                                   const std::function<double(std::size_t)>& time_s);
+void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, double period_s,
+                       std::vector<ValueFault>& found);
 
 }  // namespace ifog

@@ -5,8 +5,6 @@
 #include <array>
 #include <cmath>
 #include <numeric>
-#include <tuple>
-#include <utility>
 
 #include "filters/linear/least_squares.h"
 #include "filters/linear/projection.h"
@@ -38,70 +36,6 @@ Eigen::VectorXd without_fold(Columns white, const std::vector<int>& fold, int he
   return scale.asDiagonal() * shortest_coefficients(scaled, white.col(0));
 }
 
-// What is smooth at a sample, from means over blocks: straight lines between means would leave of a swing
-// what beats with the blocks (a hundredth of it at ten blocks a period, where this leaves a thousandth), and
-// that is a line.
-class BetweenBlocks {
- public:
-  // values: by block. Blocks of one sample, and dwells, are taken as they are.
-  BetweenBlocks(const BlockGrid& grid, const BlockRange& record, const Eigen::VectorXd& values)
-      : values_(values.segment(record.row(), record.rows())) {
-    const bool means = !grid.dwells && grid.block_s > 1.5 * grid.sample_s;
-    const Eigen::Index n = values_.size();
-    if (!means || n < 4) return;
-    // A mean lies off its middle by the curvature over 24.
-    const Eigen::VectorXd curvature =
-        values_.head(n - 2) - 2.0 * values_.segment(1, n - 2) + values_.tail(n - 2);
-    values_.segment(1, n - 2) -= curvature / 24.0;
-    cubic_ = true;
-  }
-
-  // at: in blocks from the middle of the first.
-  [[nodiscard]] double operator()(double at) const {
-    const Eigen::Index last = values_.size() - 1;
-    const double place = std::clamp(at, 0.0, static_cast<double>(last));
-    const auto low = static_cast<Eigen::Index>(place);
-    const Eigen::Index high = std::min(low + 1, last);
-    const double x = place - static_cast<double>(low);
-    const double straight = values_[low] + x * (values_[high] - values_[low]);
-    if (!cubic_ || low < 1 || low + 2 > last || x == 0.0) return straight;
-    // Lagrange's cubic through four.
-    const double before = values_[low - 1], beyond = values_[low + 2];
-    return -x * (x - 1.0) * (x - 2.0) / 6.0 * before +
-           (x + 1.0) * (x - 1.0) * (x - 2.0) / 2.0 * values_[low] -
-           (x + 1.0) * x * (x - 2.0) / 2.0 * values_[high] + (x + 1.0) * x * (x - 1.0) / 6.0 * beyond;
-  }
-
- private:
-  Eigen::VectorXd values_;
-  bool cubic_ = false;
-};
-
-// By block, each from the coefficients of the others' folds; a step or a line helps to fit them and is then
-// left where it is, as online. Each fold's fit has a constant of its own: without it a channel far from zero
-// would step from fold to fold.
-// second: by the coefficients of all folds.
-std::pair<Eigen::VectorXd, Eigen::VectorXd> held_out_effects(const BlockGrid& grid, const NoiseShape& shape,
-                                                             const Columns& columns,
-                                                             const std::vector<Candidate>& effects,
-                                                             const Eigen::VectorXd& of_all) {
-  const std::vector<Eigen::VectorXd> coefficients = coefficients_without_each_fold(grid, shape, columns);
-  const std::vector<int> fold = fold_of_block(grid);
-  Columns centred = columns.rightCols(columns.cols() - 1 - grid.constants());
-  centre_records(grid, centred);
-  Eigen::Index at = 0;
-  for (const Candidate& effect : effects) {
-    if (!effect.corrected()) centred.middleCols(at, effect.width()).setZero();
-    at += effect.width();
-  }
-  Eigen::VectorXd sum(columns.rows());
-  for (Eigen::Index b = 0; b < sum.size(); ++b) {
-    const auto held_out = static_cast<std::size_t>(fold[static_cast<std::size_t>(b)]);
-    sum[b] = centred.row(b).dot(coefficients[held_out]);
-  }
-  return {sum, centred * of_all};
-}
-
 }  // namespace
 
 std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& grid, const NoiseShape& shape,
@@ -122,40 +56,26 @@ std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& gri
   return coefficients;
 }
 
-void subtract_effects(const BlockData& data, const std::vector<Candidate>& effects, const NoiseShape& shape,
-                      const Eigen::VectorXd& coefficients, std::vector<EvenError>& errors) {
+Eigen::VectorXd held_out_change(const BlockData& data, const std::vector<Candidate>& effects,
+                                const NoiseShape& shape, const Eigen::VectorXd& coefficients) {
   const BlockGrid& grid = data.grid;
   const Columns columns = design(data, effects);
   const Eigen::Index p = columns.cols() - 1 - grid.constants();
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(columns.rows());
-  Eigen::VectorXd held_out = all;
-  Eigen::VectorXd held_in = all;
-  if (p > 0) {
-    all = columns.rightCols(p) * coefficients.tail(p);
-    std::tie(held_out, held_in) = held_out_effects(grid, shape, columns, effects, coefficients.tail(p));
+  const std::vector<Eigen::VectorXd> others = coefficients_without_each_fold(grid, shape, columns);
+  const std::vector<int> fold = fold_of_block(grid);
+  Columns centred = columns.rightCols(p);
+  centre_records(grid, centred);
+  Eigen::Index at = 0;
+  for (const Candidate& effect : effects) {
+    if (!effect.corrected()) centred.middleCols(at, effect.width()).setZero();
+    at += effect.width();
   }
-  for (std::size_t r = 0; r < errors.size(); ++r) {
-    EvenError& error = errors[r];
-    if (p == 0) {
-      error.after = error.rest;
-      error.held_out = error.rest_held_out;
-      error.held_in = error.rest;
-      continue;
-    }
-    Samples& after = error.after.anew(error.rest.size());
-    Samples& without = error.held_out.anew(error.rest_held_out.size());
-    Samples& within = error.held_in.anew(error.rest.size());
-    const BlockRange& record = grid.records[r];
-    const BetweenBlocks of_all(grid, record, all), of_others(grid, record, held_out),
-        of_own(grid, record, held_in);
-    for (std::size_t i = 0; i < after.size(); ++i) {
-      const double at =
-          static_cast<double>(i) * grid.sample_s / grid.block_s - 0.5 + 0.5 * grid.fine_s / grid.block_s;
-      after[i] = error.rest[i] - of_all(at);
-      without[i] = error.rest_held_out[i] - of_others(at);
-      within[i] = error.rest[i] - of_own(at);
-    }
+  Eigen::VectorXd change(columns.rows());
+  for (Eigen::Index b = 0; b < change.size(); ++b) {
+    const auto held_out = static_cast<std::size_t>(fold[static_cast<std::size_t>(b)]);
+    change[b] = centred.row(b).dot(others[held_out] - coefficients.tail(p));
   }
+  return change;
 }
 
 namespace {

@@ -1,11 +1,9 @@
-// SPDX-License-Identifier: Apache-2.0
-// Cross-validation: the effects subtracted from the errors, by coefficients of all blocks and by those that
-// were fitted without the block's own part of the record.
+// SPDX-License-Identifier: Apache-2.0 Cross-validation: effects by coefficients of all blocks, and by those
+// that were fitted without the block's own part of the record.
 #pragma once
 
 #include <vector>
 
-#include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/noise_fit.h"
 
@@ -17,10 +15,11 @@ namespace ifog {
 std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& grid, const NoiseShape& shape,
                                                             const Columns& columns);
 
-// `after` and `held_out` of each error from its rests: the first less all effects, the second less those that
-// carry over to another capture. coefficients: of all blocks, the constants first.
-void subtract_effects(const BlockData& data, const std::vector<Candidate>& effects, const NoiseShape& shape,
-                      const Eigen::VectorXd& coefficients, std::vector<EvenError>& errors);
+// By block, what the effects that are corrected take more with the coefficients of the other folds than with
+// those of all blocks; about the mean of each record, for without that a channel far from zero would step
+// from fold to fold. coefficients: of all blocks, the constants first.
+Eigen::VectorXd held_out_change(const BlockData& data, const std::vector<Candidate>& effects,
+                                const NoiseShape& shape, const Eigen::VectorXd& coefficients);
 
 // What an effect has to prove beyond its likelihood.
 // A model whose last effect is on trial, with the noise that belongs to it.

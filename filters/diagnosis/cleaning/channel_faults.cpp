@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/cleaning/channel_faults.h"
+#include "filters/diagnosis/cleaning/steps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/words.h"
 #include "filters/effects/plausible_reading.h"
-#include "filters/rest/glitches.h"
+#include "filters/rest/cleaned_rate.h"
 
 namespace ifog {
 namespace {
@@ -48,8 +48,8 @@ std::optional<ChannelRange> usual_range(std::span<const double> column) {
   return range;
 }
 
-// By sample, whether the rule refuses what the channel says there, forwards in time or backwards. A record may
-// begin with a fault, so the rule learns from its first samples before it judges them.
+// By sample, whether the rule refuses what the channel says there, forwards in time or backwards. A record
+// may begin with a fault, so the rule learns from its first samples before it judges them.
 Flags refused(const Record& record, std::span<const double> column, const ChannelRange& range,
               bool forwards) {
   const std::size_t n = column.size();
@@ -68,8 +68,8 @@ Flags refused(const Record& record, std::span<const double> column, const Channe
   return found;
 }
 
-// Linear in time between the readings before and behind each run of faults; one of them where the other is missing.
-// What it was for longer than a minute nobody knows.
+// Linear in time between the readings before and behind each run of faults; one of them where the other is
+// missing. What it was for longer than a minute nobody knows.
 Samples interpolated(const Record& record, std::span<const double> column, const Flags& fault) {
   Samples values(column);
   const auto believed = [&](std::size_t i) { return std::isfinite(column[i]) && !fault[i]; };
@@ -136,19 +136,21 @@ OwnedRecords repair_channels(OwnedRecords given) {
   return given;
 }
 
-OwnedRecords leave_out_knocks(OwnedRecords given) {
+OwnedRecords without_leaping_rates(OwnedRecords given) {
   for (Record& record : given.records) {
     const bool plain = record.reference_radps.empty();
     const Samples less_reference = plain ? Samples() : error_of(record);
     const std::span<const double> error = plain ? record.rate_radps : std::span<const double>(less_reference);
-    const Glitches glitches = find_glitches(error, stretches({}, error, {}));
-    if (glitches.few.empty()) continue;
-    Samples& rate = given.columns.emplace_back(record.rate_radps);
-    for (const Glitches::Leap& leap : glitches.few) rate[leap.sample] = std::nan("");
+    std::vector<ValueFault> faults;
+    const std::optional<LongSeries> cleaned = without_leaps(
+        record.rate_radps, error, stretches({}, error, {}),
+        [&](std::size_t i) { return record.origin.told(record.time_s[i]); }, faults);
+    for (const ValueFault& fault : faults)
+      given.remarks.push_back("the rate" + given.of_several(record) + ": " + fault.text);
+    if (!cleaned) continue;
+    Samples& rate = given.columns.emplace_back(cleaned->size());
+    cleaned->read(0, rate);
     record.rate_radps = rate;
-    given.remarks.push_back(
-        "the rate" + given.of_several(record) + ": " +
-        in_words(glitches, [&](std::size_t i) { return record.origin.told(record.time_s[i]); }));
   }
   return given;
 }

@@ -16,13 +16,11 @@ struct EvenError {
   RecordOrigin origin{};  // that start_s is counted from
   double start_s = 0.0;
   SharedSamples before;         // rate - reference
-  SharedSamples rest;           // less ramps, and later lines: what effects are sought in
-  SharedSamples rest_held_out;  // the same, less ramps as fitted without the sample's own part
-  SharedSamples after;          // less the effects, too
-  // Less what is corrected online, by coefficients that were fitted without the sample's own part.
-  SharedSamples held_out;
-  SharedSamples held_in;  // less the same by coefficients of all samples
-  SharedSamples written;  // what the daemon's own correction leaves of `before`, by the model as written
+  SharedSamples rest;           // less ramps, and later lines and a dead zone
+  SharedSamples rest_held_out;  // less ramps as fitted without the sample's own part
+  SharedSamples after;          // `rest` less the effects
+  SharedSamples held_out;  // `rest_held_out` less what is corrected, fitted without the sample's own part
+  SharedSamples written;   // what the daemon's own correction leaves of `before`, by the model as written
 };
 
 // after, held_out and written: still empty. The records' rates outlive what is made of them. Throws as

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/cleaning/even_stamps.h"
+#include "filters/diagnosis/cleaning/steps.h"
 
 #include <cmath>
 

@@ -4,11 +4,8 @@
 #include <utility>
 
 #include "filters/diagnosis/channels/derived_channels.h"
-#include "filters/diagnosis/cleaning/channel_faults.h"
-#include "filters/diagnosis/cleaning/even_stamps.h"
-#include "filters/diagnosis/cleaning/other_axes.h"
 #include "filters/diagnosis/cleaning/reference_delay.h"
-#include "filters/diagnosis/cleaning/turned.h"
+#include "filters/diagnosis/cleaning/steps.h"
 #include "filters/diagnosis/record/blocks.h"
 
 namespace ifog {
@@ -19,7 +16,7 @@ OwnedRecords cleaned(const std::vector<Record>& captures) {
   check_columns(captures);
   OwnedRecords channels =
       with_differences(repair_channels(with_unwrapped_angles(with_even_stamps(captures))));
-  return without_turns(with_other_axes(align_references(leave_out_knocks(std::move(channels)))));
+  return without_turns(with_other_axes(align_references(without_leaping_rates(std::move(channels)))));
 }
 
 }  // namespace

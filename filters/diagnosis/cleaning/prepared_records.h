@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Captures as every diagnosis and measurement takes them: stamps that scatter set even, angles without their
-// wraps, channels' faults repaired, differences of channels added, knocks of the rate dropped, a late
+// wraps, channels' faults repaired, differences of channels added, faults of the rate out, a late
 // reference shifted, the other axes added, turns dropped, the part to fit cut, ramps subtracted.
 #pragma once
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "filters/diagnosis/cleaning/turned.h"
+#include "filters/diagnosis/cleaning/steps.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,14 +23,13 @@ std::optional<double> period_of(const Record& record) {
   }
 }
 
-// As `allan` and `tune` say it: of a rate in another unit, or of a sensor that moved all along.
-void note_implausible(const Record& record, const Rest& rest, std::vector<std::string>& remarks) {
+// As `allan` and `tune` say it.
+void note_value_faults(const Record& record, const Rest& rest, std::vector<std::string>& remarks) {
   const SampleClock clock = sample_clock(record.time_s);
   const std::vector<Stretch> parts = common(stretches(record.time_s, record.rate_radps, clock), rest.at_rest);
-  for (const ValueFault& found : value_faults(record.rate_radps, parts, clock.period_s, [&](std::size_t i) {
-         return record.origin.told(record.time_s[i]);
-       }))
-    if (found.name == "moving" || found.name == "unit") remarks.push_back(record.name + ": " + found.text);
+  std::vector<ValueFault> faults;
+  find_value_faults(record.rate_radps, parts, clock.period_s, faults);
+  for (const ValueFault& found : faults) remarks.push_back(record.name + ": " + found.text);
 }
 
 }  // namespace
@@ -44,7 +43,7 @@ OwnedRecords without_turns(OwnedRecords given) {
     for (const RecordChannel& other : record.other_axes) axes.push_back(other.values);
     const std::vector<SeriesView> views(axes.begin(), axes.end());
     const Rest rest = find_rest(views, {}, period_s);
-    note_implausible(record, rest, given.remarks);
+    note_value_faults(record, rest, given.remarks);
     record.at_rest = rest.at_rest;
     if (rest.turned == 0) continue;
     try {

@@ -37,6 +37,17 @@ Eigen::Index column_of(const BlockGrid& grid, const std::vector<Candidate>& effe
   return column;
 }
 
+double mean_left(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& coefficients) {
+  const Eigen::Index first = grid.constants();
+  const Eigen::Index effects = columns.cols() - 1 - first;
+  const Eigen::VectorXd left =
+      columns.col(0) - columns.rightCols(effects) * coefficients.segment(first, effects);
+  double sum = 0.0;
+  for (std::size_t b = 0; b < grid.size(); ++b)
+    if (grid.valid[b]) sum += left[static_cast<Eigen::Index>(b)];
+  return grid.used() > 0 ? sum / static_cast<double>(grid.used()) : 0.0;
+}
+
 std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns) {
   std::vector<int> fold(grid.size());
   for (const BlockRange& record : grid.records) {

@@ -17,6 +17,10 @@ Columns design(const BlockData& data, const std::vector<Candidate>& effects);
 // Where among them the first column of effect `at` is.
 Eigen::Index column_of(const BlockGrid& grid, const std::vector<Candidate>& effects, std::size_t at);
 
+// Mean over the valid blocks of the measurement less what the effects make of it. columns: of design();
+// coefficients: of the columns after the measurement, of which the constants stay in the mean.
+double mean_left(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& coefficients);
+
 // Which of `folds` each block belongs to: short contiguous pieces in turn, so that every fold sees the whole
 // record.
 std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns = 4);

@@ -22,9 +22,7 @@ constexpr double kLeastDecay = 1.0;
 constexpr double kMostDecays = 16.0;  // a record has at least so many
 constexpr std::size_t kFewestBlocks = 512;
 constexpr std::size_t kMostOrders = 6;
-constexpr double kOfHarmonic = 3.0;  // parameters, of an angle
-constexpr double kOfReturn = 1.0;
-constexpr double kOfMarkov = 2.0;
+constexpr double kOfHarmonic = 3.0;  // parameters
 constexpr double kSmallWalk = 1e-5, kSmallFlicker = 1e-3;
 constexpr double kRough = 1.4;
 constexpr double kFine = 1.05;
@@ -101,33 +99,30 @@ std::optional<Hump> highest_hump(const Periodogram& spectrum, const HarmonicLimi
 }
 
 // White noise of the old shape was the mean over all, humps included: the rest is relative to the floor now.
-NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump& hump, double white,
-                     double returned) {
+NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump& hump, double white) {
   const HarmonicLimits limits = harmonic_limits(grid);
   const double density = relative_density(grid, shape, hump.cycles);
   NoiseShape with = shape;
   // What had sunk in white noise that was too large may be there after all.
   with.walk = std::max(shape.walk / white, kSmallWalk);
   with.flicker = std::max(shape.flicker / white, kSmallFlicker);
-  with.markov /= white;
   for (DampedHarmonic& each : with.harmonics) each.variance /= white;
   const double decay =
       std::clamp(1.0 / (std::numbers::pi * hump.width), limits.least_decay, limits.most_decay);
   // The area on both sides of zero: height times half pi times the width.
-  DampedHarmonic mine{0.0, hump.cycles, decay, returned};
+  DampedHarmonic mine{0.0, hump.cycles, decay};
   mine.variance = std::numbers::pi * hump.width * (hump.ratio - 1.0) * hump.floor * density / white /
                   mine.seen_at(hump.cycles);
   with.harmonics.push_back(mine);
   return with;
 }
 
-NoiseFit add_kind(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, const Hump& hump,
-                  double returned) {
+NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, const Hump& hump) {
   NoiseFit best;
   best.log_likelihood = -1e300;
   for (const double white : {1.0, std::sqrt(hump.floor), hump.floor}) {
     for (const double wider : {1.0, 4.0}) {
-      NoiseShape start = with_hump(grid, fit.shape, hump, white, returned);
+      NoiseShape start = with_hump(grid, fit.shape, hump, white);
       DampedHarmonic& mine = start.harmonics.back();
       mine.decay = std::max(mine.decay / wider, kLeastDecay);
       const double value = fit_whitened(grid, start, columns).log_likelihood;
@@ -141,24 +136,12 @@ bool is_better(const BlockGrid& grid, const NoiseFit& one, const NoiseFit& than)
   return information_criterion(grid, one) < information_criterion(grid, than);
 }
 
-// An angle, or from a rate on.
-NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, const Hump& hump) {
-  const NoiseFit angle = add_kind(grid, columns, fit, hump, 1.0);
-  const NoiseFit rate = add_kind(grid, columns, fit, hump, 0.0);
-  return is_better(grid, rate, angle) ? rate : angle;
-}
-
-// What the criterion makes of a harmonic: none, an angle, or what it was.
+// Without a harmonic, where the criterion says so.
 NoiseFit with_less(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, std::size_t harmonic) {
   NoiseShape shape = fit.shape;
   shape.harmonics.erase(shape.harmonics.begin() + static_cast<std::ptrdiff_t>(harmonic));
   const NoiseFit without = climb(grid, columns, shape, kRough, true);
-  if (is_better(grid, without, fit)) return without;
-  if (fit.shape.harmonics[harmonic].is_angle()) return fit;
-  shape = fit.shape;
-  shape.harmonics[harmonic].return_instead(1.0);
-  const NoiseFit angle = climb(grid, columns, shape, kRough, true);
-  return is_better(grid, angle, fit) ? angle : fit;
+  return is_better(grid, without, fit) ? without : fit;
 }
 
 double cost(const BlockGrid& grid, double parameters) {
@@ -173,10 +156,7 @@ HarmonicLimits harmonic_limits(const BlockGrid& grid) {
 }
 
 double information_criterion(const BlockGrid& grid, const NoiseFit& fit) {
-  double parameters = fit.shape.markov > 0.0 ? kOfMarkov : 0.0;
-  for (const DampedHarmonic& each : fit.shape.harmonics)
-    parameters += kOfHarmonic + (each.is_angle() ? 0.0 : kOfReturn);
-  return cost(grid, parameters) - 2.0 * fit.log_likelihood;
+  return cost(grid, kOfHarmonic * static_cast<double>(fit.shape.harmonics.size())) - 2.0 * fit.log_likelihood;
 }
 
 NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit) {

@@ -14,9 +14,6 @@
 namespace ifog {
 namespace {
 
-// Twice the log-likelihood a Gauss-Markov process of its own has to gain for its two parameters.
-constexpr double kMarkovGain = 14.0;
-
 double evaluate(const BlockGrid& grid, const Columns& columns, const NoiseShape& shape) {
   return fit_whitened(grid, shape, columns).log_likelihood;
 }
@@ -34,7 +31,6 @@ WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const C
   const auto n = static_cast<double>(grid.used());
   square = std::max(square, 1e-12 * gram(0, 0) + 1e-300);
   WhitenedFit fit;
-  fit.residual_square = square;
   fit.white_variance = square / std::max(1.0, n - static_cast<double>(p)) / filter.innovation_variance();
   // With the white variance concentrated out, the determinant of a steady filter cancels its innovations'
   // scale.
@@ -65,7 +61,7 @@ NoiseFit fit_walk_and_flicker(const BlockGrid& grid, const Columns& columns) {
   std::array<Start, 3> starts;  // mostly walk, mostly flicker, both
   for (const double walk : {0.0, 1e-6, 1e-4, 1e-2, 1.0}) {
     for (const double flicker : {0.0, 1e-3, 1e-1, 1e1}) {
-      const NoiseShape shape{walk, flicker, 0.0, 0.0};
+      const NoiseShape shape{walk, flicker};
       const double value = evaluate(grid, columns, shape);
       Start& start = starts[flicker == 0.0 ? 0 : walk == 0.0 ? 1 : 2];
       if (value > start.value) start = {shape, value};
@@ -80,27 +76,11 @@ NoiseFit fit_walk_and_flicker(const BlockGrid& grid, const Columns& columns) {
   return best;
 }
 
-NoiseFit with_markov(const BlockGrid& grid, const Columns& columns, const NoiseFit& best) {
-  NoiseFit richer = best;
-  for (const double blocks : {1.0, 8.0, 64.0}) {
-    for (const double variance : {0.3, 10.0}) {
-      NoiseShape shape = best.shape;
-      shape.markov_s = blocks * grid.block_s;
-      shape.markov = variance;
-      const double value = evaluate(grid, columns, shape);
-      if (value > richer.log_likelihood) richer = {shape, value, 0.0};
-    }
-  }
-  if (richer.shape.markov > 0.0) richer = climb(grid, columns, richer.shape, 1.05);
-  return 2.0 * (richer.log_likelihood - best.log_likelihood) > kMarkovGain ? richer : best;
-}
-
 }  // namespace
 
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
   if (grid.dwells) return fit_noise(grid, columns, {});
-  // Resonances first: what a process of its own is taken for may be one.
-  return with_markov(grid, columns, with_harmonics(grid, columns, fit_walk_and_flicker(grid, columns)));
+  return with_harmonics(grid, columns, fit_walk_and_flicker(grid, columns));
 }
 
 namespace {
@@ -108,8 +88,6 @@ namespace {
 // Below these a component changes the likelihood of a few thousand blocks by nothing: it is taken for zero.
 constexpr double kLeastWalk = 1e-10;
 constexpr double kLeastFlicker = 1e-6;
-// Of what a harmonic swings, that does not return: below, it is an angle.
-constexpr double kLeastStays = 1e-3;
 // Above this there is no white noise left to be relative to.
 constexpr double kMost = 1e6;
 
@@ -124,7 +102,7 @@ Way way_of(double NoiseShape::*parameter) {
   };
 }
 
-void add_ways(const BlockGrid& grid, const NoiseShape& start, std::size_t harmonic, std::vector<Way>& ways) {
+void add_ways(const BlockGrid& grid, std::size_t harmonic, std::vector<Way>& ways) {
   const HarmonicLimits limits = harmonic_limits(grid);
   ways.emplace_back([=](NoiseShape& shape, double factor) {
     shape.harmonics[harmonic].variance *= factor;
@@ -141,21 +119,12 @@ void add_ways(const BlockGrid& grid, const NoiseShape& start, std::size_t harmon
     each.cycles += std::log(factor) / (2.0 * std::numbers::pi * each.decay);
     return each.cycles >= limits.least_cycles && each.cycles <= 0.5;
   });
-  if (start.harmonics[harmonic].is_angle()) return;
-  ways.emplace_back([=](NoiseShape& at, double factor) {
-    DampedHarmonic& each = at.harmonics[harmonic];
-    const double stays = (1.0 - each.returned) * factor;
-    if (stays < kLeastStays || stays > 2.0) return false;
-    each.return_instead(1.0 - stays);
-    return true;
-  });
 }
 
 // White noise that was taken for more than it is makes all else too small together.
 bool against_white(NoiseShape& shape, double factor) {
   shape.walk *= factor;
   shape.flicker *= factor;
-  shape.markov *= factor;
   for (DampedHarmonic& each : shape.harmonics) each.variance *= factor;
   return factor < 1.0 ||
          (shape.walk <= kMost && shape.flicker <= kMost &&
@@ -165,16 +134,11 @@ bool against_white(NoiseShape& shape, double factor) {
 
 std::vector<Way> ways_of(const BlockGrid& grid, const NoiseShape& shape, bool with_harmonics) {
   std::vector<Way> ways;
-  std::vector<double NoiseShape::*> parameters = {&NoiseShape::walk, &NoiseShape::flicker};
-  if (shape.markov > 0.0) {
-    parameters.push_back(&NoiseShape::markov);
-    parameters.push_back(&NoiseShape::markov_s);
-  }
-  for (double NoiseShape::*parameter : parameters)
+  for (double NoiseShape::*parameter : {&NoiseShape::walk, &NoiseShape::flicker})
     if (shape.*parameter != 0.0) ways.push_back(way_of(parameter));
   if (!with_harmonics) return ways;
   ways.emplace_back(against_white);
-  for (std::size_t i = 0; i < shape.harmonics.size(); ++i) add_ways(grid, shape, i, ways);
+  for (std::size_t i = 0; i < shape.harmonics.size(); ++i) add_ways(grid, i, ways);
   return ways;
 }
 

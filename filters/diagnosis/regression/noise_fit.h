@@ -9,9 +9,8 @@ namespace ifog {
 
 // What is left of the first column of whitened data after least squares on the others.
 struct WhitenedFit {
-  double log_likelihood = 0.0;   // up to a constant that depends on the number of blocks alone
-  double white_variance = 0.0;   // of a block mean, in the square of the first column's unit
-  double residual_square = 0.0;  // sum of squared innovations
+  double log_likelihood = 0.0;  // up to a constant that depends on the number of blocks alone
+  double white_variance = 0.0;  // of a block mean, in the square of the first column's unit
 };
 
 // columns: measurement, then regressors, not whitened.
@@ -23,19 +22,16 @@ struct NoiseFit {
   double white_variance = 0.0;
 };
 
-// Searches walk and flicker, both down to zero, and a Gauss-Markov process of its own where `start` has one,
-// from there. Harmonics are kept as they are in `start`.
+// Searches walk and flicker, both down to zero, from there. Harmonics are kept as they are in `start`.
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseShape& start,
                    double precision = 1.05);
 
-// From nothing known: coarse grid, then fit_noise; then whether a Gauss-Markov process is there as well, and
-// how many harmonics.
+// From nothing known: coarse grid, then fit_noise; then how many harmonics.
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns);
 
 // The way up the likelihood of the noise's parameters.
-// Climbs from `shape` to the nearest top: walk and flicker where they are not zero, and down to zero; a
-// Gauss-Markov process of its own where there is one; the harmonics when `with_harmonics`, of which those
-// that are an angle stay one.
+// Climbs from `shape` to the nearest top: walk and flicker where they are not zero, and down to zero; the
+// harmonics when `with_harmonics`.
 NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, double precision,
                bool with_harmonics = false);
 

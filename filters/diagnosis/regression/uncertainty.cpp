@@ -155,10 +155,8 @@ template <class Evaluate>
 std::vector<Tried> try_noise(const BlockGrid& grid, const NoiseShape& best, Evaluate&& evaluate) {
   if (grid.dwells) return {Tried{best, evaluate(best)}};
   const auto n = static_cast<double>(grid.used());
-  // Beside what is white where they count.
-  const double white = slow_white(best);
-  const std::pair<double, double> walks{white * kNegligible / (n * n), white * kMostRatio};
-  const std::pair<double, double> flickers{white * kNegligible / n, white * kMostRatio};
+  const std::pair<double, double> walks{kNegligible / (n * n), kMostRatio};
+  const std::pair<double, double> flickers{kNegligible / n, kMostRatio};
   const auto coarse = [](const std::pair<double, double>& limits) {
     const int count =
         1 + static_cast<int>(std::ceil(std::log(limits.second / limits.first) / std::log(kCoarse)));
@@ -184,9 +182,8 @@ void average(const BlockGrid& grid, const std::vector<Tried>& tried, JointFit& f
   for (const Tried& each : tried) {
     const double weight = std::exp(each.solved.log_likelihood - top) / sum;
     const double white = each.solved.white_variance;
-    fit.noise.parts.push_back({weight, white * slow_white(each.shape) * grid.block_s,
-                               each.shape.walk * white / grid.block_s, each.shape.flicker * white,
-                               each.shape.markov * white, each.shape.markov_s});
+    fit.noise.parts.push_back(
+        {weight, white * grid.block_s, each.shape.walk * white / grid.block_s, each.shape.flicker * white});
     fit.values += weight * each.solved.values;
   }
   for (const double blocks : flicker_bank(grid)) fit.noise.flicker_s.push_back(blocks * grid.block_s);

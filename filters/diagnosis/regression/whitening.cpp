@@ -57,19 +57,17 @@ Whitening::Whitening(const BlockGrid& grid, const NoiseShape& shape) : grid_(gri
     factor_.push_back(1.0);
     drive_.push_back(shape.walk);
   }
-  const auto add_markov = [&](double variance, double blocks) {
-    const double f = std::exp(-1.0 / blocks);
-    factor_.push_back(f);
-    drive_.push_back(variance * (1.0 - f * f));
-  };
   if (shape.flicker > 0.0) {
-    for (const double tau : flicker_bank(grid)) add_markov(shape.flicker, tau);
+    for (const double blocks : flicker_bank(grid)) {
+      const double f = std::exp(-1.0 / blocks);
+      factor_.push_back(f);
+      drive_.push_back(shape.flicker * (1.0 - f * f));
+    }
   }
-  if (shape.markov > 0.0) add_markov(shape.markov, shape.markov_s / grid.block_s);
   for (const DampedHarmonic& each : shape.harmonics) {
     const double left = std::exp(-1.0 / each.decay);
     const double turn = 2.0 * std::numbers::pi * each.cycles;
-    turns_.push_back({left * std::cos(turn), left * std::sin(turn), each.returned});
+    turns_.push_back({left * std::cos(turn), left * std::sin(turn)});
     const double driven = each.variance * (1.0 - left * left);
     drive_.insert(drive_.end(), {driven, driven, 0.0});
   }
@@ -86,7 +84,7 @@ Whitening::StateSpace Whitening::state_space() const {
   for (const Turn& turn : turns_) {
     states.step.block<2, 2>(i, i) << turn.cosine, -turn.sine, turn.sine, turn.cosine;
     states.step(i + 2, i) = 1.0;
-    states.seen.segment<2>(i + 1) << 0.0, -turn.returned;
+    states.seen.segment<2>(i + 1) << 0.0, -1.0;
     i += 3;
   }
   return states;
@@ -128,8 +126,7 @@ void Whitening::apply_some(Columns& columns, Eigen::Index first) const {
       }
       Lane e = row;
       for (std::size_t i = 0; i < m; ++i) e -= state[i];
-      for (std::size_t h = 0, i = m; h < turns_.size(); ++h, i += 3)
-        e -= state[i] - turns_[h].returned * state[i + 2];
+      for (std::size_t h = 0, i = m; h < turns_.size(); ++h, i += 3) e -= state[i] - state[i + 2];
       go_on(e);
       row = e;
     }
@@ -163,7 +160,6 @@ double relative_density(const BlockGrid& grid, const NoiseShape& shape, double c
   if (shape.flicker > 0.0) {
     for (const double tau : flicker_bank(grid)) add(shape.flicker, tau, cycles);
   }
-  if (shape.markov > 0.0) add(shape.markov, shape.markov_s / grid.block_s, cycles);
   for (const DampedHarmonic& each : shape.harmonics) {
     const double seen = 0.5 * each.variance * each.seen_at(cycles);
     add(seen, each.decay, cycles - each.cycles);
@@ -172,16 +168,9 @@ double relative_density(const BlockGrid& grid, const NoiseShape& shape, double c
   return density;
 }
 
-double slow_white(const NoiseShape& shape) {
-  double density = 1.0;
-  for (const DampedHarmonic& each : shape.harmonics)
-    density += each.variance * each.seen_at(0.0) * poisson_kernel(each.decay, each.cycles);
-  return density;
-}
-
 NoiseTerms noise_terms(const NoiseShape& shape, double white, double block_s) {
   NoiseTerms terms;
-  terms.N = std::sqrt(white * slow_white(shape) * block_s);
+  terms.N = std::sqrt(white * block_s);
   if (shape.walk > 0.0) terms.K = std::sqrt(shape.walk * white / block_s);
   // One-sided spectrum of the bank between its ends: variance / ln(spacing) / f; IEEE Std 952: B^2 / (pi f).
   if (shape.flicker > 0.0) {

@@ -21,43 +21,30 @@
 
 namespace ifog {
 
-// x whose covariance at a distance of k blocks is variance exp(-k / decay) cos(2 pi cycles k), as that of a
-// resonance driven by white noise, of which a block sees x less `returned` times what it was a block ago. x
-// may be an angle: a block's mean is the angle turned in it over its length, what sways does not turn away,
-// and at slow frequencies there is nothing of it, however fast it is against the blocks. Or x is the rate
-// itself, of a line that moves or of a mounting that creeps as it sways, which has a floor at slow
-// frequencies; and a mean over a block of what is fast against it lies between or, at an odd alias, below.
+// An angle whose covariance at a distance of k blocks is variance exp(-k / decay) cos(2 pi cycles k), as that
+// of a resonance driven by white noise, of which a block sees the change from a block ago: its mean is the
+// angle turned in it over its length. What sways does not turn away, and at slow frequencies there is nothing
+// of it, however fast it is against the blocks.
 struct DampedHarmonic {
-  double variance = 0.0;  // of x; of an angle over the square of a block's length
+  double variance = 0.0;  // of the angle, over the square of a block's length
   double cycles = 0.0;    // a block, at most one half: what is faster is seen at its alias
   double decay = 0.0;     // blocks
-  double returned = 1.0;  // 1 an angle, 0 a rate; at least -1
 
-  [[nodiscard]] bool is_angle() const { return returned == 1.0; }
-  // Of the density of x at so many cycles a block, what a block sees.
-  [[nodiscard]] double seen_at(double at_cycles) const {
+  // Of the density of the angle at so many cycles a block, what a block sees.
+  [[nodiscard]] static double seen_at(double at_cycles) {
     const double half_step = std::sin(std::numbers::pi * at_cycles);
-    return (1.0 - returned) * (1.0 - returned) + 4.0 * returned * half_step * half_step;
+    return 4.0 * half_step * half_step;
   }
   // Of what a block sees.
   [[nodiscard]] double seen_variance() const {
-    const double kept = std::exp(-1.0 / decay) * std::cos(2.0 * std::numbers::pi * cycles);
-    return variance * (1.0 + returned * (returned - 2.0 * kept));
-  }
-  // Another share of it returns, as much is seen at its own frequency.
-  void return_instead(double share) {
-    const double before = seen_at(cycles);
-    returned = share;
-    variance *= before / seen_at(cycles);
+    return 2.0 * variance * (1.0 - std::exp(-1.0 / decay) * std::cos(2.0 * std::numbers::pi * cycles));
   }
 };
 
 // Relative to the white variance of a block mean, which likelihoods concentrate out.
 struct NoiseShape {
-  double walk = 0.0;      // variance of the random walk's step from block to block
-  double flicker = 0.0;   // variance of each process of the bank
-  double markov = 0.0;    // variance of one Gauss-Markov process of its own
-  double markov_s = 0.0;  // its correlation time
+  double walk = 0.0;     // variance of the random walk's step from block to block
+  double flicker = 0.0;  // variance of each process of the bank
   std::vector<DampedHarmonic> harmonics = {};
 };
 
@@ -74,7 +61,6 @@ class Whitening {
 
   // Variance of the innovations over the white variance, at least 1.
   [[nodiscard]] double innovation_variance() const { return innovation_variance_; }
-  [[nodiscard]] std::size_t states() const { return gain_.size(); }
 
  private:
   template <int Width>
@@ -92,7 +78,6 @@ class Whitening {
   std::vector<double> factor_;  // of the states that only decay: x+ = factor x + gain e
   struct Turn {
     double cosine, sine;  // times what a block leaves of the amplitude
-    double returned;
   };
   std::vector<Turn> turns_;           // of the harmonics: x, its quadrature, and x a block ago
   std::vector<double> drive_, gain_;  // of all states, in that order
@@ -109,11 +94,7 @@ std::vector<double> flicker_bank(const BlockGrid& grid);
 // Power density at so many cycles a block over that of the white noise. Nothing of a walk at zero.
 double relative_density(const BlockGrid& grid, const NoiseShape& shape, double cycles);
 
-// What is white at slow frequencies, where nothing of an angle that swings is left and the floor of a rate
-// that does: its density over that of the white noise.
-double slow_white(const NoiseShape& shape);
-
-// The same in IEEE Std 952 coefficients, of the terms that it has. `white` is the variance of a block mean,
+// The noise in IEEE Std 952 coefficients, of the terms that it has. `white` is the variance of a block mean,
 // (rad/s)^2.
 NoiseTerms noise_terms(const NoiseShape& shape, double white, double block_s);
 

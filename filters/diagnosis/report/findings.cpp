@@ -38,22 +38,6 @@ bool is_searched(const ModelParameter& parameter, const Effect& effect) {
   return parameter.name == (effect.form == "line" ? "frequency_hz" : time_constant_name(effect));
 }
 
-// All effects fitted by generalised least squares, at the time constants they have.
-std::vector<Effect> fitted_effects(const BlockData& data, const std::vector<Candidate>& candidates,
-                                   const NoiseShape& shape, const std::string& axis) {
-  const Eigen::VectorXd c = solve(data.grid, shape, design(data, candidates));
-  Eigen::Index at = data.grid.constants();
-  std::vector<Effect> effects;
-  for (const Candidate& candidate : candidates) {
-    effects.push_back(effect_of(data, candidate));
-    effects.back().axis = axis;
-    for (Eigen::Index j = 0; j < candidate.width(); ++j)
-      effects.back().parameters[static_cast<std::size_t>(j)].value = c[at + j];
-    at += candidate.width();
-  }
-  return effects;
-}
-
 // Which capture would tell two effects apart that this one cannot.
 std::string capture_that_separates(const BlockData& data, const Candidate& one, const Candidate& other) {
   const bool timed = one.channel == Candidate::kNone || other.channel == Candidate::kNone;
@@ -80,6 +64,20 @@ std::string capture_that_separates(const BlockData& data, const Candidate& one, 
 }
 
 }  // namespace
+
+std::vector<Effect> effects_of(const BlockData& data, const std::vector<Candidate>& candidates,
+                               const Eigen::VectorXd& coefficients, const std::string& axis) {
+  Eigen::Index at = data.grid.constants();
+  std::vector<Effect> effects;
+  for (const Candidate& candidate : candidates) {
+    effects.push_back(effect_of(data, candidate));
+    effects.back().axis = axis;
+    for (Eigen::Index j = 0; j < candidate.width(); ++j)
+      effects.back().parameters[static_cast<std::size_t>(j)].value = coefficients[at + j];
+    at += candidate.width();
+  }
+  return effects;
+}
 
 JointFit settle(const BlockData& reconstructed, SearchResult& found) {
   JointFit joint = joint_fit(reconstructed, candidates_of(found.chosen), found.coefficients, found.noise);
@@ -197,7 +195,9 @@ void add_alternatives(const BlockData& data, const BlockData& reconstructed, con
   for (const Alternative& alternative : found.alternatives) {
     std::vector<Candidate> instead = candidates_of(found.chosen);
     instead[alternative.of] = alternative.candidate;
-    OtherExplanation other{fitted_effects(reconstructed, instead, found.noise.shape, axis),
+    const Eigen::VectorXd fitted =
+        solve(reconstructed.grid, found.noise.shape, design(reconstructed, instead));
+    OtherExplanation other{effects_of(reconstructed, instead, fitted, axis),
                            std::exp(-0.5 * std::max(0.0, alternative.loss))};
     Indistinguishable pair;
     pair.effects = {findings.effects[alternative.of].effect, other.effects[alternative.of]};

@@ -24,6 +24,10 @@ struct Findings {
 Findings findings_of(const BlockData& data, const BlockData& reconstructed, const SearchResult& found,
                      const JointFit& joint, const std::string& axis);
 
+// Effects by their coefficients alone, of which the constants come first.
+std::vector<Effect> effects_of(const BlockData& data, const std::vector<Candidate>& candidates,
+                               const Eigen::VectorXd& coefficients, const std::string& axis);
+
 // Row-major, of all parameters of all effects; the first ones are those of `joint`, the others stand alone.
 std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const JointFit& joint,
                                   Eigen::Index nuisances, std::size_t jointly);

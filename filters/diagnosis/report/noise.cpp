@@ -63,12 +63,9 @@ void write_changes(const std::vector<Record>& records, const std::vector<EvenErr
   }
 }
 
-// A bias that comes back is foretold by what the record allows it to be, where the regression took it for a
-// walk.
+// A bias that comes back is foretold by what the record allows it to be: the regression takes it for a walk.
 void weigh_return(const NoiseCoefficients& found, double sample_s, NoisePosterior& posterior) {
-  if (!found.markov || std::any_of(posterior.parts.begin(), posterior.parts.end(),
-                                   [](const auto& p) { return p.markov > 0.0; }))
-    return;
+  if (!found.markov) return;
   posterior.parts.clear();
   for (const GaussMarkovChance& chance : found.markov->chances) {
     const double flicker = chance.variances[kB] * std::log(kFlickerSpacing) / std::numbers::pi;

@@ -3,7 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <numbers>
 
+#include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
@@ -20,24 +23,18 @@ double error_in_means(std::span<const double> error) {
   return variance_of(means_over(error, std::max<std::size_t>(1, error.size() / kPieces)));
 }
 
-// Of what the effects leave; each record counts by its samples.
-double bias_of(const std::vector<EvenError>& errors) {
-  const auto [sum, n] = sum_of(errors, &EvenError::after);
-  return n > 0.0 ? sum / n : 0.0;
-}
-
 }  // namespace
 
-void name_bias(const BlockGrid& grid, const JointFit& joint, const std::vector<EvenError>& errors,
-               double uncorrected, const std::string& axis, Diagnosis& diagnosis) {
+void name_bias(const BlockGrid& grid, const JointFit& joint, double value, const std::string& axis,
+               Diagnosis& diagnosis) {
   constexpr double kClear = 5.0;  // standard deviations
-  // A walk from zero has a third of its last variance on the mean; each Gauss-Markov process keeps its own.
+  // A walk from zero has a third of its last variance on the mean; each process of the flicker keeps its own.
   const double span_s = static_cast<double>(grid.used()) * grid.block_s;
   double variance = joint.covariance(0, 0) / static_cast<double>(grid.records.size());
   for (const NoisePosterior::Part& part : joint.noise.parts)
-    variance += part.weight * (part.white / span_s + part.walk * span_s / 3.0 + part.markov +
+    variance += part.weight * (part.white / span_s + part.walk * span_s / 3.0 +
                                part.flicker * static_cast<double>(joint.noise.flicker_s.size()));
-  const double value = bias_of(errors) + uncorrected, sigma = std::sqrt(variance);
+  const double sigma = std::sqrt(variance);
   const bool clear = std::abs(value) > kClear * sigma;
   // One that the noise may have made is corrected by the share of its square that is beyond the noise's.
   const double share = clear ? 1.0 : value * value / (value * value + variance);
@@ -53,54 +50,98 @@ void name_bias(const BlockGrid& grid, const JointFit& joint, const std::vector<E
   diagnosis.effects.push_back(std::move(found));
 }
 
-void count_rates_from_the_bias(const std::vector<EvenError>& errors, std::vector<FoundEffect>& effects,
-                               bool corrected) {
-  const double bias = corrected ? 0.0 : bias_of(errors);
-  for (FoundEffect& found : effects) {
-    if (is_reference_rate(found.effect.channel)) found.effect.reference = bias;
-    if (is_reference_rate(found.effect.with_channel)) found.effect.with_reference = bias;
-  }
+namespace {
+
+// Straight between the middles of a record's blocks. at: sample.
+double between_blocks(const BlockGrid& grid, const BlockRange& record, const Eigen::VectorXd& values,
+                      std::size_t at) {
+  const double blocks = (static_cast<double>(at) * grid.sample_s + 0.5 * grid.fine_s) / grid.block_s - 0.5;
+  const double place = std::clamp(blocks, 0.0, static_cast<double>(record.size() - 1));
+  const Eigen::Index low = record.row() + static_cast<Eigen::Index>(place);
+  const Eigen::Index high = std::min(low + 1, record.row() + record.rows() - 1);
+  return values[low] + (place - std::floor(place)) * (values[high] - values[low]);
 }
 
-void run_written_model(const std::vector<Record>& records, const Diagnosis& diagnosis, double sample_s,
-                       std::vector<EvenError>& errors) {
+// What is not corrected online: steps and lines at their times, and what is shown by its blocks.
+class Uncorrected {
+ public:
+  Uncorrected(const BlockData& data, const SearchResult& found)
+      : grid_(data.grid), shown_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data.grid.size()))) {
+    Eigen::Index at = grid_.constants();
+    for (const Candidate& each : candidates_of(found.chosen)) {
+      if (each.shown())
+        shown_ += regressors(data, each) * found.coefficients.segment(at, each.width());
+      else if (!each.corrected())
+        events_.push_back({each, found.coefficients.segment(at, each.width())});
+      at += each.width();
+    }
+  }
+
+  // Of a record's sample, at that time.
+  [[nodiscard]] double at(std::size_t record, std::size_t sample, double time_s) const {
+    double sum = between_blocks(grid_, grid_.records[record], shown_, sample);
+    for (const Event& each : events_) {
+      const Candidate& event = each.candidate;
+      if (event.record != record) continue;
+      const double phase = 2.0 * std::numbers::pi * event.frequency_hz * time_s;
+      if (event.form == Form::kLine)
+        sum += each.size[0] * std::cos(phase) + each.size[1] * std::sin(phase);
+      else if (time_s > event.time_s)
+        sum += each.size[0];
+    }
+    return sum;
+  }
+
+ private:
+  struct Event {
+    Candidate candidate;
+    Eigen::VectorXd size;
+  };
+  const BlockGrid& grid_;
+  Eigen::VectorXd shown_;
+  std::vector<Event> events_;
+};
+
+}  // namespace
+
+void subtract_effects(const std::vector<Record>& records, const BlockData& data, const SearchResult& found,
+                      const Diagnosis& diagnosis, std::vector<EvenError>& errors) {
+  const BlockGrid& grid = data.grid;
   Model model;
   add_to_model(diagnosis, "", model);
-  for (std::size_t r = 0; r < records.size(); ++r)
-    errors[r].written = model.effects.empty()
-                            ? errors[r].before
-                            : on_even_grid(records[r], sample_s, compensated_error(records[r], model));
-}
-
-void leave_as_written(std::vector<EvenError>& errors) {
-  for (EvenError& error : errors) {
-    if (!error.rest.is(error.before) || error.written.is(error.before)) continue;
-    if (error.held_in.size() != error.written.size()) continue;
-    double sum = 0.0;
-    double n = 0.0;
-    for (std::size_t i = 0; i < error.written.size(); ++i) {
-      const double between = error.written[i] - error.held_in[i];
-      if (!std::isfinite(between)) continue;
-      sum += between;
-      n += 1.0;
-    }
-    const double mean = n > 0.0 ? sum / n : 0.0;
-    Samples& held_out = error.held_out.own();
-    Samples& after = error.after.own();
+  Model without_ramps = model;  // which `rest` has lost already
+  std::erase_if(without_ramps.effects, [](const Effect& effect) { return effect.angle; });
+  const bool ramps = without_ramps.effects.size() < model.effects.size();
+  const Uncorrected uncorrected(data, found);
+  Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(grid.size()));
+  if (!found.chosen.empty())
+    change = held_out_change(data, candidates_of(found.chosen), found.noise.shape, found.coefficients);
+  for (std::size_t r = 0; r < errors.size(); ++r) {
+    EvenError& error = errors[r];
+    const auto left_by = [&](const Model& by) {
+      return by.effects.empty()
+                 ? error.before
+                 : SharedSamples(on_even_grid(records[r], grid.sample_s, compensated_error(records[r], by)));
+    };
+    error.written = left_by(model);
+    const SharedSamples left = ramps ? left_by(without_ramps) : error.written;
+    error.after = error.rest;
+    error.held_out = error.rest_held_out;
+    if (left.is(error.before) && found.chosen.empty()) continue;
+    Samples &after = error.after.own(), &held_out = error.held_out.own();
     for (std::size_t i = 0; i < after.size(); ++i) {
-      const double between = error.written[i] - error.held_in[i] - mean;
-      held_out[i] += between;
-      after[i] += between;
+      const double corrected = error.before[i] - left[i];
+      const double time_s = error.start_s + static_cast<double>(i) * grid.sample_s;
+      after[i] -= corrected + uncorrected.at(r, i, time_s);
+      held_out[i] -= corrected + between_blocks(grid, grid.records[r], change, i);
     }
   }
 }
 
-std::optional<std::size_t> most_harmful_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
-                                               std::size_t candidates, double sample_s,
-                                               const std::vector<EvenError>& errors) {
-  double least = 0.0;
-  for (const EvenError& error : errors) least += error_in_means(error.written);
-  std::optional<std::size_t> harmful;
+std::optional<std::size_t> least_missed_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
+                                               std::size_t candidates, double sample_s) {
+  double least = std::numeric_limits<double>::infinity();
+  std::optional<std::size_t> found;
   for (std::size_t i = 0; i < candidates; ++i) {
     const std::optional<Form> form = form_named(diagnosis.effects[i].effect.form);
     if (!form || !carries_over(*form) || diagnosis.effects[i].effect.shown_only) continue;
@@ -116,9 +157,9 @@ std::optional<std::size_t> most_harmful_effect(const std::vector<Record>& record
       without += error_in_means(on_even_grid(record, sample_s, compensated_error(record, model)));
     if (without >= least) continue;
     least = without;
-    harmful = i;
+    found = i;
   }
-  return harmful;
+  return found;
 }
 
 }  // namespace ifog

@@ -63,9 +63,11 @@ double NoiseFloor::operator[](std::size_t bin) const {
 
 std::vector<std::size_t> peaks_of(const Periodogram& spectrum, const NoiseFloor& floor, double significance) {
   const std::vector<double>& power = spectrum.power;
+  constexpr std::size_t kFirstBin = 16;  // below, slow noise and a line look alike
+  constexpr double kLeastOfLines = 0.6;  // of a line's power that its nearest bin has, between two bins
   const double least = -kLeastOfLines * std::log(significance / static_cast<double>(power.size()));
   std::vector<std::size_t> peaks;
-  for (std::size_t k = kFirstBinOfLines; k + 1 < power.size(); ++k)
+  for (std::size_t k = kFirstBin; k + 1 < power.size(); ++k)
     if (power[k] >= power[k - 1] && power[k] >= power[k + 1] && power[k] > least * floor[k])
       peaks.push_back(k);
   std::sort(peaks.begin(), peaks.end(),

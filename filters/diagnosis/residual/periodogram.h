@@ -9,9 +9,6 @@
 
 namespace ifog {
 
-inline constexpr std::size_t kFirstBinOfLines = 16;  // below, slow noise and a line look alike
-inline constexpr double kLeastOfLines = 0.6;  // of a line's power that its nearest bin has, between two bins
-
 struct Periodogram {
   std::vector<double> power;  // of bins 0 … length / 2, not scaled
   std::size_t length = 0;     // cut to a product of small primes for the transform's sake
@@ -37,7 +34,7 @@ class NoiseFloor {
   std::vector<double> value_;
 };
 
-// Bins no lower than those next to them whose power over the floor is above kLeastOfLines of what the highest
+// Bins no lower than those next to them whose power over the floor is above six tenths of what the highest
 // of all bins of noise reaches at this significance, strongest over it first.
 std::vector<std::size_t> peaks_of(const Periodogram& spectrum, const NoiseFloor& floor, double significance);
 

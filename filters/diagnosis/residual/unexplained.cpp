@@ -139,25 +139,12 @@ bool describe_bursts(const std::vector<double>& energy, std::size_t piece, doubl
   return true;
 }
 
-bool describe_changing_variance(const std::vector<double>& energy, Unexplained& found) {
-  const std::size_t part = energy.size() / 8;
-  double least = 1e300;
-  double most = 0.0;
-  for (std::size_t p = 0; p < 8; ++p) {
-    std::vector<double> measured(energy.begin() + static_cast<std::ptrdiff_t>(p * part),
-                                 energy.begin() + static_cast<std::ptrdiff_t>((p + 1) * part));
-    if (2 * measured_of(measured) < part || part == 0) continue;
-    const double typical = usual_of(std::move(measured));
-    least = std::min(least, typical);
-    most = std::max(most, typical);
-  }
-  if (!(most > 2.0 * least)) return false;
+void describe_noise_change(const NoiseChange& change, Unexplained& found) {
   found.kind = "changing_variance";
   found.hint = printed(
-      "the noise of single samples changes by a factor of %.2g in the course of the record: vibration, "
-      "light level or electronics. Log vibration, optical power and the supply.",
-      std::sqrt(most / std::max(least, 1e-300)));
-  return true;
+      "the noise is not the same all along the record (%.2g times in %s … %s s): vibration, light level or "
+      "electronics. Log vibration, optical power and the supply.",
+      change.times, told_time(change.from_s).c_str(), told_time(change.to_s).c_str());
 }
 
 void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
@@ -200,7 +187,8 @@ void describe_share(std::span<const double> error, std::span<const double> left,
 
 Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
                                  double period_s, const NoiseFit& noise, const BlockGrid& grid,
-                                 const std::vector<SpectralLine>& peaks) {
+                                 const std::vector<SpectralLine>& peaks,
+                                 std::span<const NoiseChange> changes) {
   Unexplained found;
   const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
   describe_share(error, left, period_s, noise, grid, found);
@@ -211,21 +199,23 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
   }
   const std::size_t piece = std::max<std::size_t>(8, second / 4);
   const std::vector<double> energy = energies(left, piece);
-  if (energy.size() >= 16) {
-    if (describe_bursts(energy, piece, start_s, period_s, found)) return found;
-    if (describe_changing_variance(energy, found)) return found;
-  }
-  describe_slow_rest(slow_rest(left, period_s), found);
+  if (energy.size() >= 16 && describe_bursts(energy, piece, start_s, period_s, found)) return found;
+  if (changes.empty())
+    describe_slow_rest(slow_rest(left, period_s), found);
+  else
+    describe_noise_change(changes.front(), found);
   return found;
 }
 
 Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
-                          double significance) {
+                          double significance, const std::vector<NoiseChangeIn>& noise_changes) {
   const EvenError& longest = longest_of(errors);
   std::vector<SpectralLine> peaks;
   if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, grid.sample_s, significance);
+  std::vector<NoiseChange> changes;
+  for (const NoiseChangeIn& each : noise_changes) changes.push_back(each.change);
   return describe_unexplained(longest.before, longest.after, longest.origin.told(longest.start_s),
-                              grid.sample_s, noise, grid, peaks);
+                              grid.sample_s, noise, grid, peaks, changes);
 }
 
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {

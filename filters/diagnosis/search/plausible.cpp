@@ -31,7 +31,7 @@ constexpr std::array<Grade, 2> kGrades = {
 constexpr double kQuickest = 8000.0;
 
 const Grade& grade_of(const BlockGrid& grid, const NoiseFit& noise) {
-  const double density = std::sqrt(noise.white_variance * slow_white(noise.shape) * grid.block_s);
+  const double density = std::sqrt(noise.white_variance * grid.block_s);
   std::size_t i = 0;
   while (density / kDegreePerRootHour > kGrades[i].noise) ++i;
   return kGrades[i];
@@ -63,8 +63,9 @@ struct Bound {
   const char* of;
 };
 
-// Where an acceleration may be that of a rotation, only what is too small for one is an error. A rectification
-// has no such limit, but that of the maker: from one g of vibration no more than from one that stands.
+// Where an acceleration may be that of a rotation, only what is too small for one is an error. A
+// rectification has no such limit, but that of the maker: from one g of vibration no more than from one that
+// stands.
 std::optional<Bound> bound_of(const Grade& grade, const FineChannel& channel, Form form) {
   const std::optional<double> most = specified(grade, channel.name);
   if (!most) return std::nullopt;

@@ -80,9 +80,4 @@ inline double independent_columns(std::size_t columns) {
   return std::max(1.0, 0.3 * static_cast<double>(columns));
 }
 
-// Of the positions of a step in the grid's records under this noise. A score passes the level u on its way
-// from one position to the next about u sqrt((1 - correlation) / pi) times as often as one position alone is
-// above it (Rice's formula for neighbours; the bound of Hunter and Worsley to first order).
-double independent_steps(const BlockGrid& grid, const NoiseShape& shape, double ratio);
-
 }  // namespace ifog

@@ -57,7 +57,6 @@ class EffectSearch {
     const Columns columns = design(data_, model_);
     noise_ =
         options_.noise ? fit_noise(data_.grid, columns, *options_.noise) : fit_noise(data_.grid, columns);
-    result.noise_without = noise_;
     count_tries();
     start_with_basics();
     improve();
@@ -72,10 +71,9 @@ class EffectSearch {
  private:
   // The chance of a false effect is shared out between channels and steps.
   void count_tries() {
-    const double level = 20.0;  // near what will be asked for
     const double independent = independent_columns(scan_.size()) + static_cast<double>(scan_.pairs());
     tries_of_channels_ = independent / (data_.grid.dwells ? 1.0 : kShareOfChannels);
-    tries_of_steps_ = independent_steps(data_.grid, noise_.shape, level) / (1.0 - kShareOfChannels);
+    tries_of_steps_ = static_cast<double>(data_.grid.used()) / (1.0 - kShareOfChannels);
   }
 
   [[nodiscard]] double p_value(const Candidate& candidate, double ratio) const {

@@ -30,8 +30,7 @@ struct Alternative {
 struct SearchResult {
   std::vector<Chosen> chosen;
   std::vector<Alternative> alternatives;
-  NoiseFit noise;          // with the chosen effects
-  NoiseFit noise_without;  // without any
+  NoiseFit noise;  // with the chosen effects
   Eigen::VectorXd
       coefficients;  // nuisances (one constant a record) first, then the columns of each chosen effect
   Eigen::MatrixXd covariance;  // of those

@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-#include "filters/diagnosis/cleaning/other_axes.h"
+#include "filters/diagnosis/cleaning/steps.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/effects/form.h"
 

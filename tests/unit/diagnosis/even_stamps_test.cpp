@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Stamps that scatter about an even clock are set even; steps that are of different lengths stay.
-#include "filters/diagnosis/cleaning/even_stamps.h"
+#include "filters/diagnosis/cleaning/steps.h"
 
 #include <gtest/gtest.h>
 

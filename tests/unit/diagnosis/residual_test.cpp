@@ -57,12 +57,13 @@ TEST(Lines, WhiteNoiseHasNoneAndItsSpectrumIsFlat) {
   EXPECT_NEAR(spectrum.density.back(), 2.0 * kPeriod, 0.05 * 2.0 * kPeriod);
 }
 
-Unexplained of(const std::vector<double>& left, const std::vector<SpectralLine>& peaks = {}) {
+Unexplained of(const std::vector<double>& left, const std::vector<SpectralLine>& peaks = {},
+               const std::vector<NoiseChange>& changes = {}) {
   BlockGrid grid;
   grid.block_s = 1.0;
   NoiseFit noise;
   noise.white_variance = kPeriod;  // of a mean of one second of unit noise
-  return describe_unexplained(left, left, 0.0, kPeriod, noise, grid, peaks);
+  return describe_unexplained(left, left, 0.0, kPeriod, noise, grid, peaks, changes);
 }
 
 // Of a piece with a hole few differences are left, and they scatter more than all would.
@@ -91,9 +92,7 @@ TEST(Unexplained, SaysWhatTheRestLooksLike) {
   EXPECT_NEAR(bursts.times_s[0], 100.0, 0.5);
   EXPECT_NEAR(bursts.times_s[2], 450.0, 0.5);
 
-  std::vector<double> louder = noise;
-  for (std::size_t i = 30000; i < 60000; ++i) louder[i] *= 3.0;
-  EXPECT_EQ(of(louder).kind, "changing_variance");
+  EXPECT_EQ(of(noise, {}, {NoiseChange{300.0, 600.0, 3.0, {}}}).kind, "changing_variance");
 
   std::vector<double> drifting = noise;
   double walk = 0.0;

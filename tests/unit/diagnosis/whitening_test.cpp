@@ -30,7 +30,7 @@ double gaussian(std::uint32_t counter, std::uint32_t stream) {
 // Covariance of walk plus white, whitened by its Cholesky factor: the second way to the same least squares.
 TEST(Whitening, LeastSquaresOfInnovationsIsGeneralisedLeastSquares) {
   constexpr Eigen::Index n = 300;
-  const NoiseShape shape{0.02, 0.0, 0.0, 0.0};
+  const NoiseShape shape{0.02, 0.0};
   Columns columns(n, 3);
   for (Eigen::Index i = 0; i < n; ++i) {
     columns(i, 0) = gaussian(static_cast<std::uint32_t>(i), 1) + 0.01 * static_cast<double>(i);
@@ -88,9 +88,8 @@ TEST(NoiseFit, ComesToAnEndWhereTheLikelihoodIsNoNumber) {
       columns(i, 1) = 1.0;
     }
     columns(n / 2, 0) = bad;
-    const NoiseShape with_markov{1e-3, 1e-2, 0.3, 8.0};
-    for (const NoiseFit& fit : {fit_noise(grid, columns), fit_noise(grid, columns, with_markov)}) {
-      for (const double value : {fit.shape.walk, fit.shape.flicker, fit.shape.markov, fit.shape.markov_s})
+    for (const NoiseFit& fit : {fit_noise(grid, columns), fit_noise(grid, columns, NoiseShape{1e-3, 1e-2})}) {
+      for (const double value : {fit.shape.walk, fit.shape.flicker})
         EXPECT_TRUE(value >= 0.0 && value <= 1e9) << value << " with " << bad;
       if (!std::isfinite(bad)) {
         EXPECT_FALSE(fit.log_likelihood > -1e300) << bad;  // none is claimed

@@ -189,6 +189,35 @@ TEST(ModelFile, ACovarianceMustBeOne) {
   }
 }
 
+// A reported line is not corrected, and its three parameters make most of a matrix of them all.
+TEST(ModelFile, HasTheCovarianceOfWhatIsCorrected) {
+  Model model;
+  Effect bias, line;
+  bias.form = "bias";
+  bias.parameters = {{"coefficient", 1e-6, 2e-8, "rad/s"}};
+  line.form = "line";
+  line.parameters = {
+      {"cosine", 1e-6, 3e-8, "rad/s"}, {"sine", 0.0, 3e-8, "rad/s"}, {"frequency_hz", 5.0, 1e-3, "Hz"}};
+  model.effects = {line, bias};
+  const std::vector<double> variances = {9e-16, 9e-16, 1e-6, 4e-16};
+  model.covariance.assign(16, 0.0);
+  for (std::size_t i = 0; i < 4; ++i) model.covariance[5 * i] = variances[i];
+  const std::string text = model_text(model);
+  EXPECT_NE(text.find("covariance = [4e-16]"), std::string::npos) << text;
+  const std::string all =
+      "covariance = [9e-16, 0, 0, 0, 0, 9e-16, 0, 0, 0, 0, 1e-6, 0, 0, 0, 0, 4e-16]";  // as files had it
+  std::string before = text;
+  before.replace(before.find("covariance = [4e-16]"), 20, all);
+  for (const std::string& each : {text, before}) {
+    const Model read = parse_model(each, "m.toml");
+    ASSERT_EQ(read.covariance.size(), 16U);
+    for (std::size_t i = 0; i < 16; ++i) EXPECT_NEAR(read.covariance[i], model.covariance[i], 1e-22) << i;
+  }
+  model.effects = {line};
+  model.covariance.resize(9);
+  EXPECT_EQ(model_text(model).find("covariance"), std::string::npos);
+}
+
 // What a form does not know would correct nothing, in silence.
 TEST(ModelFile, TheParametersAreThoseOfTheForm) {
   const auto effect = [](const std::string& keys, std::initializer_list<const char*> parameters) {

@@ -8,7 +8,10 @@
 #include <optional>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
+
+#include "filters/rest/cleaned_rate.h"
 
 namespace ifog {
 namespace {
@@ -45,10 +48,15 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
   EXPECT_EQ(found.count, 3U);
   EXPECT_NE(in_words(found, [](std::size_t) { return 0.0; }).find("not used in these figures"),
             std::string::npos);
-  const std::optional<LongSeries> without = without_leaps(rate, found);
-  ASSERT_TRUE(without);
+  const auto without = [&](const std::vector<double>& from) {
+    std::vector<ValueFault> faults;
+    return without_leaps(
+        from, from, all, [](std::size_t) { return 0.0; }, faults);
+  };
+  const std::optional<LongSeries> repaired = without(rate);
+  ASSERT_TRUE(repaired);
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const double value = SeriesView(*without).at(i);
+    const double value = SeriesView(*repaired).at(i);
     if (i == 16384)
       EXPECT_DOUBLE_EQ(value, 0.5 * (before[i - 1] + before[i + 1]));
     else if (i != 300 && i != 302)
@@ -56,14 +64,43 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
     else
       EXPECT_DOUBLE_EQ(value, 0.5 * (before[i - 1] + before[i + 1])) << i;
   }
-  EXPECT_FALSE(without_leaps(before, find_glitches(before, all)));
+  EXPECT_FALSE(without(before));
 
   for (std::size_t i = 50; i < rate.size(); i += 500) rate[i] = 1.0;
   const Glitches many = find_glitches(rate, all);
   EXPECT_GT(many.count, 21U);
   EXPECT_TRUE(many.few.empty());
-  EXPECT_FALSE(without_leaps(rate, many));
+  EXPECT_FALSE(without(rate));
   EXPECT_NE(in_words(many, [](std::size_t) { return 0.0; }).find("take for noise"), std::string::npos);
+}
+
+// A placeholder for some samples, a value that a logger repeats: as far from the noise as it may be.
+TEST(Glitches, RepeatedValuesAreOut) {
+  const auto time_s = [](std::size_t i) { return 1e-2 * static_cast<double>(i); };
+  const std::vector<double> before = white(20000, 4);
+  for (const auto& [value, length, name] :
+       std::initializer_list<std::tuple<double, std::size_t, const char*>>{
+           {-999.0, 3, "leaps"}, {0.0, 20, "stuck"}, {65535.0, 20, "stuck"}, {before[777], 50, "stuck"}}) {
+    std::vector<double> logged = before;
+    std::fill_n(logged.begin() + 5000, length, value);
+    LongSeries rate;
+    rate.add(logged);
+    std::vector<ValueFault> faults;
+    leave_out_repeats(rate, time_s, faults);
+    ASSERT_EQ(faults.size(), 1U) << value;
+    EXPECT_EQ(faults.front().name, name);
+    EXPECT_NE(faults.front().text.find("at 50 s"), std::string::npos) << faults.front().text;
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const double left = SeriesView(rate).at(i);
+      EXPECT_TRUE(i < 5000 || i >= 5000 + length ? left == before[i] : std::isnan(left)) << i;
+    }
+  }
+  // A sensor that says each value ten times does nothing else.
+  LongSeries slow;
+  for (const double value : white(2000, 5)) slow.add(std::vector<double>(10, value));
+  std::vector<ValueFault> faults;
+  leave_out_repeats(slow, time_s, faults);
+  EXPECT_TRUE(faults.empty());
 }
 
 // What stays where it has gone is a step, what takes several samples a blow: both are rates.

@@ -41,7 +41,8 @@ void run(Arguments& a) {
     Progress progress("Allan", a.captures.size());
     for (std::size_t i = 0; i < a.captures.size(); ++i) {
       InputFile file(a.captures[i]);
-      const LongTable table = a.input.read_long(file, allan_wants);
+      LongTable table = a.input.read_long(file, allan_wants);
+      table.leave_out_repeats();
       for (AllanRecord& record : allan_records(a.captures[i], table, a.options))
         records.push_back(std::move(record));
       progress.at(i + 1);

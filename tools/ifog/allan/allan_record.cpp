@@ -181,6 +181,7 @@ AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const 
                           of.table.origin,
                           of.time_s,
                           part,
+                          column.repeats,
                           of.clock,
                           gaps,
                           of.table.outlines,

@@ -10,8 +10,8 @@
 
 #include "filters/allan/noise/curve_miss.h"
 #include "filters/allan/row_times.h"
+#include "filters/rest/cleaned_rate.h"
 #include "filters/rest/followed_channel.h"
-#include "filters/rest/glitches.h"
 #include "filters/rest/value_faults.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -191,12 +191,14 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
   const auto told_time_s = [&](std::size_t row) { return logged.told_time_s(row); };
   // A filter leaps of itself, by its gain; what the logger did is in the raw rate.
-  const Glitches leaps = signal == "denoised" ? Glitches{} : find_glitches(logged.rate, parts);
-  if (signal == "rate") record.findings = value_faults(logged.rate, parts, period, told_time_s);
+  record.findings.assign(logged.repeats.begin(), logged.repeats.end());
+  std::optional<LongSeries> cleaned;
+  if (signal != "denoised")
+    cleaned = without_leaps(logged.rate, logged.rate, parts, told_time_s, record.findings);
+  const SeriesView rate = cleaned ? SeriesView(*cleaned) : logged.rate;
+  if (signal == "rate") find_value_faults(rate, parts, period, record.findings);
   for (const ValueFault& found : record.findings)
     record.notes.push_back(name + ": " + column + ": " + found.text);
-  const std::optional<LongSeries> repaired = without_leaps(logged.rate, leaps);
-  const SeriesView rate = repaired ? SeriesView(*repaired) : logged.rate;
   const AngleSum sum(rate, parts);
   record.samples = sum.samples();
   record.longest = sum.longest();
@@ -209,8 +211,6 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
                            " stretches; averages never reach across a hole, the longest stretch is " +
                            six_digits(static_cast<double>(record.longest) * period) + " s");
 
-  if (const std::string said = in_words(leaps, told_time_s); !said.empty())
-    record.notes.push_back(name + ": " + column + ": " + said);
   measure(logged, sum, options, period, record);
   if (record.fit && signal == "rate") note_what_fits_badly(logged, rate, parts, sum, period, record);
   record.noise_changes = noise_changes(rate, parts, period, told_time_s);

@@ -43,6 +43,7 @@ struct LoggedRate {
   const TimeOrigin& origin;
   const SeriesView& time_s;
   const SeriesView& rate;
+  std::span<const ValueFault> repeats;  // which are missing in it
   const SampleClock& clock;
   const Gaps& gaps;
   std::span<const ChannelOutline> channels;  // of the file, whose rows begin `first_row` before these

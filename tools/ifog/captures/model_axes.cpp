@@ -6,6 +6,7 @@
 
 #include "drivers/ifog/quoted.h"
 #include "filters/effects/form.h"
+#include "filters/model_file/covariance.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -39,10 +40,7 @@ Model without_axes(Model model, const std::vector<std::string>& axes) {
   }
   model.effects = std::move(effects);
   if (model.covariance.size() != all * all || rows.size() == all) return model;
-  std::vector<double> covariance;
-  for (const std::size_t row : rows)
-    for (const std::size_t column : rows) covariance.push_back(model.covariance[row * all + column]);
-  model.covariance = std::move(covariance);
+  model.covariance = of_rows(model.covariance, all, rows);
   return model;
 }
 

@@ -17,7 +17,7 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
 #include "filters/diagnosis/channels/derived_channels.h"
-#include "filters/diagnosis/cleaning/other_axes.h"
+#include "filters/diagnosis/cleaning/steps.h"
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"

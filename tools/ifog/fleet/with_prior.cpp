@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "filters/effects/form.h"
+#include "filters/model_file/covariance.h"
 #include "filters/population/shrinkage.h"
 
 namespace ifog::tools {
@@ -71,42 +73,25 @@ bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effec
   return false;
 }
 
-// Covariance of all parameters of a model: of coefficients fitted together as given, of the others their own.
-class ModelCovariance {
- public:
-  void add(const Fitted& fitted) {
-    for (std::size_t i = 0; i < fitted.effects.size(); ++i) {
-      for (std::size_t j = 0; j < i; ++j)
-        across_.push_back(
-            {first_.size(), first_.size() - i + j, fitted.estimate.covariance(fitted.at[i], fitted.at[j])});
-      add(fitted.effects[i]);
-    }
+// Of all parameters of a model whose first effects are these: of coefficients fitted together as given, of
+// the others their own.
+std::vector<double> covariance_of(const std::vector<Fitted>& axes, const std::vector<Effect>& effects) {
+  std::vector<double> all = of_all_parameters({}, effects);
+  std::vector<std::size_t> first;  // parameter of each effect
+  std::size_t n = 0;
+  for (const Effect& effect : effects) first.push_back(std::exchange(n, n + effect.parameters.size()));
+  std::size_t begin = 0;  // effect
+  for (const Fitted& fitted : axes) {
+    for (std::size_t i = 0; i < fitted.effects.size(); ++i)
+      for (std::size_t j = 0; j < i; ++j) {
+        const std::size_t a = first[begin + i], b = first[begin + j];
+        if (all[a * n + a] > 0.0 && all[b * n + b] > 0.0)
+          all[a * n + b] = all[b * n + a] = fitted.estimate.covariance(fitted.at[i], fitted.at[j]);
+      }
+    begin += fitted.effects.size();
   }
-  void add(const Effect& effect) {
-    first_.push_back(variances_.size());
-    for (const ModelParameter& each : effect.parameters)
-      variances_.push_back(each.std_error * each.std_error);
-  }
-  [[nodiscard]] std::vector<double> row_major() const {
-    const std::size_t n = variances_.size();
-    std::vector<double> all(n * n, 0.0);
-    for (std::size_t i = 0; i < n; ++i) all[i * n + i] = variances_[i];
-    for (const Pair& pair : across_) {
-      const std::size_t a = first_[pair.one], b = first_[pair.other];
-      if (variances_[a] > 0.0 && variances_[b] > 0.0) all[a * n + b] = all[b * n + a] = pair.covariance;
-    }
-    return all;
-  }
-
- private:
-  struct Pair {
-    std::size_t one, other;  // effects
-    double covariance;
-  };
-  std::vector<std::size_t> first_;  // parameter of each effect
-  std::vector<double> variances_;
-  std::vector<Pair> across_;
-};
+  return all;
+}
 
 }  // namespace
 
@@ -114,10 +99,9 @@ Model model_with_prior(const Model& own, const TypeToMeasure& type, const GyroMe
                        std::size_t gyro, std::vector<TypeEffect>& effects) {
   Model model = own;
   model.effects.clear();
-  ModelCovariance covariance;
+  std::vector<Fitted> together;
   for (const AxisMeasured& axis : measured.axes) {
-    const Fitted fitted = fit_with_prior(axis, gyro, effects);
-    covariance.add(fitted);
+    const Fitted& fitted = together.emplace_back(fit_with_prior(axis, gyro, effects));
     model.effects.insert(model.effects.end(), fitted.effects.begin(), fitted.effects.end());
     for (const ChannelRange& range : axis.ranges)
       if (std::none_of(model.ranges.begin(), model.ranges.end(),
@@ -128,11 +112,9 @@ Model model_with_prior(const Model& own, const TypeToMeasure& type, const GyroMe
     const bool fitted = std::any_of(
         measured.axes.begin(), measured.axes.end(),
         [&](const AxisMeasured& axis) { return axis.axis == effect.axis && was_fitted(type, axis, effect); });
-    if (fitted) continue;
-    covariance.add(effect);
-    model.effects.push_back(effect);
+    if (!fitted) model.effects.push_back(effect);
   }
-  model.covariance = covariance.row_major();
+  model.covariance = covariance_of(together, model.effects);
   // Those figures are of the model that the gyro's own diagnosis wrote.
   model.source.before.clear();
   model.source.after.clear();

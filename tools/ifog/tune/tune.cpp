@@ -18,7 +18,7 @@
 #include "drivers/system/utc_now.h"
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/model_file/model.h"
-#include "filters/rest/glitches.h"
+#include "filters/rest/cleaned_rate.h"
 #include "filters/rest/noise_change.h"
 #include "filters/rest/rest.h"
 #include "filters/rest/value_faults.h"
@@ -171,31 +171,23 @@ json noise_json(const NoiseByAxis& noise) {
   return axes;
 }
 
-// What the values say of the program that logged them: what is fitted to such a record is no gyro's noise.
-void note_value_faults(const CaptureView& capture, const SampleClock& clock, const Rest& rest,
-                       std::vector<std::string>& notes) {
-  for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    const std::span<const double> rate = capture.rate_radps[a];
-    for (const ValueFault& found :
-         value_faults(rate, common(stretches(capture.time_s, rate, clock), rest.at_rest), clock.period_s,
-                      [&](std::size_t i) { return capture.told_time_s(i); }))
-      notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + found.text);
-  }
+std::string axis_label(const CaptureView& capture, std::size_t axis) {
+  return capture.axes[axis].empty() ? "" : capture.axes[axis] + ": ";
 }
 
-// Single leaps are out of the capture afterwards, repaired holds what is there instead.
+// Single leaps are out of the capture afterwards, repaired holds what is there instead. What else the values
+// say of the program that logged them is noted: what is fitted to such a record is no gyro's noise.
 void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest& rest,
                      std::vector<LongSeries>& repaired, std::vector<std::string>& notes) {
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     std::span<const double>& rate = capture.rate_radps[a];
-    const Glitches leaps = find_glitches(rate, common(stretches(capture.time_s, rate, clock), rest.at_rest));
-    if (const std::string said = in_words(leaps, [&](std::size_t i) { return capture.told_time_s(i); });
-        !said.empty())
-      notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + said);
-    if (std::optional<LongSeries> without = without_leaps(rate, leaps)) {
-      repaired.push_back(*std::move(without));
-      rate = repaired.back().all();
-    }
+    const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
+    std::vector<ValueFault> faults;
+    std::optional<LongSeries> cleaned = without_leaps(
+        rate, rate, parts, [&](std::size_t i) { return capture.told_time_s(i); }, faults);
+    if (cleaned) rate = repaired.emplace_back(*std::move(cleaned)).all();
+    find_value_faults(rate, parts, clock.period_s, faults);
+    for (const ValueFault& fault : faults) notes.push_back(axis_label(capture, a) + fault.text);
   }
 }
 
@@ -211,9 +203,9 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
           noise_coefficients(AngleSum(rate, parts), clock.period_s),
           noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.told_time_s(i); })};
       if (const std::string markov = markov_in_words(found.terms); !markov.empty())
-        notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + markov);
+        notes.push_back(axis_label(capture, a) + markov);
       if (const std::string change = in_words(found.changes); !change.empty())
-        notes.push_back((capture.axes[a].empty() ? "" : capture.axes[a] + ": ") + change);
+        notes.push_back(axis_label(capture, a) + change);
       noise[capture.axes[a]] = std::move(found);
     } catch (const std::invalid_argument& error) {
       notes.push_back("no noise terms" + (capture.axes[a].empty() ? "" : " of " + capture.axes[a]) + ": " +
@@ -304,7 +296,6 @@ void run(const TuneArguments& options) {
   std::vector<std::string> notes;
   std::vector<LongSeries> repaired;
   repaired.reserve(capture.axes.size());
-  note_value_faults(capture, clock, rest, notes);
   leave_out_leaps(capture, clock, rest, repaired, notes);
   const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
   if (const std::string motion = in_words(rest, period, capture.told_time_s(0)); !motion.empty())

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <thread>
 
 #include "drivers/capture/columns/column_names.h"
+#include "filters/rest/cleaned_rate.h"
 #include "filters/threads/share_out.h"
 
 namespace ifog::tools {
@@ -29,6 +31,16 @@ void LongTable::leave_out_unknown(const std::string& path) {
                        [&](const LongColumn& column) { return column.name == name && !column.known; });
   });
   std::erase_if(columns, [](const LongColumn& column) { return !column.known; });
+}
+
+void LongTable::leave_out_repeats() {
+  const SeriesView times = time_s;
+  share_out(columns.size(), std::thread::hardware_concurrency(), [&](std::size_t c) {
+    std::string axis;
+    if (axis_of(columns[c].name, "rate", axis))
+      ifog::leave_out_repeats(
+          columns[c].values, [&](std::size_t row) { return origin.told(times.at(row)); }, columns[c].repeats);
+  });
 }
 
 std::vector<std::string> LongTable::leave_out_dead_axes() {

@@ -9,6 +9,7 @@
 #include "drivers/capture/capture.h"
 #include "drivers/capture/times/row_sink.h"
 #include "filters/rest/channel_outline.h"
+#include "filters/rest/value_faults.h"
 #include "filters/series/long_series.h"
 #include "filters/series/series_view.h"
 
@@ -17,7 +18,8 @@ namespace ifog::tools {
 struct LongColumn {
   std::string name;
   LongSeries values;
-  bool known = false;  // ever a value
+  bool known = false;                    // ever a value
+  std::vector<ValueFault> repeats = {};  // of a rate; see leave_out_repeats()
 };
 
 struct LongTable : RowNotes {
@@ -34,6 +36,8 @@ struct LongTable : RowNotes {
   // Drops axes and channels of a recording that never had a value. Throws std::runtime_error where nothing is
   // left.
   void leave_out_unknown(const std::string& path);
+  // What the rates repeat is missing from here on (filters/rest/cleaned_rate.h).
+  void leave_out_repeats();
   // The axes of rates that never had one, whose columns are gone from here on, with their references.
   std::vector<std::string> leave_out_dead_axes();
 };

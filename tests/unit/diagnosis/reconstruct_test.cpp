@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of the search that have an answer of their own: what a channel was, how many tries there are,
-// and whether slow and quick agree about an effect.
+// What a channel was behind its readings.
 #include <gtest/gtest.h>
 
 #include <cmath>
