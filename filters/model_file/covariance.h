@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 The covariance of a model's parameters: which of it a file has, and
-// whether numbers read from one are such a matrix.
+// SPDX-License-Identifier: Apache-2.0
+// The covariance of a model's parameters: which of it a file has, and whether numbers read from one are such a
+// matrix.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 A rate without what the logger or the line did to it. Every command
-// takes the same faults out and says so in the same words: each function appends a line to `faults` for what
-// it found.
+// SPDX-License-Identifier: Apache-2.0
+// A rate without what the logger or the line did to it. Every command takes the same faults out and says so in
+// the same words: each function appends a line to `faults` for what it found.
 #pragma once
 
 #include <cstddef>

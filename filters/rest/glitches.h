@@ -1,7 +1,7 @@
-// SPDX-License-Identifier: Apache-2.0 Samples that leap away from those beside them and back, far beyond all
-// noise: a single one, or some that all have one value, as a placeholder has. A fault of the logger or of the
-// line. They are no angle random walk, yet one of 1e5 times the noise makes N of a record a thousand times
-// too large.
+// SPDX-License-Identifier: Apache-2.0
+// Samples that leap away from those beside them and back, far beyond all noise: a single one, or some that all
+// have one value, as a placeholder has. A fault of the logger or of the line. They are no angle random walk,
+// yet one of 1e5 times the noise makes N of a record a thousand times too large.
 #pragma once
 
 #include <cstddef>

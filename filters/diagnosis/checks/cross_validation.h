@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 Cross-validation: effects by coefficients of all blocks, and by those
-// that were fitted without the block's own part of the record.
+// SPDX-License-Identifier: Apache-2.0
+// Cross-validation: effects by coefficients of all blocks, and by those that were fitted without the block's
+// own part of the record.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,6 @@
-// SPDX-License-Identifier: Apache-2.0 The steps that clean captures before everything else, each with a file
-// of its own. prepared_records.h puts them in order.
+// SPDX-License-Identifier: Apache-2.0
+// The steps that clean captures before everything else, each with a file of its own. prepared_records.h puts
+// them in order.
 #pragma once
 
 #include "filters/diagnosis/record/owned_records.h"
