@@ -43,7 +43,6 @@ ChainParts::ChainParts(const ChainSettings& settings)
   if (settings.model) {
     identity_ = settings.model->identity();
     if (settings.model->filter) base = *settings.model->filter;
-    shares_ = axis_shares(*settings.model, settings.axes);
     use_effects(settings);
   }
   filter_ = settings_in_force(settings.filter, std::move(base));
@@ -55,10 +54,12 @@ ChainParts::ChainParts(const ChainSettings& settings)
 void ChainParts::use_noise(const ChainSettings& settings) {
   const double rate_hz = facts_.nominal_rate_hz;
   if (settings.model) {
-    const AxisNoiseTerms terms = mean_noise_terms(*settings.model, settings.axes);
-    if (filter_.measurement_noise <= 0.0 && terms.N) filter_.measurement_noise = *terms.N * rate_hz;
-    if (filter_.process_noise <= 0.0 && terms.K && filter_.state == "random-walk")
-      filter_.process_noise = *terms.K;
+    const NoiseOfAxes known =
+        noise_of_axes(*settings.model, settings.axes, rate_hz, filter_.measurement_noise);
+    shares_ = known.shares;
+    if (filter_.measurement_noise <= 0.0 && known.sample) filter_.measurement_noise = *known.sample;
+    if (filter_.process_noise <= 0.0 && known.walk && filter_.state == "random-walk")
+      filter_.process_noise = *known.walk;
   }
   learns_process_noise_ = filter_.process_noise <= 0.0;
   learns_measurement_noise_ = filter_.measurement_noise <= 0.0;

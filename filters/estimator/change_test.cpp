@@ -69,7 +69,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     evidence /= likely;
   }
   const auto large = square > kUnseenSquare * likely * c.weight;
-  if (j >= 1 && h <= 2.0 * lag && large.any())
+  if (h <= 2.0 * lag && large.any())
     unseen_ = large.select(unseen_.max(now.scale * kAtEnd * square / c.weight.square().max(1.0)), unseen_);
   short_[j] = keep * short_[j] + now.short_rad;
   c.ratio = (keep * c.ratio + evidence).max(kLeastRatio);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
@@ -15,6 +16,22 @@ std::string listed(std::span<const std::string> axes) {
   std::string list;
   for (const std::string& axis : axes) list += (list.empty() ? "" : ", ") + axis;
   return list;
+}
+
+// Noise of a filter over that of the model's terms from which on it is of something that those do not know.
+constexpr double kUnknownNoise = 2.0;
+
+// The square of one term of each axis.
+std::optional<Axes> squares(const Model& model, std::span<const std::string> axes,
+                            std::optional<double> NoiseTerms::*term) {
+  Axes of{};
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const auto found = model.noise.find(axes[a]);
+    if (found == model.noise.end() || !(found->second.*term)) return std::nullopt;
+    of[a] = std::pow(*(found->second.*term), 2);
+    if (!(of[a] > 0.0)) return std::nullopt;
+  }
+  return of;
 }
 
 }  // namespace
@@ -40,37 +57,31 @@ std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std
   return remarks;
 }
 
-AxisNoiseTerms mean_noise_terms(const Model& model, std::span<const std::string> axes) {
-  const auto mean = [&](std::optional<double> NoiseTerms::*term) -> std::optional<double> {
-    double sum = 0.0;
-    for (const std::string& axis : axes) {
-      const auto found = model.noise.find(axis);
-      if (found == model.noise.end() || !(found->second.*term)) return std::nullopt;
-      sum += std::pow(*(found->second.*term), 2);
-    }
-    if (!(sum > 0.0)) return std::nullopt;
-    return sum / static_cast<double>(axes.size());
+NoiseOfAxes noise_of_axes(const Model& model, std::span<const std::string> axes, double sample_rate_hz,
+                          double measurement_noise) {
+  NoiseOfAxes out;
+  if (axes.size() > kMaxAxes) return out;
+  const std::optional<Axes> white = squares(model, axes, &NoiseTerms::N),
+                            walk = squares(model, axes, &NoiseTerms::K);
+  const auto mean = [&](const Axes& of) {
+    return std::accumulate(of.begin(), of.end(), 0.0) / static_cast<double>(axes.size());
   };
-  return {mean(&NoiseTerms::N), mean(&NoiseTerms::K)};
-}
-
-AxisShares axis_shares(const Model& model, std::span<const std::string> axes) {
-  if (axes.size() < 2 || axes.size() > kMaxAxes) return {};
-  const auto shares = [&](std::optional<double> NoiseTerms::*term) -> std::optional<Axes> {
-    Axes of{1.0, 1.0, 1.0};
-    double mean = 0.0;
-    for (std::size_t a = 0; a < axes.size(); ++a) {
-      const auto found = model.noise.find(axes[a]);
-      if (found == model.noise.end() || !(found->second.*term)) return std::nullopt;
-      const double value = *(found->second.*term);
-      of[a] = value * value;
-      if (!(of[a] > 0.0)) return std::nullopt;
-      mean += of[a] / static_cast<double>(axes.size());
-    }
-    for (std::size_t a = 0; a < axes.size(); ++a) of[a] /= mean;
+  const auto shares = [&](Axes of) {
+    const double all = mean(of);
+    for (double& one : of) one /= all;
     return of;
   };
-  return {shares(&NoiseTerms::N), shares(&NoiseTerms::K)};
+  const bool several = axes.size() > 1;
+  if (walk) out.walk = mean(*walk);
+  if (walk && several) out.shares.walk = shares(*walk);
+  if (!white) return out;
+  Axes sample = *white;
+  for (double& one : sample) one *= sample_rate_hz;
+  out.sample = mean(sample);
+  if (measurement_noise > kUnknownNoise * *out.sample)
+    for (std::size_t a = 0; a < axes.size(); ++a) sample[a] += measurement_noise - *out.sample;
+  if (several) out.shares.noise = shares(sample);
+  return out;
 }
 
 }  // namespace ifog

@@ -18,17 +18,22 @@ std::string effects_of_no_axis(const Model& model, std::span<const std::string> 
 // That, and noise of an axis that a sensor of these has not; a line each.
 std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std::string> axes);
 
-// Noise N² and walk K² of each of several axes, relative to the mean of all: a
-// filter's own noises are of that. Nothing where the model does not say it of every axis.
+// Noise and walk of each of several axes, relative to the mean of all: a filter's own noises are of that. Nothing where the
+// model does not say it of every axis, or the sensor has one.
 struct AxisShares {
   std::optional<Axes> noise, walk;
 };
-// Squares of N and K, mean over these axes: (rad/s)^2/Hz, (rad/s^2)^2/Hz. Nothing where the model does not
-// say it of every axis.
-struct AxisNoiseTerms {
-  std::optional<double> N, K;
+
+// What a model's terms say of the noise at a sample rate, mean over the axes; nothing where it does not say it of
+// every axis.
+struct NoiseOfAxes {
+  std::optional<double> sample;  // N² times the sample rate, (rad/s)^2
+  std::optional<double> walk;    // K², (rad/s)^2/s
+  AxisShares shares;
 };
-[[nodiscard]] AxisNoiseTerms mean_noise_terms(const Model& model, std::span<const std::string> axes);
-[[nodiscard]] AxisShares axis_shares(const Model& model, std::span<const std::string> axes);
+// measurement_noise: of the model's filter, (rad/s)^2; 0: not given. Where that is above twice what the terms say, it is
+// of something they do not know, such as the lines of a dither: no axis is taken to have more of it than another.
+[[nodiscard]] NoiseOfAxes noise_of_axes(const Model& model, std::span<const std::string> axes,
+                                        double sample_rate_hz, double measurement_noise);
 
 }  // namespace ifog

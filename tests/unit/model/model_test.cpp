@@ -369,16 +369,30 @@ TEST(ModelFile, SaysWhatEachAxisNoiseIsOfTheMean) {
   model.noise["x"] = {.N = 1e-6, .K = 3e-9};
   model.noise["y"] = {.N = 2e-6, .K = 1e-9};
   const std::vector<std::string> both{"x", "y"}, one{"x"}, more{"x", "z"};
-  const AxisShares shares = axis_shares(model, both);
+  const AxisShares shares = noise_of_axes(model, both, 100.0, 0.0).shares;
   ASSERT_TRUE(shares.noise && shares.walk);
   EXPECT_NEAR((*shares.noise)[0], 0.4, 1e-12);
   EXPECT_NEAR((*shares.noise)[1], 1.6, 1e-12);
   EXPECT_NEAR((*shares.walk)[0], 1.8, 1e-12);
-  EXPECT_FALSE(axis_shares(model, one).noise);
-  EXPECT_FALSE(axis_shares(model, more).noise);
+  EXPECT_FALSE(noise_of_axes(model, one, 100.0, 0.0).shares.noise);
+  EXPECT_FALSE(noise_of_axes(model, more, 100.0, 0.0).shares.noise);
   model.noise["y"].K.reset();
-  EXPECT_TRUE(axis_shares(model, both).noise);
-  EXPECT_FALSE(axis_shares(model, both).walk);
+  EXPECT_TRUE(noise_of_axes(model, both, 100.0, 0.0).shares.noise);
+  EXPECT_FALSE(noise_of_axes(model, both, 100.0, 0.0).shares.walk);
+}
+
+// A ring laser's dither is no white noise, and in a tuned filter's noise of a sample: which axis has how much of it the
+// terms do not say.
+TEST(ModelFile, SharesNoiseThatItsTermsDoNotKnowAlike) {
+  Model model;
+  model.noise["x"] = {.N = 1e-6};
+  model.noise["y"] = {.N = 2e-6};
+  const std::vector<std::string> both{"x", "y"};
+  EXPECT_NEAR(*noise_of_axes(model, both, 1000.0, 0.0).sample, 2.5e-9, 1e-18);
+  // 1.75e-8 of 2e-8 is unknown.
+  const AxisShares tuned = noise_of_axes(model, both, 1000.0, 2e-8).shares;
+  EXPECT_NEAR((*tuned.noise)[0], 1.85e-8 / 2e-8, 1e-9);
+  EXPECT_NEAR((*tuned.noise)[1], 2.15e-8 / 2e-8, 1e-9);
 }
 
 }  // namespace

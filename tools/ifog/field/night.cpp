@@ -289,10 +289,10 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
     return "found " + traced + ", without a gain on held-out data" +
            (tried.empty() ? "" : ": " + gain_text(tried));
   Model model = with();
-  if (const std::string fitted =
-          fit_noise_left(model, model_with({}, found, {name}, hashes), corrected, name);
-      !fitted.empty())
-    say("%s: %s\n", sensor_.name.c_str(), fitted.c_str());
+  // A daemon whose model has no filter learns its noise, and goes on doing so.
+  const std::string fitted =
+      model.filter ? fit_noise_left(model, model_with({}, found, {name}, hashes), corrected, name) : "";
+  if (!fitted.empty()) say("%s: %s\n", sensor_.name.c_str(), fitted.c_str());
   require_that_it_fits(field_, sensor_, model);
   Proposal proposal;
   proposal.against = in_use.name;

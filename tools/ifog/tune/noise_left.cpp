@@ -8,6 +8,7 @@
 #include <exception>
 #include <span>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
@@ -33,6 +34,12 @@ CaptureView first_rows(CaptureView capture, std::size_t most) {
   return capture;
 }
 
+std::string in_digits(double value) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.4g", value);
+  return text.data();
+}
+
 TunedModel fitted(const CaptureView& rates, const std::string& state, const std::string& path) {
   const double period_s = sample_clock(rates.time_s).period_s;
   const Rest rest = mostly_at_rest(rates, period_s, path);
@@ -48,9 +55,10 @@ TunedModel fitted(const CaptureView& rates, const std::string& state, const std:
 
 std::string fit_noise_left(Model& model, const Model& added, const CaptureView& capture,
                            const std::string& path) {
-  if (!model.filter || added.effects.empty()) return "";
-  FilterSettings& filter = *model.filter;
-  if (!(filter.process_noise > 0.0) && !(filter.measurement_noise > 0.0)) return "";
+  const bool known =
+      model.filter && (model.filter->process_noise > 0.0 || model.filter->measurement_noise > 0.0);
+  if (known && added.effects.empty()) return "";
+  FilterSettings filter = model.filter.value_or(FilterSettings{});
   CaptureView rates = first_rows(capture, kMostRows);
   try {
     std::vector<Samples> left = compensated_rates(rates, added);
@@ -61,18 +69,20 @@ std::string fit_noise_left(Model& model, const Model& added, const CaptureView& 
       rates.reference_rate_radps[a] = {};
     }
     const TunedModel found = fitted(rates, filter.state, path);
-    std::array<char, 200> text{};
-    std::snprintf(text.data(), text.size(),
-                  "process_noise %.4g (rad/s)^2/s, was %.4g; measurement_noise %.4g (rad/s)^2, was %.4g",
-                  found.settings.process_noise, filter.process_noise, found.settings.measurement_noise,
-                  filter.measurement_noise);
+    const auto was = [known](double before) { return known ? ", was " + in_digits(before) : std::string(); };
+    std::string text = "noise of the filter, fitted to the corrected rate: process_noise " +
+                       in_digits(found.settings.process_noise) + " (rad/s)^2/s" + was(filter.process_noise) +
+                       "; measurement_noise " + in_digits(found.settings.measurement_noise) + " (rad/s)^2" +
+                       was(filter.measurement_noise);
     filter.process_noise = found.settings.process_noise;
     filter.measurement_noise = found.settings.measurement_noise;
     filter.state_parameters = found.settings.state_parameters;
-    return std::string("noise of the filter, fitted to the corrected rate: ") + text.data();
+    model.filter = std::move(filter);
+    return text;
   } catch (const std::exception& error) {
-    return "noise of the filter stays as the model had it, fitted to the rate before this correction: " +
-           printable(error.what(), kLongestMessage);
+    const std::string why = printable(error.what(), kLongestMessage);
+    if (!known) return "no noise for the filter: " + why;
+    return "noise of the filter stays as the model had it, fitted to the rate before this correction: " + why;
   }
 }
 
