@@ -44,6 +44,7 @@ void ChangeTest::begin() noexcept {
   shaking_.setZero();
   unseen_.setZero();
   suspected_ = false;
+  age_ = 0.0;
 }
 
 void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
@@ -68,8 +69,9 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     widest_ = widest_.max(likely);
     evidence /= likely;
   }
-  const auto large = square > kUnseenSquare * likely * c.weight;
-  if (h <= 2.0 * lag && large.any())
+  // A change is the likelier to have begun the fewer horizons rest has lasted.
+  const auto large = square > std::min(kUnseenSquare, age_ / h) * likely * c.weight;
+  if (j >= 1 && h <= 2.0 * lag && large.any())
     unseen_ = large.select(unseen_.max(now.scale * kAtEnd * square / c.weight.square().max(1.0)), unseen_);
   short_[j] = keep * short_[j] + now.short_rad;
   c.ratio = (keep * c.ratio + evidence).max(kLeastRatio);
@@ -88,6 +90,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   common.squares2 = common.squares * common.squares;
   common.rest_evidence = 0.5 * (now.surprise.min(common.cap) + now.log_rest_factor) * now.mask;
   coloured_ = greatest(colour) > kColoured;
+  age_ += 1.0;
   unseen_.setZero();
   widest_.setOnes();
   suspected_ = false;

@@ -60,7 +60,7 @@ class ChangeTest {
   std::array<Lanes, Trackers::kMost> short_;
   Lanes shaking_ = Lanes::Zero(), fourth_ = Lanes::Constant(3.0);
   Lanes unseen_ = Lanes::Zero(), widest_ = Lanes::Ones();
-  double seen_ = 64.0;
+  double seen_ = 64.0, age_ = 0.0;  // the latter: samples of rest
   bool suspected_ = false, coloured_ = false;
 };
 
