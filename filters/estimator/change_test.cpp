@@ -32,14 +32,7 @@ double ChangeTest::same_size(const Contest& c, Eigen::Index a) const noexcept {
 }
 
 void ChangeTest::begin() noexcept {
-  for (Contest& c : contest_) {
-    c.ratio.setZero();
-    c.sum.setZero();
-    c.weight.setZero();
-    c.rest.setZero();
-    c.rest2.setZero();
-    c.tracker.setZero();
-  }
+  for (Contest& c : contest_) c.ratio = c.sum = c.weight = c.rest = c.rest2 = c.tracker = Lanes::Zero();
   forget_angle();
   shaking_.setZero();
   unseen_.setZero();

@@ -18,9 +18,6 @@ std::string listed(std::span<const std::string> axes) {
   return list;
 }
 
-// Noise of a filter over that of the model's terms from which on it is of something that those do not know.
-constexpr double kUnknownNoise = 2.0;
-
 // The square of one term of each axis.
 std::optional<Axes> squares(const Model& model, std::span<const std::string> axes,
                             std::optional<double> NoiseTerms::*term) {
@@ -71,16 +68,15 @@ NoiseOfAxes noise_of_axes(const Model& model, std::span<const std::string> axes,
     for (double& one : of) one /= all;
     return of;
   };
-  const bool several = axes.size() > 1;
   if (walk) out.walk = mean(*walk);
-  if (walk && several) out.shares.walk = shares(*walk);
+  if (walk) out.shares.walk = shares(*walk);
   if (!white) return out;
   Axes sample = *white;
   for (double& one : sample) one *= sample_rate_hz;
   out.sample = mean(sample);
-  if (measurement_noise > kUnknownNoise * *out.sample)
+  if (measurement_noise > 2.0 * *out.sample)
     for (std::size_t a = 0; a < axes.size(); ++a) sample[a] += measurement_noise - *out.sample;
-  if (several) out.shares.noise = shares(sample);
+  out.shares.noise = shares(sample);
   return out;
 }
 

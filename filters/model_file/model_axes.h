@@ -19,7 +19,7 @@ std::string effects_of_no_axis(const Model& model, std::span<const std::string> 
 std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std::string> axes);
 
 // Noise and walk of each of several axes, relative to the mean of all: a filter's own noises are of that. Nothing where the
-// model does not say it of every axis, or the sensor has one.
+// model does not say it of every axis.
 struct AxisShares {
   std::optional<Axes> noise, walk;
 };

@@ -34,12 +34,6 @@ CaptureView first_rows(CaptureView capture, std::size_t most) {
   return capture;
 }
 
-std::string in_digits(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.4g", value);
-  return text.data();
-}
-
 TunedModel fitted(const CaptureView& rates, const std::string& state, const std::string& path) {
   const double period_s = sample_clock(rates.time_s).period_s;
   const Rest rest = mostly_at_rest(rates, period_s, path);
@@ -69,16 +63,16 @@ std::string fit_noise_left(Model& model, const Model& added, const CaptureView& 
       rates.reference_rate_radps[a] = {};
     }
     const TunedModel found = fitted(rates, filter.state, path);
-    const auto was = [known](double before) { return known ? ", was " + in_digits(before) : std::string(); };
-    std::string text = "noise of the filter, fitted to the corrected rate: process_noise " +
-                       in_digits(found.settings.process_noise) + " (rad/s)^2/s" + was(filter.process_noise) +
-                       "; measurement_noise " + in_digits(found.settings.measurement_noise) + " (rad/s)^2" +
-                       was(filter.measurement_noise);
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(),
+                  "noise of the filter, fitted to the corrected rate: process_noise %.4g (rad/s)^2/s, "
+                  "measurement_noise %.4g (rad/s)^2",
+                  found.settings.process_noise, found.settings.measurement_noise);
     filter.process_noise = found.settings.process_noise;
     filter.measurement_noise = found.settings.measurement_noise;
     filter.state_parameters = found.settings.state_parameters;
     model.filter = std::move(filter);
-    return text;
+    return text.data();
   } catch (const std::exception& error) {
     const std::string why = printable(error.what(), kLongestMessage);
     if (!known) return "no noise for the filter: " + why;
