@@ -36,14 +36,11 @@ double number(const std::string& column, std::string_view cell, std::string_view
   if (cell.empty()) return kMissing;
   double value = 0.0;
   const auto [end, error] = read_decimal(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range)
-    throw Unreadable{printable(column) + " is " + in_quotes(cell) + ", outside what a double holds"};
+  if (error == std::errc::result_out_of_range) return HUGE_VAL;  // beyond every range, as an infinite one is
   if (error != std::errc() || end != digits.data() + digits.size()) {
     if (is_no_value(cell)) return kMissing;
     throw Unreadable{printable(column) + " is " + in_quotes(cell) + ", expected a number, 'nan' or nothing"};
   }
-  if (std::isinf(value))
-    throw Unreadable{printable(column) + " is infinite, expected a finite number, 'nan' or nothing"};
   return value;
 }
 

@@ -253,7 +253,7 @@ class Checks:
                 ("truth", {"rate_radps": numpy.array([True] * 4)}, ["holds an enumeration"]),
                 ("complex", {"rate_radps": numpy.zeros(4, dtype=complex)}, ["holds records"]),
                 ("none", {}, ["no rate column"]),
-                ("infinite", {"rate_radps": numpy.array([0, 1, numpy.inf, 0])}, [":3: rate_radps is infinite"]),
+                ("infinite", {"rate_radps": numpy.array([0, 1, numpy.inf, numpy.inf])}, [":3: rate_radps is 'inf', which no sensor measures"]),
                 ("comma", {"rate_radps": numpy.zeros(4), "a,b_V": numpy.zeros(4)}, ["a dataset is called 'a,b_V'"]),
         ]:
             self.refused(write(self.folder / f"{name}.h5", {"time_s": time, **extra}), *parts)

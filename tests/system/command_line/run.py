@@ -325,7 +325,7 @@ class Checks:
             "word.csv": ("time_s,rate_radps\n0,1e-6\n0.01,abc\n", [":3:", "rate_radps", "'abc'", "expected a number"]),
             "backwards.csv": ("time_s,rate_radps\n0,1e-6\n0.01,2e-6\n0.005,1e-6\n", [":4:", "time_s", "0.005", "expected more"]),
             "no_rate.csv": ("time_s,foo_V\n0,1\n0.1,1\n0.2,1\n", ["no rate column", "expected"]),
-            "cut.csv": ("time_s,rate_radps\n0,1e-6\n0.01", [":3:", "1 cells, expected 2"]),
+            "cut.csv": ("time_s,rate_radps\n0,1e-6\n0.01\n", [":3:", "1 cells, expected 2"]),
             "empty.csv": ("", ["no header line"]),
         }
         for name, (text, says) in cases.items():

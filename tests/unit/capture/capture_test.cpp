@@ -76,7 +76,7 @@ TEST_F(CaptureFile, RefusesWithFileLineValueAndExpectation) {
   EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1\n"), "c.csv:3: 1 cells, expected 2 (a truncated line?)");
   EXPECT_EQ(refusal("time_s,rate_radps\n"), "c.csv: no rows after the header");
   EXPECT_EQ(refusal("time_s,rate_radps\n0,inf\n"),
-            "c.csv:2: rate_radps is infinite, expected a finite number, 'nan' or nothing");
+            "c.csv:2: rate_radps is 'inf', which no sensor measures, expected -10000 to 10000");
 }
 
 // What R, pandas, databases and spreadsheets make of a missing value, and of the end of a row.

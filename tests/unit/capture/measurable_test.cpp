@@ -109,8 +109,10 @@ TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {
       "its cells");
   EXPECT_EQ(refusal_of("time_s,rate_radps,t_degC\n0,1,2\n1,1,warm\n"),
             "a.csv:3: t_degC is 'warm', expected a number, 'nan' or nothing");
-  EXPECT_EQ(refusal_of("time_s,rate_radps,t_degC\n0,1,2\n1,1,inf\n"),
-            "a.csv:3: t_degC is infinite, expected a finite number, 'nan' or nothing");
+  for (const std::string word : {"inf", "-inf", "1e999"})
+    EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1,1\n2," + word + "\n3," + word + "\n"),
+              "a.csv:4: rate_radps is '" + word +
+                  "', which no sensor measures, expected -10000 to 10000; nor 1 more of its cells");
   // A time is not to be guessed.
   EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1e30,1\n").substr(0, 49),
             "a.csv:3: time_s is '1e30', which no sensor measur");
