@@ -140,6 +140,13 @@ Sensors sensors_of(const TableSample& table, bool references) {
     found->place = i;
     sensors[words.stem].push_back(*found);
   }
+  // Three namesakes, as of a header that spans three columns of a spreadsheet, are its axes.
+  for (auto& [stem, columns] : sensors)
+    if (columns.size() == 3 && columns[0].axis.empty() &&
+        std::all_of(columns.begin(), columns.end(), [&, &first = columns[0]](const RateCandidate& column) {
+          return table.names[column.place] == table.names[first.place];
+        }))
+      for (std::size_t i = 0; i < 3; ++i) columns[i].axis = std::string(1, static_cast<char>('x' + i));
   if (!references) add_triple(table, sensors);
   return sensors;
 }
@@ -171,12 +178,6 @@ std::vector<std::vector<RateCandidate>> choices_of(const Sensors& sensors) {
     if (columns.size() != most) continue;
     if (axes_differ(columns)) {
       choices.push_back(columns);
-      continue;
-    }
-    // Three namesakes, as of a header that spans three columns of a spreadsheet, are its axes.
-    if (columns.size() == 3 && columns[0].axis.empty()) {
-      std::vector<RateCandidate>& axes = choices.emplace_back(columns);
-      for (std::size_t i = 0; i < 3; ++i) axes[i].axis = std::string(1, static_cast<char>('x' + i));
       continue;
     }
     for (const RateCandidate& column : columns) choices.push_back({column});

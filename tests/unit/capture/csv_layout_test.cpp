@@ -338,6 +338,9 @@ TEST(CsvLayout, FilesOfOtherProgramsAreReadOrOfferedRight) {
       {rows_of("time (s),gyro,gyro,gyro\n", "0.{i},{x},{y},{z}"),
        {"--column 'rate_x_radps=#2:rad/s' --column 'rate_y_radps=#3:rad/s' --column "
         "'rate_z_radps=#4:rad/s'"}},
+      // GoPro telemetry extractor: the axis stands in brackets, and z first.
+      {rows_of("t [s],Gyroscope (z) [rad/s],Gyroscope (x) [rad/s]\n", "0.{i},{z},{x}"),
+       {"rate_z 'Gyroscope (z) [rad/s]' in rad/s, rate_x 'Gyroscope (x) [rad/s]' in rad/s"}},
       // x-IMU GUI, CalInertialAndMag.csv: G is gauss.
       {rows_of("Packet number,Gyroscope X (deg/s),Magnetometer X (G)\n", "{i},{x},0.21"),
        {"--column 'magnetometer_x_uT=Magnetometer X (G):gauss'"}},
