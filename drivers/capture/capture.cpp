@@ -46,7 +46,11 @@ CaptureShape capture_shape(const std::vector<std::string>& names, const std::str
   for (const std::string& name : names)
     if (axis_of(name, "rate", axis)) shape.axes.push_back(axis);
   if (shape.axes.empty()) {
-    fail_at(path, notes.header_line, "no rate column, expected 'rate_radps' or 'rate_x_radps', …");
+    fail_at(
+        path, notes.header_line,
+        "no rate column among " + listed(names) +
+            ", expected 'rate_radps' or 'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of "
+            "these names");
   }
   const auto index_of = [&](const std::string& name) {
     for (std::size_t i = 0; i < shape.axes.size(); ++i)

@@ -70,12 +70,13 @@ constexpr std::array kRates{
     Unit{"upm", kTurn / 60.0},    Unit{"minutinver", kTurn / 60.0}};
 
 constexpr std::array kTimes{
-    Unit{"s", 1.0},       Unit{"sec", 1.0},     Unit{"secs", 1.0},    Unit{"second", 1.0},
-    Unit{"seconds", 1.0}, Unit{"sek", 1.0},     Unit{"ms", 1e-3},     Unit{"msec", 1e-3},
-    Unit{"us", 1e-6},     Unit{"usec", 1e-6},   Unit{"ns", 1e-9},     Unit{"min", 60.0},
-    Unit{"minute", 60.0}, Unit{"h", 3600.0},    Unit{"hr", 3600.0},   Unit{"hour", 3600.0},
-    Unit{"secon", 1.0},   Unit{"sekunde", 1.0}, Unit{"mins", 60.0},   Unit{"minutes", 60.0},
-    Unit{"std", 3600.0},  Unit{"hrs", 3600.0},  Unit{"hours", 3600.0}};
+    Unit{"s", 1.0},       Unit{"sec", 1.0},     Unit{"secs", 1.0},     Unit{"second", 1.0},
+    Unit{"seconds", 1.0}, Unit{"sek", 1.0},     Unit{"ms", 1e-3},      Unit{"msec", 1e-3},
+    Unit{"us", 1e-6},     Unit{"usec", 1e-6},   Unit{"ns", 1e-9},      Unit{"min", 60.0},
+    Unit{"minute", 60.0}, Unit{"h", 3600.0},    Unit{"hr", 3600.0},    Unit{"hour", 3600.0},
+    Unit{"secon", 1.0},   Unit{"sekunde", 1.0}, Unit{"mins", 60.0},    Unit{"minutes", 60.0},
+    Unit{"std", 3600.0},  Unit{"hrs", 3600.0},  Unit{"hours", 3600.0}, Unit{"d", 86400.0},
+    Unit{"day", 86400.0}, Unit{"days", 86400.0}};
 
 template <std::size_t N>
 std::optional<double> find(const std::array<Unit, N>& units, std::string_view text) {
@@ -113,6 +114,7 @@ constexpr std::array kSpellings{
     Spelling{"\xD1\x81", "s"},                            // с
     Spelling{"\xE2\x80\xB2", "arcmin"},                   // the prime and the double prime
     Spelling{"\xE2\x80\xB3", "arcsec"},
+    Spelling{"\"", "arcsec"},   // as typewriters have it
     Spelling{"\xC3\xA9", "e"},  // é
     Spelling{"\xC2\xA0", " "},  // a blank that no line breaks at
     Spelling{"**", "^"},
@@ -275,7 +277,7 @@ std::string units_beside(std::string_view wanted) {
   const std::string name = plain(wanted);
   for (const Quantity& quantity : kQuantities)
     if (find_in(quantity, name) != nullptr) return std::string(quantity.shown);
-  if (time_unit(wanted)) return "s, ms, us, ns, min, h";
+  if (time_unit(wanted)) return "s, ms, us, ns, min, h, d";
   return angle_unit(wanted, true, false) ? "rad/s, deg/s, deg/h, rpm" : "";
 }
 

@@ -2,9 +2,6 @@
 #include "drivers/capture/columns/column_roles.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdlib>
 #include <map>
 #include <string_view>
 #include <utility>
@@ -12,7 +9,9 @@
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/column_times.h"
 #include "drivers/capture/columns/column_words.h"
+#include "drivers/capture/columns/rates_by_values.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"
 
 namespace ifog {
@@ -20,20 +19,9 @@ namespace {
 
 constexpr std::size_t kMostWays = 4;    // more than a message can show
 constexpr std::size_t kMostShown = 16;  // columns, likewise
-constexpr double kGravity_mps2 = 9.80665;
-
-// A column that may be a rate.
-struct Candidate {
-  std::size_t place = 0;
-  std::string unit;  // "" where it is unknown
-  std::string axis;
-  bool reference = false, increment = false;
-};
-
-using Rates = std::vector<Candidate>;
 
 // By sensor: columns whose names differ by the axis only belong together.
-using Sensors = std::map<std::string, std::vector<Candidate>>;
+using Sensors = std::map<std::string, std::vector<RateCandidate>>;
 
 bool has_any(const Words& words, std::initializer_list<std::string_view> wanted) {
   return std::any_of(wanted.begin(), wanted.end(), [&](std::string_view word) { return words.has(word); });
@@ -42,19 +30,18 @@ bool has_any(const Words& words, std::initializer_list<std::string_view> wanted)
 // What follows from a rate, describes it or belongs to another quantity is no rate, whatever else its name
 // says.
 bool excluded(const Words& words) {
-  return has_any(words, {"bias",         "offset",        "range",       "std",          "stddev",
-                         "sigma",        "var",           "variance",    "cov",          "covariance",
-                         "noise",        "temp",          "temperature", "id",           "dt",
-                         "status",       "state",         "count",       "counter",      "num",
-                         "flag",         "flags",         "valid",       "clip",         "clipping",
-                         "quality",      "scale",         "sf",          "min",          "max",
-                         "mean",         "avg",           "rms",         "err",          "error",
-                         "residual",     "limit",         "threshold",   "gain",         "timestamp",
-                         "period",       "relative",      "sample",      "sampling",     "update",
-                         "frame",        "odr",           "integral",    "accel",        "acc",
-                         "acceleration", "accelerometer", "mag",         "magnetometer", "denoised",
-                         "compensated",  "innovation",    "command",     "cmd",          "setpoint",
-                         "desired",      "target"});
+  return has_any(words,
+                 {"bias",        "offset",       "range",    "std",         "stddev",       "sigma",
+                  "var",         "variance",     "cov",      "covariance",  "noise",        "temp",
+                  "temperature", "id",           "dt",       "status",      "state",        "count",
+                  "counter",     "num",          "flag",     "flags",       "valid",        "clip",
+                  "clipping",    "quality",      "scale",    "sf",          "min",          "max",
+                  "mean",        "avg",          "rms",      "err",         "error",        "residual",
+                  "limit",       "threshold",    "gain",     "timestamp",   "tmp",          "sts",
+                  "period",      "relative",     "sample",   "sampling",    "update",       "frame",
+                  "odr",         "integral",     "accel",    "acc",         "acceleration", "accelerometer",
+                  "mag",         "magnetometer", "denoised", "compensated", "innovation",   "command",
+                  "cmd",         "setpoint",     "desired",  "target"});
 }
 
 bool is_reference(const Words& words) {
@@ -70,7 +57,7 @@ bool speaks_of_increment(const Words& words) {
 bool speaks_of_rate(const Words& words) {
   const bool speed = has_any(words, {"rate", "speed", "velocity", "vel"});
   return has_any(words, {"gyro", "gyr", "gyros", "gyroscope", "omega", "angvel", "angrate", "angularvelocity",
-                         "angularrate", "rotationrate", "turnrate", "turnspeed"}) ||
+                         "angularrate", "rotationrate", "turnrate", "turnspeed", "gyroskop", "fog"}) ||
          (speed && has_any(words, {"angular", "ang", "rotation", "rot", "turn", "body"})) ||
          (words.first() == "rate" && !words.has("hz")) || (words.first() == "raw" && words.size() <= 2) ||
          // gx, wz; w_RS_S_x of kalibr.
@@ -91,14 +78,14 @@ std::string rate_unit(const Words& words, const std::string& unit) {
 }
 
 // Whether a column is a rate at all; the candidate's place is the caller's.
-std::optional<Candidate> candidate_of(const Words& words, const std::string& unit) {
+std::optional<RateCandidate> candidate_of(const Words& words, const std::string& unit) {
   if (excluded(words)) return std::nullopt;
   const bool rate = angle_unit(unit, true, false).has_value(),
              angle = angle_unit(unit, false, false).has_value();
   if (!unit.empty() && !rate && !angle) return std::nullopt;
   const bool named = speaks_of_rate(words) || speaks_of_increment(words);
   if (!named && !(rate && !words.axis.empty())) return std::nullopt;
-  Candidate found;
+  RateCandidate found;
   found.unit = rate_unit(words, unit);
   found.axis = words.axis;
   found.reference = is_reference(words);
@@ -108,42 +95,25 @@ std::optional<Candidate> candidate_of(const Words& words, const std::string& uni
 
 std::string unit_of(const TableSample& table, std::size_t place) {
   if (std::string given = table.stated_unit(place); !given.empty()) return given;
-  if (const std::string unit = unit_in_name(table.names[place]); !unit.empty()) return unit;
   const std::string& text = Words(table.names[place]).text;  // gyro_rad[0]
+  if (const std::string unit = unit_in_name(table.names[place]); !unit.empty())
+    return unit == "G" && text.starts_with("mag") ? "gauss" : unit;  // a magnetometer's G is not gravity
   const std::string last = text.substr(text.rfind('_') + 1);
   return angle_unit(last, false, false) ? last : "";
 }
 
-// Three columns as long together as gravity are an accelerometer at rest: in m/s², g, mg or, of 16 bits and a
-// range of 2, 4, 8 or 16 g, counts.
-bool is_gravity(const TableSample& table, const std::vector<Candidate>& columns) {
-  std::vector<double> lengths;
-  for (std::size_t row = 0; row < table.cells[columns[0].place].size(); ++row) {
-    double square = 0.0;
-    for (const Candidate& column : columns) {
-      const std::vector<std::string>& cells = table.cells[column.place];
-      const double value = row < cells.size() ? std::strtod(cells[row].c_str(), nullptr) : 0.0;
-      square += value * value;
-    }
-    lengths.push_back(std::sqrt(square));
-  }
-  if (lengths.empty()) return false;
-  std::sort(lengths.begin(), lengths.end());
-  const auto at = [&](double share) {
-    return lengths[static_cast<std::size_t>(share * static_cast<double>(lengths.size() - 1))];
-  };
-  const double middle = at(0.5);
-  constexpr std::array<double, 7> kGravities{kGravity_mps2, 1.0, 1000.0, 16384.0, 8192.0, 4096.0, 2048.0};
-  return at(0.75) - at(0.25) < 0.05 * middle &&
-         std::any_of(kGravities.begin(), kGravities.end(),
-                     [&](double gravity) { return std::abs(middle / gravity - 1.0) < 0.05; });
+// As the options name a column: by its number where others have its name, or it has none.
+std::string header_of(const TableSample& table, std::size_t place) {
+  const std::string& name = table.names[place];
+  const bool alone = !name.empty() && std::count(table.names.begin(), table.names.end(), name) == 1;
+  return alone ? name : "#" + std::to_string(place + 1);
 }
 
 // p, q and r together are body rates; x, y and z without another word are the axes of a file that holds one
 // sensor only, as phones write it. Beside w or qw they are a quaternion or a position.
 void add_triple(const TableSample& table, Sensors& sensors) {
   if (!sensors.empty()) return;
-  std::vector<Candidate> body, bare;
+  std::vector<RateCandidate> body, bare;
   bool attitude = false;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
@@ -170,11 +140,18 @@ Sensors sensors_of(const TableSample& table, bool references) {
     found->place = i;
     sensors[words.stem].push_back(*found);
   }
+  // Three namesakes, as of a header that spans three columns of a spreadsheet, are its axes.
+  for (auto& [stem, columns] : sensors)
+    if (columns.size() == 3 && columns[0].axis.empty() &&
+        std::all_of(columns.begin(), columns.end(), [&, &first = columns[0]](const RateCandidate& column) {
+          return table.names[column.place] == table.names[first.place];
+        }))
+      for (std::size_t i = 0; i < 3; ++i) columns[i].axis = std::string(1, static_cast<char>('x' + i));
   if (!references) add_triple(table, sensors);
   return sensors;
 }
 
-bool axes_differ(const std::vector<Candidate>& columns) {
+bool axes_differ(const std::vector<RateCandidate>& columns) {
   for (std::size_t i = 0; i < columns.size(); ++i)
     for (std::size_t j = 0; j < i; ++j)
       if (columns[i].axis == columns[j].axis) return false;
@@ -182,35 +159,35 @@ bool axes_differ(const std::vector<Candidate>& columns) {
 }
 
 // The sensors that may be meant: the one with the most axes, or all of those.
-std::vector<std::vector<Candidate>> choices_of(const Sensors& sensors) {
-  std::vector<Candidate> together;
+std::vector<std::vector<RateCandidate>> choices_of(const Sensors& sensors) {
+  std::vector<RateCandidate> together;
   std::size_t most = 0;
   bool named_axes = false;
   for (const auto& [stem, columns] : sensors) {
     most = std::max(most, columns.size());
-    for (const Candidate& column : columns) named_axes = named_axes || !column.axis.empty();
+    for (const RateCandidate& column : columns) named_axes = named_axes || !column.axis.empty();
     together.insert(together.end(), columns.begin(), columns.end());
   }
   // "norm of the rate" beside three axes is none of them.
-  if (named_axes) std::erase_if(together, [](const Candidate& column) { return column.axis.empty(); });
+  if (named_axes) std::erase_if(together, [](const RateCandidate& column) { return column.axis.empty(); });
   if (together.empty()) return {};
   std::sort(together.begin(), together.end(), [](const auto& a, const auto& b) { return a.place < b.place; });
   if (axes_differ(together)) return {together};
-  std::vector<std::vector<Candidate>> choices;
+  std::vector<std::vector<RateCandidate>> choices;
   for (const auto& [stem, columns] : sensors) {
     if (columns.size() != most) continue;
     if (axes_differ(columns)) {
       choices.push_back(columns);
       continue;
     }
-    for (const Candidate& column : columns) choices.push_back({column});
+    for (const RateCandidate& column : columns) choices.push_back({column});
   }
   std::sort(choices.begin(), choices.end(),
             [](const auto& a, const auto& b) { return a[0].place < b[0].place; });
   return choices;
 }
 
-std::string capture_name(const Candidate& column) {
+std::string capture_name(const RateCandidate& column) {
   return std::string(column.reference ? "reference_rate" : "rate") +
          (column.axis.empty() ? "" : "_" + column.axis) + "_radps";
 }
@@ -223,25 +200,26 @@ std::string channel_name(const Words& words, const std::string& unit) {
 }
 
 // Every other column whose unit is known, and the references of the axes that are read.
-void add_others(const TableSample& table, const std::vector<Candidate>& rates,
+void add_others(const TableSample& table, const std::vector<RateCandidate>& rates,
                 std::vector<CsvColumn>& columns) {
   const auto add = [&](const std::string& name, std::size_t place, const std::string& unit) {
-    const auto taken = [&](const CsvColumn& c) { return c.name == name || c.header == table.names[place]; };
+    const std::string header = header_of(table, place);
+    const auto taken = [&](const CsvColumn& c) { return c.name == name || c.header == header; };
     if (!name.empty() && std::none_of(columns.begin(), columns.end(), taken))
-      columns.push_back({name, table.names[place], unit});
+      columns.push_back({name, header, unit});
   };
   for (const auto& choice : choices_of(sensors_of(table, true)))
-    for (const Candidate& column : choice)
-      if (!column.unit.empty() &&
-          std::any_of(rates.begin(), rates.end(), [&](const Candidate& r) { return r.axis == column.axis; }))
+    for (const RateCandidate& column : choice)
+      if (!column.unit.empty() && std::any_of(rates.begin(), rates.end(),
+                                              [&](const RateCandidate& r) { return r.axis == column.axis; }))
         add(capture_name(column), column.place, column.unit);
   for (std::size_t i = 0; i < table.names.size(); ++i)
     add(channel_name(Words(table.names[i]), unit_of(table, i)), i, unit_of(table, i));
 }
 
-Reading reading_by(const TableSample& table, const CsvLayout& asked, const std::optional<TimeCandidate>& time,
-                   const std::vector<Candidate>& rates) {
-  Reading way{asked, true, ""};
+TableReading reading_by(const TableSample& table, const CsvLayout& asked,
+                        const std::optional<TimeCandidate>& time, const std::vector<RateCandidate>& rates) {
+  TableReading way{asked, true, ""};
   const auto add = [&way](const std::string& option) {
     way.options += (way.options.empty() ? "" : " ") + option;
   };
@@ -262,8 +240,8 @@ Reading reading_by(const TableSample& table, const CsvLayout& asked, const std::
     for (const CsvColumn& column : asked.columns) add(option_for(column, column.unit));
     return way;
   }
-  for (const Candidate& rate : rates) {
-    way.layout.columns.push_back({capture_name(rate), table.names[rate.place], rate.unit});
+  for (const RateCandidate& rate : rates) {
+    way.layout.columns.push_back({capture_name(rate), header_of(table, rate.place), rate.unit});
   }
   const std::size_t rates_only = way.layout.columns.size();
   add_others(table, rates, way.layout.columns);
@@ -273,61 +251,26 @@ Reading reading_by(const TableSample& table, const CsvLayout& asked, const std::
   return way;
 }
 
-// A reading for each unit that may be meant, where names and values do not tell: what is printed is what can
-// be typed.
-std::vector<Rates> in_every_unit(const Rates& rates) {
-  if (std::none_of(rates.begin(), rates.end(), [](const Candidate& rate) { return rate.unit.empty(); }))
-    return {rates};
-  std::vector<Rates> all;
-  for (const char* angle : {"rad", "deg"})
-    for (Candidate& rate : all.emplace_back(rates))
-      if (rate.unit.empty()) rate.unit = std::string(angle) + (rate.increment ? "/sample" : "/s");
-  return all;
+// "; in the place of rad/s: deg/s, rad/sample": what else can be typed.
+std::string instead_of(const std::vector<std::string>& units) {
+  std::string text = "; in the place of " + units.front() + ": ";
+  for (std::size_t i = 1; i < units.size(); ++i) text += (i > 1 ? ", " : "") + units[i];
+  return text;
 }
 
-std::vector<TimeCandidate> in_every_unit(const TimeCandidate& time) {
-  if (!time.unit.empty()) return {time};
-  std::vector<TimeCandidate> all;
-  for (const char* unit : {"s", "ms", "us", "ns"})
-    all.push_back({CsvTime::parse(time.time.header + ":" + unit), unit});
-  return all;
-}
-
-// Columns that have no names, behind those of the time: one of numbers is the rate, each three may be its
-// axes, of several those that are not as long as gravity.
-std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<TimeCandidate>& time) {
-  Rates found;
-  for (std::size_t i = 0; i < table.names.size(); ++i) {
-    const bool of_time =
-        time && ("+" + time->time.header + "+").find("+" + table.names[i] + "+") != std::string::npos;
-    if (!of_time && varies(table.cells[i])) found.push_back({i, "", ""});
-  }
-  if (found.size() < 3) return {found.empty() ? found : Rates(1, found[0])};
-  std::vector<Rates> sensors;
-  for (std::size_t first = 0; first + 3 <= found.size(); first += 3) {
-    Rates& axes = sensors.emplace_back(found.begin() + static_cast<std::ptrdiff_t>(first),
-                                       found.begin() + static_cast<std::ptrdiff_t>(first) + 3);
-    for (std::size_t i = 0; i < 3; ++i) axes[i].axis = std::string(1, static_cast<char>('x' + i));
-  }
-  const auto accelerometer = [&](const Rates& axes) { return is_gravity(table, axes); };
-  if (!std::all_of(sensors.begin(), sensors.end(), accelerometer)) std::erase_if(sensors, accelerometer);
-  return sensors;
-}
+bool is_unit_unknown(const RateCandidate& rate) { return rate.unit.empty(); }
 
 }  // namespace
 
 Readings readings_of(const TableSample& table, const CsvLayout& asked) {
   Readings out;
   std::vector<std::optional<TimeCandidate>> times;
-  std::size_t time_columns = 0;
-  if (!asked.time && !asked.sample_rate_hz)
-    for (const TimeCandidate& time : times_of(table)) {
-      ++time_columns;
-      for (const TimeCandidate& in_unit : in_every_unit(time)) times.emplace_back(in_unit);
-    }
-  const bool no_time = times.empty() && !asked.time && !asked.sample_rate_hz;
+  const bool any_time = asked.time || asked.sample_rate_hz;
+  if (!any_time)
+    for (const TimeCandidate& time : times_of(table)) times.emplace_back(time);
+  const std::size_t time_columns = times.size();
   if (times.empty()) times.emplace_back();
-  std::vector<Rates> sensors(1), rates;
+  std::vector<Rates> sensors(1);
   if (asked.columns.empty()) {
     sensors = table.named ? choices_of(sensors_of(table, false)) : rates_by_place(table, times[0]);
     std::erase_if(sensors, [](const Rates& each) { return each.empty(); });
@@ -336,20 +279,39 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
       return out;
     }
   }
-  for (const Rates& sensor : sensors)
-    for (const Rates& in_unit : in_every_unit(sensor)) rates.push_back(in_unit);
+  bool time_unit_known = true, rate_unit_known = true, counts = false;
+  for (auto& time : times) {
+    if (!time || !time->unit.empty()) continue;
+    const std::vector<std::string> units{"s", "ms", "us", "ns", "d"};
+    if (std::exchange(time_unit_known, false)) out.other_units = instead_of(units);
+    time->unit = units.front();
+  }
+  for (Rates& sensor : sensors) {
+    if (std::none_of(sensor.begin(), sensor.end(), is_unit_unknown)) continue;
+    const std::vector<std::string> units = units_of(table, sensor);
+    counts = counts || are_counts(table, sensor);
+    if (std::exchange(rate_unit_known, false)) out.other_units += instead_of(units);
+    for (RateCandidate& rate : sensor)
+      if (is_unit_unknown(rate)) rate.unit = units.front();
+  }
   for (const auto& time : times)
-    for (const Rates& each : rates)
-      if (out.ways.size() < kMostWays) out.ways.push_back(reading_by(table, asked, time, each));
-  if (no_time) {
+    for (const Rates& each : sensors) {
+      if (out.ways.size() == kMostWays) break;
+      out.ways.push_back(reading_by(table, asked, time, each));
+      out.ways.back().clear = out.ways.back().clear && time_unit_known && rate_unit_known;
+    }
+  if (time_columns == 0 && !any_time) {
     const std::string counted = counting_column(table);
     out.why =
         counted.empty() ? "no time column" : "no time column, " + in_quotes(counted) + " counts the rows";
-  } else if (time_columns > 1 || sensors.size() > 1) {
-    out.why = "more than one column may be the " + std::string(time_columns > 1 ? "time" : "rate");
   } else if (out.ways.size() > 1) {
-    out.why = "the unit of the " + std::string(times.size() > 1 ? "time" : "rate") + " is not named";
+    out.why = "more than one column may be the " + std::string(time_columns > 1 ? "time" : "rate");
+  } else if (!time_unit_known || !rate_unit_known) {
+    out.why = "the unit of the " + std::string(time_unit_known ? "rate" : "time") + " is not named";
   }
+  if (counts)
+    out.why += "; whole numbers are often counts, which are read by their scale as in --column " +
+               shell_word("rate_x_radps=" + header_of(table, sensors[0][0].place) + ":0.005deg/s");
   return out;
 }
 
@@ -359,7 +321,7 @@ std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayou
   for (const Rates& sensor : choices_of(sensors_of(table, false))) {
     const CsvColumn* sibling = nullptr;
     others.clear();
-    for (const Candidate& rate : sensor) {
+    for (const RateCandidate& rate : sensor) {
       const std::string& header = table.names[rate.place];
       const auto same = std::find_if(chosen.columns.begin(), chosen.columns.end(), [&](const CsvColumn& c) {
         return c.is_rate() && (c.header == header || c.header == "#" + std::to_string(rate.place + 1));
@@ -384,7 +346,8 @@ std::string in_words(const CsvLayout& layout) {
   for (const CsvColumn& column : layout.columns) {
     const std::size_t line = column.name.rfind('_');
     text += (text.empty() ? "" : ", ") + column.name.substr(0, line) + " " + in_quotes(column.header) +
-            " in " + printable(column.unit.empty() ? column.name.substr(line + 1) : column.unit);
+            " in " + (column.scale == 1.0 ? "" : shortest(column.scale) + " ") +
+            printable(column.unit.empty() ? column.name.substr(line + 1) : column.unit);
   }
   return text;
 }

@@ -25,18 +25,19 @@ struct TableSample {
 };
 
 // One way to read the table.
-struct Reading {
+struct TableReading {
   CsvLayout layout;
   bool clear = true;    // nothing is left for the user to say
   std::string options;  // as a user types it; HZ stands for a sample rate that nothing states
 };
 
 struct Readings {
-  std::vector<Reading> ways;  // empty: nothing looks like a gyro; several: all that the names allow
-  std::string why;            // of a table that is not read without options: what is missing or ambiguous
+  std::vector<TableReading> ways;  // empty: nothing looks like a gyro; several: all that the names allow
+  std::string other_units;  // that may stand in the place of those in the options; "" where they are known
+  std::string why;          // of a table that is not read without options: what is missing or ambiguous
 
   // The one reading that needs no question, or null.
-  [[nodiscard]] const Reading* clear() const {
+  [[nodiscard]] const TableReading* clear() const {
     return ways.size() == 1 && ways[0].clear ? &ways[0] : nullptr;
   }
 };

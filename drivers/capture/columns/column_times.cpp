@@ -5,6 +5,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
 #include <iterator>
 #include <optional>
@@ -60,17 +61,36 @@ struct UnitOfTime {
   std::string_view name;
   double s, since_1970;  // of the year 2000 in it
 };
-constexpr std::array<UnitOfTime, 4> kTimeUnits{
-    {{"s", 1.0, 9.4e8}, {"ms", 1e-3, 9.4e11}, {"us", 1e-6, 9.4e14}, {"ns", 1e-9, 9.4e17}}};
+// Days are counted from other years, which their rate tells.
+constexpr std::array<UnitOfTime, 5> kTimeUnits{{{"s", 1.0, 9.4e8},
+                                                {"ms", 1e-3, 9.4e11},
+                                                {"us", 1e-6, 9.4e14},
+                                                {"ns", 1e-9, 9.4e17},
+                                                {"d", 86'400.0, 1e99}}};
+
+// The unit in which the rows come at the stated rate; "" where none is stated, or none fits.
+std::string unit_by_stated_rate(const TableSample& table, double step) {
+  constexpr double kNear = 0.1;  // of the rate; the units are a factor of ten apart
+  const auto stated_hz = stated_rate_hz(table.comments);
+  for (const char* unit : {"s", "ms", "100us", "us", "ns"})
+    if (stated_hz &&
+        std::abs(step * CsvTime::parse(std::string("t:") + unit).unit_s * *stated_hz - 1.0) < kNear)
+      return unit;
+  return "";
+}
+
+// The mean of the steps forward: a rollover steps back, and what comes in bursts has many short steps.
+double mean_step(const std::vector<double>& values) {
+  double forward = 0.0;
+  for (std::size_t i = 1; i < values.size(); ++i) forward += std::max(0.0, values[i] - values[i - 1]);
+  return forward / static_cast<double>(values.size() - 1);
+}
 
 // The unit in which the values are times since 1970, or else that in which alone the rows come as fast as a
 // gyro's.
 std::string unit_by_values(const std::vector<double>& values) {
   if (values.size() < 2) return "";
-  // A rollover steps back, and what comes in bursts has many short steps.
-  double forward = 0.0;
-  for (std::size_t i = 1; i < values.size(); ++i) forward += std::max(0.0, values[i] - values[i - 1]);
-  const double step = forward / static_cast<double>(values.size() - 1);
+  const double step = mean_step(values);
   std::string found;
   for (const UnitOfTime& unit : kTimeUnits) {
     const double rate_hz = 1.0 / (step * unit.s);
@@ -111,6 +131,9 @@ std::string time_unit_by_name(const TableSample& table, std::size_t place, const
   if (time_unit(table.stated_unit(place))) return table.stated_unit(place);
   const std::string named = unit_in_name(table.names[place]);
   if (time_unit(named)) return named;
+  const std::vector<double> values = numbers_in(table.cells[place]);
+  if (const std::string stated = unit_by_stated_rate(table, mean_step(values)); !stated.empty())
+    return stated;
   if (words.has("sample") && words.has("time") && words.has("fine"))
     return "100us";  // Xsens: a clock of 10 kHz
   if (words.has("millis")) return "ms";
@@ -130,6 +153,17 @@ bool go_together(const std::vector<double>& a, const TimeCandidate& one, const s
   return std::abs(s - t) <= step;
 }
 
+// A fraction behind a GPS week and a second of it, which stay the same in the rows looked at.
+bool is_fraction_of_second(const TableSample& table, std::size_t place, const std::vector<double>& values) {
+  constexpr double kSecondsPerWeek = 604'800.0;
+  if (table.named || place < 2 || values.empty() || varies(table.cells[place - 1])) return false;
+  const auto week = finite_number(table.cells[place - 2][0]),
+             second = finite_number(table.cells[place - 1][0]);
+  return week && second && *week > 0.0 && *week < 1e4 && *week == std::floor(*week) && *second > 1.0 &&
+         *second < kSecondsPerWeek &&
+         std::all_of(values.begin(), values.end(), [](double v) { return v >= 0.0 && v < 1.0; });
+}
+
 std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
   TimeCandidate out;
   out.time.header = table.names[place];
@@ -141,6 +175,7 @@ std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t 
   if (dated && cells.size() > 1 && cells.front() == cells.back() && cells[0].find(':') == std::string::npos)
     return std::nullopt;
   const std::vector<double> values = numbers_in(cells);
+  if (is_fraction_of_second(table, place, values)) return std::nullopt;
   out.unit = dated ? "s" : time_unit_by_name(table, place, words);
   if (!dated && (values.size() != cells.size() || !goes_on(values) || (out.unit.empty() && counts(values))))
     return std::nullopt;
@@ -256,6 +291,26 @@ bool varies(const std::vector<std::string>& cells) {
                                                               [&](double v) { return v != values[0]; }));
 }
 
+// By von Neumann's ratio of the mean square of differences to the variance: 2 of white noise.
+bool is_smooth(const std::vector<std::string>& cells) {
+  constexpr double kSmooth = 0.5;
+  const std::vector<double> values = numbers_in(cells);
+  if (values.size() < kFewRows) return false;
+  double mean = 0.0, around = 0.0, differences = 0.0;
+  for (const double value : values) mean += value / static_cast<double>(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    around += (values[i] - mean) * (values[i] - mean);
+    if (i > 0) differences += (values[i] - values[i - 1]) * (values[i] - values[i - 1]);
+  }
+  return differences < kSmooth * around;
+}
+
+bool is_whole(const std::vector<std::string>& cells) {
+  const std::vector<double> values = numbers_in(cells);
+  return values.size() >= kFewRows && varies(cells) &&
+         std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
+}
+
 std::string name_of_seconds(double unit_s) {
   for (const UnitOfTime& unit : kTimeUnits)
     if (std::abs(unit_s / unit.s - 1.0) < 1e-9) return std::string(unit.name);
@@ -293,6 +348,18 @@ std::string whole_times_notice(const TableSample& table, std::size_t place, cons
          " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms");
 }
 
+std::string date_order_notice(const std::string& name, const std::vector<std::string>& cells) {
+  for (const std::string& cell : cells) {
+    int first = 0, second = 0, year = 0;
+    if (std::sscanf(cell.c_str(), "%2d/%2d/%4d", &first, &second, &year) != 3 || first > 12 || second > 12 ||
+        first == second)
+      return "";
+  }
+  if (cells.empty()) return "";
+  return printable(name) + " is " + in_quotes(cells[0]) +
+         " at first and read with the month first; if that is the day, write the dates as year-month-day";
+}
+
 std::optional<double> stated_rate_hz(const std::vector<std::string>& comments) {
   for (const std::string& comment : comments) {
     std::string text;
@@ -300,7 +367,7 @@ std::optional<double> stated_rate_hz(const std::vector<std::string>& comments) {
     std::size_t at = std::string::npos;
     for (const char* name :
          {"output rate", "sample rate", "sampling rate", "data rate", "sample frequency",
-          "sampling frequency", "sample_rate", "sampling_rate", "samplerate", "update rate"})
+          "sampling frequency", "outputrate", "sample_rate", "sampling_rate", "samplerate", "update rate"})
       if (at == std::string::npos && (at = text.find(name)) != std::string::npos)
         at += std::string_view(name).size();
     if (at == std::string::npos) continue;

@@ -23,6 +23,10 @@ std::string counting_column(const TableSample& table);
 
 // Not the same in all of these rows, and numbers.
 bool varies(const std::vector<std::string>& cells);
+// Goes from row to row by little of what it has come through, as an angle does and white noise does not.
+bool is_smooth(const std::vector<std::string>& cells);
+// Whole numbers, of several values.
+bool is_whole(const std::vector<std::string>& cells);
 
 // "ms" of 0.001.
 std::string name_of_seconds(double unit_s);
@@ -35,6 +39,10 @@ int digits_of_second(const std::string& name, const std::vector<std::string>& ce
 // further apart and without decimals they are more often milliseconds than samples of a second each. It is
 // said, not changed. "" for nothing.
 std::string whole_times_notice(const TableSample& table, std::size_t place, const CsvTime& time);
+
+// What to say of dates as 05/06/2023, which are read with the month first; "" where a day above 12 tells the
+// order, and of all other times.
+std::string date_order_notice(const std::string& name, const std::vector<std::string>& cells);
 
 // A stated sample rate, as loggers write it above the table: "Output Rate,200.0"; nothing where none is.
 std::optional<double> stated_rate_hz(const std::vector<std::string>& comments);

@@ -32,7 +32,7 @@ std::string without_index(const std::string& header, std::string& axis) {
 }
 
 std::string without_unit(const std::string& header) {
-  const std::size_t bracket = header.find_first_of("([");
+  const std::size_t bracket = header.find_last_of("([");  // "Gyroscope (z) [rad/s]" has an axis before it
   if (bracket != std::string::npos && bracket > 0 && (header.back() == ')' || header.back() == ']'))
     return header.substr(0, bracket);
   const std::string unit = unit_in_name(header);

@@ -145,7 +145,7 @@ CsvTime CsvTime::parse(const std::string& text) {
   out.header = header;
   const auto seconds = unit.empty() ? std::optional(1.0) : seconds_in(unit);
   if (header.empty() || !seconds)
-    refuse(text, "HEADER:UNIT with a unit of time: s, ms, us, 100us, ns, min, h");
+    refuse(text, "HEADER:UNIT with a unit of time: s, ms, us, 100us, ns, min, h, d");
   out.unit_s = *seconds;
   out.told = !unit.empty();
   return out;
@@ -183,7 +183,9 @@ std::vector<std::string> parts_of_time(const std::string& header,
 }
 
 std::string option_for(const CsvColumn& column, const std::string& unit) {
-  return "--column " + shell_word(column.name + "=" + column.header + (unit.empty() ? "" : ":" + unit));
+  const std::string scale = column.scale == 1.0 ? "" : shortest(column.scale);
+  return "--column " +
+         shell_word(column.name + "=" + column.header + (unit.empty() ? "" : ":" + scale + unit));
 }
 
 std::string option_for(const CsvTime& time, const std::string& unit) {

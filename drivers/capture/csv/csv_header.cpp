@@ -53,8 +53,9 @@ std::set<std::string>::const_iterator the_gyro(const std::set<std::string>& name
 // The options of each reading, where none of them is taken.
 std::string options_in_words(const Readings& readings) {
   std::string text;
-  for (const Reading& way : readings.ways) text += (text.empty() ? "; to read it: " : "; or: ") + way.options;
-  return text;
+  for (const TableReading& way : readings.ways)
+    text += (text.empty() ? "; to read it: " : "; or: ") + way.options;
+  return text + readings.other_units;
 }
 
 class Chooser {
@@ -187,7 +188,7 @@ class Chooser {
   // What was not asked for, as the names have it.
   void take_reading() {
     const Readings found = readings_of(form_.sample, header_.layout);
-    if (const Reading* const clear = found.clear()) {
+    if (const TableReading* const clear = found.clear()) {
       header_.layout = clear->layout;
       header_.notices.push_back(path_ + ": read as: " + in_words(clear->layout));
       return;
@@ -234,6 +235,10 @@ class Chooser {
     header_.cells[header_.time_place].column = CsvCell::kTime;
     if (const std::string notice = whole_times_notice(form_.sample, header_.time_place, time);
         parts.size() == 1 && !notice.empty())
+      header_.notices.push_back(path_ + ": " + notice);
+    if (const std::string notice =
+            date_order_notice(names_[header_.time_place], form_.sample.cells[header_.time_place]);
+        !notice.empty())
       header_.notices.push_back(path_ + ": " + notice);
   }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <utility>
 
 #include "drivers/capture/csv/table_form.h"
@@ -17,6 +18,15 @@ constexpr std::size_t kAlike = 3;  // lines of one form, in the file's beginning
 
 bool is_decimal(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_alphabetic(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+
+// "%RAWIMUSXA," of a line with a head and a check sum, as NovAtel's OEM7 manual has it; "" of any other.
+std::string_view log_before(std::string_view line) {
+  constexpr std::size_t kSum = 9;  // "*" and eight digits
+  line = trimmed(line);
+  const bool is_log = line.size() > kSum && (line[0] == '%' || line[0] == '#') &&
+                      line[line.size() - kSum] == '*' && line.find(';') != std::string_view::npos;
+  return is_log ? line.substr(0, line.find(',') + 1) : std::string_view();
+}
 
 // The terminal's time in front of a line, "10:00:00" or "10:00:00.123"; "" where there is none.
 std::string_view stamp_before(std::string_view line) {
@@ -112,9 +122,15 @@ LineForm::LineForm(std::string_view beginning) {
   Lines lines(beginning);
   std::size_t before = 0, alone = 0, looked = 0, alike = 0;
   std::vector<std::string> labels;
+  std::map<std::string_view, std::size_t> logs;
+  std::size_t most = kAlike - 1;  // lines of one log
   for (std::string_view line; lines.next(line);) {
     if (trimmed(line).empty()) continue;
     ++looked;
+    if (const std::string_view log = log_before(line); !log.empty() && ++logs[log] > most) {
+      log_ = log;
+      most = logs[log];
+    }
     if (const std::string_view stamp = stamp_before(line); !stamp.empty()) {
       ++before;
       line.remove_prefix(stamp.size() + kArrow.size());
@@ -126,6 +142,7 @@ LineForm::LineForm(std::string_view beginning) {
     alike = values.labels == labels ? alike + 1 : 1;
     labels = std::move(values.labels);
   }
+  if (!log_.empty()) return;
   if (before >= kAlike && 2 * before >= looked) stamps_ = Stamps::before;
   // A file of times alone has no rows for them.
   if (alone >= 2 && 10 * alone < 9 * looked) stamps_ = Stamps::above;
@@ -147,6 +164,13 @@ void LineForm::append_row(std::string_view line, std::string& out) {
   if (trimmed(line).empty()) return;
   const auto append_other = [&] { out.append("# ").append(line); };
   std::string_view rest = line;
+  if (!log_.empty()) {
+    if (log_before(line) != log_) return append_other();
+    const auto row = static_cast<std::ptrdiff_t>(out.size());
+    out += line.substr(1, line.rfind('*') - 1);
+    std::replace(out.begin() + row, out.end(), ';', ',');
+    return;
+  }
   if (stamps_ == Stamps::before) {
     stamp_ = stamp_before(line);
     if (!stamp_.empty()) rest.remove_prefix(stamp_.size() + kArrow.size());

@@ -159,7 +159,7 @@ Header header_of(const std::vector<Line>& lines, char separator, const CsvLayout
   const std::vector<std::string> wanted = wanted_names(layout);
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (is_comment(lines[i].text)) continue;
-    std::vector<std::string> cells = cells_of(lines[i].text, separator);
+    std::vector<std::string> cells = cells_of(without_mark(lines[i].text), separator);
     if (is_capture_header(lines[i].text) || (!wanted.empty() && has_names(cells, wanted)))
       return {i, std::move(cells)};
   }
@@ -203,6 +203,50 @@ std::vector<Line> first_lines(std::string_view text, const std::string& path) {
     plain += is_comment(line) ? 0 : 1;
   }
   return out;
+}
+
+// Text of other programs that looks like rows here and there, with the program that makes a table of it.
+void refuse_what_is_no_table(const std::vector<Line>& lines, const std::vector<std::string>& given,
+                             const std::string& path) {
+  const auto separates = [](const Line& line) { return line.text == "---"; };
+  if (!lines.empty() && trimmed(lines[0].text).ends_with(':') &&
+      std::count_if(lines.begin(), lines.end(), separates) > 1)
+    fail_at(
+        path, 0,
+        "is YAML as rostopic echo prints it, expected a table; rostopic echo -p, or ros2 topic echo --csv, "
+        "writes one");
+  if (std::any_of(given.begin(), given.end(),
+                  [](const std::string& name) { return name.find('{') != std::string::npos; }))
+    fail_at(
+        path, 0,
+        "is JSON with objects inside of objects, expected a table; jq -r '[.t, .gyro.x, .gyro.y, .gyro.z] | "
+        "@csv', with the names of this file, makes one");
+}
+
+// A LabVIEW measurement file has two heads, and a last name, Comment, that most rows have no cell for.
+// Returns the cells of its row of units. Source: NI, "Specification for the LabVIEW Measurement File (.lvm)".
+std::vector<std::string> without_heads(std::vector<Line>& lines, std::vector<std::string>& comments) {
+  const auto last = std::find_if(lines.rbegin(), lines.rend(), [&](const Line& line) {
+    return line.text.starts_with("***End_of_Header***");
+  });
+  std::vector<std::string> units;
+  if (lines.empty() || !lines[0].text.starts_with("LabVIEW Measurement") || last == lines.rend())
+    return units;
+  for (auto line = lines.begin(); line != last.base(); ++line) {
+    std::vector<std::string> cells = cells_of(line->text, '\t');
+    if (cells.size() < 2) continue;
+    const auto step_s = finite_number(PointDigits(cells[1], true));
+    if (cells[0] == "Delta_X" && step_s && *step_s > 0.0)
+      comments.push_back("sample rate " + shortest(1.0 / *step_s));
+    if (cells[0] == "Y_Unit_Label") {
+      units = std::move(cells);
+      units[0].clear();
+    }
+  }
+  lines.erase(lines.begin(), last.base());
+  if (!lines.empty() && lines[0].text.ends_with("\tComment"))
+    lines[0].text.remove_suffix(std::string_view("\tComment").size());
+  return units;
 }
 
 void sample_rows(const std::vector<Line>& lines, std::size_t from, TableForm& form) {
@@ -277,6 +321,8 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
   std::vector<Line> lines = first_lines(text, path);
   TableForm form;
   TableSample& sample = form.sample;
+  refuse_what_is_no_table(lines, given, path);
+  const std::vector<std::string> units = without_heads(lines, sample.comments);
   std::optional<char> separator;
   if (layout.separator != '\0') separator = layout.separator;
   if (!given.empty()) separator = ',';
@@ -306,6 +352,7 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
     first = *header.at + 1;
     if (first < lines.size()) sample.units = units_in(lines[first], form.separator, sample.names.size());
     if (!sample.units.empty()) form.last_line = lines[first++].number;
+    if (units.size() == sample.names.size()) sample.units = units;
   } else if (const auto row = first_row(lines, form.separator)) {
     sample.named = !given.empty();
     sample.names = given;

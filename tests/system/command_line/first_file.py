@@ -45,8 +45,12 @@ def by_hand(path, hz=None):
     assert said.count("\n") == 1, f"{path.name}: more than one line: {said}"
     found = re.search(r"to read it: (.*)\n", said)
     assert found, f"{path.name}: refused without a way: {said}"
+    ways, *instead = found.group(1).split("; in the place of ")
+    lines = ways.split("; or: ")
+    for unit, others in (part.split(": ") for part in instead):
+        lines += [re.sub(rf":{unit}(?=['\s]|$)", f":{other}", line) for line in lines for other in others.split(", ")]
     readings = []
-    for line in found.group(1).split("; or: "):
+    for line in lines:
         readings.append(typed(path, *shlex.split(line), hz=hz)[0])
         assert readings[-1] is not None, f"{path.name}: what is printed does not read it: {line}: {typed(path, *shlex.split(line), hz=hz)[1]}"
     return readings, said

@@ -67,7 +67,9 @@ TEST_F(CaptureFile, RefusesWithFileLineValueAndExpectation) {
   EXPECT_EQ(refusal("rate_radps\n1\n"),
             "c.csv:1: no time column; to read it: --sample-rate HZ --column rate_radps=rate_radps:radps");
   EXPECT_EQ(refusal("time_s,temperature_degC\n0,1\n"),
-            "c.csv:1: no rate column, expected 'rate_radps' or 'rate_x_radps', …");
+            "c.csv:1: no rate column among 'temperature_degC', expected 'rate_radps' or 'rate_x_radps', …, "
+            "or --column "
+            "rate_x_radps=NAME:UNIT with one of these names");
   EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1,1x\n"),
             "c.csv:3: rate_radps is '1x', expected a number, 'nan' or nothing");
   EXPECT_EQ(refusal("time_s,rate_radps\n1,1\n0.5,1\n"),

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -124,7 +125,7 @@ TEST(CsvLayout, SaysWhatIsWrongWithAnOption) {
             "'rate_radps=w:m/s', expected a unit that becomes radps: rad/s, deg/s, ");
   EXPECT_EQ(column("time_s=t"), "'time_s=t', expected another name; --time says which column is the time");
   EXPECT_EQ(refusal([] { CsvTime::parse("t:m"); }),
-            "'t:m', expected HEADER:UNIT with a unit of time: s, ms, us, 100us, ns, min, h");
+            "'t:m', expected HEADER:UNIT with a unit of time: s, ms, us, 100us, ns, min, h, d");
   EXPECT_EQ(refusal([] { CsvLayout::parse_separator("::"); }),
             "'::', expected one character that stands between cells, ';', or the word tab");
   EXPECT_EQ(CsvLayout::parse_separator("tab"), '\t');
@@ -203,14 +204,14 @@ TEST(CsvLayout, AForeignHeaderIsReadWhereItIsClear) {
   EXPECT_EQ(said("time_s,frame_rate_hz,gyro_x_dps,gyro_x_dps_std"),
             read + "time 'time_s' in s, rate_x 'gyro_x_dps' in dps");
   EXPECT_EQ(said("time_s,raw_x_radps,denoised_x_radps,T"),
-            "a.csv:1: no rate column, expected 'rate_radps' or 'rate_x_radps', …");
+            "a.csv:1: no rate column among 'raw_x_radps', 'denoised_x_radps', 'T', expected 'rate_radps' or "
+            "'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of these names");
   EXPECT_EQ(said("a,b,c,d").substr(0, asked.size() + 35), asked + "no rate column among 'a', 'b', 'c',");
   EXPECT_EQ(
       said("t,wx,wy,c"),
       asked +
           "the unit of the rate is not named; to read it: --time t:s --column rate_x_radps=wx:rad/s --column "
-          "rate_y_radps=wy:rad/s; or: --time t:s --column rate_x_radps=wx:deg/s --column "
-          "rate_y_radps=wy:deg/s");
+          "rate_y_radps=wy:rad/s; in the place of rad/s: deg/s, rad/sample, deg/sample");
   EXPECT_EQ(said("time_s,gyro1_x_dps,gyro2_x_dps,T").substr(0, asked.size() + 44),
             asked + "more than one column may be the rate; to rea");
   EXPECT_EQ(said("x,gyro_x_dps,b,c").substr(0, asked.size() + 30), asked + "no time column; to read it: --");
@@ -256,6 +257,119 @@ TEST(CsvLayout, MillisecondsTakenForSecondsAreSaid) {
   EXPECT_TRUE(parse_capture(seconds, "a.csv").notices.empty());
   EXPECT_TRUE(parse_capture(dwells, "a.csv").notices.empty());
   EXPECT_TRUE(parse_capture(milliseconds, "a.csv", layout({}, "time_s:ms")).notices.empty());
+}
+
+// A row for each of `rows`: what stands before, between and behind the rates, {i} being the row's number and
+// {x}, {y}, {z} white noise of 0.001.
+std::string rows_of(const std::string& head, const std::string& form, int rows = 40) {
+  std::string text = head;
+  std::uint32_t dice = 1;
+  for (int i = 0; i < rows; ++i) {
+    std::string row = form;
+    const auto put = [&row](const std::string& name, const std::string& value) {
+      for (std::size_t at; (at = row.find(name)) != std::string::npos;) row.replace(at, name.size(), value);
+    };
+    for (const char* axis : {"{x}", "{y}", "{z}"}) {
+      dice = dice * 1664525U + 1013904223U;
+      put(axis, std::to_string(1e-3 * (static_cast<double>(dice >> 16U) / 32768.0 - 1.0)));
+    }
+    put("{count}", std::to_string(static_cast<int>(dice >> 20U) - 2048));
+    put("{angle}", std::to_string(3.0 + 1e-3 * i));
+    put("{digit}", std::to_string(7 * i % 10));
+    put("{i}", std::to_string(100 + i));
+    text += row + "\n";
+  }
+  return text;
+}
+
+TEST(CsvLayout, FilesOfOtherProgramsAreReadOrOfferedRight) {
+  struct Case {
+    std::string text;
+    std::vector<std::string> said;
+  };
+  const std::vector<Case> cases = {
+      // KAIST Complex Urban data set, fog.csv: a FOG's increments in rad.
+      {rows_of("", "15445907980{i}0000000,{x},{y},{z}"),
+       {"--time '#1:ns' --column 'rate_x_radps=#2:rad/s'",
+        "; in the place of rad/s: deg/s, rad/sample, deg/sample"}},
+      // NCLT data set, kvh.csv: the heading of a FOG.
+      {rows_of("", "13578472480{i}0000,{angle}"),
+       {"--column 'rate_radps=#2:rad'", "in the place of rad: deg, rad/s"}},
+      // VectorNav, user manual, $VNIMU: magnetic field, acceleration, rates, temperature, pressure.
+      {rows_of(
+           "",
+           "$VNIMU,-00.0350,+00.4222,-00.6643,-00.015,+00.019,+09.80{digit},{x},{y},{z},+20.7,+084.322*00"),
+       {"to read it: --sample-rate HZ --column 'rate_x_radps=#8:rad/s' --column 'rate_y_radps=#9:rad/s' "
+        "--column "
+        "'rate_z_radps=#10:rad/s'; in"}},
+      // OxIOD data set, imu.csv: roll, pitch, yaw, rates, gravity.
+      {rows_of("", "1505306516.{i},0.01,0.02,{angle},{x},{y},{z},0.1,0.2,0.97"),
+       {"--column 'rate_x_radps=#5:rad/s' --column 'rate_y_radps=#6:rad/s' --column 'rate_z_radps=#7:rad/s'; "
+        "in"}},
+      // Analog Devices, ADIS16495 data logger: registers.
+      {rows_of("Timestamp,X_GYRO_OUT\n", "0.{i},{count}"),
+       {"whole numbers are often counts", "--column rate_x_radps=X_GYRO_OUT:0.005deg/s"}},
+      // Laser gyro test stands write the arcsecond's sign.
+      {rows_of("Time [s]; Rate X [\"/s]\n", "0.{i}; {x}"), {"rate_x 'Rate X [\"/s]' in \"/s"}},
+      // MATLAB datenum and Excel serial dates: days.
+      {rows_of("time,gyro_x_dps\n", "738856.500{i}57858,{x}"), {"read as: time 'time' in d"}},
+      {rows_of("time_days,gyro_x_dps\n", "0.00000{i},{x}"), {"read as: time 'time_days' in d"}},
+      // Movella DOT data exporter: the stated rate tells that its clock is of us.
+      {rows_of("sep=,\nDeviceTag:,DOT1\nOutputRate:,100Hz\nPacketCounter,SampleTimeFine,Gyr_X\n",
+               "{i},3{i}0000,{x}"),
+       {"--time SampleTimeFine:us"}},
+      // TEX-CUP data set: week, second, fraction of the second.
+      {rows_of("", "2051 240000 0.{i} {x} -0.0475 9.808 {x} {y} {z}"),
+       {"--sample-rate HZ --column 'rate_x_radps=#7:"}},
+      // Malaga data set, MRPT: the header begins with %.
+      {rows_of("%  Time  IMU_YAW_VEL  IMU_PITCH_VEL  IMU_ROLL_VEL\n", " 1261228426.{i} {z} {y} {x}"),
+       {"--time Time:s --column rate_z_radps=IMU_YAW_VEL:rad/s"}},
+      // NovAtel OEM7, abbreviated ASCII log RAWIMUSXA among others.
+      {rows_of("#BESTPOSA,COM1,0,72.0;SOL_COMPUTED,SINGLE,51.11*3c6da5d7\n",
+               "%RAWIMUSXA,2075,507495.{i};00,13,2075,507495.165000000,00000000,32068,-1612,-1320,{count},-{"
+               "i},1{i}*3c6da5d7"),
+       {"rate_x_radps=#12:", "rate_z_radps=#14:"}},
+      // NI LabVIEW measurement file: two heads, a decimal comma, a name without cells.
+      {rows_of("LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\nChannels\t1\nSamples\t40\n"
+               "Y_Unit_Label\tdeg/s\nDelta_X\t0,010000\n***End_of_Header***\t\nX_Value\tGyro X\tComment\n",
+               "0,{i}000\t0,{i}"),
+       {"to read it: --sample-rate 100 --column 'rate_x_radps=Gyro X:deg/s'"}},
+      // Spreadsheets: one name over three columns.
+      {rows_of("time (s),gyro,gyro,gyro\n", "0.{i},{x},{y},{z}"),
+       {"--column 'rate_x_radps=#2:rad/s' --column 'rate_y_radps=#3:rad/s' --column "
+        "'rate_z_radps=#4:rad/s'"}},
+      // GoPro telemetry extractor: the axis stands in brackets, and z first.
+      {rows_of("t [s],Gyroscope (z) [rad/s],Gyroscope (x) [rad/s]\n", "0.{i},{z},{x}"),
+       {"rate_z 'Gyroscope (z) [rad/s]' in rad/s, rate_x 'Gyroscope (x) [rad/s]' in rad/s"}},
+      // x-IMU GUI, CalInertialAndMag.csv: G is gauss.
+      {rows_of("Packet number,Gyroscope X (deg/s),Magnetometer X (G)\n", "{i},{x},0.21"),
+       {"--column 'magnetometer_x_uT=Magnetometer X (G):gauss'"}},
+      // A PX4 module that logs its gyro and a FOG.
+      {rows_of("Timestamp,Gyro_X,FOG_X\n", "1{i}0000,{x},{y}"),
+       {"rate_x_radps=Gyro_X", "rate_x_radps=FOG_X"}},
+      // rostopic echo, and loggers that write objects in objects.
+      {"header: \n  seq: 0\n---\nheader: \n  seq: 1\n---\n", {"rostopic echo -p"}},
+      {rows_of("", R"({"ts": 17.{i}, "gyro": {"x": {x}, "y": {y}, "z": {z}}})"), {"jq -r"}},
+      // Spreadsheets of both orders.
+      {rows_of("time,gyro_x_dps\n", "05/06/2023 12:00:00.{i},{x}"), {"read with the month first"}},
+  };
+  for (const Case& each : cases) {
+    std::string all;
+    try {
+      for (const std::string& notice : parse_capture(each.text, "a.csv").notices) all += notice + "\n";
+    } catch (const std::runtime_error& error) {
+      all = error.what();
+    }
+    for (const std::string& part : each.said)
+      EXPECT_NE(all.find(part), std::string::npos) << part << "\nnot in\n"
+                                                   << all << "\nof\n"
+                                                   << each.text.substr(0, 300);
+  }
+}
+
+TEST(CsvLayout, TheOptionThatIsPrintedKeepsTheScale) {
+  EXPECT_EQ(refusal([] { parse_capture("a,b\n1,2\n", "a.csv", layout({"rate_radps=b:12.5deg/s"})); }),
+            "a.csv:1: no time column; to read it: --sample-rate HZ --column rate_radps=b:12.5deg/s");
 }
 
 }  // namespace

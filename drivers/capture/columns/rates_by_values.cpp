@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/columns/rates_by_values.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+namespace ifog {
+namespace {
+
+constexpr double kGravity_mps2 = 9.80665;
+
+// The column in which three hold gravity: none of the gyro's.
+bool holds_gravity(const TableSample& table, const Rates& axes) {
+  return is_gravity(table, axes) || std::any_of(axes.begin(), axes.end(), [&](const RateCandidate& axis) {
+           return is_gravity(table, {axis});
+         });
+}
+
+bool are_neighbours(const Rates& axes) { return axes.back().place - axes.front().place + 1 == axes.size(); }
+
+}  // namespace
+
+bool is_gravity(const TableSample& table, const Rates& columns) {
+  std::vector<double> lengths;
+  for (std::size_t row = 0; row < table.cells[columns[0].place].size(); ++row) {
+    double square = 0.0;
+    for (const RateCandidate& column : columns) {
+      const std::vector<std::string>& cells = table.cells[column.place];
+      const double value = row < cells.size() ? std::strtod(cells[row].c_str(), nullptr) : 0.0;
+      square += value * value;
+    }
+    lengths.push_back(std::sqrt(square));
+  }
+  if (lengths.empty()) return false;
+  std::sort(lengths.begin(), lengths.end());
+  const auto at = [&](double share) {
+    return lengths[static_cast<std::size_t>(share * static_cast<double>(lengths.size() - 1))];
+  };
+  const double middle = at(0.5);
+  constexpr std::array<double, 7> kGravities{kGravity_mps2, 1.0, 1000.0, 16384.0, 8192.0, 4096.0, 2048.0};
+  return at(0.75) - at(0.25) < 0.05 * middle &&
+         std::any_of(kGravities.begin(), kGravities.end(),
+                     [&](double gravity) { return std::abs(middle / gravity - 1.0) < 0.05; });
+}
+
+bool are_counts(const TableSample& table, const Rates& rates) {
+  return std::all_of(rates.begin(), rates.end(),
+                     [&](const RateCandidate& rate) { return is_whole(table.cells[rate.place]); });
+}
+
+// A rate at rest is noise from row to row; what was summed up is not, and neither is a rate in motion.
+std::vector<std::string> units_of(const TableSample& table, const Rates& rates) {
+  std::vector<std::string> units{"rad/s", "deg/s", "rad/sample", "deg/sample"};
+  const auto is_summed = [&](const RateCandidate& rate) { return is_smooth(table.cells[rate.place]); };
+  if (rates.front().increment) std::rotate(units.begin(), units.begin() + 2, units.end());
+  if (std::any_of(rates.begin(), rates.end(), is_summed)) units.insert(units.begin(), {"rad", "deg"});
+  return units;
+}
+
+// Of all threes the likelier ones: without gravity, and alike, as a heading that was summed up is not like a
+// rate.
+std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<TimeCandidate>& time) {
+  Rates found;
+  for (std::size_t i = 0; i < table.names.size(); ++i) {
+    const bool of_time =
+        time && ("+" + time->time.header + "+").find("+" + table.names[i] + "+") != std::string::npos;
+    if (!of_time && varies(table.cells[i])) found.push_back({i, "", ""});
+  }
+  if (found.size() < 3) return {found.empty() ? found : Rates(1, found[0])};
+  std::vector<Rates> sensors;
+  const std::size_t step = found.size() % 3 == 0 ? 3 : 1;
+  for (std::size_t first = 0; first + 3 <= found.size(); first += step) {
+    Rates& axes = sensors.emplace_back(found.begin() + static_cast<std::ptrdiff_t>(first),
+                                       found.begin() + static_cast<std::ptrdiff_t>(first) + 3);
+    for (std::size_t i = 0; i < 3; ++i) axes[i].axis = std::string(1, static_cast<char>('x' + i));
+  }
+  const auto prefer = [&sensors](auto&& is_likely) {
+    if (std::any_of(sensors.begin(), sensors.end(), is_likely))
+      std::erase_if(sensors, [&](const Rates& axes) { return !is_likely(axes); });
+  };
+  prefer([](const Rates& axes) { return are_neighbours(axes); });
+  prefer([&](const Rates& axes) { return !holds_gravity(table, axes); });
+  prefer([&](const Rates& axes) {
+    const auto smooth = std::count_if(axes.begin(), axes.end(), [&](const RateCandidate& axis) {
+      return is_smooth(table.cells[axis.place]);
+    });
+    return smooth == 0 || smooth == 3;
+  });
+  return sensors;
+}
+
+}  // namespace ifog
