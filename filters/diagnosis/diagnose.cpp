@@ -260,7 +260,7 @@ class Run {
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
   std::optional<FoundZone> zone_;
-  Lines lines_;
+  CoherentLines lines_;
   SearchResult found_;
   bool searched_ = false;
   JointFit joint_;

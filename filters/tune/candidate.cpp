@@ -14,7 +14,7 @@ namespace {
 constexpr double kLeastLog = -34.0;  // e^-34: a level that does not move within any record
 
 // The largest factor of `shape` under the coarse spectrum.
-double under(const Spectrum& spectrum, std::span<const double> shape) {
+double under(const RecordSpectrum& spectrum, std::span<const double> shape) {
   double least = 1e300;
   for (std::size_t b = 0; b < spectrum.bins(); ++b)
     if (shape[b] > 0.0) least = std::min(least, spectrum.coarse[b] / shape[b]);
@@ -23,7 +23,8 @@ double under(const Spectrum& spectrum, std::span<const double> shape) {
 
 }  // namespace
 
-Candidate::Candidate(std::string state, double period_s) : state_(std::move(state)), period_s_(period_s) {
+ModelCandidate::ModelCandidate(std::string state, double period_s)
+    : state_(std::move(state)), period_s_(period_s) {
   constexpr std::string_view kWalk = "random-walk", kPlus = " + ";
   bool good = state_.starts_with(kWalk);
   size_ = static_cast<int>(kLevel);
@@ -52,7 +53,7 @@ Candidate::Candidate(std::string state, double period_s) : state_(std::move(stat
   (void)make_state_model(middle.state, middle.state_parameters, period_s_);
 }
 
-void Candidate::bounds(std::span<double> low, std::span<double> high) const {
+void ModelCandidate::bounds(std::span<double> low, std::span<double> high) const {
   low[0] = kLeastLog;
   high[0] = 4.0;
   low[1] = -16.0;
@@ -64,7 +65,7 @@ void Candidate::bounds(std::span<double> low, std::span<double> high) const {
   }
 }
 
-std::vector<double> Candidate::reach(std::size_t samples) const {
+std::vector<double> ModelCandidate::reach(std::size_t samples) const {
   std::vector<double> out(static_cast<std::size_t>(size_), 1.0);
   std::size_t at = kLevel;
   for (const auto& term : terms_) {
@@ -74,7 +75,7 @@ std::vector<double> Candidate::reach(std::size_t samples) const {
   return out;
 }
 
-std::vector<double> Candidate::draw(const Spectrum& spectrum, std::mt19937_64& random) const {
+std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt19937_64& random) const {
   // Each part is given a share of the largest that fits under the spectrum.
   const auto share = [&] { return std::log(std::uniform_real_distribution<double>(0.02, 1.0)(random)); };
   std::vector<double> theta(static_cast<std::size_t>(size_)), shape(spectrum.bins());
@@ -99,8 +100,8 @@ std::vector<double> Candidate::draw(const Spectrum& spectrum, std::mt19937_64& r
   return theta;
 }
 
-void Candidate::density(std::span<const double> theta, const Spectrum& spectrum,
-                        std::span<double> out) const {
+void ModelCandidate::density(std::span<const double> theta, const RecordSpectrum& spectrum,
+                             std::span<double> out) const {
   const double q = std::exp(theta[0]), r = std::exp(theta[1]);
   for (std::size_t b = 0; b < out.size(); ++b) {
     const double half = std::sin(0.5 * spectrum.omega[b]);
@@ -113,7 +114,7 @@ void Candidate::density(std::span<const double> theta, const Spectrum& spectrum,
   }
 }
 
-FilterSettings Candidate::settings(std::span<const double> theta, double scale) const {
+FilterSettings ModelCandidate::settings(std::span<const double> theta, double scale) const {
   FilterSettings s;
   s.state = state_;
   s.process_noise = std::exp(theta[0]) * scale * scale / period_s_;
@@ -129,7 +130,7 @@ FilterSettings Candidate::settings(std::span<const double> theta, double scale) 
   return s;
 }
 
-std::vector<CandidateFigure> Candidate::figures(std::span<const double> theta, double scale) const {
+std::vector<CandidateFigure> ModelCandidate::figures(std::span<const double> theta, double scale) const {
   const FilterSettings s = settings(theta, scale);
   std::vector<CandidateFigure> all{{"process_noise", "rad^2/s^3", s.process_noise},
                                    {"measurement_noise", "rad^2/s^2", s.measurement_noise}};

@@ -19,12 +19,12 @@
 
 namespace ifog {
 
-class Candidate {
+class ModelCandidate {
  public:
   // "random-walk", then any of gauss-markov, ar(p), arma(p,q) with q < p, and harmonic, added with " + ". An
   // ARMA(p,q) with q >= p plus white measurement noise is an ARMA(p,q) again, so its R could not be distinguished from
   // the data. Throws std::invalid_argument for another name and for more states than a filter has.
-  Candidate(std::string state, double period_s);
+  ModelCandidate(std::string state, double period_s);
 
   [[nodiscard]] const std::string& state() const { return state_; }           // FilterSettings::state
   [[nodiscard]] int size() const { return size_; }                            // free parameters
@@ -38,9 +38,9 @@ class Candidate {
   // Where in theta the variances of the lines' steps stand.
   [[nodiscard]] const std::vector<std::size_t>& line_variances() const { return line_variances_; }
   // A start that the spectrum allows, drawn at random.
-  [[nodiscard]] std::vector<double> draw(const Spectrum& spectrum, std::mt19937_64& random) const;
+  [[nodiscard]] std::vector<double> draw(const RecordSpectrum& spectrum, std::mt19937_64& random) const;
   // Expected density at each of the spectrum's bins, without the lines, as in the spectrum.
-  void density(std::span<const double> theta, const Spectrum& spectrum, std::span<double> out) const;
+  void density(std::span<const double> theta, const RecordSpectrum& spectrum, std::span<double> out) const;
   // Settings for data in rad/s whose scale (one unit of the normalised data) is `scale`.
   [[nodiscard]] FilterSettings settings(std::span<const double> theta, double scale) const;
   // The same as figures to be reported, each a smooth function of theta.

@@ -86,7 +86,7 @@ double square(const std::vector<std::vector<double>>& axes, double cycles) {
 
 }  // namespace
 
-SpectralLine take_out_strongest_line(std::vector<std::vector<double>>& axes) {
+TakenLine take_out_strongest_line(std::vector<std::vector<double>>& axes) {
   const auto n = static_cast<double>(axes[0].size());
   const std::vector<double> power = tapered_power(axes);
   double centre = static_cast<double>(highest(power)) / n;

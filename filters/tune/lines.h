@@ -11,6 +11,6 @@ namespace ifog {
 // The frequency is the one at which least squares over all axes take out the most, among the peaks of the
 // tapered spectrum; each axis has its own amplitude and phase. Axes without missing samples, changed in
 // place.
-SpectralLine take_out_strongest_line(std::vector<std::vector<double>>& axes);
+TakenLine take_out_strongest_line(std::vector<std::vector<double>>& axes);
 
 }  // namespace ifog

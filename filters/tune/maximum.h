@@ -13,14 +13,14 @@ namespace ifog {
 
 class RecordObjective {
  public:
-  RecordObjective(const Candidate& candidate, const LikelihoodRecord& record, double period_s)
+  RecordObjective(const ModelCandidate& candidate, const LikelihoodRecord& record, double period_s)
       : candidate_(candidate), record_(record), period_s_(period_s) {}
   // −ln L of the scaled data; a very large number where the filter has none.
   [[nodiscard]] double operator()(std::span<const double> theta) const;
-  [[nodiscard]] const Candidate& candidate() const { return candidate_; }
+  [[nodiscard]] const ModelCandidate& candidate() const { return candidate_; }
 
  private:
-  const Candidate& candidate_;
+  const ModelCandidate& candidate_;
   const LikelihoodRecord& record_;
   double period_s_;
 };

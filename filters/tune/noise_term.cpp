@@ -28,10 +28,10 @@ class GaussMarkovTerm final : public NoiseTerm {
     low[1] = -1.0;
     high[1] = 14.0;
   }
-  void draw_shape(const Spectrum& spectrum, Random& random, std::span<double> theta) const override {
+  void draw_shape(const RecordSpectrum& spectrum, Random& random, std::span<double> theta) const override {
     theta[1] = between(random, -0.5, std::log(static_cast<double>(spectrum.samples)));
   }
-  void add_density(std::span<const double> theta, const Spectrum& spectrum,
+  void add_density(std::span<const double> theta, const RecordSpectrum& spectrum,
                    std::span<double> out) const override {
     // 1 - a is all there is of a long correlation time.
     const double a = std::exp(-std::exp(-theta[1])), less = -std::expm1(-std::exp(-theta[1]));
@@ -64,7 +64,7 @@ std::vector<double> expanded(std::span<const std::complex<double>> roots) {
 }
 
 // Where the spectrum stands out of its surroundings, or anywhere.
-double drawn_frequency(const Spectrum& spectrum, Random& random) {
+double drawn_frequency(const RecordSpectrum& spectrum, Random& random) {
   if (between(random, 0.0, 1.0) < 0.5) return between(random, 0.0, std::numbers::pi);
   std::vector<double> height;
   for (std::size_t b = 0; b < spectrum.bins(); ++b) {
@@ -80,7 +80,7 @@ double drawn_frequency(const Spectrum& spectrum, Random& random) {
 }
 
 // Real ones and pairs, inside the unit circle by a distance drawn on a logarithmic scale.
-std::vector<std::complex<double>> drawn_roots(int count, const Spectrum& spectrum, double nearest,
+std::vector<std::complex<double>> drawn_roots(int count, const RecordSpectrum& spectrum, double nearest,
                                               Random& random) {
   std::vector<std::complex<double>> roots;
   while (static_cast<int>(roots.size()) < count) {
@@ -107,7 +107,7 @@ class ArmaTerm final : public NoiseTerm {
     std::fill_n(low.begin() + 1, p_ + q_, -kMost);
     std::fill_n(high.begin() + 1, p_ + q_, kMost);
   }
-  void draw_shape(const Spectrum& spectrum, Random& random, std::span<double> theta) const override {
+  void draw_shape(const RecordSpectrum& spectrum, Random& random, std::span<double> theta) const override {
     const auto place = [&](std::size_t first, std::vector<double> coefficients) {
       std::transform(coefficients.begin(), coefficients.end(), coefficients.begin(), std::negate<>());
       const std::vector<double> partial = partial_from_ar(coefficients);
@@ -118,7 +118,7 @@ class ArmaTerm final : public NoiseTerm {
     place(1, expanded(drawn_roots(p_, spectrum, nearest, random)));
     place(1 + count(p_), expanded(drawn_roots(q_, spectrum, 0.01, random)));
   }
-  void add_density(std::span<const double> theta, const Spectrum& spectrum,
+  void add_density(std::span<const double> theta, const RecordSpectrum& spectrum,
                    std::span<double> out) const override {
     const std::vector<double> c = coefficients(theta);
     const double variance = std::exp(theta[0]);
@@ -187,10 +187,11 @@ class HarmonicTerm final : public NoiseTerm {
     out[0] = 1.0;
     out[1] = 0.1 / static_cast<double>(samples);
   }
-  void draw_shape(const Spectrum& spectrum, Random& /*random*/, std::span<double> theta) const override {
+  void draw_shape(const RecordSpectrum& spectrum, Random& /*random*/,
+                  std::span<double> theta) const override {
     theta[1] = spectrum.lines[line_].cycles;
   }
-  void add_density(std::span<const double> /*theta*/, const Spectrum& /*spectrum*/,
+  void add_density(std::span<const double> /*theta*/, const RecordSpectrum& /*spectrum*/,
                    std::span<double> /*out*/) const override {
     // The line has been taken out.
   }
@@ -212,7 +213,7 @@ class HarmonicTerm final : public NoiseTerm {
 
 // "ar(2)" → 2, 0; "arma(3,1)" → 3, 1.
 bool orders(const std::string& term, int& p, int& q) {
-  constexpr int kMost = static_cast<int>(Spectrum::kOrders);
+  constexpr int kMost = static_cast<int>(RecordSpectrum::kOrders);
   const auto read = [](const char* from, const char* end, int& value) {
     return std::from_chars(from, end, value).ptr;
   };

@@ -29,10 +29,10 @@ class NoiseTerm {
     std::fill(out.begin(), out.end(), 1.0);
   }
   // A shape drawn at random, where the spectrum suggests one; leaves the first parameter alone.
-  virtual void draw_shape(const Spectrum& spectrum, std::mt19937_64& random,
+  virtual void draw_shape(const RecordSpectrum& spectrum, std::mt19937_64& random,
                           std::span<double> theta) const = 0;
   // Adds the expected density at each of the spectrum's bins.
-  virtual void add_density(std::span<const double> theta, const Spectrum& spectrum,
+  virtual void add_density(std::span<const double> theta, const RecordSpectrum& spectrum,
                            std::span<double> out) const = 0;
   // FilterSettings::state_parameters of the term for unit scale, its driving noise last, per second.
   [[nodiscard]] virtual std::vector<double> parameters(std::span<const double> theta,

@@ -62,7 +62,7 @@ std::vector<double> cosine_squares(std::span<const double> values) {
   return squares;
 }
 
-void smooth(Spectrum& s) {
+void smooth(RecordSpectrum& s) {
   constexpr double kEnough = 16.0;
   s.coarse.resize(s.bins());
   for (std::size_t b = 0; b < s.bins(); ++b) {
@@ -80,8 +80,8 @@ void smooth(Spectrum& s) {
 
 }  // namespace
 
-Spectrum spectrum_of(std::span<const std::vector<double>> axes, std::size_t lines) {
-  Spectrum s;
+RecordSpectrum spectrum_of(std::span<const std::vector<double>> axes, std::size_t lines) {
+  RecordSpectrum s;
   s.samples = smooth_length(axes[0].size());
   std::vector<std::vector<double>> filled;
   for (const auto& axis : axes) filled.push_back(bridged(std::span(axis).first(s.samples)));
@@ -105,7 +105,7 @@ Spectrum spectrum_of(std::span<const std::vector<double>> axes, std::size_t line
     s.ordinates.push_back(count * static_cast<double>(axes.size()));
     k = end;
   }
-  for (std::size_t order = 0; order < Spectrum::kOrders; ++order) {
+  for (std::size_t order = 0; order < RecordSpectrum::kOrders; ++order) {
     for (const double omega : s.omega) {
       s.cosine[order].push_back(std::cos(static_cast<double>(order + 1) * omega));
       s.sine[order].push_back(std::sin(static_cast<double>(order + 1) * omega));

@@ -17,12 +17,12 @@
 namespace ifog {
 
 // A sinusoid that a record holds.
-struct SpectralLine {
+struct TakenLine {
   double cycles = 0.0;     // per sample
   double amplitude = 0.0;  // mean square over axes, rooted
 };
 
-struct Spectrum {
+struct RecordSpectrum {
   static constexpr std::size_t kOrders = 6;  // of the largest ARMA part
   // One entry a bin.
   std::vector<double> omega;      // rad a sample
@@ -30,15 +30,15 @@ struct Spectrum {
   std::vector<double> ordinates;  // how many squares that is the mean of
   // cos and sin of 1 … kOrders times omega.
   std::array<std::vector<double>, kOrders> cosine, sine;
-  std::vector<double> coarse;       // the density averaged over neighbours until 16 squares are in it
-  std::size_t samples = 0;          // of the transform
-  std::vector<SpectralLine> lines;  // taken out beforehand, strongest first
+  std::vector<double> coarse;    // the density averaged over neighbours until 16 squares are in it
+  std::size_t samples = 0;       // of the transform
+  std::vector<TakenLine> lines;  // taken out beforehand, strongest first
 
   [[nodiscard]] std::size_t bins() const { return omega.size(); }
 };
 
 // Axes as in tune(); where samples are missing the gaps are bridged by straight lines. `lines`: how many of
 // the strongest lines to take out first.
-[[nodiscard]] Spectrum spectrum_of(std::span<const std::vector<double>> axes, std::size_t lines);
+[[nodiscard]] RecordSpectrum spectrum_of(std::span<const std::vector<double>> axes, std::size_t lines);
 
 }  // namespace ifog

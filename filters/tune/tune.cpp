@@ -106,8 +106,8 @@ struct Fit {
 // From one optimum of the spectrum the lines' wandering is tried at several values, of which the spectrum
 // without them knows nothing: from a line that keeps its phase to one that is another after a hundredth of
 // the record.
-std::vector<std::vector<double>> starts_from(const WhittleOptimum& optimum, const Candidate& candidate,
-                                             const Spectrum& spectrum) {
+std::vector<std::vector<double>> starts_from(const WhittleOptimum& optimum, const ModelCandidate& candidate,
+                                             const RecordSpectrum& spectrum) {
   if (candidate.lines() == 0) return {optimum.theta};
   std::vector<std::vector<double>> all;
   for (const double share : {1e-6, 1e-3, 1.0, 100.0}) {
@@ -122,7 +122,7 @@ std::vector<std::vector<double>> starts_from(const WhittleOptimum& optimum, cons
   return all;
 }
 
-Fit fit(const Candidate& candidate, const Spectrum& spectrum, const RecordObjective& objective) {
+Fit fit(const ModelCandidate& candidate, const RecordSpectrum& spectrum, const RecordObjective& objective) {
   const std::size_t draws = kDraws * static_cast<std::size_t>(candidate.size() - 1);
   const std::vector<WhittleOptimum> optima = whittle_optima(candidate, spectrum, draws);
   std::vector<Fit> starts;
@@ -147,8 +147,9 @@ Fit fit(const Candidate& candidate, const Spectrum& spectrum, const RecordObject
 }
 
 // Errors of the reported figures: their gradient with respect to theta through its covariance.
-std::vector<TunedFigure> figures_with_errors(const Candidate& candidate, const std::vector<double>& theta,
-                                             double scale, const Eigen::MatrixXd& covariance,
+std::vector<TunedFigure> figures_with_errors(const ModelCandidate& candidate,
+                                             const std::vector<double>& theta, double scale,
+                                             const Eigen::MatrixXd& covariance,
                                              const std::vector<bool>& known) {
   const auto base = candidate.figures(theta, scale);
   std::vector<std::vector<CandidateFigure>> moved;
@@ -180,7 +181,7 @@ struct Fitted {
   Eigen::MatrixXd information;
 };
 
-Fitted fit_model(const Candidate& candidate, const Data& data, const Spectrum& spectrum,
+Fitted fit_model(const ModelCandidate& candidate, const Data& data, const RecordSpectrum& spectrum,
                  const LikelihoodRecord& record) {
   const RecordObjective objective(candidate, record, data.period_s);
   Fit found = fit(candidate, spectrum, objective);
@@ -203,7 +204,7 @@ Fitted fit_model(const Candidate& candidate, const Data& data, const Spectrum& s
 }
 
 // Fits the model to the first half, from where the whole record has its optimum, and judges it on the second.
-Outcome held_out(const Candidate& candidate, const Data& data, const Fitted& fitted,
+Outcome held_out(const ModelCandidate& candidate, const Data& data, const Fitted& fitted,
                  std::span<const std::span<const double>> axes, const LikelihoodRecord& first_half) {
   const RecordObjective objective(candidate, first_half, data.period_s);
   std::vector<double> theta = fitted.theta;
@@ -228,8 +229,8 @@ std::pair<double, bool> rank(const TunedModel& model, double period_s) {
 Tuning tune(std::span<const std::span<const double>> axes, double period_s, const TuneOptions& options) {
   const Data data = scaled(axes, period_s);
   const std::vector<std::string> states = options.states.empty() ? default_candidates() : options.states;
-  std::vector<Candidate> candidates;
-  std::map<std::size_t, Spectrum> spectra;  // by lines taken out
+  std::vector<ModelCandidate> candidates;
+  std::map<std::size_t, RecordSpectrum> spectra;  // by lines taken out
   for (const std::string& state : states) {
     candidates.emplace_back(state, period_s);
     const std::size_t lines = candidates.back().lines();

@@ -12,7 +12,7 @@ namespace {
 
 class Objective {
  public:
-  Objective(const Candidate& candidate, const Spectrum& spectrum)
+  Objective(const ModelCandidate& candidate, const RecordSpectrum& spectrum)
       : candidate_(candidate), spectrum_(spectrum), density_(spectrum.bins()), moved_(spectrum.bins()) {}
 
   double cost(const std::vector<double>& theta) {
@@ -53,14 +53,14 @@ class Objective {
   }
 
  private:
-  const Candidate& candidate_;
-  const Spectrum& spectrum_;
+  const ModelCandidate& candidate_;
+  const RecordSpectrum& spectrum_;
   std::vector<double> density_, moved_;
 };
 
 // Fisher's scoring, damped after Marquardt: the expected Hessian is that of a nonlinear regression of the
 // spectrum.
-void descend(Objective& objective, const Candidate& candidate, WhittleOptimum& at) {
+void descend(Objective& objective, const ModelCandidate& candidate, WhittleOptimum& at) {
   constexpr int kMostSteps = 60;
   constexpr double kEnough = 1e-3;  // of −ln L
   constexpr double kLongest = 2.0;  // step in a logarithm
@@ -107,7 +107,7 @@ void descend(Objective& objective, const Candidate& candidate, WhittleOptimum& a
 
 }  // namespace
 
-std::vector<WhittleOptimum> whittle_optima(const Candidate& candidate, const Spectrum& spectrum,
+std::vector<WhittleOptimum> whittle_optima(const ModelCandidate& candidate, const RecordSpectrum& spectrum,
                                            std::size_t draws) {
   constexpr double kSame = 0.1;
   Objective objective(candidate, spectrum);
@@ -129,7 +129,7 @@ std::vector<WhittleOptimum> whittle_optima(const Candidate& candidate, const Spe
   return distinct;
 }
 
-Eigen::MatrixXd whittle_information(const Candidate& candidate, const Spectrum& spectrum,
+Eigen::MatrixXd whittle_information(const ModelCandidate& candidate, const RecordSpectrum& spectrum,
                                     const std::vector<double>& theta) {
   Objective objective(candidate, spectrum);
   Eigen::VectorXd gradient;

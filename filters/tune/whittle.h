@@ -20,12 +20,13 @@ struct WhittleOptimum {
 
 // Local optima, the best first, no two within a tenth of a log-likelihood unit of each other. `draws` starts
 // are drawn, the most promising third of them followed.
-[[nodiscard]] std::vector<WhittleOptimum> whittle_optima(const Candidate& candidate, const Spectrum& spectrum,
-                                                         std::size_t draws);
+[[nodiscard]] std::vector<WhittleOptimum> whittle_optima(const ModelCandidate& candidate,
+                                                         const RecordSpectrum& spectrum, std::size_t draws);
 
 // Fisher's information of theta, what the inverse of its covariance will be; rows of what the spectrum does
 // not tell are zero.
-[[nodiscard]] Eigen::MatrixXd whittle_information(const Candidate& candidate, const Spectrum& spectrum,
+[[nodiscard]] Eigen::MatrixXd whittle_information(const ModelCandidate& candidate,
+                                                  const RecordSpectrum& spectrum,
                                                   const std::vector<double>& theta);
 
 }  // namespace ifog

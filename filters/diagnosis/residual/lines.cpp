@@ -170,8 +170,9 @@ bool is_slow(double frequency_hz, const BlockGrid& grid) { return frequency_hz *
 
 }  // namespace
 
-Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance) {
-  Lines found;
+CoherentLines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid,
+                             double significance) {
+  CoherentLines found;
   for (std::size_t r = 0; r < errors.size(); ++r) {
     for (const SpectralLine& line :
          find_lines(errors[r].after, errors[r].start_s, grid.sample_s, significance)) {
@@ -191,7 +192,7 @@ Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid
   return found;
 }
 
-void keep_proven(const SearchResult& found, std::size_t samples, double significance, Lines& lines) {
+void keep_proven(const SearchResult& found, std::size_t samples, double significance, CoherentLines& lines) {
   const double tries = 0.5 * static_cast<double>(samples);
   std::vector<Candidate> kept;
   for (std::size_t i = 0; i < lines.slow.size(); ++i) {

@@ -40,17 +40,18 @@ struct FastLine {
   SpectralLine line;
 };
 
-struct Lines {
+struct CoherentLines {
   std::vector<Candidate> slow;
   std::vector<FastLine> fast;
 };
 
 // Of what is left of each record's error.
-Lines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid, double significance);
+CoherentLines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid,
+                             double significance);
 
 // Keeps the slow lines, which the search was given first, that are still lines once the slow noise and the
 // effects are known. samples: of all records.
-void keep_proven(const SearchResult& found, std::size_t samples, double significance, Lines& lines);
+void keep_proven(const SearchResult& found, std::size_t samples, double significance, CoherentLines& lines);
 
 // Fast lines out of both rests of the errors, for good.
 void take_out(const std::vector<FastLine>& lines, double sample_s, std::vector<EvenError>& errors);

@@ -25,7 +25,7 @@ constexpr int kStarts = 50;
 constexpr double kWithin = 2.0;
 
 struct Search {
-  const ifog::Candidate& candidate;
+  const ifog::ModelCandidate& candidate;
   const ifog::LikelihoodRecord& record;
   double scale;
 
@@ -52,7 +52,7 @@ double scale_of(const std::vector<double>& rate) {
 // Largest ln L of fifty bounded searches (BOBYQA, the derivative-free one), starts even over what is
 // plausible.
 double best_of_many(const ifog::bench::MadeRecord& made, std::uint64_t seed) {
-  const ifog::Candidate candidate(made.state, 1.0);
+  const ifog::ModelCandidate candidate(made.state, 1.0);
   const std::span<const double> axes[] = {made.rate};
   const ifog::LikelihoodRecord record(axes);
   Search objective{candidate, record, scale_of(made.rate)};

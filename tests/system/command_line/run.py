@@ -341,7 +341,7 @@ class Checks:
         nearly.write_text("time_s,gyro_x\n0,1\n1,2\n2,3\n")
         for command in ("allan", "compare", "tune", "diagnose"):
             refused(1, command, absent, says=[str(absent)])
-            refused(1, command, nearly, says=["nearly.csv:1: the unit of the rate is not named", "--column rate_x_radps=gyro_x:deg/s"])
+            refused(1, command, nearly, says=["nearly.csv:1: the unit of the rate is not named", "--column rate_x_radps=gyro_x:rad/s", "deg/s"])
         refused(1, "diagnose", self.capture, "--model", absent, says=[str(absent)])
         refused(1, "allan", self.capture, "--axis", "w", says=[str(self.capture), "--axis is 'w'", "expected none, the capture has one axis"])
         bad = self.folder / "bad.toml"
