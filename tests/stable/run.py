@@ -114,7 +114,7 @@ class Version:
                     gone = set(option.get("choices", [])) - set(options[name]["choices"]) if options[name]["choices"] else set()
                     assert not gone, f"ifog {command['name']} {name}: {sorted(gone)} is gone"
             known = {name for option in command["options"] for name in option["names"]}
-            asked = [name for name, option in options.items() if option["required"] and name not in known]
+            asked = [name for name, option in options.items() if option["required"] and not known.intersection(option["names"])]
             assert not asked, f"ifog {command['name']} must be given {asked} now"
 
     def check_schemas(self):

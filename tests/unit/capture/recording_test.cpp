@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -345,6 +346,29 @@ TEST_F(Recording, AChannelsValueThatCannotBeIsMissingAndCounted) {
   EXPECT_EQ(made.channels.at(0).values[2], -270.0);
   EXPECT_EQ(made.channels.at(1).values[0], 15.0);
   EXPECT_TRUE(std::isnan(made.channels.at(1).values[1]) && std::isnan(made.channels.at(1).values[2]));
+}
+
+TEST_F(Recording, APackedOneThatEndsEarlyIsReadAsFarAsItGoes) {
+  (void)there_and_back(wave({"x", "y", "z"}), "kvh1750", {{"format", "b"}});
+  std::ifstream plain(path("bytes.bin"), std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(plain)), {});
+  const std::string name = path("bytes.bin.gz");
+  gzFile packed = gzopen(name.c_str(), "wb");
+  ASSERT_EQ(gzwrite(packed, bytes.data(), static_cast<unsigned>(bytes.size())),
+            static_cast<int>(bytes.size()));
+  gzclose(packed);
+  fs::resize_file(name, fs::file_size(name) / 2);
+  ifog::DriverInstance driver(ifog::find_plugin("kvh1750", ifog::plugin_folders()), {{"format", "b"}});
+  ifog::InputFile file(name);
+  std::size_t samples = 0;
+  const ifog::RecordingCounts counts =
+      ifog::decode_recording(file, driver, "", [&](const ifog_sample&) { ++samples; });
+  EXPECT_GT(samples, 100U);
+  EXPECT_LT(samples, 900U);
+  const std::vector<std::string> said = ifog::losses(counts);
+  EXPECT_EQ(std::count(said.begin(), said.end(),
+                       "1 gzip stream ends early (truncated file); what is there was read"),
+            1);
 }
 
 // A real gyro's record through the frames of a device, where the shared captures are at hand.

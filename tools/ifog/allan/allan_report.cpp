@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <string_view>
 
 #include "filters/units/field_units.h"
 #include "tools/ifog/allan/allan_record.h"
@@ -101,8 +102,10 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
     axis["gauss_markov"] = record.fit ? report::markov_json(record.fit->markov) : ordered_json(nullptr);
     axis["noise_changes"] = report::noise_changes_json(record.noise_changes);
     axis["findings"] = ordered_json::array();
+    // Leaps are a note alone: the schema's first version has no such finding.
     for (const ValueFault& found : record.findings)
-      axis["findings"].push_back({{"name", found.name}, {"text", found.text}});
+      if (std::string_view(found.name) != "leaps")
+        axis["findings"].push_back({{"name", found.name}, {"text", found.text}});
     axis["notes"] = record.notes;
     out["axes"].push_back(axis);
   }
