@@ -223,7 +223,7 @@ void Timeline::by_counter(const Frame& frame, const Look& now, Step& step) const
   step.samples = now.counted_samples;
   const double claimed_s = pace_.time_s(step.samples);
   const bool never_timed = due_ns_ == 0 && now.ahead > modulus_ / 2;
-  const bool short_of = now.silent && claimed_s < now.elapsed_s - now.slack_s;
+  const bool short_of = now.silent && claimed_s < now.elapsed_s - now.slack_s - kPrompt_s;
   const bool wrong = step.samples > 1 && (never_timed || short_of || now.contradicts(claimed_s));
   step.dt_s = static_cast<double>(step.samples) * pace_.nominal_s();
   if (wrong && now.ahead == 1) {  // kept by the line while nobody read it, for all that is known

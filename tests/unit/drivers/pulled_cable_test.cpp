@@ -54,6 +54,8 @@ class Gyro {
     sample_ += samples;
     lost_ += samples;
   }
+  // What comes next is late by so much, and what is behind it comes at once.
+  void held_up(double late_s) { latest_s_ = 1.0 + static_cast<double>(sample_) / cable_.rate_hz + late_s; }
   [[nodiscard]] std::int64_t told() const { return told_; }
   [[nodiscard]] std::int64_t lost() const { return lost_; }
   [[nodiscard]] std::int64_t between(std::int64_t least, std::int64_t most) {
@@ -74,6 +76,18 @@ class Gyro {
   double latest_s_ = 0.0;
   Timeline timeline_;
 };
+
+// As an emulated computer did: half a second of silence on an open line, whose first delivery was 45 ms late.
+TEST(PausedCable, ALateDeliveryBehindASilenceIsNoRestart) {
+  Gyro gyro({.jitter_s = 0.001}, 5);
+  gyro.send(4000, false);
+  for (int pause = 0; pause < 20; ++pause) {
+    gyro.unheard(100);
+    gyro.held_up(0.045);
+    gyro.send(600, false);
+  }
+  EXPECT_EQ(gyro.told(), gyro.lost());
+}
 
 class Pulled : public testing::TestWithParam<Cable> {};
 
