@@ -154,7 +154,7 @@ class Measuring {
   void report(const JointFit& joint) {
     const auto count = static_cast<Eigen::Index>(model_.size());
     const Eigen::Index first = data_.grid.constants();
-    // Beside a model without a bias the rates count from what the effects leave on the mean.
+    // With a model that has no bias the rates count from what the effects leave on the mean.
     const double rates_from = mean_left(data_.grid, design(data_, all()), joint.values);
     std::vector<FoundEffect> found;
     for (Eigen::Index i = 0; i < count; ++i) {

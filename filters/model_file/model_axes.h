@@ -32,7 +32,7 @@ struct NoiseOfAxes {
   AxisShares shares;
 };
 // measurement_noise: of the model's filter, (rad/s)^2; 0: not given. Where that is above twice what the terms say, it is
-// of something they do not know, such as the lines of a dither: no axis is taken to have more of it than another.
+// of something they do not know, such as the lines of a dither: all axes get the same share of it.
 [[nodiscard]] NoiseOfAxes noise_of_axes(const Model& model, std::span<const std::string> axes,
                                         double sample_rate_hz, double measurement_noise);
 

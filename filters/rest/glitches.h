@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples that leap away from those beside them and back, far beyond all noise: a single one, or some that all
+// Samples that leap away from their neighbours and back, far beyond all noise: a single one, or some that all
 // have one value, as a placeholder has. A fault of the logger or of the line. They are no angle random walk,
 // yet one of 1e5 times the noise makes N of a record a thousand times too large.
 #pragma once
@@ -18,7 +18,7 @@ namespace ifog {
 struct Glitches {
   struct Leap {
     std::size_t sample = 0;
-    double between = 0.0;  // the middle of the values beside it, rad/s
+    double between = 0.0;  // the middle of the neighbouring values, rad/s
   };
   std::size_t count = 0;
   std::size_t first = 0;  // sample; meaningful when count > 0

@@ -230,7 +230,7 @@ Tuning tune(std::span<const std::span<const double>> axes, double period_s, cons
   const Data data = scaled(axes, period_s);
   const std::vector<std::string> states = options.states.empty() ? default_candidates() : options.states;
   std::vector<ModelCandidate> candidates;
-  std::map<std::size_t, RecordSpectrum> spectra;  // by lines taken out
+  std::map<std::size_t, RecordSpectrum> spectra;  // by the number of lines that were subtracted
   for (const std::string& state : states) {
     candidates.emplace_back(state, period_s);
     const std::size_t lines = candidates.back().lines();

@@ -8,7 +8,6 @@ Error of the denoised rate against the mean of the next 10 s of the corrected on
 with --check where either is above 1.1 of the better of the two."""
 import argparse
 import csv
-import gzip
 import math
 import subprocess
 import sys

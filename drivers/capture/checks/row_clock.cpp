@@ -96,9 +96,9 @@ RowClock::RowClock(const std::string& path, std::string time, bool keep_repeats,
       order_(path, std::move(time), notes) {}
 
 void RowClock::take(RowBlock& rows) {
-  order_.take(rows);
-  if (rows.size() == 0) return;
+  const std::size_t known = held_.size();
   put_before(held_, rows);
+  order_.take(rows, known);
   if (!std::exchange(begun_, true)) within_s_ = step_within_bursts(rows.time_s);
   if (!keep_repeats_) drop_repeats(rows);
   std::size_t begin = 0;

@@ -12,7 +12,6 @@ namespace ifog {
 namespace {
 
 constexpr double kLate_s = 2.0;  // a rollover comes within it
-constexpr std::size_t kRowsABackwardOne = 100;
 
 struct Rollover {
   double length_s;
@@ -41,34 +40,45 @@ double RowOrder::rolled_over_s(double now_s, std::size_t line) {
   return found->length_s;
 }
 
-void RowOrder::take(RowBlock& rows) {
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double own_s = rows.time_s[i];
+void RowOrder::take(RowBlock& rows, std::size_t known) {
+  std::size_t kept = known;
+  for (std::size_t i = known; i < rows.size(); ++i) {
     const std::size_t line = rows.lines.empty() ? 0 : rows.lines[i];
-    const bool first = rows_++ == 0;
-    if (!first && own_s + offset_s_ < last_s_) offset_s_ += rolled_over_s(own_s + offset_s_, line);
-    if (!first && own_s + offset_s_ < last_s_) {
-      if (backward_++ > 0) continue;
-      line_ = line;
-      append_time(first_, rows.origin, own_s);
-      continue;
+    double now_s = rows.time_s[i] + offset_s_;
+    const bool back = rows_++ > 0 && now_s < last_s_;
+    if (const double longer_s = back ? rolled_over_s(now_s, line) : 0.0; longer_s > 0.0) {
+      offset_s_ += longer_s;
+      now_s += longer_s;
+    } else if (back) {
+      // Where the row continues those before the last one, the last one is the one that is wrong.
+      const bool last_is_late = now_s >= before_s_;
+      if (backward_++ == 0) say(rows, last_is_late ? kept - 1 : i, last_is_late);
+      if (!last_is_late) continue;
+      --kept;
+      last_s_ = before_s_;
     }
-    last_s_ = own_s + offset_s_;
+    before_s_ = rows_ > 1 ? last_s_ : before_s_;
+    last_s_ = now_s;
     rows.move_row(i, kept);
-    rows.time_s[kept++] = last_s_;
+    rows.time_s[kept++] = now_s;
   }
   rows.keep_first(kept);
 }
 
+void RowOrder::say(const RowBlock& rows, std::size_t row, bool late) {
+  line_ = rows.lines.empty() ? 0 : rows.lines[row];
+  first_ = printable(time_) + " is ";
+  append_time(first_, rows.origin, rows.time_s[row] - (late ? offset_s_ : 0.0));
+  first_ += late ? " s, expected less than in the next row" : " s, expected more than in the row before";
+}
+
 void RowOrder::finish() {
   if (backward_ == 0) return;
-  const std::string what = printable(time_) + " is " + first_ + " s, expected more than in the row before";
-  if (rows_ < kRowsABackwardOne * backward_)
+  if (rows_ < kRowsAFault * backward_)
     fail_at(path_, line_,
-            what + (backward_ == 1 ? "" : "; so are " + std::to_string(backward_ - 1) + " more rows") +
+            first_ + (backward_ == 1 ? "" : "; so are " + std::to_string(backward_ - 1) + " more rows") +
                 "; --sample-rate HZ reads all rows as even");
-  notes_.faults.push_back(path_ + ":" + std::to_string(line_) + ": " + what + "; " +
+  notes_.faults.push_back(path_ + ":" + std::to_string(line_) + ": " + first_ + "; " +
                           (backward_ == 1 ? "this row is" : std::to_string(backward_) + " such rows are") +
                           " left out");
 }

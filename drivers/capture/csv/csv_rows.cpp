@@ -203,13 +203,11 @@ void CsvRows::note(const DamagedLines& found, DamagedLines& all) const {
   all.count += found.count;
 }
 
-// One line in a hundred is what a serial line, a full disk or a second header leaves, and so is the last line without
-// its end. More are no table of these columns.
+// The last line without its end counts for itself.
 void CsvRows::tell_damaged() {
-  constexpr std::size_t kRowsADamagedLine = 100;
   const std::size_t rows = checks_->rows();
   for (const auto& [found, few] :
-       {std::pair{&damaged_, rows >= kRowsADamagedLine * damaged_.count}, {&unended_, rows > 0}}) {
+       {std::pair{&damaged_, rows >= kRowsAFault * damaged_.count}, {&unended_, rows > 0}}) {
     if (found->count == 0) continue;
     if (!few) fail_at(path_, found->line, found->what);
     notes_.faults.push_back(

@@ -15,6 +15,9 @@ namespace ifog {
 // In a column: no value in this row.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
+// One faulty row in so many is left to a serial line, a full disk or a clock that was set; more mean another table.
+inline constexpr std::size_t kRowsAFault = 100;
+
 // Rows that follow one another, by column.
 struct RowBlock {
   std::vector<double> time_s;  // strictly increasing, within and from block to block; never NaN

@@ -17,7 +17,7 @@ OwnedRecords with_even_stamps(OwnedRecords given);
 // (plausible_reading.h), with the range that the channel usually has, are interpolated between those next to
 // them for up to a minute, and missing where they last longer. The daemon sees only what came before; here
 // the rule is asked in both directions of time, so that a step to another level stays. Channels of a few
-// values are left alone: a switch may be off for an hour. Missing values stay missing.
+// values stay as they are: a switch may be off for an hour. Missing values stay missing.
 OwnedRecords repair_channels(OwnedRecords given);
 
 // The rates without single samples that leap, as every command takes them out (filters/rest/cleaned_rate.h).
@@ -27,7 +27,7 @@ OwnedRecords without_leaping_rates(OwnedRecords given);
 // With the rates of the sensor's other axes as channels, where every record has a reference that moves:
 // without one, what two axes have in common is rotation, and a correction must not take it away. An axis that
 // has a reference of its own comes as the daemon has it, less its own misalignment and scale factor error:
-// what this one is told to see of it is the true rate's. With the measured ones three misaligned axes would
+// what this one is fitted on is the true rate's. With the measured ones three misaligned axes would
 // be left with the square of their angles.
 OwnedRecords with_other_axes(OwnedRecords given);
 

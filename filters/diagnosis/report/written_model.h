@@ -13,7 +13,7 @@
 
 namespace ifog {
 
-// The bias beside a reference rate, which the model corrects: `value` is what the effects that it corrects
+// The bias compared with a reference rate, which the model corrects: `value` is what the effects that it corrects
 // leave on the mean. It is an effect `bias` at the end of the diagnosis' effects, too, where it is beyond
 // five times what the noise makes of a record's mean.
 void name_bias(const BlockGrid& grid, const JointFit& joint, double value, const std::string& axis,

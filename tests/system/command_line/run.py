@@ -323,7 +323,7 @@ class Checks:
     def check_bad_input(self):
         cases = {
             "word.csv": ("time_s,rate_radps\n0,1e-6\n0.01,abc\n", [":3:", "rate_radps", "'abc'", "expected a number"]),
-            "backwards.csv": ("time_s,rate_radps\n0,1e-6\n0.01,2e-6\n0.005,1e-6\n", [":4:", "time_s", "0.005", "expected more"]),
+            "backwards.csv": ("time_s,rate_radps\n0,1e-6\n0.01,2e-6\n0.005,1e-6\n", [":3:", "time_s", "0.01 s", "expected less than in the next row"]),
             "no_rate.csv": ("time_s,foo_V\n0,1\n0.1,1\n0.2,1\n", ["no rate column", "expected"]),
             "cut.csv": ("time_s,rate_radps\n0,1e-6\n0.01\n", [":3:", "1 cells, expected 2"]),
             "empty.csv": ("", ["no header line"]),

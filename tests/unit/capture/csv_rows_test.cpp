@@ -148,7 +148,7 @@ TEST(CsvRows, ChosenColumnsAndAnglesAreTheWholesToo) {
   for (const std::size_t piece : kPieces) expect_same(whole, in_pieces(text, piece, layout), piece);
 }
 
-// One damaged line of thousands is left out and told, wherever the piece ends; one in fifty is another table.
+// One damaged line of thousands is dropped and reported, wherever the piece ends; one in fifty is another table.
 TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
   const std::string text = long_text(6000);
   const auto with = [&](std::size_t line, const std::string& instead) {
@@ -163,6 +163,7 @@ TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
         {"5,1,2", "a.csv:4321: 3 cells, expected 4 (a truncated line?)"},
         {"5,1,2,3,4", "a.csv:4321: more cells than the 4 columns of the header"},
         {"0.5,1,2,3", "a.csv:4321: time_s is 0.5 s, expected more than in the row before"},
+        {"999999,1,2,3", "a.csv:4321: time_s is 999999 s, expected less than in the next row"},
         {",1,2,3", "a.csv:4321: time_s is missing, expected a time"}}) {
     const std::string wrong = with(4321, bad);
     for (const std::size_t piece : kPieces) {
