@@ -134,6 +134,10 @@ def who_sits_there(place):
     said = place.of("adopt", "nose", code=1)
     place.check("is no socket" in said and "\n" not in said, "and a link is not followed: " + said)
     os.rename("state/mine", "state/ifogd.socket")
+    # The daemon was stopped a moment ago, and its sensor has no data until a second later.
+    deadline = time.monotonic() + 20
+    while place.status()["sensors"][0]["state"] != "running" and time.monotonic() < deadline:
+        time.sleep(0.2)
     for group, told in ((NOBODY, True), (NOBODY - 1, False)):
         done = subprocess.run([place.ifog, "status", "--config", "ifogd.toml"], user=NOBODY - 1, group=group, extra_groups=[], capture_output=True, text=True,
                               check=False)
