@@ -13,6 +13,10 @@ namespace {
 // Traffic, sway, swell and the body waves of an earthquake are quicker.
 constexpr double kHeld_s = 30.0;
 constexpr double kHeldShare = 0.1;
+// Towers, bridges, seas, suspensions and surface waves swing at 1 Hz and slower, machines shake quicker: means of
+// half a second keep the larger part of the power of the ones and the smaller of the others.
+constexpr double kSwing_s = 0.5;
+constexpr double kSwingShare = 0.5;
 // Twice the log-likelihood that a slope has to gain: one in a million by chance, with a hundred looks.
 constexpr double kCertain = 40.0;
 constexpr double kOfRate = 0.02;  // of the rate's variance, below which nothing is said
@@ -94,10 +98,10 @@ std::string rotation_in_words(const BlockData& data, std::size_t c, Motion motio
          name + reading_of(motion, change, best.value) + ": that is rotation and stays in the rate";
 }
 
-// Whether it stays where it is for longer than what shakes, sways or rolls.
-bool is_held(const BlockData& data, std::size_t c) {
-  const auto steps = static_cast<std::size_t>(std::max(1.0, std::round(kHeld_s / data.grid.fine_s)));
-  double all = 0.0, held = 0.0;
+// The share of a channel's variance that its means over a time keep.
+double kept_by_means(const BlockData& data, std::size_t c, double time_s) {
+  const auto steps = static_cast<std::size_t>(std::max(1.0, std::round(time_s / data.grid.fine_s)));
+  double all = 0.0, kept = 0.0;
   for (const BlockRange& record : data.grid.records) {
     const BlockRange fine = data.grid.fine_steps(record);
     const std::vector<double>& values = data.channels[c].values;
@@ -110,10 +114,10 @@ bool is_held(const BlockData& data, std::size_t c) {
         all += (values[k] - mean) * (values[k] - mean);
         if (!data.channels[c].power.empty()) all += data.channels[c].power[k];
       }
-      held += sum * sum / static_cast<double>(steps);
+      kept += sum * sum / static_cast<double>(steps);
     }
   }
-  return held > kHeldShare * all;
+  return all > 0.0 ? kept / all : 0.0;
 }
 
 }  // namespace
@@ -127,7 +131,9 @@ std::vector<std::string> mark_motion(BlockData& data, bool allowed) {
     const Motion motion = motion_of(channel.name);
     if (!channel.varies || motion == Motion::kNone) continue;
     channel.moves = true;
-    channel.held = motion == Motion::kAcceleration && is_held(data, c);
+    const bool accelerates = motion == Motion::kAcceleration;
+    channel.held = accelerates && kept_by_means(data, c, kHeld_s) > kHeldShare;
+    channel.shakes = accelerates && kept_by_means(data, c, kSwing_s) < kSwingShare;
     names += (names.empty() ? "" : ", ") + channel.name;
     if (std::string words = rotation_in_words(data, c, motion); !words.empty())
       said.push_back(std::move(words));

@@ -72,14 +72,15 @@ struct FineChannel {
   bool smooth = false;      // moves smoothly, so that it has no power of its own above its slope
   bool moves = false;       // senses motion, and no reference rate tells rotation from error; see motion.h
   bool held = false;        // of such an acceleration: it stays for half a minute at a time
+  bool shakes = false;      // of such an acceleration: most of its power is quicker than sways and waves
   bool two_valued = false;  // a switch: its powers are itself
   bool of_axis = false;     // the rate of another axis of the sensor
   double period = 0.0;      // of an angle without its wraps: only what repeats with it is a function of it
   // Its mean square may be that of a vibration. Above a low-pass a smooth channel has its slope; and without a
-  // reference the mean square of a velocity may be the sensor's own rotation.
+  // reference the mean square of a velocity, a sway or a wave may be the sensor's own rotation.
   [[nodiscard]] bool vibrates() const {
     const Motion motion = motion_of(name);
-    return !smooth && motion != Motion::kAngle && (!moves || motion == Motion::kAcceleration);
+    return !smooth && motion != Motion::kAngle && (!moves || shakes);
   }
   // A quantity of the surroundings, that any form may be made of.
   [[nodiscard]] bool environment() const { return !moves && !of_axis && period == 0.0; }

@@ -63,16 +63,13 @@ struct Bound {
   const char* of;
 };
 
-// Where an acceleration may be that of a rotation, only what is too small for one is an error. A
-// rectification has no such limit, but that of the maker: from one g of vibration no more than from one that
-// stands.
-std::optional<Bound> bound_of(const Grade& grade, const FineChannel& channel, Form form) {
+// Where an acceleration may be that of a rotation, only what is too small for one is an error.
+std::optional<Bound> bound_of(const Grade& grade, const FineChannel& channel) {
   const std::optional<double> most = specified(grade, channel.name);
   if (!most) return std::nullopt;
   const double turned = 0.5 / kQuickest * (unit_of(channel.name) == "g" ? kStandardGravity : 1.0);
-  return channel.moves && form != Form::kBandPower && turned < *most
-             ? Bound{turned, "what cannot be rotation"}
-             : Bound{*most, grade.name};
+  return channel.moves && turned < *most ? Bound{turned, "what cannot be rotation"}
+                                         : Bound{*most, grade.name};
 }
 
 double swing_of(const BlockGrid& grid, Eigen::VectorXd values) {
@@ -81,9 +78,6 @@ double swing_of(const BlockGrid& grid, Eigen::VectorXd values) {
 }
 
 double size_of(const BlockData& data, const Candidate& effect, double coefficient) {
-  if (effect.form == Form::kBandPower)  // at one g
-    return std::abs(coefficient) *
-           (unit_of(data.channels[effect.channel].name) == "g" ? 1.0 : kStandardGravity);
   const double channel = swing_of(data.grid, column(data, ShapeSettings{}, effect.channel));
   const double own = std::abs(coefficient) * swing_of(data.grid, regressors(data, effect).col(0));
   return channel > 0.0 ? own / channel : 0.0;
@@ -92,8 +86,7 @@ double size_of(const BlockData& data, const Candidate& effect, double coefficien
 bool may_be_proxy(const BlockData& data, const Candidate& effect) {
   if (effect.channel == Candidate::kNone || effect.first_reading != FirstReading::kError) return false;
   if (!names_in(data.channels[effect.channel].name).less.empty()) return false;
-  // What goes with the rate is a scale factor; a change has units of its own.
-  if (effect.form == Form::kBandPower) return data.channels[effect.channel].moves;
+  // What goes with the rate is a scale factor; a mean square and a change have units of their own.
   return effect.form == Form::kLinear || effect.form == Form::kQuadratic || effect.form == Form::kCubic ||
          effect.form == Form::kLagged || effect.form == Form::kTransition;
 }
@@ -108,7 +101,7 @@ void doubt_proxies(const BlockData& data, SearchResult& found) {
     const double coefficient = found.coefficients[at];
     at += mine.width();
     if (!may_be_proxy(data, mine)) continue;
-    const std::optional<Bound> bound = bound_of(grade, data.channels[mine.channel], mine.form);
+    const std::optional<Bound> bound = bound_of(grade, data.channels[mine.channel]);
     if (!bound || size_of(data, mine, coefficient) <= bound->most) continue;
     mine.first_reading = FirstReading::kProxyShown;
   }
@@ -123,7 +116,7 @@ std::string proxies_in_words(const BlockData& data, const SearchResult& found) {
     at += each.width();
     if (each.first_reading != FirstReading::kProxyShown) continue;
     const FineChannel& channel = data.channels[each.channel];
-    const Bound bound = bound_of(grade, channel, each.form).value_or(Bound{0.0, grade.name});
+    const Bound bound = bound_of(grade, channel).value_or(Bound{0.0, grade.name});
     words += (words.empty() ? "" : "; ") + channel.name +
              printed(" explains the bias by %.3g °/h per %s, %s has at most %.3g",
                      size_of(data, each, coefficient) / kDegreePerHour, unit_of(channel.name).c_str(),
