@@ -97,9 +97,12 @@ JointFit settle(const BlockData& reconstructed, SearchResult& found) {
       candidate.half_width *= std::exp(near);
   }
   // The joint fit is straight in what was searched; the coefficients that belong to where it led are not.
-  if (!joint.searched.empty())
-    joint.values.head(linear) =
-        joint_fit_at(reconstructed, candidates_of(found.chosen), found.noise).values.head(linear);
+  joint.of_coefficients = joint.covariance.topLeftCorner(linear, linear);
+  if (!joint.searched.empty()) {
+    const JointFit there = joint_fit_at(reconstructed, candidates_of(found.chosen), found.noise);
+    joint.values.head(linear) = there.values.head(linear);
+    joint.of_coefficients = there.covariance.topLeftCorner(linear, linear);
+  }
   found.coefficients = joint.values.head(linear);
   found.covariance = joint.covariance.topLeftCorner(linear, linear);
   return joint;
@@ -176,9 +179,8 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
       }
     }
     // By the same fit that gives the error bars, when that is less certain than the likelihood's loss.
-    const ModelParameter& size = effect.effect.parameters.front();
-    if (chosen.candidate.width() == 1 && size.std_error > 0.0) {
-      const double z = size.value / size.std_error;
+    if (chosen.candidate.width() == 1 && joint.of_coefficients(at, at) > 0.0) {
+      const double z = joint.values[at] / std::sqrt(joint.of_coefficients(at, at));
       const double tries = chosen.of_a_law ? 1.0 : found.tries;
       effect.p_value = std::max(effect.p_value, std::min(1.0, kProfiled * tail(z * z, 1) * tries));
     }
