@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -20,31 +21,43 @@ namespace {
 constexpr std::size_t kLookedAt = 50000;  // values, evenly chosen: what is usual shows in so many
 constexpr std::size_t kFewest = 100;      // values, that tell what is usual
 constexpr std::size_t kFewValues = 5;     // of a switch, or of states
-constexpr double kPlaceholder = 30.0;     // interquartile ranges from the median
 constexpr double kMostFaults = 0.1;       // of the readings: what is more often is a state of the channel
 constexpr double kLongest_s = 60.0;       // of an interpolation
 constexpr std::size_t kLearned = 1000;    // samples that the rule learns from before it judges the first one
 
 using Flags = std::vector<std::uint8_t>;
 
-// From the hundredth to the ninety-ninth quantile. A number that is far from all others, a logger's 9999, may
-// stand for minutes: it does not count, unless it is zero, which may be a reading of what is switched off.
+// How many values at the beginning of sorted ones are a placeholder. A logger's 9999 or 85 °C, which may stand for
+// minutes, is one number, farther from all others than most of them are from each other; but zero is what a
+// channel reads that is switched off.
+template <class Sorted>
+std::size_t placeholders_of(const Sorted& values) {
+  const std::size_t n = values.size();
+  const auto most = static_cast<std::size_t>(kMostFaults * static_cast<double>(n));
+  const double first = values.front();
+  const auto other = std::ranges::find_if(values, [&](double v) { return v != first; });
+  const auto times = static_cast<std::size_t>(other - values.begin());
+  if (first == 0.0 || times > most) return 0;
+  return std::abs(*other - first) > std::abs(values[n - 1 - most] - *other) ? times : 0;
+}
+
+// From the hundredth to the ninety-ninth quantile.
 std::optional<ChannelRange> usual_range(std::span<const double> column) {
   std::vector<double> values;
   const std::size_t stride = std::max<std::size_t>(1, column.size() / kLookedAt);
   for (std::size_t i = 0; i < column.size(); i += stride)
     if (std::isfinite(column[i])) values.push_back(column[i]);
   if (values.size() < kFewest) return std::nullopt;
-  const double middle = quantile(values, 0.5);
-  const double far = kPlaceholder * (quantile(values, 0.75) - quantile(values, 0.25));
-  std::vector<double> near = values;
-  if (far > 0.0) std::erase_if(near, [&](double v) { return v != 0.0 && std::abs(v - middle) > far; });
-  if (static_cast<double>(near.size()) > (1.0 - kMostFaults) * static_cast<double>(values.size()))
-    values = std::move(near);
-  if (std::set<double>(values.begin(), values.end()).size() <= kFewValues) return std::nullopt;
+  std::ranges::sort(values);
+  const std::size_t below = placeholders_of(values), above = placeholders_of(values | std::views::reverse);
+  const std::span<const double> used = std::span(values).subspan(below, values.size() - below - above);
+  if (std::set<double>(used.begin(), used.end()).size() <= kFewValues) return std::nullopt;
+  const auto at = [&](double share) {
+    return used[static_cast<std::size_t>(share * static_cast<double>(used.size() - 1))];
+  };
   ChannelRange range;
-  range.low = quantile(values, 0.01);
-  range.high = quantile(values, 0.99);
+  range.low = at(0.01);
+  range.high = at(0.99);
   return range;
 }
 
