@@ -107,9 +107,8 @@ class Measuring {
     measured.effect = wanted_.together[i];
     measured.not_measured = named.not_measured;
     if (!named.not_measured.empty()) return;
-    const bool twice = std::any_of(model_.begin(), model_.end(),
-                                   [&](const Candidate& other) { return other.same_shape(named.candidate); });
-    if (twice) throw std::invalid_argument("'" + wanted_.together[i].form + "' is to be measured twice");
+    if (has_shape(model_, named.candidate))
+      throw std::invalid_argument("'" + wanted_.together[i].form + "' is to be measured twice");
     place_.push_back(i);
     model_.push_back(named.candidate);
   }
@@ -120,10 +119,7 @@ class Measuring {
       return;
     }
     const Named named = candidate_named(data_, effect);
-    const bool twice = std::any_of(model_.begin(), model_.end(),
-                                   [&](const Candidate& other) { return other.same_shape(named.candidate); });
-    if (!named.not_measured.empty() || twice) return;
-    model_.push_back(named.candidate);
+    if (named.not_measured.empty() && !has_shape(model_, named.candidate)) model_.push_back(named.candidate);
   }
 
   // What the fit loses without effect `at` of the model, and what the others in its place win back.

@@ -13,10 +13,9 @@ namespace {
 // Traffic, sway, swell and the body waves of an earthquake are quicker.
 constexpr double kHeld_s = 30.0;
 constexpr double kHeldShare = 0.1;
-// Towers, bridges, seas, suspensions and surface waves swing at 1 Hz and slower, machines shake quicker: means of
-// half a second keep the larger part of the power of the ones and the smaller of the others.
+// Towers, bridges, seas, suspensions and surface waves swing at 1 Hz and slower, machines shake quicker: means
+// over this keep more than half of the power of the ones, and less of the others.
 constexpr double kSwing_s = 0.5;
-constexpr double kSwingShare = 0.5;
 // Twice the log-likelihood that a slope has to gain: one in a million by chance, with a hundred looks.
 constexpr double kCertain = 40.0;
 constexpr double kOfRate = 0.02;  // of the rate's variance, below which nothing is said
@@ -133,7 +132,7 @@ std::vector<std::string> mark_motion(BlockData& data, bool allowed) {
     channel.moves = true;
     const bool accelerates = motion == Motion::kAcceleration;
     channel.held = accelerates && kept_by_means(data, c, kHeld_s) > kHeldShare;
-    channel.shakes = accelerates && kept_by_means(data, c, kSwing_s) < kSwingShare;
+    channel.shakes = accelerates && kept_by_means(data, c, kSwing_s) < 0.5;
     names += (names.empty() ? "" : ", ") + channel.name;
     if (std::string words = rotation_in_words(data, c, motion); !words.empty())
       said.push_back(std::move(words));

@@ -55,10 +55,7 @@ std::optional<ChannelRange> usual_range(std::span<const double> column) {
   const auto at = [&](double share) {
     return used[static_cast<std::size_t>(share * static_cast<double>(used.size() - 1))];
   };
-  ChannelRange range;
-  range.low = at(0.01);
-  range.high = at(0.99);
-  return range;
+  return ChannelRange{"", at(0.01), at(0.99)};
 }
 
 // By sample, whether the rule refuses what the channel says there, forwards in time or backwards. A record

@@ -10,8 +10,7 @@ namespace ifog {
 // As std::printf.
 [[gnu::format(printf, 1, 2)]] std::string printed(const char* format, ...);
 
-// Below which that share of the values lies; at least one value.
-double quantile(std::vector<double>& values, double share);
+// At least one value.
 double median(std::vector<double> values);
 
 }  // namespace ifog

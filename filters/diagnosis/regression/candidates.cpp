@@ -234,6 +234,10 @@ bool Candidate::same_shape(const Candidate& other) const {
          period == other.period;
 }
 
+bool has_shape(std::span<const Candidate> effects, const Candidate& wanted) {
+  return std::ranges::any_of(effects, [&](const Candidate& each) { return each.same_shape(wanted); });
+}
+
 bool is_fringe(const BlockData& data, const Candidate& candidate) {
   return candidate.is_periodic() && !(data.channels[candidate.channel].period > 0.0);
 }

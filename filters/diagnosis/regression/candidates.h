@@ -5,6 +5,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 
 #include "filters/diagnosis/regression/whitening.h"
 
@@ -54,6 +55,9 @@ struct Candidate {
   [[nodiscard]] bool same_shape(
       const Candidate& other) const;  // but for time constants and where a transition is
 };
+
+// Whether one of the effects has the shape of this one.
+bool has_shape(std::span<const Candidate> effects, const Candidate& wanted);
 
 // Time constants a form is tried with: from a few samples to an hour, and never longer than the record can
 // show.

@@ -52,11 +52,8 @@ std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t ca
 namespace {
 
 bool has_a_value(const std::vector<Record>& records, const std::string& name) {
-  return std::any_of(records.begin(), records.end(), [&](const Record& record) {
-    return std::any_of(record.channels.begin(), record.channels.end(), [&](const RecordChannel& channel) {
-      return channel.name == name && std::any_of(channel.values.begin(), channel.values.end(),
-                                                 [](double value) { return std::isfinite(value); });
-    });
+  return std::ranges::any_of(records, [&](const Record& record) {
+    return std::ranges::any_of(values_of(record, name), [](double value) { return std::isfinite(value); });
   });
 }
 

@@ -64,10 +64,8 @@ Scan::Scan(const BlockData& data, std::vector<Candidate> candidates)
 
 void Scan::add(const std::vector<Candidate>& more) {
   const std::size_t before = candidates_.size();
-  for (const Candidate& candidate : more) {
-    const auto alike = [&](const Candidate& other) { return other.same_shape(candidate); };
-    if (std::none_of(candidates_.begin(), candidates_.end(), alike)) candidates_.push_back(candidate);
-  }
+  for (const Candidate& candidate : more)
+    if (!has_shape(candidates_, candidate)) candidates_.push_back(candidate);
   columns_.conservativeResize(Eigen::NoChange, static_cast<Eigen::Index>(candidates_.size()));
   for (std::size_t i = before; i < candidates_.size(); ++i) fill(i);
 }

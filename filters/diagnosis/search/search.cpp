@@ -22,11 +22,6 @@ constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision
 constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
 constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
 
-bool has(const std::vector<Candidate>& model, const Candidate& wanted) {
-  return std::any_of(model.begin(), model.end(),
-                     [&](const Candidate& each) { return each.same_shape(wanted); });
-}
-
 // Half a fringe alone is no law: with a free period it stands in for the other half.
 bool swings(const std::vector<Candidate>& model, const Candidate& half) {
   return std::any_of(model.begin(), model.end(),
@@ -98,8 +93,7 @@ class EffectSearch {
       const auto other = candidate.same_shape(law.second)  ? &law.first
                          : candidate.same_shape(law.first) ? &law.second
                                                            : nullptr;
-      return other && std::any_of(beside.begin(), beside.end(),
-                                  [&](const Candidate& each) { return each.same_shape(*other); });
+      return other && has_shape(beside, *other);
     });
   }
 
@@ -214,7 +208,8 @@ class EffectSearch {
     for (const Scored& each : scored) {
       const Candidate& last = each.with ? *each.with : each.candidate;
       if (tried.size() >= kShortlist || each.ratio < kLikeness) break;
-      if (has(base, each.candidate) || has(base, last) || (!each.with && has(tried, last))) continue;
+      if (has_shape(base, each.candidate) || has_shape(base, last) || (!each.with && has_shape(tried, last)))
+        continue;
       if (each.with && pairs++ >= kPairsTried) continue;
       if (!each.with) tried.push_back(last);
       std::vector<Candidate> model = base;
@@ -290,7 +285,7 @@ class EffectSearch {
       const double loss = mine - each.ratio;
       if (loss > kLikeness && std::abs(each.correlation) < kAlike) continue;
       if (loss > 3.0 * kLikeness) break;
-      if (has(seen, each.candidate)) continue;
+      if (has_shape(seen, each.candidate)) continue;
       seen.push_back(each.candidate);
       if (seen.size() > 5) break;
       result.alternatives.push_back({i, each.candidate, each.correlation, loss});
