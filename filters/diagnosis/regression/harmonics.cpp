@@ -99,7 +99,8 @@ std::optional<Hump> highest_hump(const Periodogram& spectrum, const HarmonicLimi
 }
 
 // White noise of the old shape was the mean over all, humps included: the rest is relative to the floor now.
-NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump& hump, double white) {
+NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump& hump, double white,
+                     DampedHarmonic::Of of) {
   const HarmonicLimits limits = harmonic_limits(grid);
   const double density = relative_density(grid, shape, hump.cycles);
   NoiseShape with = shape;
@@ -110,7 +111,7 @@ NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump&
   const double decay =
       std::clamp(1.0 / (std::numbers::pi * hump.width), limits.least_decay, limits.most_decay);
   // The area on both sides of zero: height times half pi times the width.
-  DampedHarmonic mine{0.0, hump.cycles, decay};
+  DampedHarmonic mine{0.0, hump.cycles, decay, of};
   mine.variance = std::numbers::pi * hump.width * (hump.ratio - 1.0) * hump.floor * density / white /
                   mine.seen_at(hump.cycles);
   with.harmonics.push_back(mine);
@@ -118,18 +119,24 @@ NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump&
 }
 
 NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, const Hump& hump) {
-  NoiseFit best;
-  best.log_likelihood = -1e300;
-  for (const double white : {1.0, std::sqrt(hump.floor), hump.floor}) {
-    for (const double wider : {1.0, 4.0}) {
-      NoiseShape start = with_hump(grid, fit.shape, hump, white);
-      DampedHarmonic& mine = start.harmonics.back();
-      mine.decay = std::max(mine.decay / wider, kLeastDecay);
-      const double value = fit_whitened(grid, start, columns).log_likelihood;
-      if (value > best.log_likelihood) best = {start, value, 0.0};
+  NoiseFit likelier;
+  likelier.log_likelihood = -1e300;
+  for (const auto of : {DampedHarmonic::Of::kAngle, DampedHarmonic::Of::kRate}) {
+    NoiseFit best;
+    best.log_likelihood = -1e300;
+    for (const double white : {1.0, std::sqrt(hump.floor), hump.floor}) {
+      for (const double wider : {1.0, 4.0}) {
+        NoiseShape start = with_hump(grid, fit.shape, hump, white, of);
+        DampedHarmonic& mine = start.harmonics.back();
+        mine.decay = std::max(mine.decay / wider, kLeastDecay);
+        const double value = fit_whitened(grid, start, columns).log_likelihood;
+        if (value > best.log_likelihood) best = {start, value, 0.0};
+      }
     }
+    best = climb(grid, columns, best.shape, kRough, true);
+    if (best.log_likelihood > likelier.log_likelihood) likelier = best;
   }
-  return climb(grid, columns, best.shape, kRough, true);
+  return likelier;
 }
 
 bool is_better(const BlockGrid& grid, const NoiseFit& one, const NoiseFit& than) {

@@ -12,13 +12,6 @@
 #include "filters/linear/normal_equations.h"
 
 namespace ifog {
-namespace {
-
-double evaluate(const BlockGrid& grid, const Columns& columns, const NoiseShape& shape) {
-  return fit_whitened(grid, shape, columns).log_likelihood;
-}
-
-}  // namespace
 
 WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const Columns& columns) {
   Columns white = columns;
@@ -32,8 +25,7 @@ WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const C
   square = std::max(square, 1e-12 * gram(0, 0) + 1e-300);
   WhitenedFit fit;
   fit.white_variance = square / std::max(1.0, n - static_cast<double>(p)) / filter.innovation_variance();
-  // With the white variance concentrated out, the determinant of a steady filter cancels its innovations'
-  // scale.
+  // With the white variance concentrated out, a steady filter's determinant cancels its innovations' scale.
   fit.log_likelihood = -0.5 * n * std::log(square / n);
   return fit;
 }
@@ -62,7 +54,7 @@ NoiseFit fit_walk_and_flicker(const BlockGrid& grid, const Columns& columns) {
   for (const double walk : {0.0, 1e-6, 1e-4, 1e-2, 1.0}) {
     for (const double flicker : {0.0, 1e-3, 1e-1, 1e1}) {
       const NoiseShape shape{walk, flicker};
-      const double value = evaluate(grid, columns, shape);
+      const double value = fit_whitened(grid, shape, columns).log_likelihood;
       Start& start = starts[flicker == 0.0 ? 0 : walk == 0.0 ? 1 : 2];
       if (value > start.value) start = {shape, value};
     }

@@ -67,7 +67,8 @@ Whitening::Whitening(const BlockGrid& grid, const NoiseShape& shape) : grid_(gri
   for (const DampedHarmonic& each : shape.harmonics) {
     const double left = std::exp(-1.0 / each.decay);
     const double turn = 2.0 * std::numbers::pi * each.cycles;
-    turns_.push_back({left * std::cos(turn), left * std::sin(turn)});
+    const double before = each.of == DampedHarmonic::Of::kAngle ? -1.0 : 0.0;
+    turns_.push_back({left * std::cos(turn), left * std::sin(turn), before});
     const double driven = each.variance * (1.0 - left * left);
     drive_.insert(drive_.end(), {driven, driven, 0.0});
   }
@@ -84,7 +85,7 @@ Whitening::StateSpace Whitening::state_space() const {
   for (const Turn& turn : turns_) {
     states.step.block<2, 2>(i, i) << turn.cosine, -turn.sine, turn.sine, turn.cosine;
     states.step(i + 2, i) = 1.0;
-    states.seen.segment<2>(i + 1) << 0.0, -1.0;
+    states.seen.segment<2>(i + 1) << 0.0, turn.before;
     i += 3;
   }
   return states;
@@ -126,7 +127,8 @@ void Whitening::apply_some(Columns& columns, Eigen::Index first) const {
       }
       Lane e = row;
       for (std::size_t i = 0; i < m; ++i) e -= state[i];
-      for (std::size_t h = 0, i = m; h < turns_.size(); ++h, i += 3) e -= state[i] - state[i + 2];
+      for (std::size_t h = 0, i = m; h < turns_.size(); ++h, i += 3)
+        e -= state[i] + turns_[h].before * state[i + 2];
       go_on(e);
       row = e;
     }

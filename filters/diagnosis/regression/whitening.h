@@ -21,22 +21,26 @@
 
 namespace ifog {
 
-// An angle whose covariance at a distance of k blocks is variance exp(-k / decay) cos(2 pi cycles k), as that
-// of a resonance driven by white noise, of which a block sees the change from a block ago: its mean is the
-// angle turned in it over its length. What sways does not turn away, and at slow frequencies there is nothing
-// of it, however fast it is against the blocks.
+// What has the covariance variance exp(-k / decay) cos(2 pi cycles k) at a distance of k blocks, as a resonance
+// driven by white noise does.
 struct DampedHarmonic {
-  double variance = 0.0;  // of the angle, over the square of a block's length
-  double cycles = 0.0;    // a block, at most one half: what is faster is seen at its alias
-  double decay = 0.0;     // blocks
+  // Of a structure that is the angle, over a block's length, of which a block sees the change: what sways does
+  // not turn away, and has nothing at slow frequencies. Of a line inside the sensor it is the rate.
+  enum class Of { kAngle, kRate };
 
-  // Of the density of the angle at so many cycles a block, what a block sees.
-  [[nodiscard]] static double seen_at(double at_cycles) {
+  double variance = 0.0;
+  double cycles = 0.0;  // a block, at most one half: what is faster is seen at its alias
+  double decay = 0.0;   // blocks
+  Of of = Of::kAngle;
+
+  // Of its density at so many cycles a block, what a block sees.
+  [[nodiscard]] double seen_at(double at_cycles) const {
     const double half_step = std::sin(std::numbers::pi * at_cycles);
-    return 4.0 * half_step * half_step;
+    return of == Of::kAngle ? 4.0 * half_step * half_step : 1.0;
   }
   // Of what a block sees.
   [[nodiscard]] double seen_variance() const {
+    if (of == Of::kRate) return variance;
     return 2.0 * variance * (1.0 - std::exp(-1.0 / decay) * std::cos(2.0 * std::numbers::pi * cycles));
   }
 };
@@ -78,6 +82,7 @@ class Whitening {
   std::vector<double> factor_;  // of the states that only decay: x+ = factor x + gain e
   struct Turn {
     double cosine, sine;  // times what a block leaves of the amplitude
+    double before;        // share of x a block ago that a block sees: -1 of an angle, 0 of a rate
   };
   std::vector<Turn> turns_;           // of the harmonics: x, its quadrature, and x a block ago
   std::vector<double> drive_, gain_;  // of all states, in that order

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <set>
 
 #include "filters/diagnosis/record/words.h"
 
@@ -57,36 +59,26 @@ bool has_a_value(const std::vector<Record>& records, const std::string& name) {
   });
 }
 
-void append(std::string& list, const std::string& name) { list += (list.empty() ? "" : ", ") + name; }
-
 }  // namespace
 
 std::string unused_channels(const std::vector<Record>& records, const BlockData& data,
                             const std::vector<std::string>& ramps) {
-  std::string missing;
-  std::string empty;
-  std::string constant;
-  std::vector<std::string> seen = ramps;
+  std::map<std::string, std::string> names;  // by the reason
+  std::set<std::string> seen(ramps.begin(), ramps.end());
   for (const Record& record : records) {
     for (const RecordChannel& channel : record.channels) {
-      if (std::find(seen.begin(), seen.end(), channel.name) != seen.end()) continue;
-      seen.push_back(channel.name);
-      const auto used = std::find_if(data.channels.begin(), data.channels.end(),
-                                     [&](const FineChannel& each) { return each.name == channel.name; });
-      if (used == data.channels.end())
-        append(missing, channel.name);
-      else if (!has_a_value(records, channel.name))
-        append(empty, channel.name);
-      else if (!used->varies)
-        append(constant, channel.name);
+      if (!seen.insert(channel.name).second) continue;
+      const auto used = std::ranges::find(data.channels, channel.name, &FineChannel::name);
+      const char* why = used == data.channels.end()           ? "not in every capture"
+                        : !has_a_value(records, channel.name) ? "without a value"
+                                                              : "never changing";
+      if (used != data.channels.end() && used->varies) continue;
+      std::string& list = names[why];
+      list += (list.empty() ? "" : ", ") + channel.name;
     }
   }
   std::string sentence;
-  for (const auto& [names, why] :
-       {std::pair{&missing, "not in every capture"}, std::pair{&empty, "without a value"},
-        std::pair{&constant, "never changing"}}) {
-    if (!names->empty()) sentence += (sentence.empty() ? "" : "; ") + *names + " (" + why + ")";
-  }
+  for (const auto& [why, list] : names) sentence += (sentence.empty() ? "" : "; ") + list + " (" + why + ")";
   return sentence.empty() ? sentence : "channels that say nothing here and were dropped: " + sentence;
 }
 

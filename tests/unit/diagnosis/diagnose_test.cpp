@@ -203,8 +203,8 @@ TEST(Diagnose, NamesTheChannelsItCannotUse) {
   const Diagnosis d = diagnose({first, second}, {});
   ASSERT_FALSE(d.remarks.empty());
   EXPECT_EQ(d.remarks[0],
-            "channels that say nothing here and were dropped: supply_V (not in every capture); "
-            "light_W (without a value); pressure_hPa (never changing)");
+            "channels that say nothing here and were dropped: pressure_hPa (never changing); "
+            "supply_V (not in every capture); light_W (without a value)");
 }
 
 TEST(Diagnose, RefusesWhatItCannotUse) {
