@@ -13,20 +13,22 @@
 namespace ifog {
 namespace {
 
-// By angle random walk, since a capture does not say what made it. Bounds are four times the largest typical
-// figure of the makers' data sheets, as single sensors are worse than typical ones:
-// - ring lasers and fibre-optic gyros (Northrop LN-200, KVH DSP-3000 and 1775, Fizoptika VG910, Optolink
-// SRS):
+// By angle random walk, since a capture does not say what made it. The largest figures of makers' data sheets:
+// - ring lasers and fibre-optic gyros (KVH DSP-3000 and 1775, Fizoptika VG910, Optolink SRS):
 //   1 °/h/g, 10 °/h/K, 60 °/h/V, 100 °/h/mT;
+// - from 0.02 °/√h on MEMS that are as quiet as a fibre-optic gyro (STIM300: 15 °/h/g; ADIS16488A:
+//   0.009 °/s/g, 0.0025 °/s/K) or the Northrop LN-200;
 // - MEMS (ADIS16405: 0.05 °/s/g, 0.01 °/s/K, 0.32 °/s/V; ADXRS, L3GD20, MPU-6050: 0.1 °/s/g, 0.3 °/s/K).
 struct Grade {
   double noise;  // °/√h, up to which
   const char* name;
   double per_g, per_kelvin, per_volt, per_millitesla;  // °/h
 };
-constexpr double kMargin = 4.0;
-constexpr std::array<Grade, 2> kGrades = {
-    {{0.3, "an optical gyro", 1.0, 10.0, 60.0, 100.0}, {1e300, "a MEMS gyro", 360.0, 1080.0, 1152.0, 360.0}}};
+constexpr std::array<Grade, 3> kGrades = {{{0.02, "an optical gyro", 1.0, 10.0, 60.0, 100.0},
+                                           {0.3, "a tactical gyro", 32.4, 10.0, 60.0, 100.0},
+                                           {1e300, "a MEMS gyro", 360.0, 1080.0, 1152.0, 360.0}}};
+// Data sheets are of products that are shielded and compensated; a gyro under development may lack a decade of that.
+constexpr double kMargin = 10.0;
 // m/s: no surface wave and no vehicle is quicker. So what turns with an acceleration does so by 1/2c or more.
 constexpr double kQuickest = 8000.0;
 
