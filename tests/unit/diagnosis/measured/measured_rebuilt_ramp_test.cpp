@@ -5,46 +5,20 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
-#include <filesystem>
 #include <memory>
 
-#include "drivers/capture/capture.h"
-#include "filters/diagnosis/diagnose.h"
 #include "filters/effects/compensator.h"
 #include "filters/effects/form.h"
 #include "filters/units/field_units.h"
+#include "tests/unit/diagnosis/measured/blueseis.h"
 #include "tests/unit/diagnosis/measured/by_definition.h"
 
 namespace ifog {
 namespace {
 
-constexpr const char* kPath = IFOG_SHARED_DATA "/blueseis_bs1_ramp.csv.gz";
-constexpr double kPeriod = 32768.0;  // counts
-constexpr double kStep_s = 0.005;
-
-struct Measured {
-  Capture capture;
-  Diagnosis diagnosis;
-  Model model;
-};
-
-// Read and diagnosed once for all tests; empty where there is no capture.
+// Read and diagnosed once for all tests.
 const Measured* measured() {
-  static const std::unique_ptr<Measured> once = [] {
-    if (!std::filesystem::exists(kPath)) return std::unique_ptr<Measured>();
-    auto made = std::make_unique<Measured>();
-    made->capture = read_capture(kPath);
-    Record record;
-    record.name = kPath;
-    record.time_s = made->capture.time_s;
-    record.rate_radps = made->capture.rate_radps[0];
-    DiagnoseOptions options;
-    options.fit_to = 0.5;
-    made->diagnosis = diagnose({record}, options);
-    add_to_model(made->diagnosis, "", made->model);
-    return made;
-  }();
+  static const std::unique_ptr<Measured> once = diagnosed_first_half(false);
   return once.get();
 }
 
@@ -52,7 +26,7 @@ class MeasuredRebuiltRamp : public testing::Test {
  protected:
   void SetUp() override {
     if (measured() == nullptr)
-      GTEST_SKIP() << "no " << kPath
+      GTEST_SKIP() << "no " << kBlueseis
                    << ": the measured captures belong beside the project, in ../shared/data";
   }
 };
@@ -101,7 +75,7 @@ TEST_F(MeasuredRebuiltRamp, KIsThatOfTheCounter) {
   double angle = 0.0;
   for (std::size_t i = 1; i < capture.size() / 2; ++i) {
     const double step = ramp.values[i] - ramp.values[i - 1];
-    cycles += (step - kPeriod * std::round(step / kPeriod)) / kPeriod;
+    cycles += (step - kRampPeriod * std::round(step / kRampPeriod)) / kRampPeriod;
     angle += capture.rate_radps[0][i] * (capture.time_s[i] - capture.time_s[i - 1]);
   }
   for (const FoundEffect& found : measured()->diagnosis.effects) {
@@ -123,32 +97,9 @@ TEST_F(MeasuredRebuiltRamp, LeavesWhatIsPromisedOnTheSecondHalf) {
 }
 
 TEST_F(MeasuredRebuiltRamp, IsTransparentToRotation) {
-  const std::vector<double> still = compensated(nullptr).left;
   const double earth = 5.4e-5;  // rad/s
-  double worst_gain = 0.0;
-  double worst_phase = 0.0;
-  for (const double bias : {0.0, -earth, -2.0 * earth, 20.0 * earth, 8.6e-3}) {
-    for (const double frequency : {0.1, 1.0, 5.0, 20.0, 50.0, 80.0}) {
-      const double amplitude = 2e-5;
-      std::vector<double> rotation(still.size());
-      for (std::size_t i = 0; i < rotation.size(); ++i)
-        rotation[i] = bias + amplitude * std::sin(2.0 * M_PI * frequency * kStep_s * static_cast<double>(i));
-      const std::vector<double> turning = compensated(&rotation).left;
-      std::complex<double> in = 0.0;
-      std::complex<double> out = 0.0;
-      for (std::size_t i = 0; i < rotation.size(); ++i) {
-        const std::complex<double> carrier =
-            std::polar(1.0, -2.0 * M_PI * frequency * kStep_s * static_cast<double>(i));
-        in += (rotation[i] - bias) * carrier;
-        out += (turning[i] - still[i] - bias) * carrier;
-      }
-      EXPECT_NEAR(std::abs(out / in), 1.0, 0.02) << bias << " rad/s, " << frequency << " Hz";
-      EXPECT_NEAR(std::arg(out / in), 0.0, 2.0 * kDegree) << bias << " rad/s, " << frequency << " Hz";
-      worst_gain = std::max(worst_gain, std::abs(std::abs(out / in) - 1.0));
-      worst_phase = std::max(worst_phase, std::abs(std::arg(out / in)));
-    }
-  }
-  std::printf("gain within %.3f %%, phase within %.3f degrees\n", 100.0 * worst_gain, worst_phase / kDegree);
+  expect_transparent([](const std::vector<double>* rotation) { return compensated(rotation).left; },
+                     {0.0, -earth, -2.0 * earth, 20.0 * earth, 8.6e-3});
 }
 
 }  // namespace
