@@ -103,6 +103,36 @@ TEST(Motion, ExplainsNothingWithoutAReference) {
   }
 }
 
+// Shaken by broad-band noise that comes and goes over minutes, and rectified by what answers to its quick part:
+// `size` of that part's mean square over half a second is in the rate.
+Rows shaken(std::uint64_t seed, double size) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  Rows rows;
+  rows.name = "accel_x_mps2";
+  double level = 0.0, shake = 0.0, slow = 0.0, power = 0.0;
+  for (int i = 0; i < 30000; ++i) {
+    level += -level / 3000.0 + std::sqrt(2.0 / 3000.0) * normal(random);
+    shake += 0.3 * (2.0 * std::exp(0.5 * level) * normal(random) - shake);
+    slow += 0.5 * (shake - slow);
+    power += ((shake - slow) * (shake - slow) - power) / 25.0;
+    rows.time.push_back(0.02 * i);
+    rows.channel.push_back(shake);
+    rows.rate.push_back(1e-6 * normal(random) + size * power);
+  }
+  return rows;
+}
+
+// How it depends on the frequency is hardly told by noise whose slow and quick parts come and go together.
+TEST(Rectification, IsFoundWhereItsBandIsHardlyKnown) {
+  for (const std::uint64_t seed : {1U, 2U, 3U}) {
+    const Diagnosis found = diagnose({shaken(seed, 6e-7).record()}, {});
+    ASSERT_EQ(found.effects.size(), 1U) << seed;
+    EXPECT_EQ(found.effects[0].effect.form, "band_power") << seed;
+    EXPECT_TRUE(diagnose({shaken(seed, 0.0).record()}, {}).effects.empty()) << seed;
+  }
+}
+
 TEST(Motion, IsToldByUnitAndName) {
   EXPECT_EQ(motion_of("accel_z_mps2"), Motion::kAcceleration);
   EXPECT_EQ(motion_of("seis_z_mps"), Motion::kVelocity);

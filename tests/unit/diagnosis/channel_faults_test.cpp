@@ -9,6 +9,7 @@
 
 #include "filters/diagnosis/record/blocks.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -26,12 +27,7 @@ struct Logged {
     for (std::size_t i = 0; i < kSamples; ++i) channel.push_back(value(static_cast<double>(i)));
   }
   [[nodiscard]] Record record(const char* name) const {
-    Record record;
-    record.name = "logged";
-    record.time_s = time;
-    record.rate_radps = rate;
-    record.channels = {{name, channel}};
-    return record;
+    return made_record("logged", time, rate, {{name, channel}});
   }
   [[nodiscard]] OwnedRecords repaired(const char* name) const {
     return repair_channels(std::vector{record(name)});
@@ -55,6 +51,16 @@ TEST(ChannelFaults, WhatAThermometerCannotHaveMeasuredIsInterpolated) {
   EXPECT_NE(repaired.remarks[0].find("temperature_degC leaps away and back 2 time(s), for 10 sample(s)"),
             std::string::npos)
       << repaired.remarks[0];
+}
+
+// In more than one reading of a hundred the placeholder is no outlier of the channel's range any more.
+TEST(ChannelFaults, APlaceholderIsOneHoweverOftenItStands) {
+  Logged logged(warming);
+  for (std::size_t start = 400; start < 3600; start += 800)
+    for (std::size_t i = start; i < start + 25; ++i) logged.channel[i] = 85.0;
+  const OwnedRecords repaired = logged.repaired("temperature_degC");
+  for (std::size_t i = 0; i < kSamples; ++i)
+    EXPECT_NEAR(repaired.records[0].channels[0].values[i], warming(static_cast<double>(i)), 0.02) << i;
 }
 
 // For a tenth of the record, which no excursion of a real vibration does: there is one number in it.

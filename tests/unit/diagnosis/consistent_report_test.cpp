@@ -10,7 +10,7 @@
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/figures.h"
 #include "filters/diagnosis/report/before_and_after.h"
-#include "tests/unit/diagnosis/gaussian_deviate.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -38,13 +38,7 @@ struct Shaken {
   void say(double number, std::size_t from, std::size_t to) {
     for (std::size_t i = from; i < to; ++i) accel[i] = number;
   }
-  [[nodiscard]] Record record() const {
-    Record r;
-    r.time_s = time;
-    r.rate_radps = rate;
-    r.channels = {{"accel_x_mps2", accel}};
-    return r;
-  }
+  [[nodiscard]] Record record() const { return made_record("", time, rate, {{"accel_x_mps2", accel}}); }
 };
 
 double of_10s_means(std::span<const double> error) { return std::sqrt(variance_of(means_over(error, 200))); }

@@ -11,7 +11,7 @@
 
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/effects/compensator.h"
-#include "tests/unit/diagnosis/gaussian_deviate.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -23,12 +23,7 @@ double gaussian(std::uint32_t counter, std::uint32_t stream, std::uint32_t seed)
 struct Sensor {
   std::vector<double> time, rate, temperature, supply;
   [[nodiscard]] Record record() const {
-    Record r;
-    r.name = "sensor";
-    r.time_s = time;
-    r.rate_radps = rate;
-    r.channels = {{"temperature_degC", temperature}, {"supply_V", supply}};
-    return r;
+    return made_record("sensor", time, rate, {{"temperature_degC", temperature}, {"supply_V", supply}});
   }
 };
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "filters/diagnosis/record/even_grid.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -16,11 +17,7 @@ namespace {
 constexpr std::size_t kSamples = 20000;
 
 Record stamped(const std::vector<double>& time_s, const std::vector<double>& rate) {
-  Record record;
-  record.name = "sensor";
-  record.time_s = time_s;
-  record.rate_radps = rate;
-  return record;
+  return made_record("sensor", time_s, rate);
 }
 
 // 100 Hz with an hour's hole, every stamp off by up to 4 ms either way.

@@ -7,6 +7,7 @@
 #include <random>
 
 #include "filters/diagnosis/diagnose.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -32,12 +33,8 @@ struct Chamber {
     }
   }
   [[nodiscard]] Diagnosis diagnosed() const {
-    Record record;
-    record.name = "chamber";
-    record.time_s = time;
-    record.rate_radps = rate;
-    record.channels = {{"temperature_degC", temperature}, {"supply_V", supply}};
-    return diagnose({record}, {});
+    return diagnose(
+        {made_record("chamber", time, rate, {{"temperature_degC", temperature}, {"supply_V", supply}})}, {});
   }
 };
 

@@ -12,7 +12,7 @@
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/effects/compensator.h"
 #include "filters/effects/form.h"
-#include "tests/unit/diagnosis/gaussian_deviate.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {

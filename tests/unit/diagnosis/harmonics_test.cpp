@@ -8,6 +8,7 @@
 #include <random>
 
 #include "filters/diagnosis/diagnose.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -46,12 +47,7 @@ struct Capture {
   std::vector<double> time_s, rate, temperature;
 
   [[nodiscard]] Record record() const {
-    Record record;
-    record.name = "capture";
-    record.time_s = time_s;
-    record.rate_radps = rate;
-    record.channels = {{"temperature_degC", temperature}};
-    return record;
+    return made_record("capture", time_s, rate, {{"temperature_degC", temperature}});
   }
   [[nodiscard]] Diagnosis diagnosed() const { return diagnose({record()}, {}); }
 };

@@ -8,6 +8,7 @@
 
 #include "filters/diagnosis/diagnose.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -83,12 +84,7 @@ Rows capture_of(double coefficient, double swing, std::uint64_t seed) {
 }
 
 Record record_of(const Rows& rows, const std::string& name) {
-  Record record;
-  record.name = name;
-  record.time_s = rows.time_s;
-  record.rate_radps = rows.rate;
-  record.channels = {{"temperature_degC", rows.temperature}};
-  return record;
+  return made_record(name, rows.time_s, rows.rate, {{"temperature_degC", rows.temperature}});
 }
 
 bool said(const Diagnosis& diagnosis, const std::string& part) {

@@ -13,7 +13,7 @@
 #include "filters/diagnosis/diagnose.h"
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/effects/form.h"
-#include "tests/unit/diagnosis/gaussian_deviate.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -29,13 +29,7 @@ double gaussian(std::uint32_t counter, std::uint32_t stream) {
 struct Capture {
   std::vector<double> time, rate, turn, temperature, supply;
   [[nodiscard]] Record record() const {
-    Record r;
-    r.name = "sensor";
-    r.time_s = time;
-    r.rate_radps = rate;
-    r.reference_radps = turn;
-    r.channels = {{"temperature_degC", temperature}, {"supply_V", supply}};
-    return r;
+    return made_record("sensor", time, rate, {{"temperature_degC", temperature}, {"supply_V", supply}}, turn);
   }
 };
 

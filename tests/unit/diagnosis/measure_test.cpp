@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "filters/effects/form.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -35,12 +36,8 @@ struct Sensor {
     }
   }
   [[nodiscard]] Record record() const {
-    Record made;
-    made.name = "sensor";
-    made.time_s = time_s;
-    made.rate_radps = rate;
-    made.channels = {{"temperature_degC", temperature}, {"supply_V", supply}, {"still_V", still}};
-    return made;
+    return made_record("sensor", time_s, rate,
+                       {{"temperature_degC", temperature}, {"supply_V", supply}, {"still_V", still}});
   }
 };
 

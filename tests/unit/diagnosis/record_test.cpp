@@ -11,6 +11,7 @@
 #include "filters/diagnosis/cleaning/prepared_records.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/figures.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -28,12 +29,7 @@ struct Arrays {
     }
   }
   [[nodiscard]] Record record() const {
-    Record r;
-    r.name = "by hand";
-    r.time_s = time;
-    r.rate_radps = rate;
-    r.channels = {{"temperature_degC", temperature}};
-    return r;
+    return made_record("by hand", time, rate, {{"temperature_degC", temperature}});
   }
 };
 

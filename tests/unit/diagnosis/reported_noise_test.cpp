@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "filters/diagnosis/diagnose.h"
-#include "tests/unit/diagnosis/gaussian_deviate.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -22,10 +22,7 @@ Diagnosis diagnosed(double sigma) {
     time.push_back(i);
     rate.push_back(1e-6 * (bias + gaussian_deviate(i, 2, 17, 8)));
   }
-  Record record;
-  record.time_s = time;
-  record.rate_radps = rate;
-  return diagnose({record}, {});
+  return diagnose({made_record("", time, rate)}, {});
 }
 
 TEST(ReportedNoise, ABiasThatComesBackIsThereWithItsTime) {
@@ -51,11 +48,7 @@ TEST(ReportedNoise, OfAChannelThatStepsIsTheSensorsOwn) {
     rate.push_back(1e-6 * gaussian_deviate(i, 4, 17, 8) + 1e-4 * (volts - 12.0));
     supply.push_back(volts + 1e-4 * gaussian_deviate(i, 5, 17, 8));
   }
-  Record record;
-  record.time_s = time;
-  record.rate_radps = rate;
-  record.channels = {{"supply_V", supply}};
-  const Diagnosis found = diagnose({record}, {});
+  const Diagnosis found = diagnose({made_record("", time, rate, {{"supply_V", supply}})}, {});
   ASSERT_EQ(found.effects.size(), 1U);
   EXPECT_EQ(found.effects[0].effect.channel, "supply_V");
   EXPECT_NEAR(found.after.at("residual_rms_radps"), 1e-6, 0.02e-6);

@@ -10,7 +10,7 @@
 #include "filters/diagnosis/report/findings.h"
 #include "filters/diagnosis/report/prediction.h"
 #include "filters/diagnosis/search/search.h"
-#include "tests/unit/diagnosis/gaussian_deviate.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -43,12 +43,7 @@ struct Trial {
   }
 
   [[nodiscard]] Record record() const {
-    Record r;
-    r.name = "trial";
-    r.time_s = time;
-    r.rate_radps = rate;
-    r.channels = {{"temperature_degC", temperature}};
-    return r;
+    return made_record("trial", time, rate, {{"temperature_degC", temperature}});
   }
 };
 

@@ -8,6 +8,7 @@
 
 #include "filters/diagnosis/diagnose.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -24,12 +25,7 @@ Diagnosis diagnosis_of(const std::function<double(double)>& temperature,
     celsius.push_back(temperature(t) + 0.004 * normal(random));
     rate.push_back(error(t, temperature(t)) + 1e-6 * normal(random));
   }
-  Record record;
-  record.name = "two hours";
-  record.time_s = time;
-  record.rate_radps = rate;
-  record.channels = {{"temperature_degC", celsius}};
-  return diagnose({record}, {});
+  return diagnose({made_record("two hours", time, rate, {{"temperature_degC", celsius}})}, {});
 }
 
 std::vector<std::string> named(const Diagnosis& diagnosis) {

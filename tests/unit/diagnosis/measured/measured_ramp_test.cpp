@@ -12,7 +12,6 @@
 #include "filters/effects/compensator.h"
 #include "filters/units/field_units.h"
 #include "tests/unit/diagnosis/measured/blueseis.h"
-#include "tests/unit/diagnosis/measured/by_definition.h"
 
 namespace ifog {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "filters/effects/compensator.h"
-#include "tests/unit/diagnosis/gaussian_deviate.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -46,12 +46,7 @@ Loop loop(std::uint32_t n, double rate, double noise) {
 }
 
 Record record_of(const Loop& made) {
-  Record record;
-  record.name = "loop";
-  record.time_s = made.time;
-  record.rate_radps = made.rate;
-  record.channels = {{"ramp_counts", made.ramp}};
-  return record;
+  return made_record("loop", made.time, made.rate, {{"ramp_counts", made.ramp}});
 }
 
 // Rotation put into the rate and, as the loop would, into the ramp's slope comes out with its gain and phase,

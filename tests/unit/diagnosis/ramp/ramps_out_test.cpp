@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/ramp/ramps_out.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 #include <gtest/gtest.h>
 
@@ -41,12 +42,8 @@ Capture capture(std::uint64_t seed, std::size_t n, double turning, double nonlin
 }
 
 Record record_of(const Capture& made, const char* name) {
-  Record record;
-  record.name = name;
-  record.time_s = made.time;
-  record.rate_radps = made.rate;
-  record.channels = {{"temperature_degC", made.temperature}, {"ramp_counts", made.ramp}};
-  return record;
+  return made_record(name, made.time, made.rate,
+                     {{"temperature_degC", made.temperature}, {"ramp_counts", made.ramp}});
 }
 
 TEST(RampsOut, TheRateIsLessWhatTheRampMadeOfIt) {

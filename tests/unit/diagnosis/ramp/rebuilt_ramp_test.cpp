@@ -9,6 +9,7 @@
 
 #include "filters/diagnosis/diagnose.h"
 #include "filters/effects/form.h"
+#include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
@@ -25,13 +26,7 @@ double nonlinearity(double cycles) {
 
 struct Made {
   std::vector<double> time, rate;
-  [[nodiscard]] Record record() const {
-    Record record;
-    record.name = "made";
-    record.time_s = time;
-    record.rate_radps = rate;
-    return record;
-  }
+  [[nodiscard]] Record record() const { return made_record("made", time, rate); }
 };
 
 enum class Comb { kNone, kOfTheAngle, kFixed };
