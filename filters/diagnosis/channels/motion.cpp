@@ -77,7 +77,7 @@ std::string reading_of(Motion motion, bool change, double slope) {
       return printed(", as gravity's share in a tilt does (%.2g of it)", of_tilt);
   }
   if ((motion == Motion::kAcceleration && !change) || (motion == Motion::kVelocity && change))
-    if (const std::string wave = as_wave(slope); !wave.empty()) return wave;
+    if (std::string wave = as_wave(slope); !wave.empty()) return wave;
   if (motion == Motion::kRate) return printed(", %.3g of it", std::abs(slope));
   if (motion == Motion::kAngle && change) return printed(", %.3g of its change", std::abs(slope));
   return ", as the sway or the ride of what the sensor stands on";
