@@ -92,10 +92,12 @@ void ChainParts::use_noise(const ChainSettings& settings) {
 // With R known.
 void ChainParts::begin(double ratio, double samples) {
   if (learns_process_noise_) filter_.process_noise = ratio * filter_.measurement_noise / period_s_;
-  estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_);
-  if (shares_.noise) estimator_->expect_noise(*shares_.noise);
-  estimator_->expect_walk(shares_.walk);
-  if (learns_process_noise_ && filter_.state == "random-walk") estimator_->learn_walk(ratio, samples);
+  KnownNoise known;
+  if (shares_.noise) known.share = *shares_.noise;
+  known.walk_share = shares_.walk;
+  known.learns_walk = learns_process_noise_ && filter_.state == "random-walk";
+  known.samples = samples;
+  estimator_ = std::make_unique<Estimator>(filter_, facts_.axes, period_s_, known);
   estimator_->owe(owed_);
 }
 

@@ -7,15 +7,28 @@
 #include "filters/random/log_exp.h"
 
 namespace ifog {
+namespace {
 
-Engine::Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, int axes, double period_s)
+// Samples between refreshes of the settled filter's lag, by the sequence so that a replay has them where the
+// run had.
+constexpr std::uint64_t kLagEvery = 256;
+// Largest rate of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 deg/s.
+constexpr double kMostRestRate = 0.02;
+// Lags of rest after which the end of a manoeuvre, and where it moved the filter to, have faded.
+constexpr double kYoungLags = 7.0;
+// Of the standard deviation of the filter at rest, that is paid: a quarter of its variance for as long as it takes.
+constexpr double kMostPaid = 0.5;
+
+}  // namespace
+
+Engine::Engine(const FilterSettings& settings, const KnownNoise& known, std::unique_ptr<RestFilter> rest,
+               int axes, double period_s)
     : settings_(settings),
       axes_(static_cast<std::size_t>(axes)),
       period_s_(period_s),
       rest_(std::move(rest)),
+      noise_(settings, known, axes_, period_s),
       follow_(axes_, period_s) {
-  noise_.fill(Noise(settings.measurement_noise));
-  refresh_shares();
   follow_.moving = settings.follow_manoeuvres && rest_->rate_alone();
 }
 
@@ -25,34 +38,9 @@ void Engine::restart() noexcept {
   follow_ = Follower(axes_, period_s_);
   follow_.moving = settings_.follow_manoeuvres && rest_->rate_alone();
   if (owed.abs().sum() > 0.0) follow_.ledger.owe(owed);
-  walk_.break_off();
+  noise_.break_off();
   started_ = 0;
-  settled_lag_ = 0.0;
   unmeasured_ = {};
-}
-
-void Engine::expect_noise(const Axes& share) noexcept {
-  for (std::size_t a = 0; a < axes_; ++a) noise_[a] = Noise(share[a] * settings_.measurement_noise);
-  refresh_shares();
-}
-
-void Engine::expect_walk(const std::optional<Axes>& share) noexcept {
-  shares_.expected_walk = share;
-  refresh_shares();
-}
-
-void Engine::learn_walk(double ratio, double samples) noexcept {
-  learns_walk_ = true;
-  if (samples > 0.0) walk_.recall(ratio, samples);
-}
-
-LearnedNoise Engine::learned() const noexcept {
-  LearnedNoise out;
-  out.process_noise = settings_.process_noise;
-  for (std::size_t a = 0; a < axes_; ++a) out.noise[a] = noise_[a].known();
-  out.measurement_noise = shares_.mean_noise;
-  out.samples = learns_walk_ ? walk_.samples() : 0.0;
-  return out;
 }
 
 Axes Engine::owed() const noexcept {
@@ -63,27 +51,6 @@ Axes Engine::owed() const noexcept {
 void Engine::owe(const Axes& angle_rad) noexcept {
   const Lanes angle = to_lanes(angle_rad);
   if (angle.allFinite() && (angle != 0.0).any()) follow_.ledger.owe(angle);
-}
-
-Lanes Engine::of_noise(double (Noise::*figure)() const noexcept) const noexcept {
-  Lanes all = Lanes::Ones();
-  for (std::size_t a = 0; a < axes_; ++a) all[static_cast<Eigen::Index>(a)] = (noise_[a].*figure)();
-  return all;
-}
-
-double Engine::mean(const Lanes& of) const noexcept {
-  return (of * mask_of(axes_of_sensor(axes_))).sum() / static_cast<double>(axes_);
-}
-
-void Engine::refresh_shares() noexcept {
-  shares_.mean_noise = mean(of_noise(&Noise::known));
-  shares_.noise = of_noise(&Noise::known) / shares_.mean_noise;
-  shares_.walk = shares_.expected_walk ? to_lanes(*shares_.expected_walk) : shares_.noise;
-}
-
-// Of the filter at rest, samples; after a move it is as slow as what it has received since is long.
-double Engine::lag() const noexcept {
-  return std::max(1.0, std::min(settled_lag_, follow_.since_moved + 1.0));
 }
 
 void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
@@ -100,9 +67,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   begin_axes(s);
   if (settings_.follow_manoeuvres) {
     follow_.trackers.predict(s.dt_s / period_s_);
-    for (std::size_t a = 0; a < axes_; ++a)
-      if ((s.sample.valid >> a & 1U) != 0)
-        noise_[a].take(in.rate_radps[a], follow_.trackers.since()[static_cast<Eigen::Index>(a)]);
+    noise_.take(s.sample, follow_.trackers.since());
     weigh(s);
     follow(s);
   } else {
@@ -116,7 +81,8 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
     out.flags |= kManoeuvre;
   if (rests(s)) out.flags |= kAtRest;
   learn(s);
-  know_unmeasured(s, grown);
+  unmeasured_.take(s.sample, s.rate, s.variance, s.gain, grown * noise_.walk_share(), started_,
+                   !follow_.moving);
   follow_.published = s.rate;
   if (settings_.conserve_angle) pay(s);
   publish(s);
@@ -153,7 +119,7 @@ void Engine::begin_axes(const Step& s) noexcept {
   f.trackers.seed(s.sample.rate, mask_of(first));
   // An axis that comes late is one that begins, and all share one gain.
   if (follows && started_ != 0) {
-    rest_->set_variance(shares_.mean_noise);
+    rest_->set_variance(noise_.mean_known());
     f.since_moved = 0.0;
     f.moving = true;
     f.trackers.begin();
@@ -167,12 +133,12 @@ void Engine::begin_axes(const Step& s) noexcept {
 void Engine::weigh(Step& s) noexcept {
   Sample& m = s.sample;
   const bool smooths = settings_.wideband == "noise";
-  const double projected = rest_->measurement_variance() / shares_.mean_noise;
+  const double projected = rest_->measurement_variance() / noise_.mean_known();
   m.rest_factor = 1.0 + projected / s.noise_scale;
   m.log_rest_factor = logarithm(m.rest_factor);
   m.rest_gain = std::min(1.0, projected / (projected + s.noise_scale));
-  m.scale = of_noise(&Noise::tested) * s.noise_scale;
-  if (smooths) m.scale *= of_noise(&Noise::heard);
+  m.scale = noise_.each(&Noise::tested) * s.noise_scale;
+  if (smooths) m.scale *= noise_.each(&Noise::heard);
   m.innovation = m.mask * (m.rate - rest_->measurement());
   m.inverse = m.mask / m.scale;
   const Lanes covered = to_lanes(s.in.covered_s);
@@ -187,7 +153,12 @@ void Engine::follow(Step& s) noexcept {
     follow_.moving ? publish_mix(s) : publish_rest(s);
     return;
   }
-  switch (judge_outlier(s)) {
+  Follower& f = follow_;
+  // What shaking makes is no outlier among the like. Where nothing follows the motion nothing tells an outlier
+  // from it.
+  const Lanes allowed = f.moving ? noise_.each(&Noise::shaken) : Lanes::Ones();
+  switch (f.moving && f.mix.raw() ? Outliers::Verdict::usual
+                                  : f.outliers.take(f.trackers, s.sample, allowed, f.moving, f.lag())) {
     case Outliers::Verdict::waits:
       s.out.flags |= kGated;
       ++health_.gated;
@@ -209,52 +180,24 @@ void Engine::follow(Step& s) noexcept {
   follow_.moving ? follow_manoeuvre(s) : follow_rest(s);
 }
 
-Outliers::Verdict Engine::judge_outlier(const Step& s) noexcept {
-  const Trackers& trackers = follow_.trackers;
-  // Where nothing follows the motion nothing tells an outlier from it.
-  if (follow_.moving && follow_.mix.raw()) return Outliers::Verdict::usual;
-  // Nor behind a gap.
-  if (greatest(s.sample.mask * trackers.since()) > kShortGap) {
-    follow_.outliers.end_run();
-    return Outliers::Verdict::usual;
-  }
-  Lanes least = s.sample.surprise;
-  // The raw one, a parabola through three measurements, predicts nothing better than others.
-  for (std::size_t j = 1; j < trackers.size(); ++j) {
-    if (!trackers.predicts(j)) {
-      least.setZero();
-      break;
-    }
-    const Lanes error = s.sample.rate - trackers.rate(j);
-    least = least.min(error * error * s.sample.inverse / trackers.factor(j));
-  }
-  // What shaking makes is no outlier among the like.
-  if (follow_.moving) least /= of_noise(&Noise::shaken);
-  Eigen::Index worst = 0;
-  const double most = least.maxCoeff(&worst);
-  return follow_.outliers.take(most, s.sample, worst, follow_.moving, lag());
-}
-
 // So many measurements that nothing predicts are a new rate: followers begin with this one.
 void Engine::jump(Step& s) noexcept {
   Follower& f = follow_;
   f.trackers.begin();
   f.trackers.seed(f.published, Lanes::Ones());
   f.trackers.predict(1.0);
-  f.ledger.admit();
+  f.change.forget_angle();
   f.outliers.end_run();
   move_rest((s.sample.mask > 0.0).select(s.sample.rate, f.published), s.sample.scale);
   weigh(s);
-  begin_to_move(s);
-  f.mix.begin(0);
-  f.change.begin();
+  begin_manoeuvre(s, ChangeTest::kShaking);
 }
 
 void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
   s.sample.short_rad = f.ledger.take_short_at_rest();
   std::optional<std::size_t> found =
-      f.change.take(f.trackers, s.sample, of_noise(&Noise::colour), f.outliers.rarity(), lag());
+      f.change.take(f.trackers, s.sample, noise_.each(&Noise::colour), f.outliers.rarity(), f.lag());
   if (found == ChangeTest::kShaking && settings_.wideband == "noise") found.reset();
   f.trackers.correct(s.sample.rate, s.sample.mask);
   if (found) {
@@ -267,13 +210,6 @@ void Engine::follow_rest(Step& s) noexcept {
   publish_rest(s);
 }
 
-void Engine::begin_to_move(Step& s) noexcept {
-  s.out.flags |= kManoeuvre;
-  if (!follow_.moving) ++health_.manoeuvres;
-  follow_.moving = true;
-  follow_.failed_nats = kEvidence;
-}
-
 void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   Follower& f = follow_;
   const bool shaking = tracker == ChangeTest::kShaking;
@@ -281,7 +217,10 @@ void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   const std::size_t foresees = std::min(tracker, f.trackers.size() - 1);
   f.ledger.admit();
   f.ledger.owe_late(f.change.angle(foresees), f.trackers.horizon(foresees), f.settled);
-  begin_to_move(s);
+  s.out.flags |= kManoeuvre;
+  if (!f.moving) ++health_.manoeuvres;
+  f.moving = true;
+  f.failed_nats = kEvidence;
   f.mix.begin(shaking ? 0 : tracker);
   f.change.begin();
   if (shaking) return;
@@ -291,7 +230,7 @@ void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
 
 void Engine::follow_manoeuvre(Step& s) noexcept {
   Follower& f = follow_;
-  f.mix.take(f.trackers, s.sample, of_noise(&Noise::colour));
+  f.mix.take(f.trackers, s.sample, noise_.each(&Noise::colour));
   take(s, false);
   publish_mix(s);
   if (f.mix.rest_failed()) {
@@ -317,9 +256,9 @@ void Engine::take(Step& s, bool learn) noexcept {
     const Lanes most = kMostDeviations * (m.scale * m.rest_factor).sqrt();
     measured.rate += m.innovation.max(-most).min(most) - m.innovation;
     // The mean of all axes, whichever are measured: one gain is for all.
-    measured.share = of_noise(&Noise::known);
-    if (settings_.wideband == "noise") measured.share *= of_noise(&Noise::heard);
-    const double of_all = mean(measured.share);
+    measured.share = noise_.each(&Noise::known);
+    if (settings_.wideband == "noise") measured.share *= noise_.each(&Noise::heard);
+    const double of_all = noise_.mean(measured.share);
     measured.share /= of_all;
     measured.noise_scale *= of_all / settings_.measurement_noise;
   }
@@ -334,17 +273,16 @@ void Engine::take(Step& s, bool learn) noexcept {
 
 void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
   rest_->shift_to(rate, started_);
-  const double of_all = mean(variance / shares_.noise);
+  const double of_all = noise_.mean(variance / noise_.share());
   // Colour and lines that a larger model has found stay known.
   if (rest_->rate_alone() || of_all > rest_->variance()) rest_->set_variance(of_all);
   follow_.since_moved = 0.0;
 }
 
-// Divergence: a covariance that is none any more, a state that is no number, or a filter that for long has
-// been further from the measurements than it believes possible. It starts again from this measurement.
+// Divergence: a covariance that is none any more, or a state that is no number. It starts again from this
+// measurement.
 void Engine::guard(Step& s) noexcept {
-  const bool lost = grades_.newly_lost() && !settings_.follow_manoeuvres;
-  if (rest_->sound() && s.rate.allFinite() && !lost) return;
+  if (rest_->sound() && s.rate.allFinite()) return;
   ++health_.divergences;
   ++health_.restarts;
   s.out.flags |= kRestarted;
@@ -352,6 +290,107 @@ void Engine::guard(Step& s) noexcept {
   begin_axes(s);
   take(s, false);
   publish_rest(s);
+}
+
+// Half of the variance is the measurements' noise, more where it is coloured, and half the walk's.
+void Engine::publish_rest(Step& s) noexcept {
+  s.rate = rest_->rate();
+  s.gain = rest_->gain();
+  s.variance.setConstant(rest_->variance());
+  if (!settings_.follow_manoeuvres) return;
+  Lanes wide = follow_.change.wide(follow_.trackers, follow_.lag());
+  // The width is that of the known noise, of which a filter that follows coloured noise leaves less to its
+  // rule.
+  if (greatest(wide) > 1.0)
+    wide = (wide > 1.0).select(wide * settings_.measurement_noise / rest_->rule().measurement_noise(), wide);
+  const Lanes walk = noise_.learns_walk() ? (noise_.walk_share() * wide).eval() : noise_.walk_share();
+  s.variance *= 0.5 * (walk + noise_.share() * wide);
+  s.variance += follow_.change.unseen() + noise_.each(&Noise::rounding);
+}
+
+void Engine::publish_mix(Step& s) noexcept {
+  // A measurement's variance as it is heard: what is louder may be noise.
+  const Lanes heard = noise_.each(&Noise::known) * noise_.each(&Noise::louder) * s.noise_scale;
+  const Mix::Published mix = follow_.mix.publish(
+      follow_.trackers, rest_->rate(), rest_->variance() * noise_.share(), s.sample.scale.max(heard));
+  s.rate = mix.rate;
+  s.variance = mix.variance;
+  s.gain = mix.gain + follow_.mix.rest_weight() * rest_->gain();
+}
+
+// Books what the rate falls short of, and adds the payment of this sample.
+void Engine::pay(Step& s) noexcept {
+  using enum Ledger::Account;
+  Follower& f = follow_;
+  Ledger& ledger = f.ledger;
+  const bool follows = settings_.follow_manoeuvres;
+  // Until it has settled nothing that the filter lags behind by returns by itself.
+  f.at_rest_for = f.moving ? 0.0 : f.at_rest_for + 1.0;
+  if (!s.outlier) {
+    const bool settled =
+        follows && f.at_rest_for >= kYoungLags * std::max(f.settled_lag, 1.0 / rest_->gain());
+    if (settled && !f.settled) f.change.forget_angle();
+    f.settled = settled;
+  }
+  ledger.book((s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s, s.outlier   ? kDoubt
+                                                                             : f.moving  ? kDebt
+                                                                             : f.settled ? kCarried
+                                                                                         : kTail);
+  if (f.moving) ledger.pace(f.mix.length(f.trackers, follow_.lag()));
+  ledger.pace_tail(follow_.lag());
+  // What a gap hides is no angle.
+  const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
+  Lanes most = Lanes::Constant(1e300);
+  if (follows) most = kMostPaid * (rest_->variance() * noise_.share()).sqrt();
+  const Lanes paid = ledger.pay(most, dt_s);
+  s.rate += paid;
+  if (follows) s.variance = s.variance.max(paid * paid);
+}
+
+bool Engine::rests(const Step& s) const noexcept {
+  if (!settings_.follow_manoeuvres || follow_.moving || s.outlier || s.sample.valid == 0 ||
+      follow_.since_moved < kRestMemory || follow_.change.suspected())
+    return false;
+  return (rest_->rate().abs() * mask_of(started_) <= kMostRestRate).all();
+}
+
+void Engine::learn(const Step& s) noexcept {
+  if (!settings_.follow_manoeuvres) return;
+  const bool at_rest = (s.out.flags & kAtRest) != 0;
+  if (s.dt_s > kShortGap * period_s_ || s.noise_scale != 1.0) noise_.break_off();
+  if (!s.outlier && (at_rest || follow_.moving))
+    noise_.learn(s.in.rate_radps, s.sample.valid, at_rest, *rest_);
+}
+
+void Engine::publish(const Step& s) noexcept {
+  const Lanes known = noise_.each(&Noise::known), colour = noise_.each(&Noise::colour);
+  for (std::size_t a = 0; a < axes_; ++a) {
+    const auto i = static_cast<Eigen::Index>(a);
+    const double variance = unmeasured_.variance(a, s.variance[i]);
+    s.out.denoised_radps[a] = s.rate[i];
+    // A rule without a floor may take the covariance below zero: it then says no more than one measurement
+    // does.
+    s.out.variance_rad2ps2[a] = variance >= 0.0 ? variance : settings_.measurement_noise;
+    s.out.gain[a] = s.gain;
+    s.out.innovation_variance[a] =
+        rest_->covariance() * (settings_.follow_manoeuvres ? noise_.share()[i] : 1.0);
+    health_.measurement_noise[a] = rest_->rule().measurement_noise();
+    if (settings_.follow_manoeuvres) health_.measurement_noise[a] *= known[i] / settings_.measurement_noise;
+    health_.colour[a] = colour[i];
+  }
+  health_.floor_hits = rest_->rule().floor_hits();
+  if (s.in.sequence % kLagEvery == 0 || follow_.settled_lag == 0.0) refresh_lag();
+  health_.group_delay_s = period_s_ * follow_.settled_lag *
+                          (follow_.moving && settings_.follow_manoeuvres ? follow_.mix.rest_weight() : 1.0);
+}
+
+// The lag of the filter at rest once it has settled.
+void Engine::refresh_lag() noexcept {
+  const Settled now = rest_->settled();
+  if (!std::isfinite(now.lag) || !std::isfinite(now.correlation)) return;
+  follow_.settled_lag = now.lag;
+  health_.correlation_time_s = now.correlation * period_s_;
+  follow_.trackers.reach(follow_.lag());
 }
 
 }  // namespace ifog

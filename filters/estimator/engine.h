@@ -3,12 +3,12 @@
 // manoeuvre, keep the angle, learn the noise, publish. README.md derives it.
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 
 #include "filters/estimator/change_test.h"
 #include "filters/estimator/estimator.h"
-#include "filters/estimator/health.h"
 #include "filters/estimator/ledger.h"
 #include "filters/estimator/mix.h"
 #include "filters/estimator/noise.h"
@@ -17,14 +17,40 @@
 #include "filters/estimator/sample.h"
 #include "filters/estimator/trackers.h"
 #include "filters/estimator/unmeasured.h"
-#include "filters/estimator/walk.h"
 
 namespace ifog {
+
+// How well the filter at rest does by its own innovations: their normalised square, and how alike neighbours are.
+class Grades {
+ public:
+  // normalised: innovation over the standard deviation that the filter gives it.
+  void take(std::size_t axis, double normalised, EstimatorHealth& health) noexcept {
+    constexpr double kMemory = 512.0;
+    Grade& grade = grades_[axis];
+    grade.count = std::min(grade.count + 1.0, kMemory);
+    grade.square += (normalised * normalised - grade.square) / grade.count;
+    grade.product += (normalised * grade.last - grade.product) / grade.count;
+    grade.last = normalised;
+    health.nis_mean[axis] = grade.square;
+    health.whiteness[axis] = grade.square > 0.0 ? grade.product / grade.square : 0.0;
+  }
+
+ private:
+  struct Grade {
+    double square = 1.0, product = 0.0, last = 0.0, count = 0.0;
+  };
+  std::array<Grade, kMaxAxes> grades_{};
+};
 
 // The two ways in which the rate is followed, and the state that belongs to them.
 class Follower {
  public:
   Follower(std::size_t axes, double period_s) noexcept : trackers(axes), ledger(period_s) { mix.begin(0); }
+
+  // Of the filter at rest, samples; after a move it is as slow as what it has received since is long.
+  [[nodiscard]] double lag() const noexcept {
+    return std::max(1.0, std::min(settled_lag, since_moved + 1.0));
+  }
 
   Trackers trackers;
   ChangeTest change;
@@ -35,6 +61,7 @@ class Follower {
   // Nats by which the filter at rest has failed since nothing was known. A start at rest looks like a motion, and is
   // called one only once chance does not explain them.
   double failed_nats = 0.0;
+  double settled_lag = 0.0;         // of the filter at rest, samples, once it has settled
   double since_moved = 0.0;         // samples that the filter at rest has had since it was moved
   double at_rest_for = 0.0;         // samples since rest was found
   bool settled = false;             // the filter at rest gets back by itself what it lags behind by
@@ -43,17 +70,14 @@ class Follower {
 
 class Engine {
  public:
-  Engine(const FilterSettings& settings, std::unique_ptr<RestFilter> rest, int axes, double period_s);
+  Engine(const FilterSettings& settings, const KnownNoise& known, std::unique_ptr<RestFilter> rest, int axes,
+         double period_s);
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
-  void restart() noexcept;
-  void expect_noise(const Axes& share) noexcept;
-  void expect_walk(const std::optional<Axes>& share) noexcept;
-  void learn_walk(double ratio, double samples) noexcept;
   void owe(const Axes& angle_rad) noexcept;
   [[nodiscard]] Axes owed() const noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept { return health_; }
-  [[nodiscard]] LearnedNoise learned() const noexcept;
+  [[nodiscard]] LearnedNoise learned() const noexcept { return noise_.learned(); }
 
  private:
   // What one step knows.
@@ -68,22 +92,14 @@ class Engine {
     bool outlier = false;
   };
 
-  // The noise of each axis and its walk, over the means of all axes.
-  struct Shares {
-    double mean_noise = 1.0;  // (rad/s)^2
-    Lanes noise = Lanes::Ones(), walk = Lanes::Ones();
-    std::optional<Axes> expected_walk;
-  };
-
+  void restart() noexcept;  // forgets the state, keeps the counters
   void screen(Step& s) noexcept;
   void weigh(Step& s) noexcept;
   void begin_axes(const Step& s) noexcept;
   void follow(Step& s) noexcept;
-  [[nodiscard]] Outliers::Verdict judge_outlier(const Step& s) noexcept;
   void jump(Step& s) noexcept;
   void follow_rest(Step& s) noexcept;
   void follow_manoeuvre(Step& s) noexcept;
-  void begin_to_move(Step& s) noexcept;
   void begin_manoeuvre(Step& s, std::size_t tracker) noexcept;
   void take(Step& s, bool learn) noexcept;
   void move_rest(const Lanes& rate, const Lanes& variance) noexcept;
@@ -92,31 +108,20 @@ class Engine {
   void pay(Step& s) noexcept;
   void guard(Step& s) noexcept;
   void learn(const Step& s) noexcept;
-  void know_unmeasured(const Step& s, double grown) noexcept;
   void publish(const Step& s) noexcept;
   void refresh_lag() noexcept;
   [[nodiscard]] bool rests(const Step& s) const noexcept;
-  [[nodiscard]] double lag() const noexcept;
-  // Over the axes of the sensor.
-  [[nodiscard]] double mean(const Lanes& of) const noexcept;
-  void refresh_shares() noexcept;
-  // One figure of each axis' noise; 1 where the sensor has no axis.
-  [[nodiscard]] Lanes of_noise(double (Noise::*figure)() const noexcept) const noexcept;
 
   FilterSettings settings_;
   std::size_t axes_;
   double period_s_;
   std::unique_ptr<RestFilter> rest_;
-  std::array<Noise, kMaxAxes> noise_;
-  Shares shares_;
-  Walk walk_;
+  SensorNoise noise_;
   Follower follow_;
   Unmeasured unmeasured_;
   Grades grades_;
   EstimatorHealth health_;
   std::uint32_t started_ = 0;  // axes that have had a measurement
-  bool learns_walk_ = false;
-  double settled_lag_ = 0.0;
 };
 
 }  // namespace ifog

@@ -48,12 +48,12 @@ FilterSettings in_force(FilterSettings settings) {
 
 }  // namespace
 
-Estimator::Estimator(const FilterSettings& told, int axes, double nominal_period_s) {
+Estimator::Estimator(const FilterSettings& told, int axes, double nominal_period_s, const KnownNoise& known) {
   check(told, axes, nominal_period_s);
   const FilterSettings settings = in_force(told);
   auto rest = make_rest_filter(make_state_model(settings.state, settings.state_parameters, nominal_period_s),
                                make_rule(settings), settings.process_noise, settings.measurement_noise);
-  engine_ = std::make_unique<Engine>(settings, std::move(rest), axes, nominal_period_s);
+  engine_ = std::make_unique<Engine>(settings, known, std::move(rest), axes, nominal_period_s);
 }
 
 Estimator::~Estimator() = default;
@@ -61,10 +61,6 @@ Estimator::Estimator(Estimator&&) noexcept = default;
 Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
 void Estimator::step(const EstimatorInput& in, EstimatorOutput& out) noexcept { engine_->step(in, out); }
-void Estimator::restart() noexcept { engine_->restart(); }
-void Estimator::learn_walk(double ratio, double samples) noexcept { engine_->learn_walk(ratio, samples); }
-void Estimator::expect_noise(const Axes& share) noexcept { engine_->expect_noise(share); }
-void Estimator::expect_walk(const std::optional<Axes>& share) noexcept { engine_->expect_walk(share); }
 Axes Estimator::owed() const noexcept { return engine_->owed(); }
 void Estimator::owe(const Axes& angle_rad) noexcept { engine_->owe(angle_rad); }
 LearnedNoise Estimator::learned() const noexcept { return engine_->learned(); }

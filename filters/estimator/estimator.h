@@ -62,28 +62,28 @@ struct EstimatorHealth {
   std::uint64_t gated = 0, manoeuvres = 0, floor_hits = 0, divergences = 0, restarts = 0;
 };
 
+// What is known of the noise besides FilterSettings.
+struct KnownNoise {
+  // Each axis' own noise over FilterSettings::measurement_noise, by which it is judged until it is heard.
+  Axes share{1.0, 1.0, 1.0};
+  // Each axis' own driving noise over FilterSettings::process_noise. Empty: it goes with the axis' noise.
+  std::optional<Axes> walk_share;
+  // FilterSettings::process_noise is a first guess that is improved at rest; an earlier run has found it in so
+  // many samples, 0: nobody has.
+  bool learns_walk = false;
+  double samples = 0.0;
+};
+
 class Estimator {
  public:
   // Throws std::invalid_argument naming the setting, its value and what was expected.
   // nominal_period_s > 0; axes 1 … kMaxAxes.
-  Estimator(const FilterSettings& settings, int axes, double nominal_period_s);
+  Estimator(const FilterSettings& settings, int axes, double nominal_period_s, const KnownNoise& known = {});
   ~Estimator();
   Estimator(Estimator&&) noexcept;
   Estimator& operator=(Estimator&&) noexcept;
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
-  void restart() noexcept;  // forget the state, keep the counters
-  // Before the first step: nobody knows the walk, and settings.process_noise is a first guess; it is learned
-  // at rest. ratio, samples: q dt / R as an earlier run has found it in so many samples; 0 samples: not
-  // known.
-  void learn_walk(double ratio = 0.0, double samples = 0.0) noexcept;
-  // Before the first step: each axis' own noise over FilterSettings::measurement_noise, by which it is judged
-  // until it is heard. Not told, it is the same for all axes.
-  void expect_noise(const Axes& share) noexcept;
-  // Before the first step: each axis' own driving noise over FilterSettings::process_noise, by which its
-  // variance is published until its innovations say more. Not told, it goes with the axis' noise: one gain is
-  // for all axes. Under way: nothing is told any more.
-  void expect_walk(const std::optional<Axes>& share) noexcept;
   // Angle by which the denoised rate has fallen short of the measured one and which is still to be paid back,
   // rad; 0 with conserve_angle off. A new estimator that takes the place of this one is told before its first
   // step, so that a reload in a turn loses none.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise of one axis: R as it is known, and what third differences say beside it.
+// The noise of one axis, R as it is known and what third differences say beside it, and of all axes of a sensor.
 //
 // R is what the filter was given or has learned at rest; only walk.h changes it, by stretches that are white
 // over every octave. Third differences do not see a parabola: for white noise they give R whatever moves
@@ -14,7 +14,10 @@
 #include <limits>
 #include <numbers>
 
+#include "filters/estimator/estimator.h"
+#include "filters/estimator/rest_filter.h"
 #include "filters/estimator/sample.h"
+#include "filters/estimator/walk.h"
 #include "filters/random/log_exp.h"
 
 namespace ifog {
@@ -99,6 +102,43 @@ class Noise {
   double known_, slow_, fast_, taken_ = 0.0, colour_ = 1.0, digit_ = std::numeric_limits<double>::infinity();
   std::array<double, 3> last_{};
   int in_row_ = 0;
+};
+
+// The noise of all axes of a sensor: R of each and how quickly the rates walk, as given and as learned since.
+class SensorNoise {
+ public:
+  SensorNoise(const FilterSettings& settings, const KnownNoise& known, std::size_t axes,
+              double period_s) noexcept;
+
+  // The next measurements, rad/s; since: nominal samples since each axis was measured.
+  void take(const Sample& now, const Lanes& since) noexcept;
+  // A measurement at rest, or in what is taken for a motion. The filter is told what that shows: at rest the walk,
+  // and R where it is less than is known; in a manoeuvre R, where what looks like one is white for a minute.
+  void learn(const Axes& rate, std::uint32_t valid, bool at_rest, RestFilter& filter) noexcept;
+  // Behind a gap, or where the sensor averages otherwise, a stretch begins anew.
+  void break_off() noexcept { walk_.break_off(); }
+
+  // One figure of each axis; 1 where the sensor has no axis.
+  [[nodiscard]] Lanes each(double (Noise::*figure)() const noexcept) const noexcept;
+  // Over the axes of the sensor.
+  [[nodiscard]] double mean(const Lanes& of) const noexcept;
+  [[nodiscard]] double mean_known() const noexcept { return mean_; }  // (rad/s)^2
+  // R of each axis over its mean, and the same of the walk.
+  [[nodiscard]] const Lanes& share() const noexcept { return share_; }
+  [[nodiscard]] Lanes walk_share() const noexcept { return walk_share_ ? to_lanes(*walk_share_) : share_; }
+  [[nodiscard]] bool learns_walk() const noexcept { return learns_walk_; }
+  [[nodiscard]] LearnedNoise learned() const noexcept;
+
+ private:
+  void refresh_share() noexcept;
+
+  std::size_t axes_;
+  double period_s_, process_noise_, mean_ = 1.0;
+  bool learns_walk_;
+  std::optional<Axes> walk_share_;
+  std::array<Noise, kMaxAxes> noise_;
+  Lanes share_ = Lanes::Ones();
+  Walk walk_;
 };
 
 }  // namespace ifog

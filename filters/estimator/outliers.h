@@ -10,6 +10,7 @@
 #include <cmath>
 
 #include "filters/estimator/sample.h"
+#include "filters/estimator/trackers.h"
 #include "filters/random/log_exp.h"
 
 namespace ifog {
@@ -18,10 +19,17 @@ class Outliers {
  public:
   enum class Verdict { usual, waits, jump };
 
-  // least: the smallest square of an innovation over its variance that any filter has, the worst axis';
-  // now: the measurement; lag: of the filter at rest, samples.
-  [[nodiscard]] Verdict take(double least, const Sample& now, Eigen::Index axis, bool moving,
+  // allowed: by which R may be exceeded, by axis; lag: of the filter at rest, samples. Before
+  // Trackers::correct().
+  [[nodiscard]] Verdict take(const Trackers& trackers, const Sample& now, const Lanes& allowed, bool moving,
                              double lag) noexcept {
+    // Behind a gap nothing predicts.
+    if (greatest(now.mask * trackers.since()) > kShortGap) {
+      run_ = 0;
+      return Verdict::usual;
+    }
+    Eigen::Index axis = 0;
+    const double least = (least_surprise(trackers, now) / allowed).maxCoeff(&axis);
     const Lanes& rate = now.rate;
     seen_ = std::min(seen_ + 1.0, kTailMemory);
     // Where they are frequent at rest they may be blows, whose angle counts.
@@ -59,6 +67,18 @@ class Outliers {
   void end_run() noexcept { run_ = 0; }
 
  private:
+  // The smallest square of an innovation over its variance that any filter has.
+  [[nodiscard]] static Lanes least_surprise(const Trackers& trackers, const Sample& now) noexcept {
+    Lanes least = now.surprise;
+    // The raw one, a parabola through three measurements, predicts nothing better than others.
+    for (std::size_t j = 1; j < trackers.size(); ++j) {
+      if (!trackers.predicts(j)) return Lanes::Zero();
+      const Lanes error = now.rate - trackers.rate(j);
+      least = least.min(error * error * now.inverse / trackers.factor(j));
+    }
+    return least;
+  }
+
   static constexpr double kRare = 1e-3;   // share of all measurements
   static constexpr double kYoung = 16.0;  // samples
 

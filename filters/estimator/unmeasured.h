@@ -13,8 +13,29 @@ namespace ifog {
 
 class Unmeasured {
  public:
-  // The axis has no measurement of this sample, another has. grown: by which the filter's variance has, of
-  // the axis' own walk; rates, variances: of all axes, as the filter has them.
+  // One sample. rate, variance, gain: as the filter has them after it; grown: by which its variance has before
+  // it, of each axis' own walk; started: axes that have ever been measured; predicted: with no axis measured the
+  // filter's own variance says enough.
+  void take(const Sample& now, const Lanes& rate, const Lanes& variance, double gain, const Lanes& grown,
+            std::uint32_t started, bool predicted) noexcept {
+    for (std::size_t a = 0; a < kMaxAxes; ++a) {
+      const auto i = static_cast<Eigen::Index>(a);
+      if ((now.valid >> a & 1U) != 0)
+        measure(a, gain, variance[i], now.rate[i] - rate[i], now.scale[i]);
+      else if (now.valid == 0 && predicted)
+        lost_[a].variance += lost_[a].now ? grown[i] : 0.0;
+      else if ((started >> a & 1U) != 0)
+        miss(a, grown[i], to_axes(rate), to_axes(variance));
+    }
+  }
+  // Variance of the axis, where the filter's is `filters`.
+  [[nodiscard]] double variance(std::size_t axis, double filters) const noexcept {
+    const Lost& lost = lost_[axis];
+    return lost.now ? std::max(filters, lost.variance + lost.moved) : filters + lost.variance;
+  }
+
+ private:
+  // The axis has no measurement of this sample, another has. rates, variances: of all axes.
   void miss(std::size_t axis, double grown, const Axes& rates, const Axes& variances) noexcept {
     Lost& lost = lost_[axis];
     if (!lost.now) lost = {true, std::max(lost.variance, variances[axis]), 0.0, rates, variances};
@@ -27,10 +48,6 @@ class Unmeasured {
         lost.moved = std::max(lost.moved, moved * moved);
     }
   }
-  // None has.
-  void miss_with_all(std::size_t axis, double grown) noexcept {
-    if (lost_[axis].now) lost_[axis].variance += grown;
-  }
   // It has one, and takes it in with this gain. variance: as the filter has it; beside, noise: what the rate
   // then is beside the measurement, and the variance of that one. Whatever was not known before, the rate is
   // off by no more than these two make.
@@ -41,13 +58,7 @@ class Unmeasured {
     lost.variance = std::min(lost.variance * (1.0 - gain) * (1.0 - gain), beside * beside + noise);
     if (lost.variance < 1e-3 * variance) lost.variance = 0.0;
   }
-  // Variance of the axis, where the filter's is `filters`.
-  [[nodiscard]] double variance(std::size_t axis, double filters) const noexcept {
-    const Lost& lost = lost_[axis];
-    return lost.now ? std::max(filters, lost.variance + lost.moved) : filters + lost.variance;
-  }
 
- private:
   struct Lost {
     bool now = false;
     double variance = 0.0, moved = 0.0;

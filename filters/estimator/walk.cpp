@@ -5,14 +5,14 @@
 #include <cmath>
 #include <utility>
 
+#include "filters/estimator/sample.h"
 #include "filters/random/log_exp.h"
 
 namespace ifog {
 namespace {
 
-constexpr int kBlock = 64;  // samples: longer than the colour of a sensor's output filter
-// Second differences that overlap by two thirds count for half of their number.
-constexpr double kIndependent = 0.5;
+// Differences of neighbouring blocks, of which each is in two, count for two thirds of their number.
+constexpr double kIndependent = 2.0 / 3.0;
 // An octave with fewer says nothing.
 constexpr double kFewest = 5.0;
 // Standard deviations: one octave in a thousand, of ten in a stretch, is further off by chance.
@@ -21,119 +21,111 @@ constexpr double kChance = 3.3;
 // samples: a correlation of one half, an output filter with its corner at a sixth of the sample rate. What is
 // slower is not told from the motion of a hand.
 constexpr std::size_t kMostColour = 3;
-constexpr double kMostExcess = 8.0;
-// Octaves from here on, 32 samples, are long: shaking has its angle's bound there.
-constexpr std::size_t kLong = 5;
-// -2 log-likelihood by which two stretches surely differ: e^6.
+constexpr double kMostExcess = 6.7;
+// Octaves from here on, 64 samples, are long: the angle of shaking is bounded there, and a sensor's output
+// filter is quicker.
+constexpr std::size_t kLong = 6;
+// -2 log-likelihood that surely contradicts: e^6.
 constexpr double kSurely = 12.0;
-// Difference of −2 log-likelihood that is one standard error wide.
+// Difference of -2 log-likelihood that is one standard error wide.
 constexpr double kNearly = 1.0;
-constexpr int kContradicted = 64;  // quicker stretches in a row: what was known is of another sensor
+// Stretches that are remembered: a million samples, which show a walk of 1e-9.
+constexpr double kMemory = 256.0;
+// Ratios that are tried: down from the greatest by halves, to 1e-12.
+constexpr std::size_t kTrials = 31;
+
+double ratio_of(std::size_t trial) noexcept {
+  return std::ldexp(kMostRatio, static_cast<int>(trial) - static_cast<int>(kTrials - 1));
+}
+
+// Allan variance of noise and walk by octave, R being 1, and its logarithm.
+struct Shape {
+  double variance = 0.0, log = 0.0;
+};
+using Shapes = std::array<Shape, Walk::kOctaves>;
+
+std::array<Shapes, kTrials> make_shapes() noexcept {
+  std::array<Shapes, kTrials> all;
+  for (std::size_t trial = 0; trial < kTrials; ++trial)
+    for (std::size_t k = 0; k < Walk::kOctaves; ++k) {
+      const double block = std::ldexp(1.0, static_cast<int>(k));
+      const double variance = 1.0 / block + ratio_of(trial) * block / 3.0;
+      all[trial][k] = {variance, std::log(variance)};
+    }
+  return all;
+}
+
+const Shapes& shapes_of(std::size_t trial) noexcept {
+  static const std::array<Shapes, kTrials> all = make_shapes();
+  return all[trial];
+}
 
 }  // namespace
 
-void Walk::Likelihood::add(const Likelihood& other) noexcept {
-  for (std::size_t k = 0; k < kTrials; ++k) {
-    squares[k] += other.squares[k];
-    logs[k] += other.logs[k];
-  }
-  count += other.count;
-}
-
-double Walk::Likelihood::misfit(std::size_t k) const noexcept {
-  return count > 0.0 ? count * logarithm(std::max(squares[k], 1e-300)) + logs[k] : 0.0;
-}
-
-Walk::Walk(double stretch) noexcept : stretch_(stretch) {
-  double ratio = 1e-12;
-  for (double& tried : ratios_) tried = std::exchange(ratio, 2.0 * ratio);
-}
+Walk::Walk(double stretch) noexcept : stretch_(stretch) {}
 
 void Walk::recall(double ratio, double samples) noexcept {
-  ratio_ = recalled_ = std::clamp(ratio, ratios_.front(), kMostRatio);
-  samples_ = recalled_samples_ = samples;
+  ratio_ = std::clamp(ratio, ratio_of(0), kMostRatio);
+  recalled_samples_ = std::min(samples, 0.5 * kMemory * kStretch);
 }
 
 void Walk::break_off() noexcept {
   if (in_stretch_ == 0.0) return;
-  for (Axis& axis : axes_) {
-    axis.octaves = {};
-    axis.levels = {};
-    axis.lately = {};
-    axis.sum = axis.samples = 0.0;
-    axis.in_block = 0;
-    axis.next = kTrials;
-  }
+  blocks_ = {};
+  lately_ = {};
   in_stretch_ = 0.0;
 }
 
 void Walk::take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept {
   if (valid_axes == 0) return;
   if (std::exchange(learn_, learn) != learn) break_off();
-  for (std::size_t a = 0; a < kMaxAxes; ++a) {
-    if ((valid_axes >> a & 1U) == 0) continue;
-    axes_[a].samples += 1.0;
-    add_octaves(axes_[a], rate[a]);
-    add_block(axes_[a], rate[a]);
-  }
+  for (std::size_t a = 0; a < kMaxAxes; ++a)
+    if ((valid_axes >> a & 1U) != 0) add(a, rate[a]);
   if (++in_stretch_ >= stretch_) judge();
 }
 
-void Walk::add_octaves(Axis& axis, double rate) noexcept {
+void Walk::add(std::size_t axis, double rate) noexcept {
   double mean = rate;
-  for (Octave& octave : axis.octaves) {
-    if (octave.blocks == 2) {
-      const double second = mean - 2.0 * octave.means[1] + octave.means[0];
-      octave.squares += kIndependent * second * second;
-      octave.count += kIndependent;
-    } else {
-      ++octave.blocks;
+  // A single one that is far off says nothing of the others' noise.
+  if (const Allan& now = lately_[axis]; now.counts[0] >= kFewest && now.sums[0] > 0.0) {
+    const double most = kMostDeviations * std::sqrt(2.0 * now.sums[0] / now.counts[0]);
+    const double last = blocks_[axis][0].mean;
+    mean = std::clamp(rate, last - most, last + most);
+  }
+  for (std::size_t k = 0; k < kOctaves; ++k) {
+    Block& block = blocks_[axis][k];
+    if (block.has_mean) {
+      const double difference = mean - block.mean;
+      lately_[axis].sums[k] += 0.5 * kIndependent * difference * difference;
+      lately_[axis].counts[k] += kIndependent;
     }
-    octave.means = {octave.means[1], mean};
-    octave.has_half = !octave.has_half;
-    if (octave.has_half) {
-      octave.half = mean;
+    block.has_mean = true;
+    block.mean = mean;
+    block.has_half = !block.has_half;
+    if (block.has_half) {
+      block.half = mean;
       return;
     }
-    mean = 0.5 * (octave.half + mean);
+    mean = 0.5 * (block.half + mean);
   }
 }
 
-// A block is worked in while the next one is read, one ratio a sample, so that no step takes longer than
-// another.
-void Walk::add_block(Axis& axis, double rate) noexcept {
-  if (axis.next < kTrials) work_in(axis);
-  axis.sum += rate;
-  if (++axis.in_block < kBlock) return;
-  axis.mean = axis.sum / kBlock;
-  axis.sum = 0.0;
-  axis.in_block = 0;
-  axis.next = 0;
-}
-
-void Walk::work_in(Axis& axis) noexcept {
-  const std::size_t k = axis.next++;
-  Level& level = axis.levels[k];
-  if (level.variance < 0.0) {
-    level = {axis.mean, 1.0};
-    return;
-  }
-  const double variance = level.variance + ratios_[k] * kBlock * kBlock, factor = 1.0 + variance;
-  const double innovation = axis.mean - level.value;
-  axis.lately.squares[k] += innovation * innovation / factor;
-  axis.lately.logs[k] += logarithm(factor);
-  if (k == 0) axis.lately.count += 1.0;
-  level.variance = variance / factor;
-  level.value += level.variance * innovation;
-}
-
-double Walk::misfit(Likelihood Axis::*of, std::size_t k) const noexcept {
+double Walk::misfit(const Octaves& of, std::size_t trial) noexcept {
+  const Shapes& shapes = shapes_of(trial);
   double sum = 0.0;
-  for (const Axis& axis : axes_) sum += (axis.*of).misfit(k);
+  for (const Allan& allan : of) {
+    double squares = 0.0, count = 0.0;
+    for (std::size_t k = kLong; k < kOctaves; ++k) {
+      squares += allan.sums[k] / shapes[k].variance;
+      sum += allan.counts[k] * shapes[k].log;
+      count += allan.counts[k];
+    }
+    if (count > 0.0) sum += count * logarithm(std::max(squares / count, 1e-300));
+  }
   return sum;
 }
 
-std::size_t Walk::likeliest(Likelihood Axis::*of, double nearly) const noexcept {
+std::size_t Walk::likeliest(const Octaves& of, double nearly) noexcept {
   std::array<double, kTrials> all{};
   for (std::size_t k = 0; k < kTrials; ++k) all[k] = misfit(of, k);
   std::size_t best = 0;
@@ -144,30 +136,24 @@ std::size_t Walk::likeliest(Likelihood Axis::*of, double nearly) const noexcept 
   return best;
 }
 
-// R of an axis if it is white noise and this walk from that octave on; 0 if it is not, NaN if nothing was
-// measured.
-double Walk::white_noise(const Axis& axis, double ratio, std::size_t first) const noexcept {
+double Walk::white_noise(const Allan& allan, std::size_t trial, std::size_t first) noexcept {
+  const Shapes& shapes = shapes_of(trial);
   double weighted = 0.0, total = 0.0;
-  const auto shape = [ratio](std::size_t k) {
-    const double block = std::ldexp(1.0, static_cast<int>(k));
-    return 6.0 / block + ratio * block;
-  };
   for (std::size_t k = first; k < kOctaves; ++k) {
-    weighted += axis.octaves[k].squares / shape(k);
-    total += axis.octaves[k].count;
+    weighted += allan.sums[k] / shapes[k].variance;
+    total += allan.counts[k];
   }
   if (!(weighted > 0.0)) return std::nan("");
   const double noise = weighted / total;
   double long_off = 0.0, long_count = 0.0;
-  for (std::size_t k = first; k < kOctaves; ++k) {
-    const Octave& octave = axis.octaves[k];
-    if (octave.count < kFewest) break;
+  for (std::size_t k = first; k < kOctaves && allan.counts[k] >= kFewest; ++k) {
+    const double count = allan.counts[k];
     // The logarithm of a mean of n squares is near normal: mean -1 / n, variance 2 / n.
-    const double off = logarithm(octave.squares / octave.count / (noise * shape(k))) + 1.0 / octave.count;
-    if (off * off * octave.count / 2.0 > kChance * kChance) return 0.0;
+    const double off = logarithm(allan.sums[k] / count / (noise * shapes[k].variance)) + 1.0 / count;
+    if (off * off * count / 2.0 > kChance * kChance) return 0.0;
     if (k < kLong) continue;
-    long_off += off * octave.count;
-    long_count += 2.0 * octave.count;
+    long_off += off * count;
+    long_count += 2.0 * count;
   }
   // What is bounded is below in all long octaves, what turns above in all: together that shows sooner than in
   // one.
@@ -176,59 +162,45 @@ double Walk::white_noise(const Axis& axis, double ratio, std::size_t first) cons
 }
 
 void Walk::judge() noexcept {
-  const double ratio = ratios_[likeliest(&Axis::lately, 0.0)];
+  const std::size_t trial = likeliest(lately_, 0.0);
   bool noise = true;
   Found found{{}, ratio_, true, in_stretch_};
   for (std::size_t a = 0; noise && a < kMaxAxes; ++a) {
-    if (axes_[a].samples < 0.25 * stretch_) continue;
+    const Allan& allan = lately_[a];
+    if (allan.counts[0] < 0.25 * kIndependent * stretch_) continue;
     double level = 0.0;
     for (std::size_t first = 0; first <= kMostColour && level == 0.0; ++first) {
-      level = white_noise(axes_[a], ratio, first);
+      level = white_noise(allan, trial, first);
       found.white = found.white && first == 0;
     }
     if (std::isnan(level)) continue;
-    const Octave& shortest = axes_[a].octaves.front();
-    if (!found.white && level > kMostExcess * shortest.squares / (6.0 * shortest.count)) level = 0.0;
+    if (!found.white && level > kMostExcess * allan.sums[0] / allan.counts[0]) level = 0.0;
     found.noise[a] = level;
     noise = level > 0.0;
   }
   if (noise && learn_) believe();
   found.ratio = ratio_;
   if (noise) news_ = found;
-  // Octaves of the next stretch are its own; the levels of the likelihood go on.
-  for (Axis& axis : axes_) {
-    axis.octaves = {};
-    axis.samples = 0.0;
-    axis.lately = {};
-    if (!noise) axis.levels = {};
-  }
+  // The long blocks go on where it was noise.
+  if (!noise) blocks_ = {};
+  lately_ = {};
   in_stretch_ = 0.0;
 }
 
 void Walk::believe() noexcept {
-  const std::size_t here = likeliest(&Axis::lately, 0.0);
-  double known = 0.0;
-  for (const Axis& axis : axes_) known += axis.all.count;
-  std::size_t before = here;
-  if (known > 0.0) {
-    before = likeliest(&Axis::all, here > likeliest(&Axis::all, 0.0) ? kNearly : 0.0);
-  } else if (recalled_ > 0.0) {
-    while (before > 0 && ratios_[before] > recalled_) --before;
-    while (before + 1 < kTrials && ratios_[before + 1] <= recalled_) ++before;
-  }
-  const bool differ = misfit(&Axis::lately, before) - misfit(&Axis::lately, here) > kSurely;
-  quicker_ = differ && here > before ? (quicker_ + 1) % kContradicted : 0;
-  if (quicker_ > 0) return;
-  if (differ) recalled_ = recalled_samples_ = samples_ = 0.0;
-  for (Axis& axis : axes_) {
-    if (differ) axis.all = {};
-    axis.all.add(axis.lately);
-  }
-  samples_ += in_stretch_;
-  // What was recalled stands until this run has had as much.
-  const bool more = samples_ >= 2.0 * recalled_samples_;
-  ratio_ =
-      recalled_ > 0.0 && !more ? recalled_ : std::min(ratios_[likeliest(&Axis::all, kNearly)], kMostRatio);
+  const double kept = 1.0 - 1.0 / kMemory;
+  for (std::size_t a = 0; a < kMaxAxes; ++a)
+    for (std::size_t k = 0; k < kOctaves; ++k) {
+      all_[a].sums[k] = kept * all_[a].sums[k] + lately_[a].sums[k];
+      all_[a].counts[k] = kept * all_[a].counts[k] + lately_[a].counts[k];
+    }
+  samples_ = kept * samples_ + in_stretch_;
+  // What was recalled stands until this run has had as much, or contradicts it.
+  std::size_t recalled = 0;
+  while (recalled + 1 < kTrials && ratio_of(recalled + 1) <= ratio_) ++recalled;
+  if (samples_ >= recalled_samples_ || misfit(all_, recalled) - misfit(all_, likeliest(all_, 0.0)) > kSurely)
+    recalled_samples_ = 0.0;
+  if (recalled_samples_ == 0.0) ratio_ = ratio_of(likeliest(all_, kNearly));
 }
 
 std::optional<Walk::Found> Walk::take_news() noexcept { return std::exchange(news_, std::nullopt); }

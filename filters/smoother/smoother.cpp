@@ -49,8 +49,7 @@ Found found(const EstimatorOutput& out) {
 
 Pass run(const FilterSettings& settings, const Axis& axis, bool learn_walk, bool backwards) {
   const std::size_t length = axis.rate.size();
-  Estimator estimator(settings, 1, axis.period_s);
-  if (learn_walk) estimator.learn_walk();
+  Estimator estimator(settings, 1, axis.period_s, {.walk_share = {}, .learns_walk = learn_walk});
   EstimatorInput in;
   EstimatorOutput out;
   Pass pass;

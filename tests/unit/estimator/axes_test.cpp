@@ -46,9 +46,7 @@ Said filter(std::uint64_t seed, const Axes& walk) {
   FilterSettings settings;
   settings.process_noise = mean_walk / kPeriod;
   settings.measurement_noise = mean_noise;
-  Estimator estimator(settings, kAxes, kPeriod);
-  estimator.expect_noise(share);
-  estimator.expect_walk(walk_share);
+  Estimator estimator(settings, kAxes, kPeriod, {.share = share, .walk_share = walk_share});
   EstimatorInput in;
   EstimatorOutput out;
   in.dt_s = kPeriod;
@@ -141,39 +139,6 @@ TEST(UnlikeAxes, OneThatIsNotMeasuredIsKnownEverLess) {
         EXPECT_NEAR(out.variance_rad2ps2[last] - early, 7999 * kWalk, 0.1) << axes << stuck;
       }
       EXPECT_LT(out.variance_rad2ps2[last], 0.02) << axes << stuck;
-    }
-  }
-}
-
-// Whether it is measured again at once or later: as of a filter that was made just then.
-TEST(UnlikeAxes, StartedAgainNothingIsLeftOfWhatWasNotMeasured) {
-  constexpr double kWalk = 1e-4;
-  constexpr std::size_t kAgain = 2000;
-  for (const std::size_t measured_from : {1900U, 2000U, 2500U}) {
-    FilterSettings settings = test::told(kWalk);
-    settings.rule = "ckf";
-    settings.follow_manoeuvres = settings.conserve_angle = false;
-    Estimator estimator(settings, kAxes, kPeriod), made_then(settings, kAxes, kPeriod);
-    const test::Record record = test::record(3, 3000, kWalk);
-    EstimatorInput in;
-    EstimatorOutput out, expected;
-    in.dt_s = kPeriod;
-    for (std::size_t i = 0; i < 3000; ++i) {
-      in.sequence = i;
-      in.valid_axes = i >= 1000 && i < measured_from ? 3U : 7U;
-      in.rate_radps.fill(record.measured[i]);
-      if (i == kAgain) {
-        if (measured_from >= kAgain) {
-          EXPECT_GT(out.variance_rad2ps2[2], 5.0 * out.variance_rad2ps2[0]);
-        }
-        estimator.restart();
-      }
-      estimator.step(in, out);
-      if (i < kAgain) continue;
-      made_then.step(in, expected);
-      for (std::size_t a = 0; a < kAxes; ++a)
-        EXPECT_EQ(out.variance_rad2ps2[a], expected.variance_rad2ps2[a])
-            << i << " axis " << a << " measured from " << measured_from;
     }
   }
 }

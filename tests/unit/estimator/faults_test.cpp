@@ -121,40 +121,6 @@ TEST(Faults, ABrokenCovarianceIsCountedAndTheFilterGoesOn) {
   EXPECT_GT(floored.health.floor_hits, 0U);
 }
 
-// Divergence in the field's sense: told a random walk far too slow, the filter has stopped listening when the
-// rate changes, and its innovations stay twenty times what it believes.
-TEST(Faults, AFilterThatNoLongerListensIsFoundAndStartsAgain) {
-  constexpr int kAt = 6000;
-  ifog::FilterSettings settings = told(1e-9);
-  settings.rule = "ckf";
-  settings.follow_manoeuvres = settings.conserve_angle = false;
-  const Record still = record(12, 2 * kAt, 1e-9);
-  EXPECT_EQ(run(settings, still.measured).health.divergences, 0U);
-
-  const Record moved = record(12, 2 * kAt, 1e-9, [](int i) { return i >= kAt ? 20.0 : 0.0; });
-  const Filtered got = run(settings, moved.measured);
-  EXPECT_EQ(got.health.divergences, 1U);
-  EXPECT_EQ(got.health.restarts, 1U);
-  // The Kalman filter alone still has more than a third of the step before it at the end.
-  EXPECT_GT(20.0 - told_the_truth(moved.measured, 1e-9).back(), 7.0);
-  EXPECT_LT(std::sqrt(mean_square_error(got.denoised, moved.truth, kAt + 1500)), 0.1);
-}
-
-// Told a noise forty times too small, a rule that does not adapt is never well again. That is said once.
-TEST(Faults, WhatStartingAgainDoesNotMendIsCountedOnce) {
-  ifog::FilterSettings settings = told(1e-3, 1.0 / 1600);
-  settings.rule = "ckf";
-  settings.follow_manoeuvres = settings.conserve_angle = false;
-  const Record r = record(13, 20'000, 1e-3);
-  EXPECT_EQ(run(settings, r.measured).health.divergences, 1U);
-  for (const char* adaptive : {"irwe-akfg", "iae", "rae", "sage-husa", "vb"}) {
-    settings.rule = adaptive;
-    const Filtered got = run(settings, r.measured);
-    EXPECT_EQ(got.health.divergences, 0U) << adaptive;
-    EXPECT_NEAR(got.health.nis_mean[0], 1.0, 0.3) << adaptive;
-  }
-}
-
 TEST(Faults, CovarianceStaysPositiveInALargeModelOverUnevenSteps) {
   ifog::FilterSettings settings;
   settings.state = "integrated-random-walk + ar(2) + harmonic + harmonic";

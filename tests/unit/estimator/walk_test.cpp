@@ -45,6 +45,15 @@ TEST(Walk, FindsNoiseAndWalkOfARecord) {
   }
 }
 
+// A single spike is a fault of the link and not what the sensor's noise is made of.
+TEST(Walk, IsNotMisledByASpike) {
+  for (const int at : {20, 1000, 4000}) {
+    const Heard heard = hear(4096, 9, [at](int i, double noise) { return i == at ? 400.0 : noise; });
+    ASSERT_TRUE(heard.last) << at;
+    EXPECT_NEAR(heard.last->noise[0], 1.0, 0.1) << at;
+  }
+}
+
 // A bound that shrinks: no walk at all looks the slower the longer it is watched.
 TEST(Walk, BoundsAWalkThatIsNotThere) {
   const auto white = [](int, double noise) { return noise; };

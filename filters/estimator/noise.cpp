@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/estimator/noise.h"
+
+#include <algorithm>
+
+namespace ifog {
+namespace {
+
+// Known noise is replaced where a stretch differs by this factor.
+constexpr double kOtherNoise = 2.0;
+// Louder noise than is known has to be white for so long, and for two stretches.
+constexpr double kLouder_s = 60.0;
+
+}  // namespace
+
+SensorNoise::SensorNoise(const FilterSettings& settings, const KnownNoise& known, std::size_t axes,
+                         double period_s) noexcept
+    : axes_(axes),
+      period_s_(period_s),
+      process_noise_(settings.process_noise),
+      learns_walk_(known.learns_walk),
+      walk_share_(known.walk_share) {
+  for (std::size_t a = 0; a < axes_; ++a) noise_[a] = Noise(known.share[a] * settings.measurement_noise);
+  refresh_share();
+  if (known.samples > 0.0)
+    walk_.recall(process_noise_ * period_s / settings.measurement_noise, known.samples);
+}
+
+void SensorNoise::take(const Sample& now, const Lanes& since) noexcept {
+  for (std::size_t a = 0; a < axes_; ++a) {
+    const auto i = static_cast<Eigen::Index>(a);
+    if ((now.valid >> a & 1U) != 0) noise_[a].take(now.rate[i], since[i]);
+  }
+}
+
+void SensorNoise::learn(const Axes& rate, std::uint32_t valid, bool at_rest, RestFilter& filter) noexcept {
+  walk_.set_stretch(at_rest ? Walk::kStretch : std::max(2.0 * Walk::kStretch, kLouder_s / period_s_));
+  walk_.take(rate, valid, at_rest);
+  const std::optional<Walk::Found> found = walk_.take_news();
+  if (!found) return;
+  bool other = false;
+  for (std::size_t a = 0; a < axes_; ++a) {
+    if (!(found->noise[a] > 0.0) || !found->white) continue;
+    const double heard = found->noise[a], known = noise_[a].known();
+    if (at_rest ? kOtherNoise * heard < known : heard > kOtherNoise * known) {
+      noise_[a].set_known(heard);
+      other = true;
+    }
+  }
+  if (other) {
+    refresh_share();
+    filter.rule().restart();
+  }
+  if (!learns_walk_) return;
+  process_noise_ = found->ratio * mean_ / period_s_;
+  filter.retune(process_noise_);
+}
+
+Lanes SensorNoise::each(double (Noise::*figure)() const noexcept) const noexcept {
+  Lanes all = Lanes::Ones();
+  for (std::size_t a = 0; a < axes_; ++a) all[static_cast<Eigen::Index>(a)] = (noise_[a].*figure)();
+  return all;
+}
+
+double SensorNoise::mean(const Lanes& of) const noexcept {
+  return (of * mask_of(axes_of_sensor(axes_))).sum() / static_cast<double>(axes_);
+}
+
+void SensorNoise::refresh_share() noexcept {
+  const Lanes known = each(&Noise::known);
+  mean_ = mean(known);
+  share_ = known / mean_;
+}
+
+LearnedNoise SensorNoise::learned() const noexcept {
+  LearnedNoise out;
+  out.process_noise = process_noise_;
+  for (std::size_t a = 0; a < axes_; ++a) out.noise[a] = noise_[a].known();
+  out.measurement_noise = mean_;
+  out.samples = learns_walk_ ? walk_.samples() : 0.0;
+  return out;
+}
+
+}  // namespace ifog
