@@ -13,8 +13,6 @@ namespace {
 
 // Shaking: innovations of that variance, in R; half its logarithm is ln 2.
 constexpr double kShakingVariance = 4.0;
-// Evidence for rest that has to be outweighed at most, nats.
-constexpr double kLeastRatio = -5.0;
 // Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
 // worth.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
@@ -67,7 +65,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   if (j >= 1 && h <= 2.0 * lag && large.any())
     unseen_ = large.select(unseen_.max(now.scale * kAtEnd * square / c.weight.square().max(1.0)), unseen_);
   short_[j] = keep * short_[j] + now.short_rad;
-  c.ratio = (keep * c.ratio + evidence).max(kLeastRatio);
+  c.ratio = (keep * c.ratio + evidence).max(0.0);
   c.rest = keep * c.rest + common.squares;
   c.rest2 = keep * c.rest2 + common.squares2;
   c.tracker = keep * c.tracker + mine.min(kFarSquare);

@@ -34,7 +34,7 @@ class Outliers {
     seen_ = std::min(seen_ + 1.0, kTailMemory);
     // Where they are frequent at rest they may be blows, whose angle counts.
     const double most = !moving && share_ > kRare ? kFarSquare : kMostSquare;
-    if (least <= most || seen_ < kYoung) {
+    if (least <= most) {
       // A run lasts until its own axis is measured again, if that is soon.
       if (run_ > 0 && (now.valid >> axis_ & 1U) == 0 && ++waited_ < kShortGap) return Verdict::usual;
       if (!moving) share_ += ((least > kMostSquare ? 1.0 : 0.0) + static_cast<double>(run_) - share_) / seen_;
@@ -79,8 +79,7 @@ class Outliers {
     return least;
   }
 
-  static constexpr double kRare = 1e-3;   // share of all measurements
-  static constexpr double kYoung = 16.0;  // samples
+  static constexpr double kRare = 1e-3;  // share of all measurements
 
   Lanes last_ = Lanes::Zero();  // of the run
   double seen_ = 0.0, share_ = 1e-8, nearness_ = 0.0, squares_ = 0.0;
