@@ -61,19 +61,31 @@ std::optional<LongSeries> with(const SeriesView& rate, std::vector<Replacement> 
   return out;
 }
 
+// Samples that leap and are to be missing.
+std::vector<Replacement> leaps_in(const SeriesView& rate, const std::vector<Stretch>& parts, LeapOf of,
+                                  const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
+  const Glitches leaps = find_glitches(rate, parts, of);
+  if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
+  std::vector<Replacement> missing;
+  for (const Glitches::Leap& leap : leaps.few)
+    missing.push_back({{leap.sample, leap.sample + 1}, std::nan("")});
+  return missing;
+}
+
 }  // namespace
 
 void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
   const std::vector<Stretch> parts = stretches({}, rate, {});
-  const Glitches leaps = find_glitches(rate, parts, LeapOf::kOneValue);
+  auto missing = leaps_in(rate, parts, LeapOf::kOneValue, time_s, faults);
   const std::vector<Stretch> stuck = stuck_runs(rate, parts);
-  if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
   if (!stuck.empty()) faults.push_back({"stuck", in_words(stuck, time_s)});
-  std::vector<Replacement> missing;
-  for (const Glitches::Leap& leap : leaps.few)
-    missing.push_back({{leap.sample, leap.sample + 1}, std::nan("")});
   for (const Stretch& each : stuck) missing.push_back({each, std::nan("")});
   if (std::optional<LongSeries> cleaned = with(rate, std::move(missing))) rate = *std::move(cleaned);
+}
+
+void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
+  auto cleaned = with(rate, leaps_in(rate, stretches({}, rate, {}), LeapOf::kPlaceholder, time_s, faults));
+  if (cleaned) rate = *std::move(cleaned);
 }
 
 std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,

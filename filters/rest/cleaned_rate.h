@@ -22,9 +22,11 @@ using TimeOfSample = std::function<double(std::size_t)>;  // s, for the text
 // where nine of ten values stand once; or two and more that leap away and back (glitches.h).
 void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
-// The rate with what stands between their neighbours in place of single samples that leap away and back,
-// unless there are too many to be no noise; nothing where there are none. error: the rate less the reference,
-// or the rate itself where there is none; parts: stretches at rest.
+// For commands that hand the rate on as it came: placeholders alone become missing, single ones, too.
+void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
+
+// The rate with the middle of their neighbours in place of single samples that leap away and back; nothing where
+// there are none, or too many to be no noise. error: the rate less the reference, if any; parts: at rest.
 [[nodiscard]] std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,
                                                       std::span<const Stretch> parts,
                                                       const TimeOfSample& time_s,

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "filters/rest/runs.h"
@@ -27,10 +26,9 @@ constexpr std::size_t kLongest = 7;       // samples of one value: of more it is
 constexpr double kRounding = 1e-12;       // of a value
 constexpr std::size_t kEnough = 100'000;  // second differences whose median is as good as that of all
 
-// A sample with two neighbours: what is between them, how far it is from there, they from each other, and it
-// from the one before.
+// A sample with two neighbours: how far it is from what is between them, and from the one before.
 struct Middle {
-  double value = 0.0, between = 0.0, away = 0.0, apart = 0.0, step = 0.0;
+  double value = 0.0, away = 0.0, step = 0.0;
 };
 
 // use(i, middle) for each.
@@ -42,19 +40,12 @@ void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use
       for (std::size_t k = 0; k < values.size(); ++k) {
         if (first + k >= part.begin + 2)
           use(first + k - 1,
-              Middle{middle, 0.5 * (before + values[k]), std::abs(middle - 0.5 * (before + values[k])),
-                     std::abs(values[k] - before), std::abs(middle - before)});
+              Middle{middle, std::abs(middle - 0.5 * (before + values[k])), std::abs(middle - before)});
         before = middle;
         middle = values[k];
       }
     });
   }
-}
-
-double middle_of(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // What a leap is measured against.
@@ -64,19 +55,23 @@ class Yardstick {
     std::vector<double> some;
     const std::size_t stride = rate.size() / kEnough + 1;
     std::size_t next = 0;  // multiple of the stride
-    double largest = 0.0, smallest_step = std::numeric_limits<double>::infinity();
+    double smallest_step = std::numeric_limits<double>::infinity();
     for_each_middle(rate, parts, [&](std::size_t i, const Middle& middle) {
       while (next < i) next += stride;
       if (i == next) some.push_back(middle.away);
-      largest = std::max(largest, std::abs(middle.value));
+      const double size = std::abs(middle.value);
+      if (size >= largest_) times_ = size > largest_ ? 1 : times_ + 1;
+      largest_ = std::max(largest_, size);
       if (middle.step > kRounding * std::abs(middle.value))
         smallest_step = std::min(smallest_step, middle.step);
     });
     if (some.size() < 3) return;
-    all_ = kOfMedian * middle_of(some);
+    all_ = kOfMedian * median(some);
     // Most neighbours of a coarse sensor are the same, but for the rounding of their digits.
-    least_ = std::max(kRounding * largest, std::isfinite(smallest_step) ? 0.5 * smallest_step : 0.0);
+    least_ = std::max(kRounding * largest_, std::isfinite(smallest_step) ? 0.5 * smallest_step : 0.0);
   }
+  // Farthest from zero, which the record is more than once.
+  [[nodiscard]] bool is_placeholder(double value) const { return times_ > 1 && std::abs(value) == largest_; }
   // No more than at() says anywhere.
   [[nodiscard]] double least() const { return std::max(all_, least_); }
   // At sample i: of the whole record; of those about it where they are louder, so that what grows louder is
@@ -103,20 +98,20 @@ class Yardstick {
     // Parts and the samples that begin and end them beside what is asked for.
     const std::size_t begin = block * kNear, end = std::min(begin + kNear, rate_.size());
     std::vector<Stretch> here;
-    const auto first = std::partition_point(parts_.begin(), parts_.end(),
-                                            [&](const Stretch& part) { return part.end <= begin; });
-    for (auto part = first; part != parts_.end() && part->begin < end; ++part)
-      here.push_back({std::max(part->begin + 1, begin) - 1, std::min(part->end, end + 1)});
+    for (const Stretch& part : parts_)
+      if (part.end > begin && part.begin < end)
+        here.push_back({std::max(part.begin + 1, begin) - 1, std::min(part.end, end + 1)});
     std::vector<double> away;
     for_each_middle(rate_, here, [&](std::size_t, const Middle& middle) { away.push_back(middle.away); });
-    known = {block, away.size() >= kLeast ? kOfMedian * middle_of(away) : 0.0};
+    known = {block, away.size() >= kLeast ? kOfMedian * median(away) : 0.0};
     return known.deviation;
   }
 
   const SeriesView& rate_;
   std::span<const Stretch> parts_;
   std::array<Near, 4> near_;  // by block, in turn
-  double all_ = 0.0, least_ = 0.0;
+  double all_ = 0.0, least_ = 0.0, largest_ = 0.0;
+  std::size_t times_ = 0;  // that largest_ stands
 };
 
 }  // namespace
@@ -125,24 +120,25 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
   Glitches out;
   Yardstick yardstick(rate, parts);
   std::size_t samples = 0;
-  for (const Stretch& part : parts) samples += part.end - part.begin;
+  for (const Stretch& part : parts) samples += part.size();
   // One in the shortest of records is no habit of its sensor yet.
   const std::size_t most = samples / kOneInAtMost + 1;
-  std::optional<std::size_t> last;
-  const double far = kFar * yardstick.least();
+  std::size_t end = 0;  // of the last one
   for_each_run(rate, parts, [&](const Run& run) {
     const double between = 0.5 * (run.before + run.after), away = std::abs(run.value - between);
-    if (run.length > kLongest || (run.length == 1) != (of == LeapOf::kOneSample)) return;
-    if (!(away > far) || std::abs(run.after - run.before) >= 0.5 * away) return;
+    const bool single =
+        of == LeapOf::kOneSample || (of == LeapOf::kPlaceholder && yardstick.is_placeholder(run.value));
+    if (run.length > kLongest || (run.length == 1 ? !single : of == LeapOf::kOneSample)) return;
+    if (!(away > kFar * yardstick.least()) || std::abs(run.after - run.before) >= 0.5 * away) return;
     const double deviation = yardstick.at(run.begin);
     if (!(deviation > 0.0) || away <= kFar * deviation) return;
     // Between two that leap the one in the middle stands apart as well.
-    if (last && *last + 1 == run.begin) return;
-    last = run.begin + run.length - 1;
+    if (run.begin == end) return;
+    end = run.begin + run.length;
     if (out.count == 0) out.first = run.begin;
     out.count += run.length;
     out.most_times = std::max(out.most_times, away / deviation);
-    for (std::size_t i = run.begin; i <= *last && out.count <= most; ++i) out.few.push_back({i, between});
+    for (std::size_t i = run.begin; i < end && out.count <= most; ++i) out.few.push_back({i, between});
   });
   if (out.count > most) out.few.clear();
   return out;

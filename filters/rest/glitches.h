@@ -29,8 +29,9 @@ struct Glitches {
   double most_times = 0.0;
 };
 
-// One sample; or two to seven of one value, as a placeholder has, wherever the sensor moved.
-enum class LeapOf { kOneSample, kOneValue };
+// One sample; or two to seven of one value, as a placeholder has, wherever the sensor moved; or these and single
+// ones of the value farthest from zero where the record has that more than once, as with -9999 now and then.
+enum class LeapOf { kOneSample, kOneValue, kPlaceholder };
 
 // parts: without holes, and for one sample at rest, as a blow is one too. What leaps stands between two that
 // differ by less than half of the leap, by more than 30 standard deviations: of Gaussian noise not one in

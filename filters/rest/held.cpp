@@ -2,6 +2,9 @@
 #include "filters/rest/held.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "filters/rest/runs.h"
 
 namespace ifog {
 namespace {
@@ -15,34 +18,25 @@ HeldApart apart_from_held(const SeriesView& rate, const std::vector<Stretch>& pa
   HeldApart out;
   std::size_t steps = 0, changes = 0;  // where it moves
   for (const Stretch& part : parts) {
-    std::size_t begin = part.begin, moving = part.begin, here = 0;
-    const auto move_until = [&](std::size_t end, std::size_t changed) {
-      if (end == moving) return;
-      out.moving.push_back({moving, end});
-      steps += end - moving - 1;
-      changes += changed;
+    Stretch moving{part.begin, part.begin};
+    std::size_t values = 0;  // that follow one another in it
+    const auto end_moving = [&] {
+      if (moving.size() == 0) return;
+      out.moving.push_back(moving);
+      steps += moving.size() - 1;
+      changes += std::exchange(values, 0) - 1;
     };
-    // The value that it has had from `begin` on ends.
-    const auto close = [&](std::size_t end) {
-      if (end - begin < least) return false;
-      out.held.push_back({begin, end});
-      move_until(begin, here - std::min<std::size_t>(here, 1));
-      moving = end;
-      here = 0;
-      return true;
-    };
-    double last = 0.0;
-    for_each_piece(rate, part.begin, part.end, [&](std::span<const double> values, std::size_t first) {
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        const std::size_t i = first + k;
-        if (i > part.begin && values[k] != last) {
-          here += close(i) ? 0 : 1;
-          begin = i;
-        }
-        last = values[k];
+    for_each_run(rate, {&part, 1}, [&](const Run& run) {
+      const std::size_t end = run.begin + run.length;
+      if (run.length < least) {
+        moving.end = end, ++values;
+        return;
       }
+      end_moving();
+      out.held.push_back({run.begin, end});
+      moving = {end, end};
     });
-    if (!close(part.end)) move_until(part.end, here);
+    end_moving();
   }
   if (out.held.empty() || steps < kLeastHeld || 2 * changes < steps) return {{}, parts};
   return out;

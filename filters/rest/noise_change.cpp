@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "filters/rest/held.h"
+#include "filters/rest/runs.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
@@ -172,12 +173,6 @@ double middle_magnitude(const Octave& octave, std::size_t begin, std::size_t end
     quarters[q] = mean_magnitude(octave, begin + q * length, begin + (q + 1) * length);
   std::sort(quarters.begin(), quarters.end());
   return 0.5 * (quarters[1] + quarters[2]);
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // By what means of so many neighbouring times differ from the next ones, relative to one time, of which a change is a

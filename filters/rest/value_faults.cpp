@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <map>
 #include <numbers>
+#include <numeric>
 
 #include "filters/rest/runs.h"
 
@@ -25,13 +26,12 @@ std::string six(double value) {
 
 // The values of the stretches, one after the other.
 std::vector<double> values_of(const SeriesView& rate, std::span<const Stretch> parts) {
-  std::vector<double> out, room;
+  std::vector<double> out;
   for (const Stretch& part : parts) {
     const std::size_t count = std::min(part.size(), kMostSamples - out.size());
-    for (std::size_t at = 0; at < count; at += kSeriesPiece) {
-      const auto piece = rate.piece(part.begin + at, std::min(kSeriesPiece, count - at), room);
+    for_each_piece(rate, part.begin, part.begin + count, [&](std::span<const double> piece, std::size_t) {
       out.insert(out.end(), piece.begin(), piece.end());
-    }
+    });
   }
   return out;
 }
@@ -73,17 +73,11 @@ void find_wrapped(const std::vector<double>& values, const std::vector<double>& 
   const auto inside = std::lower_bound(sorted.begin(), sorted.end(), high - 0.2 * range) -
                       std::upper_bound(sorted.begin(), sorted.end(), low + 0.2 * range);
   if (inside > 0 || !(range > 0.0)) return;
-  std::size_t across = 0, above = 0;
-  double sum_low = 0.0, sum_high = 0.0, least_high = high, most_low = low;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0 && std::abs(values[i] - values[i - 1]) > 0.6 * range) ++across;
-    const bool up = values[i] > low + 0.5 * range;
-    above += up ? 1 : 0;
-    (up ? sum_high : sum_low) += values[i];
-    if (up) least_high = std::min(least_high, values[i]);
-    if (!up) most_low = std::max(most_low, values[i]);
-  }
-  if (100 * across < values.size() || above == 0 || above == values.size()) return;
+  const auto above = sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), low + 0.5 * range);
+  std::size_t across = 0;
+  for (std::size_t i = 1; i < values.size(); ++i)
+    across += std::abs(values[i] - values[i - 1]) > 0.6 * range ? 1 : 0;
+  if (100 * across < values.size()) return;
   found.push_back({"wrapped", six(100.0 * static_cast<double>(above) / static_cast<double>(values.size())) +
                                   " % of the samples stand about " + six(range / kDegree) +
                                   " °/s above the others, none between: signed counts read as unsigned"});
@@ -114,9 +108,7 @@ void find_interleaved(const std::vector<double>& values, std::vector<ValueFault>
 }
 
 void find_implausible(const std::vector<double>& values, double period_s, std::vector<ValueFault>& found) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  const double mean = sum / static_cast<double>(values.size());
+  const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   if (std::abs(mean) > kMostBias_radps)
     found.push_back(
         {"unit",
@@ -127,9 +119,9 @@ void find_implausible(const std::vector<double>& values, double period_s, std::v
   double before = 0.0, squares = 0.0;
   std::size_t count = 0;
   for (std::size_t at = 0; at + second <= values.size(); at += second, ++count) {
-    double average = 0.0;
-    for (std::size_t i = 0; i < second; ++i) average += values[at + i];
-    average /= static_cast<double>(second);
+    const auto from = values.begin() + static_cast<std::ptrdiff_t>(at);
+    const double average =
+        std::accumulate(from, from + static_cast<std::ptrdiff_t>(second), 0.0) / static_cast<double>(second);
     if (count > 0) squares += 0.5 * (average - before) * (average - before);
     before = average;
   }

@@ -34,8 +34,11 @@ void Convert::run() const {
   // Standard output has no ending: it takes what the capture is not.
   const bool to_columns =
       file_kind(to) == FileKind::capture || (is_standard_output(to) && !(from_columns && input.has_driver()));
-  if (from_columns && !to_columns)
-    return write_recording(input.read_long_columns(file), from, to, input, axis);
+  if (from_columns && !to_columns) {
+    LongTable table = input.read_long_columns(file);
+    table.clean_and_tell(leave_out_placeholders, from);
+    return write_recording(table, from, to, input, axis);
+  }
   if (!to_columns && file_kind(file) == FileKind::flight && !recorded_messages(file))
     throw WrongUsage(to,
                      "expected a .csv, .csv.gz or .h5 file of a flight recording; its bytes or frames as "
@@ -43,7 +46,8 @@ void Convert::run() const {
                          shell_file(from) + " --speed 0 --to " + shell_word("file:" + to));
   if (!to_columns)
     throw WrongUsage(to, "expected a .csv, .csv.gz or .h5 file, or a capture in one to convert from");
-  const LongTable table = input.read_long(file);
+  LongTable table = input.read_long(file);
+  if (from_columns) table.clean_and_tell(leave_out_placeholders, from);
   write_columns(table, from, to);
   say("%s: %zu samples\n", to.c_str(), table.size());
 }

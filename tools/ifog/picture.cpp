@@ -15,7 +15,7 @@
 #include "tools/ifog/allan/allan_picture.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
-#include "tools/ifog/captures/table/whole_table.h"
+#include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/captures/time_part.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
@@ -39,19 +39,22 @@ void run(const Arguments& a) {
   InputFile log(a.log);
   if (const FileKind kind = file_kind(log); kind != FileKind::lcm_log && kind != FileKind::flight)
     throw std::runtime_error(a.log + ": is no log of lcm-logger");
-  const Table table = read_published(log, a.channel);
+  LongTable table;
+  LongTableSink sink(table);
+  read_published(log, a.channel, sink);
   const std::string suffix = (a.axis.empty() ? "" : "_" + a.axis) + "_radps";
   const TimePart::Rows rows = a.part.rows(table.time_s, table.origin, a.log);
-  const auto shown = [&rows](const std::vector<double>& values, double scale) {
-    return report::scaled({values.begin() + static_cast<std::ptrdiff_t>(rows.begin),
-                           values.begin() + static_cast<std::ptrdiff_t>(rows.end)},
-                          scale);
+  const auto shown = [&rows](const LongSeries& values, double scale) {
+    std::vector<double> part(rows.end - rows.begin);
+    values.read(rows.begin, part);
+    return report::scaled(std::move(part), scale);
   };
-  const report::TimeAxis time(table.time_s[rows.begin], table.time_s[rows.end - 1]);
+  const SeriesView time_s = table.time_s;
+  const report::TimeAxis time(time_s.at(rows.begin), time_s.at(rows.end - 1));
   report::Chart rate("Rate published by the daemon", "Raw and denoised rate over time.", time.axis(),
                      {"rate (°/h)", false, {}, {}});
   std::size_t axes = 0, curves = 0;
-  for (const CaptureColumn& column : table.columns) {
+  for (const LongColumn& column : table.columns) {
     const bool raw = column.name == "raw" + suffix, denoised = column.name == "denoised" + suffix;
     if (column.name.starts_with("raw")) ++axes;
     if (!raw && !denoised) continue;
@@ -67,7 +70,7 @@ void run(const Arguments& a) {
   options.part = a.part;
   options.keep_motion = true;  // what was denoised is shown, moving or not
   std::vector<AllanRecord> records;
-  for (AllanRecord& record : allan_records(a.log, long_table(table), options))
+  for (AllanRecord& record : allan_records(a.log, table, options))
     if (record.signal == "raw" || record.signal == "denoised") records.push_back(std::move(record));
   // The noise terms are the sensor's; what a filter has been over has none.
   for (AllanRecord& record : records)

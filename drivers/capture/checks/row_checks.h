@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/checks/leaps.h"
 #include "drivers/capture/checks/row_clock.h"
 #include "drivers/capture/columns/chosen_columns.h"
 #include "drivers/capture/columns/csv_layout.h"
@@ -17,13 +16,6 @@
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
-
-// Values of a column that no sensor measures, read as missing.
-struct ImpossibleValues {
-  std::size_t count = 0;
-  std::size_t line = 0;
-  std::string first;  // as it stands there
-};
 
 // "rate_radps is '1e9', which no sensor measures, expected …".
 std::string what_no_sensor_measures(const std::string& name, std::string_view cell, const Measurable& range);
@@ -37,34 +29,27 @@ class RowChecks {
 
   // The next rows in the file's units, at least one. Throws std::runtime_error with one line, as finish().
   void take(RowBlock& rows);
-  // found: of each column. A few such values are faults of the logger and become missing. A rate with more than one
+  // found: of each column, values that no sensor measures. A few such values are faults of the logger and become missing. A rate with more than one
   // in a hundred is not what its name says and is refused. A channel only becomes missing, because a broken
   // thermometer does not make the rate useless.
-  void finish(std::span<const ImpossibleValues> found);
+  void finish(std::span<const Fault> found);
 
   // Rows received, repeated ones included.
   [[nodiscard]] std::size_t rows() const { return rows_; }
 
  private:
-  void tell_impossible(const FileColumn& column, const ImpossibleValues& found);
-  void tell_leaps();
+  void tell_impossible(const FileColumn& column, const Fault& found);
   void behind_clock(RowBlock& rows);
-  void look_for_set_clock(const std::vector<double>& time_s);
-  void tell_set_clock();
 
   const std::string& path_;
   const CsvLayout& layout_;
   const std::vector<FileColumn> columns_;
+  RowSink& sink_;
   RowNotes& notes_;
-  const std::vector<std::size_t> rates_;  // columns
-  Leaps leaps_;
   RowClock clock_;
   std::optional<RowBlock> all_;  // where angles become rates
   std::size_t rows_ = 0;
-  std::size_t given_ = 0;                 // rows behind the clock
-  double last_s_ = 0.0;                   // time of the last of them, once there is one
-  std::optional<std::size_t> clock_set_;  // the first row behind a step that no recording has
-  double clock_set_by_s_ = 0.0;
+  std::size_t given_ = 0;  // rows behind the clock
 };
 
 }  // namespace ifog

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
@@ -12,6 +13,7 @@ namespace ifog {
 namespace {
 
 constexpr double kLate_s = 2.0;  // a rollover comes within it
+constexpr double kYear_s = 365.0 * 86'400.0;
 
 struct Rollover {
   double length_s;
@@ -40,47 +42,62 @@ double RowOrder::rolled_over_s(double now_s, std::size_t line) {
   return found->length_s;
 }
 
+void RowOrder::look_for_set_clock() {
+  if (set_ || !(last_s_ - before_s_ >= kYear_s)) return;
+  set_ = true;
+  notes_.notices.push_back(path_ + ":" + std::to_string(line_) + ": its time continues " +
+                           std::to_string(std::llround(last_s_ - before_s_)) +
+                           " s later, as after a clock was set or where two recordings are joined: treated "
+                           "as a hole, behind which times are coarser");
+}
+
 void RowOrder::take(RowBlock& rows, std::size_t known) {
+  const auto line_of = [&](std::size_t row) { return rows.lines.empty() ? 0 : rows.lines[row]; };
   std::size_t kept = known;
   for (std::size_t i = known; i < rows.size(); ++i) {
-    const std::size_t line = rows.lines.empty() ? 0 : rows.lines[i];
     double now_s = rows.time_s[i] + offset_s_;
     const bool back = rows_++ > 0 && now_s < last_s_;
-    if (const double longer_s = back ? rolled_over_s(now_s, line) : 0.0; longer_s > 0.0) {
+    if (const double longer_s = back ? rolled_over_s(now_s, line_of(i)) : 0.0; longer_s > 0.0) {
       offset_s_ += longer_s;
       now_s += longer_s;
     } else if (back) {
       // Where the row continues those before the last one, the last one is the one that is wrong.
       const bool last_is_late = now_s >= before_s_;
-      if (backward_++ == 0) say(rows, last_is_late ? kept - 1 : i, last_is_late);
+      leave_out(rows, last_is_late ? kept - 1 : i, last_is_late);
       if (!last_is_late) continue;
       --kept;
       last_s_ = before_s_;
+    } else {
+      look_for_set_clock();
     }
     before_s_ = rows_ > 1 ? last_s_ : before_s_;
     last_s_ = now_s;
+    line_ = line_of(i);
     rows.move_row(i, kept);
     rows.time_s[kept++] = now_s;
   }
   rows.keep_first(kept);
 }
 
-void RowOrder::say(const RowBlock& rows, std::size_t row, bool late) {
-  line_ = rows.lines.empty() ? 0 : rows.lines[row];
-  first_ = printable(time_) + " is ";
-  append_time(first_, rows.origin, rows.time_s[row] - (late ? offset_s_ : 0.0));
-  first_ += late ? " s, expected less than in the next row" : " s, expected more than in the row before";
+void RowOrder::leave_out(const RowBlock& rows, std::size_t row, bool late) {
+  std::string what;
+  if (left_out_.count == 0) {
+    what = printable(time_) + " is ";
+    append_time(what, rows.origin, rows.time_s[row] - (late ? offset_s_ : 0.0));
+    what += late ? " s, expected less than in the next row" : " s, expected more than in the row before";
+  }
+  left_out_.add(rows.lines.empty() ? 0 : rows.lines[row], std::move(what));
 }
 
 void RowOrder::finish() {
-  if (backward_ == 0) return;
-  if (rows_ < kRowsAFault * backward_)
-    fail_at(path_, line_,
-            first_ + (backward_ == 1 ? "" : "; so are " + std::to_string(backward_ - 1) + " more rows") +
+  look_for_set_clock();
+  const std::size_t count = left_out_.count;
+  if (count == 0) return;
+  if (rows_ < kRowsAFault * count)
+    fail_at(path_, left_out_.line,
+            left_out_.first + (count == 1 ? "" : "; so are " + std::to_string(count - 1) + " more rows") +
                 "; --sample-rate HZ reads all rows as even");
-  notes_.faults.push_back(path_ + ":" + std::to_string(line_) + ": " + first_ + "; " +
-                          (backward_ == 1 ? "this row is" : std::to_string(backward_) + " such rows are") +
-                          " left out");
+  notes_.faults.push_back(left_out_.left_out(path_, "row"));
 }
 
 }  // namespace ifog

@@ -2,7 +2,7 @@
 // Times of rows that have to go on from row to row. Where a count or a clock of known length rolls over, that length is
 // added from there on. A row whose time goes back in another way, as where a clock was set back or the network changed
 // the order, is left out and counted, and so is one whose own time is too late; where more than one in a hundred is, the
-// file is refused.
+// file is refused. A year between two rows is a clock that was set, and said.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +28,9 @@ class RowOrder {
   // How much longer the clock is that is earlier than before; 0: none rolls over so.
   double rolled_over_s(double now_s, std::size_t line);
   // late: of the row, else it goes back.
-  void say(const RowBlock& rows, std::size_t row, bool late);
+  void leave_out(const RowBlock& rows, std::size_t row, bool late);
+  // Says where the last row is from another time than the one before.
+  void look_for_set_clock();
 
   const std::string& path_;
   const std::string time_;
@@ -36,9 +38,9 @@ class RowOrder {
   double offset_s_ = 0.0;  // of rollovers
   // Of the last row and of the one before it, once there are such.
   double last_s_ = 0.0, before_s_ = std::numeric_limits<double>::infinity();
-  std::size_t rows_ = 0, backward_ = 0;
-  std::size_t line_ = 0;  // of the first that is left out, and what is wrong with it
-  std::string first_;
+  std::size_t rows_ = 0, line_ = 0;  // line_: of the last row
+  Fault left_out_;
+  bool set_ = false;  // a clock that was set is said
 };
 
 }  // namespace ifog

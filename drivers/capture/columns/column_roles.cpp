@@ -217,20 +217,19 @@ void add_others(const TableSample& table, const std::vector<RateCandidate>& rate
     add(channel_name(Words(table.names[i]), unit_of(table, i)), i, unit_of(table, i));
 }
 
-TableReading reading_by(const TableSample& table, const CsvLayout& asked,
-                        const std::optional<TimeCandidate>& time, const std::vector<RateCandidate>& rates) {
+TableReading reading_by(const TableSample& table, const CsvLayout& asked, const std::optional<CsvTime>& time,
+                        const std::vector<RateCandidate>& rates) {
   TableReading way{asked, true, ""};
   const auto add = [&way](const std::string& option) {
     way.options += (way.options.empty() ? "" : " ") + option;
   };
   if (time) {
-    way.layout.time = time->time;
-    if (time->time.header != "time_s") add(option_for(time->time, time->unit));
+    way.layout.time = time;
+    if (time->header != "time_s") add(option_for(*time));
   } else if (asked.sample_rate_hz) {
     add("--sample-rate " + shortest(*asked.sample_rate_hz));
   } else if (asked.time) {
-    if (asked.time->header != "time_s" || asked.time->told)
-      add(option_for(*asked.time, name_of_seconds(asked.time->unit_s)));
+    if (asked.time->header != "time_s" || !asked.time->unit.empty()) add(option_for(*asked.time));
   } else {
     const auto stated = stated_rate_hz(table.comments);
     way.clear = false;
@@ -264,10 +263,10 @@ bool is_unit_unknown(const RateCandidate& rate) { return rate.unit.empty(); }
 
 Readings readings_of(const TableSample& table, const CsvLayout& asked) {
   Readings out;
-  std::vector<std::optional<TimeCandidate>> times;
+  std::vector<std::optional<CsvTime>> times;
   const bool any_time = asked.time || asked.sample_rate_hz;
   if (!any_time)
-    for (const TimeCandidate& time : times_of(table)) times.emplace_back(time);
+    for (const CsvTime& time : times_of(table)) times.emplace_back(time);
   const std::size_t time_columns = times.size();
   if (times.empty()) times.emplace_back();
   std::vector<Rates> sensors(1);
@@ -342,7 +341,8 @@ std::string in_words(const CsvLayout& layout) {
   std::string text;
   if (layout.sample_rate_hz) text = "rows " + shortest(*layout.sample_rate_hz) + " Hz apart";
   if (layout.time)
-    text = "time " + in_quotes(layout.time->header) + " in " + name_of_seconds(layout.time->unit_s);
+    text = "time " + in_quotes(layout.time->header) + " in " +
+           (layout.time->unit.empty() ? "s" : printable(layout.time->unit));
   for (const CsvColumn& column : layout.columns) {
     const std::size_t line = column.name.rfind('_');
     text += (text.empty() ? "" : ", ") + column.name.substr(0, line) + " " + in_quotes(column.header) +

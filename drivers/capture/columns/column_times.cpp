@@ -73,9 +73,7 @@ std::string unit_by_stated_rate(const TableSample& table, double step) {
   constexpr double kNear = 0.1;  // of the rate; the units are a factor of ten apart
   const auto stated_hz = stated_rate_hz(table.comments);
   for (const char* unit : {"s", "ms", "100us", "us", "ns"})
-    if (stated_hz &&
-        std::abs(step * CsvTime::parse(std::string("t:") + unit).unit_s * *stated_hz - 1.0) < kNear)
-      return unit;
+    if (stated_hz && std::abs(step * CsvTime{"", unit}.unit_s() * *stated_hz - 1.0) < kNear) return unit;
   return "";
 }
 
@@ -143,13 +141,14 @@ std::string time_unit_by_name(const TableSample& table, std::size_t place, const
 }
 
 // Both have counted the same seconds from the first row to the last, within a step of the coarser clock.
-bool go_together(const std::vector<double>& a, const TimeCandidate& one, const std::vector<double>& b,
-                 const TimeCandidate& other) {
+bool go_together(const std::vector<double>& a, const CsvTime& one, const std::vector<double>& b,
+                 const CsvTime& other) {
   if (one.unit.empty() || other.unit.empty() || a.size() != b.size() || a.size() < kFewRows) return false;
-  const double s = (a.back() - a.front()) * one.time.unit_s, t = (b.back() - b.front()) * other.time.unit_s;
+  const double of_one = one.unit_s(), of_other = other.unit_s();
+  const double s = (a.back() - a.front()) * of_one, t = (b.back() - b.front()) * of_other;
   double step = 0.1 * std::abs(s) / static_cast<double>(a.size());
   for (std::size_t i = 1; i < a.size(); ++i)
-    step = std::max({step, (a[i] - a[i - 1]) * one.time.unit_s, (b[i] - b[i - 1]) * other.time.unit_s});
+    step = std::max({step, (a[i] - a[i - 1]) * of_one, (b[i] - b[i - 1]) * of_other});
   return std::abs(s - t) <= step;
 }
 
@@ -164,9 +163,7 @@ bool is_fraction_of_second(const TableSample& table, std::size_t place, const st
          std::all_of(values.begin(), values.end(), [](double v) { return v >= 0.0 && v < 1.0; });
 }
 
-std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
-  TimeCandidate out;
-  out.time.header = table.names[place];
+std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
   const std::vector<std::string> cells = filled(table.cells[place]);
   if (cells.empty() && !table.cells[place].empty()) return std::nullopt;
   const bool dated = !cells.empty() && std::all_of(cells.begin(), cells.end(),
@@ -176,11 +173,10 @@ std::optional<TimeCandidate> candidate_at(const TableSample& table, std::size_t 
     return std::nullopt;
   const std::vector<double> values = numbers_in(cells);
   if (is_fraction_of_second(table, place, values)) return std::nullopt;
-  out.unit = dated ? "s" : time_unit_by_name(table, place, words);
+  CsvTime out{table.names[place], dated ? "s" : time_unit_by_name(table, place, words)};
   if (!dated && (values.size() != cells.size() || !goes_on(values) || (out.unit.empty() && counts(values))))
     return std::nullopt;
   if (out.unit.empty()) out.unit = unit_by_values(values);
-  if (!out.unit.empty()) out.time = CsvTime::parse(out.time.header + ":" + out.unit);
   return out;
 }
 
@@ -216,13 +212,10 @@ bool names_a_second_and_its_part(const std::string& whole, const std::string& pa
 }
 
 // Two columns that are one time: seconds and a part of one, or a date and a time of day.
-std::optional<TimeCandidate> joined(const TableSample& table, std::size_t first, std::size_t second) {
+std::optional<CsvTime> joined(const TableSample& table, std::size_t first, std::size_t second) {
   const std::vector<std::string> a = filled(table.cells[first]), b = filled(table.cells[second]);
   if (a.empty() || b.empty()) return std::nullopt;
-  TimeCandidate out;
-  out.time.header = table.names[first] + "+" + table.names[second];
-  out.time.told = true;
-  out.unit = "s";
+  const CsvTime out{table.names[first] + "+" + table.names[second], "s"};
   const bool day = is_date(a[0]) && a[0].find(':') == std::string::npos;
   if (day && is_date(b[0]) && b[0].find(':') != std::string::npos && b[0].find(':') < 3) return out;
   const bool named = names_a_second_and_its_part(table.names[first], table.names[second]);
@@ -238,8 +231,8 @@ std::optional<TimeCandidate> joined(const TableSample& table, std::size_t first,
 }
 
 // The number of rows whose time differs from the row before.
-std::size_t changes(const TableSample& table, const TimeCandidate& time) {
-  const auto at = std::find(table.names.begin(), table.names.end(), time.time.header) - table.names.begin();
+std::size_t changes(const TableSample& table, const CsvTime& time) {
+  const auto at = std::find(table.names.begin(), table.names.end(), time.header) - table.names.begin();
   const std::vector<std::string>& cells = table.cells[static_cast<std::size_t>(at)];
   std::size_t count = 0;
   for (std::size_t i = 1; i < cells.size(); ++i) count += cells[i] != cells[i - 1] ? 1 : 0;
@@ -248,8 +241,8 @@ std::size_t changes(const TableSample& table, const TimeCandidate& time) {
 
 }  // namespace
 
-std::vector<TimeCandidate> times_of(const TableSample& table) {
-  std::vector<TimeCandidate> best;
+std::vector<CsvTime> times_of(const TableSample& table) {
+  std::vector<CsvTime> best;
   int rank = 1;
   for (std::size_t i = 0; i + 1 < table.names.size(); ++i)
     if (const auto two = joined(table, i, i + 1)) best.push_back(*two);
@@ -263,9 +256,8 @@ std::vector<TimeCandidate> times_of(const TableSample& table) {
     if (here > rank) best.clear();
     rank = here;
     // Twins say the same, as a time of day and the seconds since the start do.
-    const auto same = [&](const TimeCandidate& other) {
-      const auto at =
-          std::find(table.names.begin(), table.names.end(), other.time.header) - table.names.begin();
+    const auto same = [&](const CsvTime& other) {
+      const auto at = std::find(table.names.begin(), table.names.end(), other.header) - table.names.begin();
       const std::vector<std::string>& cells = table.cells[static_cast<std::size_t>(at)];
       return cells == table.cells[i] ||
              go_together(numbers_in(cells), other, numbers_in(table.cells[i]), *found);
@@ -311,14 +303,6 @@ bool is_whole(const std::vector<std::string>& cells) {
          std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
 }
 
-std::string name_of_seconds(double unit_s) {
-  for (const UnitOfTime& unit : kTimeUnits)
-    if (std::abs(unit_s / unit.s - 1.0) < 1e-9) return std::string(unit.name);
-  if (unit_s == 60.0) return "min";
-  if (unit_s == 3600.0) return "h";
-  return shortest(std::round(unit_s * 1e15) / 1e9) + "us";
-}
-
 int digits_of_second(const std::string& name, const std::vector<std::string>& cells) {
   if (!cells.empty() && is_date(cells[0])) return 0;
   for (const std::string& word : words_of(name))
@@ -332,7 +316,7 @@ std::string whole_times_notice(const TableSample& table, std::size_t place, cons
   constexpr std::size_t kFew = 10;
   const std::vector<std::string> cells = filled(table.cells[place]);
   const std::vector<double> values = numbers_in(cells);
-  if (values.size() < std::max(kFew, cells.size()) || time.unit_s != 1.0 ||
+  if (values.size() < std::max(kFew, cells.size()) || time.unit_s() != 1.0 ||
       !std::all_of(values.begin(), values.end(), [](double t) { return t == std::floor(t); }))
     return "";
   const bool unit_known =
@@ -343,21 +327,22 @@ std::string whole_times_notice(const TableSample& table, std::size_t place, cons
     return name +
            " is whole numbers one apart, as a count of the rows is, and is read as seconds; if it is a "
            "count: --sample-rate HZ";
-  if (unit_known || time.told) return "";
+  if (unit_known || !time.unit.empty()) return "";
   return name + " is whole numbers, " + shortest(step) +
          " s apart in the mean; if these are milliseconds: --time " + shell_word(time.header + ":ms");
 }
 
-std::string date_order_notice(const std::string& name, const std::vector<std::string>& cells) {
+std::optional<DateOrder> date_order(const std::vector<std::string>& cells) {
+  bool alike = true;
   for (const std::string& cell : cells) {
     int first = 0, second = 0, year = 0;
-    if (std::sscanf(cell.c_str(), "%2d/%2d/%4d", &first, &second, &year) != 3 || first > 12 || second > 12 ||
-        first == second)
-      return "";
+    if (std::sscanf(cell.c_str(), "%2d/%2d/%4d", &first, &second, &year) != 3) return DateOrder::either;
+    if (second > 12) return DateOrder::month_first;
+    if (first > 12) return DateOrder::day_first;
+    alike = alike && first == second;
   }
-  if (cells.empty()) return "";
-  return printable(name) + " is " + in_quotes(cells[0]) +
-         " at first and read with the month first; if that is the day, write the dates as year-month-day";
+  if (cells.empty()) return DateOrder::either;
+  return alike ? std::optional(DateOrder::month_first) : std::nullopt;
 }
 
 std::optional<double> stated_rate_hz(const std::vector<std::string>& comments) {

@@ -7,16 +7,13 @@
 #include <vector>
 
 #include "drivers/capture/columns/column_roles.h"
+#include "drivers/capture/times/date_time.h"
 
 namespace ifog {
 
-struct TimeCandidate {
-  CsvTime time;
-  std::string unit;  // "" where neither name nor values tell it
-};
-
-// The columns that the time may be, most likely alone: one, where one is more likely than all others.
-std::vector<TimeCandidate> times_of(const TableSample& table);
+// The columns that the time may be, most likely alone: one, where one is more likely than all others. Without a unit
+// where neither name nor values tell it.
+std::vector<CsvTime> times_of(const TableSample& table);
 
 // A column of whole numbers one apart, which no time is: "Sample No."; "" where there is none.
 std::string counting_column(const TableSample& table);
@@ -28,9 +25,6 @@ bool is_smooth(const std::vector<std::string>& cells);
 // Whole numbers, of several values.
 bool is_whole(const std::vector<std::string>& cells);
 
-// "ms" of 0.001.
-std::string name_of_seconds(double unit_s);
-
 // Digits behind the point that a whole number in the second column of "sec+nsec" stands for: 9 for
 // nanoseconds, by its name or its values; 0 where the two are a date and a time of day.
 int digits_of_second(const std::string& name, const std::vector<std::string>& cells);
@@ -40,9 +34,9 @@ int digits_of_second(const std::string& name, const std::vector<std::string>& ce
 // said, not changed. "" for nothing.
 std::string whole_times_notice(const TableSample& table, std::size_t place, const CsvTime& time);
 
-// What to say of dates as 05/06/2023, which are read with the month first; "" where a day above 12 tells the
-// order, and of all other times.
-std::string date_order_notice(const std::string& name, const std::vector<std::string>& cells);
+// The order of dates as 05/06/2023, which a day above 12 tells; nothing where it is unknown; either of all
+// other times.
+std::optional<DateOrder> date_order(const std::vector<std::string>& cells);
 
 // A stated sample rate, as loggers write it above the table: "Output Rate,200.0"; nothing where none is.
 std::optional<double> stated_rate_hz(const std::vector<std::string>& comments);

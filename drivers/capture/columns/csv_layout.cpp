@@ -134,22 +134,20 @@ std::string other_unit(const CsvColumn& column) {
 }
 
 std::string other_unit(const CsvTime& time) {
-  if (time.told || time.unit_s != 1.0) return "";
+  if (!time.unit.empty()) return "";
   const std::string stated = unit_in_name(time.header);
   return time_unit(stated).value_or(1.0) != 1.0 ? stated : "";
 }
 
 CsvTime CsvTime::parse(const std::string& text) {
-  const auto [header, unit] = header_and_unit(text);
   CsvTime out;
-  out.header = header;
-  const auto seconds = unit.empty() ? std::optional(1.0) : seconds_in(unit);
-  if (header.empty() || !seconds)
+  std::tie(out.header, out.unit) = header_and_unit(text);
+  if (out.header.empty() || (!out.unit.empty() && !seconds_in(out.unit)))
     refuse(text, "HEADER:UNIT with a unit of time: s, ms, us, 100us, ns, min, h, d");
-  out.unit_s = *seconds;
-  out.told = !unit.empty();
   return out;
 }
+
+double CsvTime::unit_s() const { return seconds_in(unit).value_or(1.0); }
 
 char CsvLayout::parse_separator(const std::string& text) {
   if (text == "tab" || text == "\\t") return '\t';
@@ -188,8 +186,8 @@ std::string option_for(const CsvColumn& column, const std::string& unit) {
          shell_word(column.name + "=" + column.header + (unit.empty() ? "" : ":" + scale + unit));
 }
 
-std::string option_for(const CsvTime& time, const std::string& unit) {
-  return "--time " + shell_word(time.header + ":" + unit);
+std::string option_for(const CsvTime& time) {
+  return "--time " + shell_word(time.header + (time.unit.empty() ? "" : ":" + time.unit));
 }
 
 bool is_unit(const std::string& text) {

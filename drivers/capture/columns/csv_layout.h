@@ -30,11 +30,11 @@ struct CsvColumn {
 
 struct CsvTime {
   std::string header = "time_s";  // "sec+nsec" or "date+time": two columns that are one time
-  double unit_s = 1.0;
-  bool told = false;  // the unit was given
+  std::string unit;               // of its values, "ms" or "100us"; "": not given, which reads as seconds
 
-  // "t:ms", "t:100us", "t", which is in seconds. Throws likewise.
+  // "t:ms", "t:100us", "t". Throws likewise.
   static CsvTime parse(const std::string& text);
+  [[nodiscard]] double unit_s() const;
 };
 
 struct CsvLayout {
@@ -65,7 +65,7 @@ std::vector<std::string> parts_of_time(const std::string& header,
 
 // As a user types them.
 std::string option_for(const CsvColumn& column, const std::string& unit);
-std::string option_for(const CsvTime& time, const std::string& unit);
+std::string option_for(const CsvTime& time);
 
 // The unit that a column's name ends in, "GyroX (deg/s)" or "gyro_x_dps"; "" where it names none.
 std::string unit_in_name(const std::string& name);

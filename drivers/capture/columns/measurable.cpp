@@ -88,7 +88,7 @@ Measurable measurable_in_file(const CsvColumn& column) {
 }
 
 Measurable measurable_in_file(const CsvTime& time) {
-  return before(measurable("time_s"), {time.unit_s, 0.0});
+  return before(measurable("time_s"), {time.unit_s(), 0.0});
 }
 
 }  // namespace ifog

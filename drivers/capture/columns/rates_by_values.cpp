@@ -61,11 +61,11 @@ std::vector<std::string> units_of(const TableSample& table, const Rates& rates) 
 
 // Of all threes the likelier ones: without gravity, and alike, as a heading that was summed up is not like a
 // rate.
-std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<TimeCandidate>& time) {
+std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<CsvTime>& time) {
   Rates found;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const bool of_time =
-        time && ("+" + time->time.header + "+").find("+" + table.names[i] + "+") != std::string::npos;
+        time && ("+" + time->header + "+").find("+" + table.names[i] + "+") != std::string::npos;
     if (!of_time && varies(table.cells[i])) found.push_back({i, "", ""});
   }
   if (found.size() < 3) return {found.empty() ? found : Rates(1, found[0])};

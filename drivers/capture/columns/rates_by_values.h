@@ -35,6 +35,6 @@ std::vector<std::string> units_of(const TableSample& table, const Rates& rates);
 
 // Columns that have no names, without those of the time: one of numbers is the rate, and three next to each
 // other may be its axes.
-std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<TimeCandidate>& time);
+std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<CsvTime>& time);
 
 }  // namespace ifog

@@ -139,7 +139,7 @@ class Chooser {
     if (!name)
       fail("the unit of " + in_quotes(names_[i]) + " is given as " + in_quotes(unit) +
            ", expected that of its name; to read it so: " +
-           (names_[i] == CsvTime{}.header ? option_for(CsvTime{}, unit)
+           (names_[i] == CsvTime{}.header ? option_for(CsvTime{names_[i], unit})
                                           : option_for(CsvColumn{names_[i], names_[i], ""}, unit)));
     return {*name, names_[i], ""};
   }
@@ -211,17 +211,13 @@ class Chooser {
              : ""));
   }
 
-  void take_time(CsvTime time) {
+  void take_time(CsvTime& time) {
     const auto named =
         static_cast<std::size_t>(std::find(names_.begin(), names_.end(), time.header) - names_.begin());
-    if (named < names_.size() && !time.told)
-      if (const auto unit_s = time_unit(form_.sample.stated_unit(named))) {
-        time.unit_s = *unit_s;
-        time.told = true;
-        if (header_.layout.time) header_.layout.time = time;
-      }
+    if (named < names_.size() && time.unit.empty() && time_unit(form_.sample.stated_unit(named)))
+      time.unit = form_.sample.stated_unit(named);
     if (const std::string unit = other_unit(time); !unit.empty())
-      fail(unit_by_name(time.header, unit, option_for(time, unit)));
+      fail(unit_by_name(time.header, unit, option_for(CsvTime{time.header, unit})));
     const std::vector<std::string> parts = parts_of_time(time.header, [&](const std::string& name) {
       return is_number_of_column(name) || std::count(names_.begin(), names_.end(), name) > 0;
     });
@@ -236,10 +232,13 @@ class Chooser {
     if (const std::string notice = whole_times_notice(form_.sample, header_.time_place, time);
         parts.size() == 1 && !notice.empty())
       header_.notices.push_back(path_ + ": " + notice);
-    if (const std::string notice =
-            date_order_notice(names_[header_.time_place], form_.sample.cells[header_.time_place]);
-        !notice.empty())
-      header_.notices.push_back(path_ + ": " + notice);
+    const std::vector<std::string>& cells = form_.sample.cells[header_.time_place];
+    const std::optional<DateOrder> order = date_order(cells);
+    header_.date_order = order.value_or(DateOrder::month_first);
+    if (!order)
+      header_.notices.push_back(
+          path_ + ": " + printable(names_[header_.time_place]) + " is " + in_quotes(cells[0]) +
+          " at first and read with the month first; if that is the day, write the dates as year-month-day");
   }
 
   void take(std::size_t at, const CsvColumn& column) {

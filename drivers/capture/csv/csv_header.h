@@ -12,6 +12,7 @@
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/columns/measurable.h"
 #include "drivers/capture/csv/table_form.h"
+#include "drivers/capture/times/date_time.h"
 
 namespace ifog {
 
@@ -33,11 +34,12 @@ struct CsvHeader {
   std::vector<FileColumn> columns;  // of each, where it is from
   CsvLayout layout;                 // that reads it
   char separator = ',';
-  std::string comments;              // that stood before it, as in RowNotes
-  std::size_t last_line = 0;         // number of the line above the first row
-  std::size_t time_place = kNone;    // which cell is the time; kNone where rows are even
-  std::size_t time_part = kNone;     // a second cell of the time: digits behind the point, or a time of day
-  std::optional<int> part_digits;    // of it, if there is one; 0: a time of day
+  std::string comments;            // that stood before it, as in RowNotes
+  std::size_t last_line = 0;       // number of the line above the first row
+  std::size_t time_place = kNone;  // which cell is the time; kNone where rows are even
+  std::size_t time_part = kNone;   // a second cell of the time: digits behind the point, or a time of day
+  std::optional<int> part_digits;  // of it, if there is one; 0: a time of day
+  DateOrder date_order = DateOrder::either;
   std::size_t only_place = kNone;    // which cell says whether a row is read
   std::vector<std::string> notices;  // how a foreign header was read, and what rows are in turn
 };

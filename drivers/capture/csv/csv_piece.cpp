@@ -77,6 +77,11 @@ struct RowTime {
   }
 };
 
+// "1.2e-0" of "1.2e-05": nobody writes an exponent of 0.
+bool ends_within_exponent(std::string_view line) {
+  return line.ends_with("e-0") || line.ends_with("e+0") || line.ends_with("E-0") || line.ends_with("E+0");
+}
+
 // One row after the other, into the columns of a piece.
 class Rows {
  public:
@@ -85,7 +90,7 @@ class Rows {
         header_(header),
         separator_(header.separator),
         stamps_(stamps),
-        unit_s_(header.layout.time.value_or(CsvTime{}).unit_s) {
+        unit_s_(header.layout.time.value_or(CsvTime{}).unit_s()) {
     piece_.rows.columns.resize(header.names.size());
     piece_.impossible.resize(header.names.size());
     for (std::size_t i = 0; i < header.cells.size(); ++i) {
@@ -114,13 +119,11 @@ class Rows {
   // ended: the line has an end, so that nothing of it is missing.
   void add(std::string_view line, std::size_t number, bool ended) {
     try {
+      if (!ended && ends_within_exponent(line)) throw Unreadable{"ends within a number"};
       add_cells(line, number);
     } catch (const Unreadable& row) {
       leave_out();
-      DamagedLines& damaged = ended ? piece_.damaged : piece_.unended;
-      if (damaged.count++ > 0) return;
-      damaged.line = number;
-      damaged.what = row.what;
+      (ended ? piece_.damaged : piece_.unended).add(number, row.what);
     }
   }
 
@@ -159,7 +162,7 @@ class Rows {
     Meaning means = Meaning::kNothing;
     Measurable range{};
     std::vector<double>* values = nullptr;  // null: nobody wants them
-    ImpossibleValues* impossible = nullptr;
+    Fault* impossible = nullptr;
     std::string_view* time = nullptr;  // of a time: its cell
   };
 
@@ -218,7 +221,11 @@ class Rows {
     const std::string_view text = *found;
     if (text.empty()) return false;
     const std::string& name = header_.cells[header_.time_place].name;
-    const TimeDigits digits(text, separator_ != ',');
+    const TimeDigits digits(text, separator_ != ',', header_.date_order);
+    if (header_.date_order != DateOrder::either && !digits.is_date() && is_date(text))
+      throw Unreadable{printable(name) + " is " + in_quotes(text) +
+                       ", expected day and month in the order of the rows above; write the dates as "
+                       "year-month-day"};
     if (digits.is_date() && unit_s_ != 1.0)
       throw Unreadable{printable(name) + " is " + in_quotes(text) +
                        ", a date, which says its own unit, expected no other one of --time"};
@@ -241,11 +248,7 @@ class Rows {
     const Place& to = to_[place];
     const bool possible = std::isnan(value) || to.range.holds(value);
     if (to.values != nullptr) to.values->push_back(possible ? value : kMissing);
-    if (possible) return;
-    ImpossibleValues& impossible = *to.impossible;
-    if (impossible.count++ > 0) return;
-    impossible.line = line;
-    impossible.first = text;
+    if (!possible) to.impossible->add(line, std::string(text));
   }
 
   CsvPiece& piece_;
@@ -271,14 +274,14 @@ std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& he
     if (header.part_digits) time.part = cell_at(line, header.time_part, header.separator);
     const std::optional<std::string_view> first = time.text(header.part_digits);
     if (!first || first->empty()) continue;
-    return TimeStamps(TimeDigits(*first, header.separator != ','),
-                      header.layout.time.value_or(CsvTime{}).unit_s);
+    return TimeStamps(TimeDigits(*first, header.separator != ',', header.date_order),
+                      header.layout.time.value_or(CsvTime{}).unit_s());
   }
   return std::nullopt;
 }
 
 CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const TimeStamps& stamps,
-                         const std::string& path, std::size_t lines_before, RowBlock used) {
+                         RowBlock used) {
   CsvPiece piece;
   piece.rows = std::move(used);
   piece.rows.origin = stamps.origin();
@@ -286,10 +289,13 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
   // Rows are about as long as the first, and have at least a separator a column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
   rows.begin(text.size() / length + text.size() / length / 16 + 1);
-  Lines lines(text, lines_before);
+  Lines lines(text);
   std::string_view line;
   while (lines.next(line)) {
-    if (line.size() > kLongestLine) refuse_long_line(path, lines.number(), line);
+    if (line.size() > kLongestLine) {
+      piece.too_long.add(lines.number(), std::string(line.substr(0, kLongestLine)));
+      break;
+    }
     if (is_no_row(line)) {
       if (line.starts_with('#')) piece.comments.append(trimmed(line.substr(1))) += '\n';
       continue;
@@ -300,7 +306,7 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
       rows.add(line, lines.number(), !lines.rest().empty() || text.ends_with('\n'));
     }
   }
-  piece.lines = lines.number() - lines_before;
+  piece.lines = lines.number();
   return piece;
 }
 

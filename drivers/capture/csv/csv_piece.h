@@ -19,31 +19,26 @@
 
 namespace ifog {
 
-// Lines that cannot be read as rows: what is wrong with the first, without the path.
-struct DamagedLines {
-  std::size_t count = 0, line = 0;
-  std::string what;
-};
-
 struct CsvPiece {
-  RowBlock rows;                             // times since the stamps' origin and values in the file's units
-  std::string comments;                      // as in RowNotes
-  std::vector<ImpossibleValues> impossible;  // by column; lines of the piece
+  RowBlock rows;                  // times since the stamps' origin and values in the file's units
+  std::string comments;           // as in RowNotes
+  std::vector<Fault> impossible;  // by column: values that no sensor measures, read as missing
   std::size_t lines = 0;
   std::size_t row_bytes = 0;  // of the lines that are rows
   std::size_t untimed = 0;    // rows of another sensor, which have no time of this one
-  DamagedLines damaged;       // lines of the piece, left out
-  DamagedLines unended;       // the last line, where it has no end and is damaged
+  Fault damaged;              // lines that cannot be read as rows, left out
+  Fault unended;              // the last line, where it has no end and is damaged
+  Fault too_long;             // a line that no text has, with its beginning
   std::size_t places = 0;     // rows and damaged lines: what even rows count
 };
 
 // The stamps that count from the text's first time; nothing where it has no row.
 std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& header);
 
-// text: whole lines. stamps: of the whole file's times. lines_before: of the file. Where rows are even, times
-// are the numbers of the rows. used: a block whose memory is used again. Throws
-// std::runtime_error with one line for what is no text of lines. A row that cannot be read is left out and counted.
+// text: whole lines. stamps: of the whole file's times. Where rows are even, times are the numbers of the rows.
+// used: a block whose memory is used again. Lines count from the piece's own first. A row that cannot be read is
+// left out and counted; a line that is too long is the last one looked at.
 CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const TimeStamps& stamps,
-                         const std::string& path, std::size_t lines_before, RowBlock used = {});
+                         RowBlock used = {});
 
 }  // namespace ifog

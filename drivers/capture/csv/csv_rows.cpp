@@ -76,14 +76,13 @@ class CsvRows {
   struct Piece {
     std::string text;
     RowBlock rows;
-    std::future<std::optional<CsvPiece>> parsed;  // nothing: refused, with lines counted from its own first
+    std::future<CsvPiece> parsed;
   };
 
   std::string begin(CsvText& pieces);
   void in_order(CsvText& pieces, std::string text);
   void parse(Piece& piece);
   void deliver(Piece& piece);
-  void note(const DamagedLines& found, DamagedLines& all) const;
   void tell_damaged();
   void finish();
 
@@ -94,9 +93,9 @@ class CsvRows {
   const WereRows were_rows_;
   CsvHeader header_;
   RowNotes notes_;
-  std::vector<ImpossibleValues> impossible_;  // by column
+  std::vector<Fault> impossible_;  // by column
   std::optional<RowChecks> checks_;
-  DamagedLines damaged_, unended_;
+  Fault damaged_, unended_;
   std::size_t lines_ = 0, untimed_ = 0, places_ = 0;
   std::optional<TimeStamps> stamps_;  // once there is a row
 };
@@ -128,10 +127,8 @@ std::string CsvRows::begin(CsvText& pieces) {
   impossible_.resize(header_.names.size());
   checks_.emplace(path_, header_.layout, header_.columns, sink_, notes_);
   sink_.begin(header_.names);
-  // Leaps are looked for in every rate, whoever wants it.
   for (CsvCell& cell : header_.cells)
-    if (cell.column < header_.names.size())
-      cell.kept = header_.columns[cell.column].rate || sink_.wants(cell.column);
+    if (cell.column < header_.names.size()) cell.kept = sink_.wants(cell.column);
   return std::string(lines.rest());
 }
 
@@ -154,12 +151,8 @@ void CsvRows::in_order(CsvText& pieces, std::string text) {
 }
 
 void CsvRows::parse(Piece& piece) {
-  const auto parsed = [this, &piece, stamps = stamps_.value_or(TimeStamps())]() -> std::optional<CsvPiece> {
-    try {
-      return parse_csv_piece(piece.text, header_, stamps, path_, 0, std::move(piece.rows));
-    } catch (const std::runtime_error&) {
-      return std::nullopt;
-    }
+  const auto parsed = [this, &piece, stamps = stamps_.value_or(TimeStamps())] {
+    return parse_csv_piece(piece.text, header_, stamps, std::move(piece.rows));
   };
   const bool worth = piece.text.size() >= kWorthAThread;
   try {
@@ -170,24 +163,20 @@ void CsvRows::parse(Piece& piece) {
 }
 
 void CsvRows::deliver(Piece& piece) {
-  std::optional<CsvPiece> parsed = piece.parsed.get();
-  // Here it is known where the piece stands, and so what to say.
-  if (!parsed) parsed = parse_csv_piece(piece.text, header_, stamps_.value_or(TimeStamps()), path_, lines_);
-  notes_.comments += parsed->comments;
-  for (std::size_t c = 0; c < impossible_.size(); ++c) {
-    const ImpossibleValues& found = parsed->impossible[c];
-    if (impossible_[c].count == 0) impossible_[c] = {0, lines_ + found.line, found.first};
-    impossible_[c].count += found.count;
-  }
-  note(parsed->damaged, damaged_);
-  note(parsed->unended, unended_);
-  piece.rows = std::move(parsed->rows);
+  CsvPiece parsed = piece.parsed.get();
+  if (parsed.too_long.count > 0)
+    refuse_long_line(path_, lines_ + parsed.too_long.line, parsed.too_long.first);
+  notes_.comments += parsed.comments;
+  for (std::size_t c = 0; c < impossible_.size(); ++c) impossible_[c].append(parsed.impossible[c], lines_);
+  damaged_.append(parsed.damaged, lines_);
+  unended_.append(parsed.unended, lines_);
+  piece.rows = std::move(parsed.rows);
   RowBlock& rows = piece.rows;
   for (std::size_t& line : rows.lines) line += lines_;
-  lines_ += parsed->lines;
-  untimed_ += parsed->untimed;
-  const std::size_t places = std::exchange(places_, places_ + parsed->places);
-  were_rows_(parsed->row_bytes);
+  lines_ += parsed.lines;
+  untimed_ += parsed.untimed;
+  const std::size_t places = std::exchange(places_, places_ + parsed.places);
+  were_rows_(parsed.row_bytes);
   // So many that nothing is gained by looking on.
   constexpr std::size_t kHopeless = 1000;
   if (damaged_.count > std::max(kHopeless, checks_->rows() + rows.size())) tell_damaged();
@@ -198,22 +187,14 @@ void CsvRows::deliver(Piece& piece) {
   checks_->take(rows);
 }
 
-void CsvRows::note(const DamagedLines& found, DamagedLines& all) const {
-  if (all.count == 0) all = {0, lines_ + found.line, found.what};
-  all.count += found.count;
-}
-
 // The last line without its end counts for itself.
 void CsvRows::tell_damaged() {
   const std::size_t rows = checks_->rows();
   for (const auto& [found, few] :
        {std::pair{&damaged_, rows >= kRowsAFault * damaged_.count}, {&unended_, rows > 0}}) {
     if (found->count == 0) continue;
-    if (!few) fail_at(path_, found->line, found->what);
-    notes_.faults.push_back(
-        path_ + ":" + std::to_string(found->line) + ": " + found->what + "; " +
-        (found->count == 1 ? "this line is" : std::to_string(found->count) + " such lines are") +
-        " left out");
+    if (!few) fail_at(path_, found->line, found->first);
+    notes_.faults.push_back(found->left_out(path_, "line"));
   }
 }
 

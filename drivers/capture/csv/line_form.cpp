@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <map>
+#include <system_error>
 #include <utility>
 
 #include "drivers/capture/csv/table_form.h"
@@ -55,23 +57,14 @@ struct Values {
 std::size_t end_of_number(std::string_view line, std::size_t at) {
   const char before = at > 0 ? line[at - 1] : ' ';
   if (is_alphabetic(before) || is_decimal(before) || before == '_' || before == '.') return at;
-  if (line.substr(at).starts_with("0x")) return at;
-  std::size_t end = at;
-  if (line[end] == '-' || line[end] == '+') ++end;
-  const std::size_t digits = end;
-  while (end < line.size() && (is_decimal(line[end]) || line[end] == '.')) ++end;
-  if (std::none_of(line.begin() + static_cast<std::ptrdiff_t>(digits),
-                   line.begin() + static_cast<std::ptrdiff_t>(end), is_decimal))
-    return at;
-  if (end + 1 < line.size() && (line[end] == 'e' || line[end] == 'E')) {
-    std::size_t power = end + 1;
-    if (line[power] == '-' || line[power] == '+') ++power;
-    if (power < line.size() && is_decimal(line[power])) {
-      end = power;
-      while (end < line.size() && is_decimal(line[end])) ++end;
-    }
-  }
-  return end;
+  std::string_view rest = line.substr(at);
+  if (rest.starts_with("0x")) return at;
+  if (rest.starts_with('+')) rest.remove_prefix(1);
+  const std::size_t digit = rest.find_first_not_of("-.");
+  if (digit > 2 || !is_decimal(rest[digit])) return at;  // no "nan" or "inf"
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(rest.begin(), rest.end(), value);
+  return error == std::errc::invalid_argument ? at : static_cast<std::size_t>(end - line.begin());
 }
 
 // "gx" of ", gx: "; "" of what names nothing.

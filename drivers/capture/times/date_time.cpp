@@ -54,9 +54,9 @@ std::optional<std::chrono::sys_days> valid_day(int year, int month, int day) {
   return date.ok() ? std::optional(std::chrono::sys_days(date)) : std::nullopt;
 }
 
-// "2026-05-01" or "2026/05/01"; as spreadsheets write it "1.5.2026", the day first, and "5/1/2026", the month
-// first unless only the other way is a date; as MATLAB does "01-May-2026".
-std::optional<std::chrono::sys_days> day_of(TextCursor& rest) {
+// "2026-05-01" or "2026/05/01"; as spreadsheets write it "1.5.2026", the day first, and "5/1/2026"; as MATLAB does
+// "01-May-2026".
+std::optional<std::chrono::sys_days> day_of(TextCursor& rest, DateOrder order) {
   int first = 0, second = 0, third = 0;
   if (!rest.number(1, 4, first)) return std::nullopt;
   const char* const between = rest.text("-")   ? "-"
@@ -70,9 +70,10 @@ std::optional<std::chrono::sys_days> day_of(TextCursor& rest) {
     return std::nullopt;
   if (first > 31) return *between == '.' ? std::nullopt : valid_day(first, second, third);
   if (third < 1000 || (*between == '-' && !named) || *between == '_') return std::nullopt;
-  if (*between == '/')
-    if (const auto month_first = valid_day(third, first, second)) return month_first;
-  return valid_day(third, second, first);
+  const auto month_first = valid_day(third, first, second);
+  if (*between != '/' || order == DateOrder::day_first || (order == DateOrder::either && !month_first))
+    return valid_day(third, second, first);
+  return month_first;
 }
 
 // What local time is ahead of UTC by.
@@ -88,12 +89,12 @@ std::optional<std::int64_t> offset_s(TextCursor& rest) {
   return behind ? -by_s : by_s;
 }
 
-std::optional<Moment> moment_of(std::string_view text) {
+std::optional<Moment> moment_of(std::string_view text, DateOrder order) {
   Moment moment;
   TextCursor rest(text);
   if (text.size() > 2 && (text[1] == ':' || text[2] == ':'))
     return time_of_day(rest, true, moment) && rest.done() ? std::optional(moment) : std::nullopt;
-  const auto day = day_of(rest);
+  const auto day = day_of(rest, order);
   if (!day) return std::nullopt;
   moment.s = std::chrono::sys_seconds(*day).time_since_epoch().count();
   if (rest.done()) return moment;
@@ -106,7 +107,7 @@ std::optional<Moment> moment_of(std::string_view text) {
 
 }  // namespace
 
-std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to) {
+std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to, DateOrder order) {
   constexpr std::size_t kWhole = 24;  // characters of any number of seconds
   // No number has one of these near its beginning, or two points: of numbers, which most times are, nothing
   // more is asked.
@@ -114,7 +115,7 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
   if (text.size() < 5 ||
       (begin.find_first_of(":/-_", 1) == std::string_view::npos && begin.find('.') == begin.rfind('.')))
     return {};
-  auto moment = moment_of(text);
+  auto moment = moment_of(text, order);
   if (!moment || moment->fraction.size() > to.size() - kWhole) return {};
   // Before 1970 the digits behind the point count on, and those of a negative number count back.
   if (moment->s < 0 && !moment->fraction.empty()) return {};
@@ -141,8 +142,9 @@ PointDigits::PointDigits(std::string_view cell, bool decimal_comma) : digits_(ce
   digits_ = {made_.data(), cell.size()};
 }
 
-TimeDigits::TimeDigits(std::string_view cell, bool decimal_comma) : PointDigits(cell, decimal_comma) {
-  const std::string_view date = date_in_digits(cell, made_);
+TimeDigits::TimeDigits(std::string_view cell, bool decimal_comma, DateOrder order)
+    : PointDigits(cell, decimal_comma) {
+  const std::string_view date = date_in_digits(cell, made_, order);
   date_ = !date.empty();
   if (date_) digits_ = date;
 }

@@ -13,13 +13,17 @@ namespace ifog {
 
 inline constexpr std::size_t kLongestDate = 64;
 
+// Of "5/1/2026". either: the month first, where that is a date.
+enum class DateOrder { either, month_first, day_first };
+
 // The seconds since 1970 of "2026-05-01T12:00:00.25Z": date and time of day, or a day alone; "/" or "_" for
-// "-", the year last as in "1.5.2026" (the day first) and "5/1/2026" (the month first, where that is a date), a
+// "-", the year last as in "1.5.2026" (the day first) and "5/1/2026" (in that order), a
 // month's name as in "01-May-2026", a space or "_" for "T", "_" for ":", AM or PM, seconds missing, a comma for
 // the point, an offset of "+02:00", "+0200", "+02", "UTC"; without one it is UTC. Of a time of day alone,
 // "12:00:00.25", those since midnight. A leap second is the second behind it. `to` takes the digits; the text is
 // empty for what is no such date.
-std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to);
+std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to,
+                                DateOrder order = DateOrder::either);
 
 [[nodiscard]] inline bool is_date(std::string_view text) {
   std::array<char, kLongestDate> digits;
@@ -45,7 +49,7 @@ class PointDigits {
 // A cell of a time: the digits of a date, or of a number.
 class TimeDigits : public PointDigits {
  public:
-  TimeDigits(std::string_view cell, bool decimal_comma);
+  TimeDigits(std::string_view cell, bool decimal_comma, DateOrder order = DateOrder::either);
   [[nodiscard]] bool is_date() const { return date_; }
 
  private:

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/capture/times/time_stamps.h"
@@ -17,6 +18,28 @@ inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // One faulty row in so many is left to a serial line, a full disk or a clock that was set; more mean another table.
 inline constexpr std::size_t kRowsAFault = 100;
+
+// Cells, rows or lines of which one thing is wrong.
+struct Fault {
+  std::size_t count = 0;
+  std::size_t line = 0;  // of the first
+  std::string first;     // the cell as it stands there, or what is wrong
+
+  void add(std::size_t at, std::string what) {
+    if (count++ == 0) line = at, first = std::move(what);
+  }
+  // Those of a piece that `lines` others stand before.
+  void append(const Fault& piece, std::size_t lines) {
+    if (count == 0) line = lines + piece.line, first = piece.first;
+    count += piece.count;
+  }
+  // "PATH:LINE: FIRST; 3 such rows are left out"; kind: "row".
+  [[nodiscard]] std::string left_out(const std::string& path, const std::string& kind) const {
+    return path + ":" + std::to_string(line) + ": " + first + "; " +
+           (count == 1 ? "this " + kind + " is" : std::to_string(count) + " such " + kind + "s are") +
+           " left out";
+  }
+};
 
 // Rows that follow one another, by column.
 struct RowBlock {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
 
 #include "drivers/capture/csv/csv_writer.h"
 #include "drivers/capture/files/text_file.h"
@@ -16,41 +15,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-ifog::Table table_in(const std::string& text, const std::string& path) {
-  ifog::InputFile file(path, text);
-  return ifog::read_table(file);
+ifog::Capture capture_in(const std::string& text) { return ifog::parse_capture(text, "c.csv"); }
+
+std::string refusal_of(const std::string& text) {
+  try {
+    capture_in(text);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "accepted";
 }
 
-class CaptureFile : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("ifog-capture-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string file(const std::string& text) const {
-    std::ofstream(path("c.csv")) << text;
-    return path("c.csv");
-  }
-  // The message of the refusal, without the folder.
-  std::string refusal(const std::string& text) const {
-    try {
-      ifog::read_capture(file(text));
-    } catch (const std::runtime_error& error) {
-      return std::string(error.what()).substr(folder_.string().size() + 1);
-    }
-    return "accepted";
-  }
-
- private:
-  fs::path folder_;
-};
-
-TEST_F(CaptureFile, SortsColumnsByTheirNames) {
-  const ifog::Capture c = ifog::read_capture(
-      file("# a gyro\ntime_s,rate_x_radps,rate_y_radps,reference_rate_y_radps,temperature_degC\n"
-           "0,1e-3,2,3,25.5\n0.5,,nan,+4,\n"));
+TEST(CaptureText, SortsColumnsByTheirNames) {
+  const ifog::Capture c = capture_in(
+      "# a gyro\ntime_s,rate_x_radps,rate_y_radps,reference_rate_y_radps,temperature_degC\n"
+      "0,1e-3,2,3,25.5\n0.5,,nan,+4,\n");
   EXPECT_EQ(c.comments, std::vector<std::string>{"a gyro"});
   EXPECT_EQ(c.axes, (std::vector<std::string>{"x", "y"}));
   EXPECT_EQ(c.time_s, (std::vector<double>{0.0, 0.5}));
@@ -63,52 +42,53 @@ TEST_F(CaptureFile, SortsColumnsByTheirNames) {
   EXPECT_EQ(c.channels[0].name, "temperature_degC");
 }
 
-TEST_F(CaptureFile, RefusesWithFileLineValueAndExpectation) {
-  EXPECT_EQ(refusal("rate_radps\n1\n"),
+TEST(CaptureText, RefusesWithFileLineValueAndExpectation) {
+  EXPECT_EQ(refusal_of("rate_radps\n1\n"),
             "c.csv:1: no time column; to read it: --sample-rate HZ --column rate_radps=rate_radps:radps");
-  EXPECT_EQ(refusal("time_s,temperature_degC\n0,1\n"),
+  EXPECT_EQ(refusal_of("time_s,temperature_degC\n0,1\n"),
             "c.csv:1: no rate column among 'temperature_degC', expected 'rate_radps' or 'rate_x_radps', …, "
             "or --column "
             "rate_x_radps=NAME:UNIT with one of these names");
-  EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1,1x\n"),
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1,1x\n"),
             "c.csv:3: rate_radps is '1x', expected a number, 'nan' or nothing");
-  EXPECT_EQ(refusal("time_s,rate_radps\n1,1\n0.5,1\n"),
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n1,1\n0.5,1\n"),
             "c.csv:3: time_s is 0.5 s, expected more than in the row before; --sample-rate HZ reads all rows "
             "as even");
-  EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1\n"), "c.csv:3: 1 cells, expected 2 (a truncated line?)");
-  EXPECT_EQ(refusal("time_s,rate_radps\n"), "c.csv: no rows after the header");
-  EXPECT_EQ(refusal("time_s,rate_radps\n0,inf\n"),
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1\n"), "c.csv:3: 1 cells, expected 2 (a truncated line?)");
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n"), "c.csv: no rows after the header");
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,inf\n"),
             "c.csv:2: rate_radps is 'inf', which no sensor measures, expected -10000 to 10000");
 }
 
 // What R, pandas, databases and spreadsheets make of a missing value, and of the end of a row.
-TEST_F(CaptureFile, WordsForNoValueAndSeparatorsAtTheEnd) {
+TEST(CaptureText, WordsForNoValueAndSeparatorsAtTheEnd) {
   for (const std::string word : {"NA", "na", "N/A", "#N/A", "null", "NULL", "None", "-", "NaN", ""})
     for (const std::string header_end : {"", ",", ", "})
       for (const std::string row_end : {"", ",", ", "}) {
-        const ifog::Capture c =
-            ifog::read_capture(file("time_s,rate_radps,temperature_degC" + header_end + "\n0,1," + word +
-                                    row_end + "\n1," + word + ",7" + row_end + "\n2,3,8\n"));
+        const ifog::Capture c = capture_in("time_s,rate_radps,temperature_degC" + header_end + "\n0,1," +
+                                           word + row_end + "\n1," + word + ",7" + row_end + "\n2,3,8\n");
         ASSERT_EQ(c.size(), 3U) << word;
         EXPECT_TRUE(std::isnan(c.rate_radps[0][1])) << word;
         ASSERT_EQ(c.channels.size(), 1U) << word;
         EXPECT_TRUE(std::isnan(c.channels[0].values[0])) << word;
         EXPECT_EQ(c.channels[0].values[1], 7.0) << word;
       }
-  EXPECT_EQ(refusal("time_s,rate_radps\n0,1\n1,NAN1\n"),
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1,NAN1\n"),
             "c.csv:3: rate_radps is 'NAN1', expected a number, 'nan' or nothing");
-  EXPECT_EQ(refusal("time_s,rate_radps\n0,1,,\n"), "c.csv:2: more cells than the 2 columns of the header");
-  EXPECT_EQ(refusal("time_s,rate_radps,\n0,1,5\n"), "c.csv:2: more cells than the 2 columns of the header");
-  EXPECT_EQ(refusal("time_s,rate_radps\nNA,1\n"), "c.csv:2: time_s is missing, expected a time");
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1,,\n"), "c.csv:2: more cells than the 2 columns of the header");
+  EXPECT_EQ(refusal_of("time_s,rate_radps,\n0,1,5\n"),
+            "c.csv:2: more cells than the 2 columns of the header");
+  EXPECT_EQ(refusal_of("time_s,rate_radps\nNA,1\n"), "c.csv:2: time_s is missing, expected a time");
 }
 
-TEST_F(CaptureFile, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
+TEST(CaptureText, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
   std::vector<double> time_s, rate_radps;
   for (int i = 0; i < 5000; ++i) {
     time_s.push_back(i / 3.0);
     rate_radps.push_back(std::sin(i * 0.7) * 1e-5);
   }
-  const std::string name = path("c.csv.gz");
+  const std::string name =
+      fs::temp_directory_path() / ("ifog-capture-" + std::to_string(getpid()) + ".csv.gz");
   ifog::CsvWriter file(name, "", {"time_s", "rate_radps"});
   file.rows(std::vector<std::span<const double>>{time_s, rate_radps});
   file.finish();
@@ -123,11 +103,12 @@ TEST_F(CaptureFile, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
   ASSERT_FALSE(cut.faults.empty());
   EXPECT_EQ(cut.faults.back(),
             name + ": the gzip stream ends early (truncated file); the rows until there are read");
+  fs::remove(name);
 }
 
 TEST(CaptureText, ARowsLineIsKnownWithoutASecondLook) {
-  const ifog::Table table =
-      table_in("# a\n\ntime_s,rate_radps\n0,1\n# b\n1,1\n\n\n2,1\n3,1\n# end\n", "t.csv");
+  ifog::InputFile file("t.csv", "# a\n\ntime_s,rate_radps\n0,1\n# b\n1,1\n\n\n2,1\n3,1\n# end\n");
+  const ifog::Table table = ifog::read_table(file);
   EXPECT_EQ(table.header_line, 3U);
   const std::size_t lines[] = {4, 6, 9, 10};
   for (std::size_t row = 0; row < 4; ++row) EXPECT_EQ(table.line_of_row(row), lines[row]);

@@ -367,6 +367,20 @@ TEST(CsvLayout, FilesOfOtherProgramsAreReadOrOfferedRight) {
   }
 }
 
+// A day above 12 says the order of all rows; one that contradicts it later is no row.
+TEST(CsvLayout, RowsDecideWhatIsTheDay) {
+  const auto read = [](const std::string& day, const std::string& next) {
+    return parse_capture(
+        rows_of("t,gyro_x_dps\n", day + " 23:59:59.{i},{x}", 400) + next + " 00:00:00.1,0.1\n", "a.csv");
+  };
+  EXPECT_EQ(read("13/06/2023", "14/06/2023").origin.s, 1686700799);
+  EXPECT_EQ(read("13/06/2023", "14/06/2023").faults.size() + read("2023-06-12", "2023-06-13").faults.size(),
+            0U);
+  EXPECT_EQ(read("12/06/2023", "13/06/2023").faults.at(0),
+            "a.csv:402: t is '13/06/2023 00:00:00.1', expected day and month in the order of the rows above; "
+            "write the dates as year-month-day; this line is left out");
+}
+
 TEST(CsvLayout, TheOptionThatIsPrintedKeepsTheScale) {
   EXPECT_EQ(refusal([] { parse_capture("a,b\n1,2\n", "a.csv", layout({"rate_radps=b:12.5deg/s"})); }),
             "a.csv:1: no time column; to read it: --sample-rate HZ --column rate_radps=b:12.5deg/s");

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <stdexcept>
 
 #include "drivers/capture/capture.h"
@@ -116,27 +115,6 @@ TEST(Measurable, AColumnOfThemIsRefusedAndSoIsWhatIsNoNumber) {
   // A time is not to be guessed.
   EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1e30,1\n").substr(0, 49),
             "a.csv:3: time_s is '1e30', which no sensor measur");
-}
-
-std::size_t leaps(double step_s, const std::function<double(int)>& rate_radps) {
-  std::string text = "time_s,rate_radps\n";
-  for (int i = 0; i < 100; ++i)
-    text += std::to_string(step_s * i) + "," + std::to_string(rate_radps(i)) + "\n";
-  return parse_capture(text, "a.csv").faults.size();
-}
-
-// 999 rad/s for a tenth of a second are 16 turns, from standstill to standstill.
-TEST(Measurable, ARateThatLeapsOverHalfATurnIsMissing) {
-  const Capture read = parse_capture(capture("rate_radps,reference_rate_radps", 2, 70, 0, "-999"), "a.csv");
-  EXPECT_TRUE(std::isnan(read.rate_radps[0][70]));
-  ASSERT_EQ(read.faults.size(), 1U);
-  EXPECT_NE(read.faults[0].find("a.csv:72: rate_radps says more than half a turn"), std::string::npos);
-  // A fifth of a turn may be; and a table that spins up stays, however fast.
-  EXPECT_TRUE(parse_capture(capture("rate_radps,t_degC", 2, 70, 0, "12"), "a.csv").faults.empty());
-  EXPECT_EQ(leaps(0.01, [](int i) { return i < 40 || i > 60 ? 0.0 : 900.0; }), 0U);
-  EXPECT_EQ(leaps(0.01, [](int i) { return i == 40 ? 900.0 : 0.0; }), 1U);
-  // Dwells of a rate table, a row each.
-  EXPECT_EQ(leaps(5.0, [](int i) { return i % 2 == 0 ? 0.0 : 3.0; }), 0U);
 }
 
 }  // namespace

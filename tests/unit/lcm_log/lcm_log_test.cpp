@@ -15,6 +15,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "drivers/capture/capture.h"
 #include "drivers/capture/files/text_file.h"
 
 namespace ifog::tools {
@@ -69,7 +70,7 @@ class LcmLog : public testing::Test {
   }
   Table published(const std::string& channel) const {
     InputFile file(path_);
-    return read_published(file, channel);
+    return table_of([&](RowSink& sink) { return read_published(file, channel, sink), RowNotes{}; });
   }
   std::string refusal(const std::string& channel = "") {
     finish();

@@ -103,6 +103,27 @@ TEST(Glitches, RepeatedValuesAreOut) {
   EXPECT_TRUE(faults.empty());
 }
 
+// A placeholder now and then, each time for one sample. A single blow, however far, is the sensor's.
+TEST(Glitches, SinglePlaceholdersAreOutOfARateThatIsHandedOn) {
+  for (const bool often : {true, false}) {
+    std::vector<double> logged = white(20000, 6);
+    logged[100] = -174.5;
+    if (often) logged[5000] = -174.5;
+    logged[12000] = 3.0;
+    LongSeries rate;
+    rate.add(logged);
+    std::vector<ValueFault> faults;
+    leave_out_placeholders(
+        rate, [](std::size_t i) { return 1e-2 * static_cast<double>(i); }, faults);
+    ASSERT_EQ(faults.size(), often ? 1U : 0U);
+    for (const ValueFault& fault : faults)
+      EXPECT_NE(fault.text.find("2 samples leap away and back (the first at 1 s"), std::string::npos);
+    EXPECT_EQ(std::isnan(SeriesView(rate).at(100)), often);
+    EXPECT_EQ(std::isnan(SeriesView(rate).at(5000)), often);
+    EXPECT_EQ(SeriesView(rate).at(12000), 3.0);
+  }
+}
+
 // What stays where it has gone is a step, what takes several samples a blow: both are rates.
 TEST(Glitches, NoiseStepsAndBlowsAreNone) {
   std::vector<double> rate = white(200000, 2);

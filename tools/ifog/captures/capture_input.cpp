@@ -288,10 +288,7 @@ LongCapture CaptureInput::read_long_capture(const std::string& path, std::string
     file.read_to_the_end();
     *sha256 = hash.hex();
   }
-  table.leave_out_repeats();
-  for (const LongColumn& column : table.columns)
-    for (const ValueFault& repeat : column.repeats)
-      warn("%s\n", table.faults.emplace_back(path + ": " + column.name + ": " + repeat.text).c_str());
+  table.clean_and_tell(leave_out_repeats, path);
   return {std::move(table), path};
 }
 

@@ -12,8 +12,7 @@
 namespace ifog::tools {
 namespace {
 
-template <class Values>
-void keep(const TimePart::Rows& rows, Values& values) {
+void keep(const TimePart::Rows& rows, Samples& values) {
   if (values.empty() || (rows.begin == 0 && rows.end == values.size())) return;
   values.erase(values.begin() + static_cast<std::ptrdiff_t>(rows.end), values.end());
   values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rows.begin));
@@ -71,17 +70,6 @@ std::size_t TimePart::cut(Samples& time_s, const TimeOrigin& origin, std::span<S
   const Rows kept = rows(std::span<const double>(time_s), origin, name);
   keep(kept, time_s);
   for (Samples* const column : columns) keep(kept, *column);
-  return kept.begin;
-}
-
-std::size_t TimePart::cut(Capture& capture, const std::string& name) const {
-  const Rows kept = rows(capture.time_s, capture.origin, name);
-  if (capture.since_power_up_s && kept.begin < capture.size())
-    *capture.since_power_up_s += capture.time_s[kept.begin] - capture.time_s.front();
-  keep(kept, capture.time_s);
-  for (std::vector<double>& rate : capture.rate_radps) keep(kept, rate);
-  for (std::vector<double>& reference : capture.reference_rate_radps) keep(kept, reference);
-  for (CaptureColumn& column : capture.channels) keep(kept, column.values);
   return kept.begin;
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/capture.h"
+#include "drivers/capture/times/time_stamps.h"
 #include "filters/series/samples.h"
 #include "filters/series/series_view.h"
 #include "tools/ifog/console/options/command.h"
@@ -35,10 +35,8 @@ struct TimePart {
   // The same refusal, of times that nobody kept.
   [[noreturn]] void refuse_empty(double first_s, double last_s, const std::string& name) const;
 
-  // Rows outside are gone. Returns how many were before. name: for messages. Throws std::runtime_error with
-  // one line when no row is inside.
-  std::size_t cut(Capture& capture, const std::string& name) const;
-  // columns: as long as the times, or empty.
+  // Rows outside are gone. Returns how many were before. name: for messages; columns: as long as the times, or
+  // empty. Throws std::runtime_error with one line when no row is inside.
   std::size_t cut(Samples& time_s, const TimeOrigin& origin, std::span<Samples* const> columns,
                   const std::string& name) const;
 };

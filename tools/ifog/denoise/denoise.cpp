@@ -288,6 +288,7 @@ void run(DenoiseOptions options) {
     result = denoise_recording(options.input, capture, driver, settings(), sink);
   } else {
     LongTable table = options.input.read_long(capture);
+    table.clean_and_tell(leave_out_placeholders, options.capture);
     keep_usable_axes(table, options.capture);
     rows.count_from(table.origin);
     OfflineSettings of = settings();

@@ -177,8 +177,9 @@ RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const Recor
   });
 }
 
-void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
-                        const std::function<void(const RecordedSample&)>& added) {
+std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
+                                         const std::function<void()>& added) {
+  std::int64_t first_ns = 0;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   builder.allow_restarts();
   std::vector<ChannelValue> before(header().channels.size());
@@ -191,17 +192,15 @@ void FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
                                    before[i] = now;
                                  }
                                  builder.add(recorded.sample, fresh);
-                                 added(recorded);
+                                 if (first_ns == 0) first_ns = recorded.came_ns;
+                                 added();
                                },
                                [&] { builder.discontinuity(); },
                                {},
                                [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
   for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
   say_of_samples(builder, file_.path());
-}
-
-// By the first file's header; files of several power-ups behind one another show in the times.
-std::optional<double> FlightInput::since_power_up_s(std::int64_t first_ns) const {
+  // By the first file's header; files of several power-ups behind one another show in the times.
   const auto powered_ns = header().powered_ns;
   if (!powered_ns || first_ns < *powered_ns) return std::nullopt;
   return static_cast<double>(first_ns - *powered_ns) * 1e-9;
@@ -210,12 +209,9 @@ std::optional<double> FlightInput::since_power_up_s(std::int64_t first_ns) const
 Capture FlightInput::capture(DriverInstance& driver) {
   return with_name([&] {
     CaptureBuilder builder(driver.description(), header().channels);
-    std::int64_t first_ns = 0;
-    build(driver, builder, [&](const RecordedSample& sample) {
-      if (first_ns == 0) first_ns = sample.came_ns;
-    });
+    const auto since_power_up_s = build(driver, builder, [] {});
     Capture out = builder.finish();
-    out.since_power_up_s = since_power_up_s(first_ns);
+    out.since_power_up_s = since_power_up_s;
     return out;
   });
 }
@@ -224,14 +220,9 @@ RowNotes FlightInput::rows(DriverInstance& driver, RowSink& sink) {
   return with_name([&] {
     CaptureBuilder builder(driver.description(), header().channels);
     BuiltRows rows(builder, sink);
-    std::int64_t first_ns = 0;
-    build(driver, builder, [&](const RecordedSample& sample) {
-      if (first_ns == 0) first_ns = sample.came_ns;
-      rows.added();
-    });
-    rows.finish();
     RowNotes notes;
-    notes.since_power_up_s = since_power_up_s(first_ns);
+    notes.since_power_up_s = build(driver, builder, [&] { rows.added(); });
+    rows.finish();
     return notes;
   });
 }

@@ -57,9 +57,9 @@ class FlightInput {
  private:
   template <typename Work>
   auto with_name(Work&& work) const;
-  void build(DriverInstance& driver, CaptureBuilder& builder,
-             const std::function<void(const RecordedSample&)>& added);
-  [[nodiscard]] std::optional<double> since_power_up_s(std::int64_t first_ns) const;
+  // Returns the time since power-up of the first sample, where the header tells it.
+  std::optional<double> build(DriverInstance& driver, CaptureBuilder& builder,
+                              const std::function<void()>& added);
   void tell_losses() const;
   [[nodiscard]] DriverInstance made() const;
   [[nodiscard]] bool names_the_driver() const;

@@ -29,8 +29,8 @@ bool good_name(const std::string& name) {
 
 }  // namespace
 
-void LcmChannelMessages::take(const std::string& channel, std::span<const std::uint8_t> message,
-                              const std::function<void(const Said&)>& sink) const {
+void LcmChannels::unpack(const std::string& channel, std::span<const std::uint8_t> message,
+                         const std::function<void(const Said&)>& sink) const {
   const auto say = [&](const std::string& name, double value, double measured_s, bool of_status) {
     if (good_name(name) && std::isfinite(value)) sink({name, value, measured_s, of_status});
   };
@@ -48,33 +48,26 @@ void LcmChannelMessages::take(const std::string& channel, std::span<const std::u
     say(one.name, one.value, std::numeric_limits<double>::infinity(), false);
 }
 
-void LcmChannelNames::take(const std::string& channel, std::span<const std::uint8_t> message) {
-  messages_.take(channel, message, [&](const LcmChannelMessages::Said& said) {
-    const auto [at, first] = channels_.try_emplace(said.name, Channel{said.of_status, rows_});
-    if (!first && said.of_status && !at->second.of_status) at->second = {true, rows_};
+void LcmChannels::look_at(const std::string& channel, std::span<const std::uint8_t> message) {
+  unpack(channel, message, [&](const Said& said) {
+    Channel now;
+    now.of_status = said.of_status;
+    now.first_row = rows_;
+    const auto [at, first] = channels_.try_emplace(said.name, now);
+    if (!first && said.of_status && !at->second.of_status) at->second = now;
   });
 }
 
-std::map<std::string, bool> LcmChannelNames::of_status() const {
-  std::map<std::string, bool> out;
-  for (const auto& [name, channel] : channels_)
-    if (channel.first_row < rows_) out.emplace(name, channel.of_status);
-  return out;
+std::vector<std::string> LcmChannels::settle(const std::vector<std::string>& without) {
+  std::erase_if(channels_, [&](const auto& entry) { return entry.second.first_row >= rows_; });
+  for (const std::string& name : without) channels_.erase(name);
+  std::vector<std::string> names;
+  for (const auto& [name, channel] : channels_) names.push_back(name);
+  return names;
 }
 
-LcmChannelRows::LcmChannelRows(const std::string& rates, const std::map<std::string, bool>& of_status)
-    : messages_(rates) {
-  for (const auto& [name, by_status] : of_status) channels_[name].of_status = by_status;
-}
-
-std::vector<std::string> LcmChannelRows::names() const {
-  std::vector<std::string> out;
-  for (const auto& [name, channel] : channels_) out.push_back(name);
-  return out;
-}
-
-void LcmChannelRows::take(const std::string& channel, std::span<const std::uint8_t> message) {
-  messages_.take(channel, message, [&](const LcmChannelMessages::Said& said) {
+void LcmChannels::take(const std::string& channel, std::span<const std::uint8_t> message) {
+  unpack(channel, message, [&](const Said& said) {
     const auto found = channels_.find(said.name);
     if (found == channels_.end() || found->second.of_status != said.of_status) return;
     Channel& mine = found->second;
@@ -86,10 +79,10 @@ void LcmChannelRows::take(const std::string& channel, std::span<const std::uint8
   });
 }
 
-void LcmChannelRows::end_row(std::span<double> values) {
-  auto value = values.begin();
+void LcmChannels::end_row(std::vector<double>& values) {
   for (auto& [name, channel] : channels_)
-    *value++ = std::exchange(channel.now, std::nullopt).value_or(std::numeric_limits<double>::quiet_NaN());
+    values.push_back(
+        std::exchange(channel.now, std::nullopt).value_or(std::numeric_limits<double>::quiet_NaN()));
 }
 
 }  // namespace ifog::tools

@@ -15,67 +15,43 @@
 
 namespace ifog::tools {
 
-// What messages say of channels, one value at a time.
-class LcmChannelMessages {
+class LcmChannels {
  public:
+  // rates: the LCM channel that carries the sensor's rates; its status is on that with _STATUS behind it.
+  explicit LcmChannels(const std::string& rates) : status_(rates + "_STATUS") {}
+
+  // The first look: any message of the log but the rates, and that a row of rates came. The status's view of a channel
+  // is scaled and held to its limits, so it stands over a message of that name. Names that no capture's column may have
+  // are dropped.
+  void look_at(const std::string& channel, std::span<const std::uint8_t> message);
+  void saw_row() { ++rows_; }
+  // The columns that have a value in some row, without those that come by another way.
+  std::vector<std::string> settle(const std::vector<std::string>& without);
+
+  // The second: what has come since the row before, by name, is appended: NaN where nothing new had.
+  void take(const std::string& channel, std::span<const std::uint8_t> message);
+  void end_row(std::vector<double>& values);
+
+ private:
   struct Said {
     const std::string& name;
     double value;
     double measured_s;  // infinite where the message does not tell
     bool of_status;
   };
-  // rates: the LCM channel that carries the sensor's rates; its status is on that with _STATUS behind it.
-  explicit LcmChannelMessages(const std::string& rates) : status_(rates + "_STATUS") {}
-
-  // Takes the channels of any message of the log. Others are dropped, and so are names that no capture's column may
-  // have as well.
-  void take(const std::string& channel, std::span<const std::uint8_t> message,
-            const std::function<void(const Said&)>& sink) const;
-
- private:
-  std::string status_;
-};
-
-// The first look.
-class LcmChannelNames {
- public:
-  explicit LcmChannelNames(const std::string& rates) : messages_(rates) {}
-  void take(const std::string& channel, std::span<const std::uint8_t> message);
-  // A row of rates came.
-  void end_row() { ++rows_; }
-
-  // For each column that has a value in some row: whether it is the status's. The status's view of a channel is
-  // scaled and held to its limits, so it stands over a message of that name.
-  [[nodiscard]] std::map<std::string, bool> of_status() const;
-
- private:
-  struct Channel {
-    bool of_status = false;
-    std::size_t first_row = 0;
-  };
-  LcmChannelMessages messages_;
-  std::map<std::string, Channel> channels_;
-  std::size_t rows_ = 0;
-};
-
-// The second.
-class LcmChannelRows {
- public:
-  LcmChannelRows(const std::string& rates, const std::map<std::string, bool>& of_status);
-
-  [[nodiscard]] std::vector<std::string> names() const;
-  void take(const std::string& channel, std::span<const std::uint8_t> message);
-  // What has come since the row before, by name: NaN where nothing new had. values: one for each.
-  void end_row(std::span<double> values);
-
- private:
   struct Channel {
     bool of_status = false, known = false;
+    std::size_t first_row = 0;
     double last = 0.0, measured_s = 0.0;
     std::optional<double> now;
   };
-  LcmChannelMessages messages_;
+  // Each channel of a message, one value at a time.
+  void unpack(const std::string& channel, std::span<const std::uint8_t> message,
+              const std::function<void(const Said&)>& sink) const;
+
+  std::string status_;
   std::map<std::string, Channel> channels_;
+  std::size_t rows_ = 0;
 };
 
 }  // namespace ifog::tools

@@ -143,81 +143,55 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   log.say_damage(path);
 }
 
-// The first look at a log: which columns its channels make. Throws std::runtime_error with one line where
-// nobody said which of several channels with rates it is. Returns LcmChannelNames::of_status().
-std::map<std::string, bool> look_through(ChosenLog& chosen) {
-  LcmChannelNames names(chosen.rates);
+// The first look at a log, for the channels beside its rates. Throws std::runtime_error with one line where
+// nobody said which of several channels with rates it is.
+void look_through(ChosenLog& chosen, LcmChannels& channels) {
   std::set<std::string> with_rates;
   LcmEvents log(chosen.source.name());
   Progress progress("looking through " + std::filesystem::path(chosen.path).filename().string(), log.size());
   while (const LcmEvents::Event* event = log.next()) {
     progress.at(log.at());
     if (event->channel == chosen.rates) {
-      names.end_row();
+      channels.saw_row();
       if (chosen.peer) chosen.peer->look_at(event->data);
       continue;
     }
     const bool others_rates = chosen.peer ? peer_type(event->data) != nullptr : carries_rates(event->channel);
     if (!chosen.asked_for && others_rates) with_rates.insert(event->channel);
-    names.take(event->channel, event->data);
+    channels.look_at(event->channel, event->data);
   }
-  if (with_rates.empty()) return names.of_status();
+  if (with_rates.empty()) return;
   with_rates.insert(chosen.rates);
   std::string list;
   for (const std::string& each : with_rates) list += (list.empty() ? "" : ", ") + printable(each);
   throw std::runtime_error(chosen.path + ": has several channels, expected --channel with one of " + list);
 }
 
-// Rates and channels on their way to a sink, some thousand rows at a time.
-class LcmRows {
+// Rows on their way to a sink, some thousand at a time.
+class BatchedRows {
  public:
-  // beside: the names of MeasuredRate::beside.
-  LcmRows(LcmChannelRows channels, std::vector<std::string> beside, RowSink& sink)
-      : channels_(std::move(channels)),
-        names_(channels_.names()),
-        beside_(std::move(beside)),
-        sink_(sink),
-        values_(names_.size()) {}
+  explicit BatchedRows(RowSink& sink) : sink_(sink) {}
 
-  void take(const std::string& channel, std::span<const std::uint8_t> message) {
-    channels_.take(channel, message);
+  [[nodiscard]] bool begun() const { return !rows_.columns.empty(); }
+  void begin(const std::vector<std::string>& names) {
+    rows_.columns.resize(names.size());
+    sink_.begin(names);
   }
-  void add(const MeasuredRate& message, double time_s) {
-    if (rows_.columns.empty()) begin(message.raw.size());
+  void add(double time_s, std::span<const double> values) {
     rows_.time_s.push_back(time_s);
-    channels_.end_row(values_);
-    auto column = rows_.columns.begin();
-    for (const double rate : message.raw) (column++)->push_back(rate);
-    for (const double value : message.beside) (column++)->push_back(value);
-    for (const double value : values_) (column++)->push_back(value);
+    for (std::size_t c = 0; c < values.size(); ++c) rows_.columns[c].push_back(values[c]);
     if (rows_.size() == kRows) hand_on();
   }
-  void finish() {
-    if (rows_.size() > 0) hand_on();
+  void hand_on() {
+    const std::size_t columns = rows_.columns.size();
+    if (rows_.size() > 0) sink_.take(rows_);
+    rows_.time_s.clear();
+    rows_.columns.assign(columns, {});
   }
 
  private:
   static constexpr std::size_t kRows = std::size_t{1} << 14U;
-  void begin(std::size_t axes) {
-    std::vector<std::string> names;
-    for (const std::string& end : axis_ends(axes)) names.push_back("rate" + end + "_radps");
-    names.insert(names.end(), beside_.begin(), beside_.end());
-    names.insert(names.end(), names_.begin(), names_.end());
-    rows_.columns.resize(names.size());
-    sink_.begin(names);
-  }
-  void hand_on() {
-    const std::size_t columns = rows_.columns.size();
-    sink_.take(rows_);
-    rows_.time_s.clear();
-    rows_.columns.resize(columns);
-    for (std::vector<double>& column : rows_.columns) column.clear();
-  }
-
-  LcmChannelRows channels_;
-  std::vector<std::string> names_, beside_;
   RowSink& sink_;
-  std::vector<double> values_;
   RowBlock rows_;
 };
 
@@ -233,47 +207,62 @@ void tell_start(const std::string& path, const rate_t& first) {
 
 void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
   ChosenLog chosen(file, channel);
-  std::map<std::string, bool> of_status = look_through(chosen);
-  const std::vector<std::string> beside = chosen.peer ? chosen.peer->beside() : std::vector<std::string>();
-  for (const std::string& name : beside) of_status.erase(name);
-  LcmRows rows({chosen.rates, of_status}, beside, sink);
-  bool told = false;
+  LcmChannels channels(chosen.rates);
+  look_through(chosen, channels);
+  std::vector<std::string> beside = chosen.peer ? chosen.peer->beside() : std::vector<std::string>();
+  const std::vector<std::string> others = channels.settle(beside);
+  beside.insert(beside.end(), others.begin(), others.end());
+  BatchedRows rows(sink);
+  std::vector<double> values;
   for_each_rate(
       chosen,
       [&](const MeasuredRate& message, double time_s) {
-        if (!std::exchange(told, true)) tell_start(chosen.path, message);
-        rows.add(message, time_s);
+        if (!rows.begun()) {
+          tell_start(chosen.path, message);
+          std::vector<std::string> names;
+          for (const std::string& end : axis_ends(message.raw.size()))
+            names.push_back("rate" + end + "_radps");
+          names.insert(names.end(), beside.begin(), beside.end());
+          rows.begin(names);
+        }
+        values = message.raw;
+        values.insert(values.end(), message.beside.begin(), message.beside.end());
+        channels.end_row(values);
+        rows.add(time_s, values);
       },
-      [&](const std::string& name, std::span<const std::uint8_t> message) { rows.take(name, message); });
-  rows.finish();
+      [&](const std::string& name, std::span<const std::uint8_t> message) { channels.take(name, message); });
+  rows.hand_on();
 }
 
-Table read_published(InputFile& file, const std::string& channel) {
-  Table table;
-  double time_s = 0.0;
-  const auto take = [&](const rate_t& message, double) {
-    // The sum of the steps: the sensor's own time also when a recording was played faster.
-    if (!table.time_s.empty()) time_s += message.dt;
-    if (table.time_s.empty()) {
-      for (const std::string& end : axis_ends(message.raw.size()))
-        for (const std::string what : {"raw", "compensated", "denoised", "variance"})
-          table.columns.push_back({what + end + (what == "variance" ? "_rad2ps2" : "_radps"), {}});
-    }
-    table.time_s.push_back(time_s);
-    auto column = table.columns.begin();
-    for (std::size_t i = 0; column != table.columns.end(); ++i)
-      for (const double value :
-           {message.raw[i], message.compensated[i], message.denoised[i], message.variance[i]})
-        (column++)->values.push_back(value);
-  };
+void read_published(InputFile& file, const std::string& channel, RowSink& sink) {
   ChosenLog chosen(file, channel);
   if (chosen.peer)
     throw std::runtime_error(chosen.path + ": " + printable(chosen.rates) + " carries " +
                              std::string(chosen.peer->type().name) +
                              ", expected --channel with one that carries ifog.rate_t");
-  if (!chosen.asked_for) (void)look_through(chosen);
+  LcmChannels unused(chosen.rates);
+  if (!chosen.asked_for) look_through(chosen, unused);
+  BatchedRows rows(sink);
+  double time_s = 0.0;
+  std::vector<double> values;
+  const auto take = [&](const rate_t& message, double) {
+    if (!rows.begun()) {
+      std::vector<std::string> names;
+      for (const std::string& end : axis_ends(message.raw.size()))
+        for (const std::string what : {"raw", "compensated", "denoised", "variance"})
+          names.push_back(what + end + (what == "variance" ? "_rad2ps2" : "_radps"));
+      rows.begin(names);
+    } else {
+      time_s += message.dt;  // so that it is the sensor's own time also when a recording was played faster
+    }
+    values.clear();
+    for (std::size_t i = 0; i < message.raw.size(); ++i)
+      values.insert(values.end(),
+                    {message.raw[i], message.compensated[i], message.denoised[i], message.variance[i]});
+    rows.add(time_s, values);
+  };
   for_each_rate(chosen, take, {});
-  return table;
+  rows.hand_on();
 }
 
 }  // namespace ifog::tools

@@ -5,7 +5,6 @@
 
 #include <string>
 
-#include "drivers/capture/capture.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/times/row_sink.h"
 
@@ -20,6 +19,6 @@ void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink);
 
 // What the daemon published, in the columns of `ifog denoise`: raw, compensated and denoised rate and
 // variance by axis. Throws as above.
-Table read_published(InputFile& file, const std::string& channel);
+void read_published(InputFile& file, const std::string& channel, RowSink& sink);
 
 }  // namespace ifog::tools

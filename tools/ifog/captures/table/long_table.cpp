@@ -7,8 +7,8 @@
 #include <thread>
 
 #include "drivers/capture/columns/column_names.h"
-#include "filters/rest/cleaned_rate.h"
 #include "filters/threads/share_out.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 
@@ -33,14 +33,21 @@ void LongTable::leave_out_unknown(const std::string& path) {
   std::erase_if(columns, [](const LongColumn& column) { return !column.known; });
 }
 
-void LongTable::leave_out_repeats() {
+void LongTable::clean(Rule rule) {
   const SeriesView times = time_s;
   share_out(columns.size(), std::thread::hardware_concurrency(), [&](std::size_t c) {
     std::string axis;
     if (axis_of(columns[c].name, "rate", axis))
-      ifog::leave_out_repeats(
+      rule(
           columns[c].values, [&](std::size_t row) { return origin.told(times.at(row)); }, columns[c].repeats);
   });
+}
+
+void LongTable::clean_and_tell(Rule rule, const std::string& path) {
+  clean(rule);
+  for (const LongColumn& column : columns)
+    for (const ValueFault& repeat : column.repeats)
+      warn("%s\n", faults.emplace_back(path + ": " + column.name + ": " + repeat.text).c_str());
 }
 
 std::vector<std::string> LongTable::leave_out_dead_axes() {

@@ -9,6 +9,7 @@
 #include "drivers/capture/capture.h"
 #include "drivers/capture/times/row_sink.h"
 #include "filters/rest/channel_outline.h"
+#include "filters/rest/cleaned_rate.h"
 #include "filters/rest/value_faults.h"
 #include "filters/series/long_series.h"
 #include "filters/series/series_view.h"
@@ -19,7 +20,7 @@ struct LongColumn {
   std::string name;
   LongSeries values;
   bool known = false;                    // ever a value
-  std::vector<ValueFault> repeats = {};  // of a rate; see leave_out_repeats()
+  std::vector<ValueFault> repeats = {};  // of a rate; see clean()
 };
 
 struct LongTable : RowNotes {
@@ -36,8 +37,11 @@ struct LongTable : RowNotes {
   // Drops axes and channels of a recording that never had a value. Throws std::runtime_error where nothing is
   // left.
   void leave_out_unknown(const std::string& path);
-  // What the rates repeat is missing from here on (filters/rest/cleaned_rate.h).
-  void leave_out_repeats();
+  // What the rule (filters/rest/cleaned_rate.h) finds in the rates is missing from here on.
+  using Rule = void(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
+  void clean(Rule rule);
+  // The same, told on standard error; path: of the capture.
+  void clean_and_tell(Rule rule, const std::string& path);
   // The axes of rates that never had one, whose columns are gone from here on, with their references.
   std::vector<std::string> leave_out_dead_axes();
 };

@@ -6,9 +6,9 @@
 #include <vector>
 
 namespace ifog::tools {
-namespace {
 
-RowNotes hand_on(Capture capture, RowSink& sink) {
+LongTable long_table(Capture capture) {
+  LongTable table;
   std::vector<std::string> names;
   RowBlock rows;
   rows.origin = capture.origin;
@@ -26,36 +26,10 @@ RowNotes hand_on(Capture capture, RowSink& sink) {
     names.push_back(channel.name);
     rows.columns.push_back(std::move(channel.values));
   }
+  LongTableSink sink(table);
   sink.begin(names);
   if (rows.size() > 0) sink.take(rows);
-  RowNotes notes;
-  for (const std::string& comment : capture.comments) notes.comments += comment + '\n';
-  return notes;
-}
-
-}  // namespace
-
-LongTable long_table(Capture capture) {
-  LongTable table;
-  LongTableSink sink(table);
-  static_cast<RowNotes&>(table) = hand_on(std::move(capture), sink);
-  return table;
-}
-
-LongTable long_table(Table whole) {
-  LongTable table;
-  LongTableSink sink(table);
-  std::vector<std::string> names;
-  RowBlock rows;
-  rows.origin = whole.origin;
-  rows.time_s = std::move(whole.time_s);
-  for (CaptureColumn& column : whole.columns) {
-    names.push_back(column.name);
-    rows.columns.push_back(std::move(column.values));
-  }
-  static_cast<RowNotes&>(table) = std::move(whole);
-  sink.begin(names);
-  if (rows.size() > 0) sink.take(rows);
+  for (const std::string& comment : capture.comments) table.comments += comment + '\n';
   return table;
 }
 

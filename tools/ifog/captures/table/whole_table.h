@@ -8,6 +8,5 @@
 namespace ifog::tools {
 
 LongTable long_table(Capture capture);
-LongTable long_table(Table whole);
 
 }  // namespace ifog::tools
