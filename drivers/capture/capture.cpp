@@ -16,11 +16,7 @@ Capture capture_of(Table table, const std::string& path) {
   Capture capture;
   capture.notices = std::move(table.notices);
   capture.faults = std::move(table.faults);
-  for (std::string_view rest = table.comments; !rest.empty();) {
-    const std::size_t end = rest.find('\n');
-    capture.comments.emplace_back(rest.substr(0, end));
-    rest.remove_prefix(end + 1);
-  }
+  capture.comments = lines_of(table.comments);
   capture.origin = table.origin;
   capture.time_s = std::move(table.time_s);
   capture.axes = shape.axes;

@@ -40,17 +40,12 @@ std::size_t driver_axis(const ifog_description& d, const std::string& name) {
 }  // namespace
 
 double sample_rate_hz(const Capture& capture) {
-  if (capture.size() < 2) return 0.0;
-  std::vector<double> steps(capture.size() - 1);
-  for (std::size_t i = 0; i < steps.size(); ++i) steps[i] = capture.time_s[i + 1] - capture.time_s[i];
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return sample_rate_hz(*middle);
+  return capture.size() < 2 ? 0.0 : sample_rate_hz(median_step_s(capture.time_s));
 }
 
-double sample_rate_hz(double median_step_s) {
+double sample_rate_hz(double step_s) {
   // Decimal times are not evenly spaced in binary: 1 / (0.015 − 0.010) is not quite 200.
-  return std::strtod(seven_digits(1.0 / median_step_s).c_str(), nullptr);
+  return std::strtod(seven_digits(1.0 / step_s).c_str(), nullptr);
 }
 
 DriverSettings with_rate(double rate_hz, const Plugin& plugin, DriverSettings settings) {

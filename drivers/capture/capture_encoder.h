@@ -16,7 +16,7 @@ namespace ifog {
 double sample_rate_hz(const Capture& capture);
 
 // The same of a median step that is known.
-double sample_rate_hz(double median_step_s);
+double sample_rate_hz(double step_s);
 
 // The driver's settings with `rate_hz` set from the capture's, where that is known (not 0), the driver has
 // that option and nobody set it.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <iterator>
+#include <numeric>
 #include <string_view>
 #include <utility>
 
@@ -42,6 +43,29 @@ Table table_of(const std::function<RowNotes(RowSink&)>& read) {
 
 Table read_table(InputFile& file, const CsvLayout& layout) {
   return table_of([&](RowSink& sink) { return read_csv_rows(file, layout, sink); });
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double median_step_s(const std::vector<double>& time_s) {
+  if (time_s.size() < 2) return kMissing;
+  std::vector<double> steps(time_s.size());
+  std::adjacent_difference(time_s.begin(), time_s.end(), steps.begin());
+  steps.erase(steps.begin());
+  return median(std::move(steps));
+}
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines;
+  for (std::size_t end = 0; !text.empty(); text.remove_prefix(end)) {
+    end = std::min(text.find('\n'), text.size() - 1) + 1;
+    lines.emplace_back(text.substr(0, end - (text[end - 1] == '\n' ? 1 : 0)));
+  }
+  return lines;
 }
 
 void RowBlock::append(RowBlock& rows) {

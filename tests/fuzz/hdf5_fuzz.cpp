@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
-#include "drivers/capture/hdf5/hdf5_rows.h"
+#include "drivers/capture/hdf5/hdf5_text.h"
 
 namespace {
 

@@ -24,32 +24,26 @@ bool decimal(TextCursor& in, std::uint64_t& value, std::size_t& digits) {
   return std::from_chars(found.begin(), found.end(), value).ec == std::errc();
 }
 
-// "2026-05-01 12:00:00.123456)" of candump -t A.
-bool parse_date(TextCursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
-  std::array<char, kLongestDate> digits{};
-  TextCursor date(date_in_digits(in.until(')'), digits));
+bool parse_seconds(TextCursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
   std::uint64_t seconds = 0, fraction = 0;
-  std::size_t places = 0;
-  if (!decimal(date, seconds, second_digits) || !date.literal('.') || !decimal(date, fraction, places) ||
-      places > 9 || !date.done() || !in.literal(')'))
-    return false;
-  for (; places < 9; ++places) fraction *= 10;
-  second_digits = kEpochDigits;
+  std::size_t digits = 0;
+  constexpr std::uint64_t kMostSeconds = 9'000'000'000;  // what an int64 of nanoseconds holds
+  if (!decimal(in, seconds, second_digits) || seconds > kMostSeconds) return false;
+  if (!in.literal('.') || !decimal(in, fraction, digits) || digits > 9) return false;
+  for (; digits < 9; ++digits) fraction *= 10;
   time_ns = static_cast<std::int64_t>(seconds * 1'000'000'000 + fraction);
   return true;
 }
 
+// "(1436509052.249713)", or "(2026-05-01 12:00:00.123456)" of candump -t A.
 bool parse_time(TextCursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
-  std::uint64_t seconds = 0, fraction = 0;
-  std::size_t digits = 0;
-  constexpr std::uint64_t kMostSeconds = 9'000'000'000;  // what an int64 of nanoseconds holds
   if (!in.literal('(')) return false;
-  if (in.has(4, '-')) return parse_date(in, time_ns, second_digits);
-  if (!decimal(in, seconds, second_digits) || seconds > kMostSeconds) return false;
-  if (!in.literal('.') || !decimal(in, fraction, digits) || digits > 9 || !in.literal(')')) return false;
-  for (; digits < 9; ++digits) fraction *= 10;
-  time_ns = static_cast<std::int64_t>(seconds * 1'000'000'000 + fraction);
-  return true;
+  if (!in.has(4, '-')) return parse_seconds(in, time_ns, second_digits) && in.literal(')');
+  std::array<char, kLongestDate> digits{};
+  TextCursor date(date_in_digits(in.until(')'), digits));
+  if (!parse_seconds(date, time_ns, second_digits) || !date.done()) return false;
+  second_digits = kEpochDigits;
+  return in.literal(')');
 }
 
 bool parse_data(TextCursor& in, std::size_t most, ifog_can_frame& frame) {

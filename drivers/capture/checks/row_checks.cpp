@@ -8,12 +8,6 @@
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
-namespace {
-
-constexpr double kMostImpossible = 0.01;  // of a rate's values; more are no single fault of a logger
-
-}  // namespace
-
 std::string what_no_sensor_measures(const std::string& name, std::string_view cell, const Measurable& range) {
   return printable(name) + " is " + in_quotes(cell) + ", which no sensor measures, expected " +
          shortest(range.least) + " to " + shortest(range.most);
@@ -57,8 +51,7 @@ void RowChecks::finish(std::span<const Fault> found) {
 void RowChecks::tell_impossible(const FileColumn& column, const Fault& found) {
   if (found.count == 0) return;
   const std::string what = what_no_sensor_measures(column.name, found.first, column.range);
-  const bool few =
-      found.count == 1 || static_cast<double>(found.count) <= kMostImpossible * static_cast<double>(rows_);
+  const bool few = found.count == 1 || kRowsAFault * found.count <= rows_;
   if (column.rate && (rows_ == 1 || !few)) {
     std::string more =
         found.count > 1 ? "; nor " + std::to_string(found.count - 1) + " more of its cells" : "";

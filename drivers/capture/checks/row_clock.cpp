@@ -16,13 +16,6 @@ namespace {
 constexpr std::size_t kFewBursts = 8;
 constexpr double kHole = 1.5;  // times the usual step: a hole, not a longer step
 
-// The usual of some values.
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 // Four in five are within a fifth of the usual: packets come evenly, holes and jitter do not.
 bool are_even(const std::vector<double>& values) {
   const double usual = median(values);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/columns/chosen_columns.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -66,17 +65,6 @@ bool undo_each_other(const std::vector<double>& rate) {
   return count >= kFew && products < -0.45 * squares;
 }
 
-// In which the sensor collects an increment, whenever its rows came: the median of the steps between them.
-double period_of(const std::vector<double>& time_s) {
-  std::vector<double> between;
-  between.reserve(time_s.size());
-  for (std::size_t i = 1; i < time_s.size(); ++i) between.push_back(time_s[i] - time_s[i - 1]);
-  if (between.empty()) return kMissing;
-  const auto middle = between.begin() + static_cast<std::ptrdiff_t>(between.size() / 2);
-  std::nth_element(between.begin(), middle, between.end());
-  return *middle;
-}
-
 }  // namespace
 
 UnitConversion conversion_of(const CsvColumn& column) {
@@ -103,7 +91,8 @@ void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std
     if (!column.angle_rad()) continue;
     std::vector<double>& values = all.columns[i];
     if (column.is_increment()) {
-      const double period_s = period_of(all.time_s);
+      // In which the sensor collects an increment, whenever its rows came.
+      const double period_s = median_step_s(all.time_s);
       for (double& value : values) value /= period_s;
     } else {
       differentiate(values, all.time_s);

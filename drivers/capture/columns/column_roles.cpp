@@ -240,7 +240,7 @@ TableReading reading_by(const TableSample& table, const CsvLayout& asked, const 
     return way;
   }
   for (const RateCandidate& rate : rates) {
-    way.layout.columns.push_back({capture_name(rate), header_of(table, rate.place), rate.unit});
+    way.layout.columns.push_back({capture_name(rate), header_of(table, rate.place), rate.unit, rate.scale});
   }
   const std::size_t rates_only = way.layout.columns.size();
   add_others(table, rates, way.layout.columns);
@@ -285,7 +285,11 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
     if (std::exchange(time_unit_known, false)) out.other_units = instead_of(units);
     time->unit = units.front();
   }
+  const CsvColumn scale = stated_scale(table.comments);
   for (Rates& sensor : sensors) {
+    if (!scale.unit.empty() && are_counts(table, sensor))
+      for (RateCandidate& rate : sensor)
+        if (is_unit_unknown(rate)) rate.unit = scale.unit, rate.scale = scale.scale;
     if (std::none_of(sensor.begin(), sensor.end(), is_unit_unknown)) continue;
     const std::vector<std::string> units = units_of(table, sensor);
     counts = counts || are_counts(table, sensor);

@@ -24,6 +24,25 @@ namespace {
 constexpr double kSlowest_hz = 1.0, kFastest_hz = 10'000.0;  // at which gyros are logged
 constexpr std::size_t kFewRows = 8;                          // too few to say what a column is
 
+// The number that stands behind one of these names in a line above the table.
+std::optional<double> stated(const std::vector<std::string>& comments,
+                             std::initializer_list<std::string_view> names) {
+  constexpr std::size_t kBetween = 12;  // characters, as in ": "
+  for (const std::string& comment : comments) {
+    const std::string text = lower(comment);
+    for (const std::string_view name : names) {
+      const std::size_t at = text.find(name);
+      if (at == std::string::npos) continue;
+      const std::size_t digits = text.find_first_of("0123456789", at + name.size());
+      if (digits == std::string::npos || digits > at + name.size() + kBetween) break;
+      const double value = std::strtod(text.c_str() + digits, nullptr);
+      if (value > 0.0) return value;
+      break;
+    }
+  }
+  return std::nullopt;
+}
+
 // Without the rows of another sensor, which leave this one's columns empty.
 std::vector<std::string> filled(const std::vector<std::string>& cells) {
   std::vector<std::string> out;
@@ -132,6 +151,7 @@ std::string time_unit_by_name(const TableSample& table, std::size_t place, const
   const std::vector<double> values = numbers_in(table.cells[place]);
   if (const std::string stated = unit_by_stated_rate(table, mean_step(values)); !stated.empty())
     return stated;
+  if (const auto scale = stated(table.comments, {"tscale"})) return shortest(*scale) + "s";  // gcsv
   if (words.has("sample") && words.has("time") && words.has("fine"))
     return "100us";  // Xsens: a clock of 10 kHz
   if (words.has("millis")) return "ms";
@@ -194,11 +214,11 @@ int digits_of(std::string_view word) {
 
 std::vector<std::string> words_of(const std::string& name) {
   std::vector<std::string> words(1);
-  for (const char c : name)
+  for (const char c : lower(name))
     if (std::isalnum(static_cast<unsigned char>(c)) == 0)
       words.emplace_back();
     else
-      words.back() += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+      words.back() += c;
   return words;
 }
 
@@ -346,22 +366,19 @@ std::optional<DateOrder> date_order(const std::vector<std::string>& cells) {
 }
 
 std::optional<double> stated_rate_hz(const std::vector<std::string>& comments) {
-  for (const std::string& comment : comments) {
-    std::string text;
-    for (const char c : comment) text += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    std::size_t at = std::string::npos;
-    for (const char* name :
-         {"output rate", "sample rate", "sampling rate", "data rate", "sample frequency",
-          "sampling frequency", "outputrate", "sample_rate", "sampling_rate", "samplerate", "update rate"})
-      if (at == std::string::npos && (at = text.find(name)) != std::string::npos)
-        at += std::string_view(name).size();
-    if (at == std::string::npos) continue;
-    const std::size_t digits = text.find_first_of("0123456789", at);
-    if (digits == std::string::npos || digits > at + 12) continue;
-    const double rate_hz = std::strtod(text.c_str() + digits, nullptr);
-    if (rate_hz > 0.0 && rate_hz <= 1e6) return rate_hz;
-  }
-  return std::nullopt;
+  const auto rate_hz = stated(comments, {"output rate", "sample rate", "sampling rate", "data rate",
+                                         "sample frequency", "sampling frequency", "outputrate",
+                                         "sample_rate", "sampling_rate", "samplerate", "update rate"});
+  return rate_hz && *rate_hz <= 1e6 ? rate_hz : std::nullopt;
+}
+
+CsvColumn stated_scale(const std::vector<std::string>& comments) {
+  CsvColumn of;
+  if (const auto gyroflow = stated(comments, {"gscale"}))
+    of.scale = *gyroflow, of.unit = "rad/s";
+  else if (const auto epson = stated(comments, {"gyro_sf"}))
+    of.scale = *epson, of.unit = "deg/s";
+  return of;
 }
 
 }  // namespace ifog

@@ -41,4 +41,8 @@ std::optional<DateOrder> date_order(const std::vector<std::string>& cells);
 // A stated sample rate, as loggers write it above the table: "Output Rate,200.0"; nothing where none is.
 std::optional<double> stated_rate_hz(const std::vector<std::string>& comments);
 
+// What a gyro's count stands for, scale and unit, as loggers write it there: "gscale,0.00122" of the gcsv format of
+// Gyroflow, "Gyro_SF=0.0151515" of Epson's logger. No unit where none does.
+CsvColumn stated_scale(const std::vector<std::string>& comments);
+
 }  // namespace ifog

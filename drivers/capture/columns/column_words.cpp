@@ -16,11 +16,6 @@ bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
 
-std::string lower(std::string text) {
-  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return text;
-}
-
 // "gyro_rad[0]" is "gyro_rad" and axis x; an index above 2 is no axis.
 std::string without_index(const std::string& header, std::string& axis) {
   const std::size_t open = header.rfind('[');
@@ -103,11 +98,14 @@ std::string axis_of_turn(std::string& word) {
 
 }  // namespace
 
+std::string lower(std::string text) {
+  for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return text;
+}
+
 Words::Words(const std::string& header) {
   const std::string bare = without_unit(without_index(header, axis));
-  for (const char c : bare)
-    text +=
-        is_letter(c) || is_digit(c) ? static_cast<char>(std::tolower(static_cast<unsigned char>(c))) : '_';
+  for (const char c : lower(bare)) text += is_letter(c) || is_digit(c) ? c : '_';
   while (!text.empty() && text.back() == '_') text.pop_back();
   std::string turned;
   for (std::string& word : split(bare)) {

@@ -9,6 +9,9 @@
 
 namespace ifog {
 
+// In small letters.
+[[nodiscard]] std::string lower(std::string text);
+
 struct Words {
   explicit Words(const std::string& header);
 

@@ -22,7 +22,6 @@ struct CsvColumn {
   // std::runtime_error with one line: the text and what was expected.
   static CsvColumn parse(const std::string& text);
   [[nodiscard]] bool is_rate() const;
-  [[nodiscard]] bool is_angle() const;
   [[nodiscard]] bool is_increment() const;
   // rad in one unit of an angle or an increment; nothing for what is neither.
   [[nodiscard]] std::optional<double> angle_rad() const;

@@ -18,6 +18,7 @@ struct RateCandidate {
   std::size_t place = 0;
   std::string unit;  // "" where it is unknown
   std::string axis;
+  double scale = 1.0;  // of counts
   bool reference = false, increment = false;
 };
 

@@ -4,7 +4,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <string_view>
+
+#include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
 namespace {
@@ -30,11 +31,7 @@ bool is_large_time(double time_s) {
 CsvWriter::CsvWriter(const std::string& path, const std::string& comments,
                      const std::vector<std::string>& names)
     : file_(path) {
-  for (std::string_view rest = comments; !rest.empty();) {
-    const std::size_t end = rest.find('\n') + 1;
-    text_.append("# ").append(rest.substr(0, end));
-    rest.remove_prefix(end);
-  }
+  for (const std::string& comment : lines_of(comments)) text_ += "# " + comment + "\n";
   for (std::size_t c = 0; c < names.size(); ++c) text_ += (c == 0 ? "" : ",") + names[c];
   text_ += '\n';
   file_.write(text_);

@@ -75,7 +75,7 @@ std::string label_in(std::string_view between) {
   if (begin == std::string_view::npos) return "";
   std::string_view label = between.substr(begin, between.find_last_not_of(kAround) - begin + 1);
   if (const std::size_t other = label.find_last_of(",;|:="); other != std::string_view::npos)
-    label.remove_prefix(std::min(label.find_first_not_of(' ', other + 1), label.size()));  // "RAW: gyro"
+    label.remove_prefix(std::min(label.find_first_not_of(" \"'", other + 1), label.size()));  // "RAW: gyro"
   return std::any_of(label.begin(), label.end(), is_alphabetic) ? std::string(label) : "";
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/files/input_file.h"
@@ -62,23 +63,35 @@ Row row_of(std::string_view line, char separator) {
   return row;
 }
 
-// The first line from which on rows of as many cells follow; nothing where there are none.
+// The first line of the table: of rows of as many cells, of which some follow one another where there are as many;
+// of several such the one with most values, as a head of names and values may look like a table, too. Nothing where
+// there are no rows.
 std::optional<std::size_t> first_row(const std::vector<Line>& lines, char separator) {
-  std::optional<std::size_t> begin;
-  std::size_t run = 0;
-  Row first;
+  struct Table {
+    Row first;
+    std::size_t begin = 0, run = 0, values = 0,
+                last = 0;  // last: its row before, of the lines that are no comments
+  };
+  std::vector<Table> tables;
+  std::size_t plain = 0;
   for (std::size_t i = 0; i < lines.size(); ++i) {
     if (is_comment(lines[i].text)) continue;
+    ++plain;
     const Row row = row_of(lines[i].text, separator);
-    if (!row.is_row()) {
-      begin.reset();
-      continue;
-    }
-    if (!begin || !(first.is_as_wide(row.cells) || row.is_as_wide(first.cells)))
-      begin = i, run = 0, first = row;
-    if (++run == kRunOfRows) return begin;
+    if (!row.is_row()) continue;
+    auto of = std::find_if(tables.begin(), tables.end(), [&](const Table& table) {
+      return table.first.is_as_wide(row.cells) || row.is_as_wide(table.first.cells);
+    });
+    if (of == tables.end()) of = tables.insert(of, Table{row, i});
+    if (of->run < kRunOfRows && of->last + 1 != plain) *of = {row, i};
+    of->values += row.values, of->last = plain;
+    if (++of->run == kSampleRows) break;
   }
-  return begin;
+  const auto best = std::max_element(tables.begin(), tables.end(), [](const Table& a, const Table& b) {
+    return std::pair(std::min(a.run, kRunOfRows), a.values) <
+           std::pair(std::min(b.run, kRunOfRows), b.values);
+  });
+  return best == tables.end() ? std::nullopt : std::optional(best->begin);
 }
 
 // By which most of what stands in the rows is values; of several by which there are most cells.

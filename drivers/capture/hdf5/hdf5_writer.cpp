@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "drivers/capture/hdf5/hdf5_attributes.h"
+#include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
 namespace {
@@ -76,16 +77,6 @@ auto with_name(const std::string& path, Work&& work) {
   } catch (const std::runtime_error& error) {
     throw std::runtime_error(path + ": " + error.what());
   }
-}
-
-std::vector<std::string> lines_of(std::string_view text) {
-  std::vector<std::string> lines;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    lines.emplace_back(text.substr(0, end));
-    text.remove_prefix(std::min(end + 1, text.size()));
-  }
-  return lines;
 }
 
 }  // namespace

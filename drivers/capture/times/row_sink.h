@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -15,6 +16,11 @@ namespace ifog {
 
 // In a column: no value in this row.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+// Of at least one value.
+[[nodiscard]] double median(std::vector<double> values);
+// Of the steps between times; kMissing where there is none.
+[[nodiscard]] double median_step_s(const std::vector<double>& time_s);
 
 // One faulty row in so many is left to a serial line, a full disk or a clock that was set; more mean another table.
 inline constexpr std::size_t kRowsAFault = 100;
@@ -72,6 +78,9 @@ class RowSink {
   // The next rows, at least one. The sink may move or change them.
   virtual void take(RowBlock& rows) = 0;
 };
+
+// Each line of a text that ends with one, without its end.
+[[nodiscard]] std::vector<std::string> lines_of(std::string_view text);
 
 // What a reader reports besides the rows. Complete after the last row.
 struct RowNotes {

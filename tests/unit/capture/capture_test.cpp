@@ -2,29 +2,24 @@
 #include "drivers/capture/capture.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
 
 #include "drivers/capture/csv/csv_writer.h"
 #include "drivers/capture/files/text_file.h"
+#include "tests/unit/capture/refusal.h"
 
 namespace {
 
 namespace fs = std::filesystem;
 
-ifog::Capture capture_in(const std::string& text) { return ifog::parse_capture(text, "c.csv"); }
-
-std::string refusal_of(const std::string& text) {
-  try {
-    capture_in(text);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+ifog::Capture capture_in(const std::string& text) { return ifog::parse_capture(text, "a.csv"); }
 
 TEST(CaptureText, SortsColumnsByTheirNames) {
   const ifog::Capture c = capture_in(
@@ -43,21 +38,22 @@ TEST(CaptureText, SortsColumnsByTheirNames) {
 }
 
 TEST(CaptureText, RefusesWithFileLineValueAndExpectation) {
-  EXPECT_EQ(refusal_of("rate_radps\n1\n"),
-            "c.csv:1: no time column; to read it: --sample-rate HZ --column rate_radps=rate_radps:radps");
-  EXPECT_EQ(refusal_of("time_s,temperature_degC\n0,1\n"),
-            "c.csv:1: no rate column among 'temperature_degC', expected 'rate_radps' or 'rate_x_radps', …, "
+  EXPECT_EQ(ifog::refusal_of("rate_radps\n1\n"),
+            "a.csv:1: no time column; to read it: --sample-rate HZ --column rate_radps=rate_radps:radps");
+  EXPECT_EQ(ifog::refusal_of("time_s,temperature_degC\n0,1\n"),
+            "a.csv:1: no rate column among 'temperature_degC', expected 'rate_radps' or 'rate_x_radps', …, "
             "or --column "
             "rate_x_radps=NAME:UNIT with one of these names");
-  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1,1x\n"),
-            "c.csv:3: rate_radps is '1x', expected a number, 'nan' or nothing");
-  EXPECT_EQ(refusal_of("time_s,rate_radps\n1,1\n0.5,1\n"),
-            "c.csv:3: time_s is 0.5 s, expected more than in the row before; --sample-rate HZ reads all rows "
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n0,1\n1,1x\n"),
+            "a.csv:3: rate_radps is '1x', expected a number, 'nan' or nothing");
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n1,1\n0.5,1\n"),
+            "a.csv:3: time_s is 0.5 s, expected more than in the row before; --sample-rate HZ reads all rows "
             "as even");
-  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1\n"), "c.csv:3: 1 cells, expected 2 (a truncated line?)");
-  EXPECT_EQ(refusal_of("time_s,rate_radps\n"), "c.csv: no rows after the header");
-  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,inf\n"),
-            "c.csv:2: rate_radps is 'inf', which no sensor measures, expected -10000 to 10000");
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n0,1\n1\n"),
+            "a.csv:3: 1 cells, expected 2 (a truncated line?)");
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n"), "a.csv: no rows after the header");
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n0,inf\n"),
+            "a.csv:2: rate_radps is 'inf', which no sensor measures, expected -10000 to 10000");
 }
 
 // What R, pandas, databases and spreadsheets make of a missing value, and of the end of a row.
@@ -73,12 +69,13 @@ TEST(CaptureText, WordsForNoValueAndSeparatorsAtTheEnd) {
         EXPECT_TRUE(std::isnan(c.channels[0].values[0])) << word;
         EXPECT_EQ(c.channels[0].values[1], 7.0) << word;
       }
-  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1\n1,NAN1\n"),
-            "c.csv:3: rate_radps is 'NAN1', expected a number, 'nan' or nothing");
-  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,1,,\n"), "c.csv:2: more cells than the 2 columns of the header");
-  EXPECT_EQ(refusal_of("time_s,rate_radps,\n0,1,5\n"),
-            "c.csv:2: more cells than the 2 columns of the header");
-  EXPECT_EQ(refusal_of("time_s,rate_radps\nNA,1\n"), "c.csv:2: time_s is missing, expected a time");
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n0,1\n1,NAN1\n"),
+            "a.csv:3: rate_radps is 'NAN1', expected a number, 'nan' or nothing");
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n0,1,,\n"),
+            "a.csv:2: more cells than the 2 columns of the header");
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps,\n0,1,5\n"),
+            "a.csv:2: more cells than the 2 columns of the header");
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\nNA,1\n"), "a.csv:2: time_s is missing, expected a time");
 }
 
 TEST(CaptureText, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
@@ -113,6 +110,77 @@ TEST(CaptureText, ARowsLineIsKnownWithoutASecondLook) {
   const std::size_t lines[] = {4, 6, 9, 10};
   for (std::size_t row = 0; row < 4; ++row) EXPECT_EQ(table.line_of_row(row), lines[row]);
   EXPECT_EQ(ifog::Table{}.line_of_row(7), 0U);
+}
+
+// What a hostile file may cost: a line, a cell, a name or an unpacked stream of any size is refused with one
+// short line.
+class HostileFile : public testing::Test {
+ protected:
+  void SetUp() override { path_ = fs::temp_directory_path() / ("ifog-hostile-" + std::to_string(getpid())); }
+  void TearDown() override { fs::remove(path_); }
+  template <typename Read>
+  std::string refusal(Read&& read) {
+    try {
+      (void)read(path_.string());
+    } catch (const std::exception& error) {
+      const std::string what = error.what();
+      return what.starts_with(path_.string()) ? what.substr(path_.string().size()) : what;
+    }
+    return "accepted";
+  }
+  // `times` times the block, packed: gigabytes on some hundred kilobytes.
+  void pack(const std::string& block, int times) {
+    gzFile file = gzopen(path_.c_str(), "wb1");
+    for (int i = 0; i < times; ++i) gzwrite(file, block.data(), static_cast<unsigned>(block.size()));
+    gzclose(file);
+  }
+  fs::path path_;
+};
+
+TEST_F(HostileFile, ALongCellIsNamedAndNotEchoed) {
+  std::ofstream(path_) << "time_s,rate_radps\n0,1\n1,x" << std::string(900'000, '7') << "\n";
+  EXPECT_EQ(refusal(ifog::read_capture), ":3: rate_radps is 'x" + std::string(59, '7') +
+                                             "… (900001 bytes)', expected a number, 'nan' or nothing");
+  std::ofstream(path_) << "time_s,rate_radps\n0,\x1b[2J\x07\n";
+  EXPECT_EQ(refusal(ifog::read_capture),
+            ":2: rate_radps is '\\x1b[2J\\x07', expected a number, 'nan' or nothing");
+  std::ofstream(path_) << std::string(100'000, 'n') << ",rate_radps\n0,1\n";
+  EXPECT_LT(refusal(ifog::read_capture).size(), 200U);
+}
+
+TEST_F(HostileFile, AGzipBombStopsAtItsFirstLine) {
+  pack(std::string(1U << 20U, '0'), 256);
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  EXPECT_EQ(refusal(ifog::read_capture).substr(0, 36), ":1: a line of more than 1048576 byte");
+  getrusage(RUSAGE_SELF, &after);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 50'000);  // KiB
+}
+
+TEST_F(HostileFile, AGzipBombOfShortLinesStopsToo) {
+  std::string lines;
+  while (lines.size() < 1U << 20U) lines += "#\n";
+  pack(lines, 300);
+  const std::string said =
+      ": grows to more than 256 MiB, 100 times its size, when unpacked, expected a recording";
+  EXPECT_EQ(refusal(ifog::read_capture), said);
+  EXPECT_EQ(refusal(ifog::read_whole_file), said);
+  pack(lines, 200);
+  EXPECT_EQ(ifog::read_whole_file(path_.string()).size(), 200 * lines.size());
+}
+
+// A wide header over short rows must not ask for rows × columns before it has seen them.
+TEST_F(HostileFile, AWideHeaderReservesNoMemory) {
+  std::string text = "time_s,rate_radps";
+  for (int i = 0; i < 4'000; ++i) text += ",c" + std::to_string(i);
+  text += "\n0\n";
+  for (int i = 0; i < 2'000'000; ++i) text += "1\n";
+  std::ofstream(path_) << text;
+  rusage before{}, after{};
+  getrusage(RUSAGE_SELF, &before);
+  EXPECT_EQ(refusal(ifog::read_capture), ":2: 1 cells, expected 4002 (a truncated line?)");
+  getrusage(RUSAGE_SELF, &after);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 200'000);
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
+#include "tests/unit/capture/refusal.h"
 
 namespace ifog {
 namespace {
@@ -132,20 +133,18 @@ TEST(CsvLayout, SaysWhatIsWrongWithAnOption) {
 }
 
 TEST(CsvLayout, SaysWhatIsWrongWithAFile) {
-  const auto read = [](const char* text, const CsvLayout& by) {
-    return refusal([&] { parse_capture(text, "a.csv", by); });
-  };
   const CsvLayout by = layout({"rate_radps=w:deg/s"}, "t:s");
-  EXPECT_EQ(read("t,g\n0,1\n", by), "a.csv:1: no column 'w', the header has 't', 'g'");
-  EXPECT_EQ(read("t,w,w\n0,1,1\n", by), "a.csv:1: more than one column 'w', the header has 't', 'w', 'w'");
+  EXPECT_EQ(refusal_of("t,g\n0,1\n", by), "a.csv:1: no column 'w', the header has 't', 'g'");
+  EXPECT_EQ(refusal_of("t,w,w\n0,1,1\n", by),
+            "a.csv:1: more than one column 'w', the header has 't', 'w', 'w'");
   EXPECT_EQ(
-      read("t,w\n1,1\n0,2\n", by),
+      refusal_of("t,w\n1,1\n0,2\n", by),
       "a.csv:3: t is 0 s, expected more than in the row before; --sample-rate HZ reads all rows as even");
-  EXPECT_EQ(read("t,w\n0,1,5\n", by), "a.csv:2: more cells than the 2 columns of the header");
-  EXPECT_EQ(read("t,w\n0,1e9\n", by).substr(0, 46), "a.csv:2: w is '1e9', which no sensor measures,");
-  EXPECT_EQ(read("t,w\n0,0\n# note\n1e-9,3\n", layout({"rate_radps=w:rad"}, "t:s")).substr(0, 21),
+  EXPECT_EQ(refusal_of("t,w\n0,1,5\n", by), "a.csv:2: more cells than the 2 columns of the header");
+  EXPECT_EQ(refusal_of("t,w\n0,1e9\n", by).substr(0, 46), "a.csv:2: w is '1e9', which no sensor measures,");
+  EXPECT_EQ(refusal_of("t,w\n0,0\n# note\n1e-9,3\n", layout({"rate_radps=w:rad"}, "t:s")).substr(0, 21),
             "a.csv:4: w has turned");
-  EXPECT_EQ(read("\xFF\xFEt", {}),
+  EXPECT_EQ(refusal_of("\xFF\xFEt", {}),
             "a.csv: is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it");
 }
 
@@ -159,9 +158,6 @@ TEST(CsvLayout, ARowBelowTheNamesSaysTheUnits) {
   EXPECT_EQ(plain.channels[1].name, "ramp_counts");
   EXPECT_EQ(plain.channels[2].name, "flag");
 
-  const auto refused = [](const char* text, const CsvLayout& by = {}) {
-    return refusal([&] { parse_capture(text, "a.csv", by); });
-  };
   const char* const logger = "t,GyroX,Temp\nms,deg/s,degF\n0,90,32\n10,180,212\n";
   EXPECT_EQ(parse_capture(logger, "a.csv").notices.front(),
             "a.csv: read as: time 't' in ms, rate_x 'GyroX' in deg/s, temp 'Temp' in degF");
@@ -174,15 +170,15 @@ TEST(CsvLayout, ARowBelowTheNamesSaysTheUnits) {
     EXPECT_NEAR(chosen.channels[0].values[1], 100, 1e-9);
   }
   EXPECT_EQ(
-      refused("time_s,rate_radps,temperature_degC\ns,rad/s,K\n0,1,293\n"),
+      refusal_of("time_s,rate_radps,temperature_degC\ns,rad/s,K\n0,1,293\n"),
       "a.csv:1: the unit of 'temperature_degC' is given as 'K', expected that of its name; to read it so: "
       "--column temperature_degC=temperature_degC:K");
   // Lines count on, and what is no row of units is a row.
-  EXPECT_EQ(refused("time_s,rate_radps\ns,rad/s\n1,1\n0,2\n"),
+  EXPECT_EQ(refusal_of("time_s,rate_radps\ns,rad/s\n1,1\n0,2\n"),
             "a.csv:4: time_s is 0 s, expected more than in the row before; --sample-rate HZ reads all rows "
             "as even");
-  EXPECT_EQ(refused("time_s,rate_radps\nnone,NA\n0,1\n"), "a.csv:2: time_s is missing, expected a time");
-  EXPECT_EQ(refused("time_s,rate_radps\n0,rad\n").substr(0, 30), "a.csv:2: rate_radps is 'rad', ");
+  EXPECT_EQ(refusal_of("time_s,rate_radps\nnone,NA\n0,1\n"), "a.csv:2: time_s is missing, expected a time");
+  EXPECT_EQ(refusal_of("time_s,rate_radps\n0,rad\n").substr(0, 30), "a.csv:2: rate_radps is 'rad', ");
 }
 
 // What is read without options, and what is asked for where the names leave a question.
@@ -350,6 +346,18 @@ TEST(CsvLayout, FilesOfOtherProgramsAreReadOrOfferedRight) {
       // rostopic echo, and loggers that write objects in objects.
       {"header: \n  seq: 0\n---\nheader: \n  seq: 1\n---\n", {"rostopic echo -p"}},
       {rows_of("", R"({"ts": 17.{i}, "gyro": {"x": {x}, "y": {y}, "z": {z}}})"), {"jq -r"}},
+      // Gyroflow, gcsv 1.3, whose head looks like a table, and Epson's logger: the scale of counts stands above.
+      {rows_of(
+           "GYROFLOW IMU LOG\nid,custom\nvendor,cam\nversion,1.3\ntscale,0.001\ngscale,0.00122\nt,gx,gy,gz\n",
+           "{i},{count},{count},{count}"),
+       {"read as: time 't' in 0.001s, rate_x 'gx' in 0.00122 rad/s, rate_y 'gy' in 0.00122 rad/s"}},
+      {rows_of("Gyro_SF=0.0151515 Accel_SF=0.4\nSample No,time,Gx,Gy\n", "{i},1.{i},{count},{count}"),
+       {"rate_x 'Gx' in 0.0151515 deg/s"}},
+      // Sensor Logger, a list of objects.
+      {rows_of(
+           "",
+           R"({"sensor": "Gyroscope", "time": "17676204673{i}0000000", "x": "{x}", "y": "{y}", "z": "{z}"},)"),
+       {"--time time:ns --column rate_x_radps=x:rad/s --column rate_y_radps=y:rad/s"}},
       // Spreadsheets of both orders.
       {rows_of("time,gyro_x_dps\n", "05/06/2023 12:00:00.{i},{x}"), {"read with the month first"}},
   };

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "drivers/capture/capture.h"
+#include "tests/unit/capture/refusal.h"
 
 namespace {
 
@@ -86,25 +87,17 @@ TEST(DateTime, ACaptureMayHaveThemForItsTime) {
 }
 
 TEST(DateTime, WhatIsWrongIsSaidByLine) {
-  const auto refused = [](const std::string& text, const CsvLayout& by = {}) -> std::string {
-    try {
-      parse_capture(text, "a.csv", by);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "";
-  };
   const std::string rows = "2026-05-01T12:00:00Z,1\n2026-05-01T12:00:01Z,2\n";
-  EXPECT_EQ(refused("Timestamp,GyroX (deg/s)\n" + rows), "");
+  EXPECT_EQ(ifog::refusal_of("Timestamp,GyroX (deg/s)\n" + rows), "accepted");
   CsvLayout ms;
   ms.time = ifog::CsvTime::parse("t:ms");
-  EXPECT_EQ(refused("t,rate_radps\n" + rows, ms),
+  EXPECT_EQ(ifog::refusal_of("t,rate_radps\n" + rows, ms),
             "a.csv:2: t is '2026-05-01T12:00:00Z', a date, which says its own unit, expected no other one of "
             "--time");
-  EXPECT_EQ(refused("time_s,rate_radps\n" + rows + "2026-05-01T11:59:59Z,1\n"),
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n" + rows + "2026-05-01T11:59:59Z,1\n"),
             "a.csv:4: time_s is 1777636799 s, expected more than in the row before; --sample-rate HZ reads "
             "all rows as even");
-  EXPECT_EQ(refused("time_s,rate_radps\n" + rows + "2026-05-01T25:00:00Z,1\n"),
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n" + rows + "2026-05-01T25:00:00Z,1\n"),
             "a.csv:4: time_s is '2026-05-01T25:00:00Z', expected a number, 'nan' or nothing");
 }
 

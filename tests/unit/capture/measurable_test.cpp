@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/capture.h"
+#include "tests/unit/capture/refusal.h"
 
 namespace ifog {
 namespace {
@@ -22,15 +23,6 @@ std::string capture(const char* columns, int width, int row, int column, const s
     text += "\n";
   }
   return text;
-}
-
-std::string refusal_of(const std::string& text, const CsvLayout& layout = {}) {
-  try {
-    parse_capture(text, "a.csv", layout);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "accepted";
 }
 
 TEST(Measurable, OneImpossibleCellIsMissingAndTold) {

@@ -21,7 +21,6 @@
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/hdf5/hdf5_id.h"
-#include "drivers/capture/hdf5/hdf5_rows.h"
 #include "drivers/capture/hdf5/hdf5_text.h"
 #include "drivers/capture/hdf5/hdf5_writer.h"
 

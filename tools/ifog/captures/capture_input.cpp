@@ -10,7 +10,7 @@
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/csv_rows.h"
 #include "drivers/capture/files/file_kind.h"
-#include "drivers/capture/hdf5/hdf5_rows.h"
+#include "drivers/capture/hdf5/hdf5_text.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/sha256.h"

@@ -1,27 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/long_capture.h"
 
-#include <string_view>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "tools/ifog/captures/compensated_rates.h"
 
 namespace ifog::tools {
-namespace {
-
-std::vector<std::string> lines_of(std::string_view text) {
-  std::vector<std::string> lines;
-  while (!text.empty()) {
-    const std::size_t end = text.find('\n');
-    lines.emplace_back(text.substr(0, end));
-    text.remove_prefix(end + 1);
-  }
-  return lines;
-}
-
-}  // namespace
-
 CaptureView::CaptureView(const Capture& capture)
     : comments(capture.comments),
       origin(capture.origin),
