@@ -45,7 +45,7 @@ Table read_table(InputFile& file, const CsvLayout& layout) {
   return table_of([&](RowSink& sink) { return read_csv_rows(file, layout, sink); });
 }
 
-double median(std::vector<double> values) {
+double median_value(std::vector<double> values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -56,7 +56,7 @@ double median_step_s(const std::vector<double>& time_s) {
   std::vector<double> steps(time_s.size());
   std::adjacent_difference(time_s.begin(), time_s.end(), steps.begin());
   steps.erase(steps.begin());
-  return median(std::move(steps));
+  return median_value(std::move(steps));
 }
 
 std::vector<std::string> lines_of(std::string_view text) {

@@ -66,12 +66,14 @@ class Yardstick {
         smallest_step = std::min(smallest_step, middle.step);
     });
     if (some.size() < 3) return;
-    all_ = kOfMedian * median(some);
+    all_ = kOfMedian * middle_of(some);
     // Most neighbours of a coarse sensor are the same, but for the rounding of their digits.
     least_ = std::max(kRounding * largest_, std::isfinite(smallest_step) ? 0.5 * smallest_step : 0.0);
   }
   // Farthest from zero, which the record is more than once.
   [[nodiscard]] bool is_placeholder(double value) const { return times_ > 1 && std::abs(value) == largest_; }
+  // Whether even between the farthest values nothing can leap.
+  [[nodiscard]] bool is_quiet() const { return 2.0 * largest_ <= kFar * least(); }
   // No more than at() says anywhere.
   [[nodiscard]] double least() const { return std::max(all_, least_); }
   // At sample i: of the whole record; of those about it where they are louder, so that what grows louder is
@@ -103,7 +105,7 @@ class Yardstick {
         here.push_back({std::max(part.begin + 1, begin) - 1, std::min(part.end, end + 1)});
     std::vector<double> away;
     for_each_middle(rate_, here, [&](std::size_t, const Middle& middle) { away.push_back(middle.away); });
-    known = {block, away.size() >= kLeast ? kOfMedian * median(away) : 0.0};
+    known = {block, away.size() >= kLeast ? kOfMedian * middle_of(away) : 0.0};
     return known.deviation;
   }
 
@@ -119,6 +121,7 @@ class Yardstick {
 Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, LeapOf of) {
   Glitches out;
   Yardstick yardstick(rate, parts);
+  if (yardstick.is_quiet()) return out;
   std::size_t samples = 0;
   for (const Stretch& part : parts) samples += part.size();
   // One in the shortest of records is no habit of its sensor yet.

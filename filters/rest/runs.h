@@ -42,7 +42,7 @@ void for_each_run(const SeriesView& series, std::span<const Stretch> parts, Use 
   }
 }
 
-inline double median(std::vector<double> values) {
+inline double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
   std::nth_element(values.begin(), middle, values.end());
   return *middle;

@@ -18,7 +18,7 @@ constexpr double kHole = 1.5;  // times the usual step: a hole, not a longer ste
 
 // Four in five are within a fifth of the usual: packets come evenly, holes and jitter do not.
 bool are_even(const std::vector<double>& values) {
-  const double usual = median(values);
+  const double usual = median_value(values);
   const auto near = std::count_if(values.begin(), values.end(),
                                   [&](double v) { return std::abs(v - usual) <= 0.2 * usual; });
   return 5 * static_cast<std::size_t>(near) >= 4 * values.size();
@@ -41,7 +41,7 @@ double step_within_bursts(const std::vector<double>& time_s) {
     begin = i;
   }
   if (between.size() < kFewBursts || within.size() < between.size()) return 0.0;
-  return median(within) < 0.25 * mean_s && are_even(between) && are_even(rows) ? mean_s : 0.0;
+  return median_value(within) < 0.25 * mean_s && are_even(between) && are_even(rows) ? mean_s : 0.0;
 }
 
 bool same_values(const RowBlock& rows, std::size_t a, std::size_t b) {

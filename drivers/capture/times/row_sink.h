@@ -18,7 +18,7 @@ namespace ifog {
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Of at least one value.
-[[nodiscard]] double median(std::vector<double> values);
+[[nodiscard]] double median_value(std::vector<double> values);
 // Of the steps between times; kMissing where there is none.
 [[nodiscard]] double median_step_s(const std::vector<double>& time_s);
 

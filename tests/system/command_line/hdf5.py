@@ -258,7 +258,7 @@ class Checks:
         ]:
             self.refused(write(self.folder / f"{name}.h5", {"time_s": time, **extra}), *parts)
         still = {"rate_radps": numpy.zeros(4)}
-        self.refused(write(self.folder / "t.h5", {"time_s": [0.0, 1, 0.5, 2], **still}), ":3: time_s is 0.5 s, expected more than in the row before")
+        self.refused(write(self.folder / "t.h5", {"time_s": [0.0, 1, 0.5, 2], **still}), ":2: time_s is 1 s, expected less than in the next row")
         self.refused(write(self.folder / "t.h5", {"time_s": [0.0, 1, numpy.nan, 2], **still}), ":3: time_s is missing, expected a time")
         self.refused(write(self.folder / "t.h5", {"time_s": numpy.zeros(0), "rate_radps": numpy.zeros(0)}), "no rows")
         self.refused(write(self.folder / "t.h5", {"Time": time, "GyroX": time}), "the unit of the time is not named", "--time Time:s", "GyroX:rad/s")
