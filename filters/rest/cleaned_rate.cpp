@@ -20,8 +20,7 @@ std::vector<Stretch> stuck_runs(const SeriesView& rate, std::span<const Stretch>
   std::vector<Stretch> stuck;
   std::size_t runs = 0, single = 0;
   for_each_run(rate, parts, [&](const Run& run) {
-    ++runs;
-    single += run.length == 1 ? 1 : 0;
+    ++runs, single += run.length == 1 ? 1 : 0;
     if (run.length >= kStuck) stuck.push_back({run.begin, run.begin + run.length});
   });
   if (10 * single < 9 * runs || runs <= 16) stuck.clear();
@@ -43,8 +42,7 @@ struct Replacement {
 
 std::optional<LongSeries> with(const SeriesView& rate, std::vector<Replacement> replacements) {
   if (replacements.empty()) return std::nullopt;
-  std::sort(replacements.begin(), replacements.end(),
-            [](const Replacement& a, const Replacement& b) { return a.samples.begin < b.samples.begin; });
+  std::ranges::sort(replacements, {}, [](const Replacement& each) { return each.samples.begin; });
   std::optional<LongSeries> out(std::in_place);
   std::vector<double> repaired;
   auto next = replacements.begin();

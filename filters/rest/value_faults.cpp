@@ -41,8 +41,7 @@ void find_held(const std::vector<double>& values, double period_s, std::vector<V
   std::size_t runs = 0;
   const Stretch all{0, values.size()};
   for_each_run(values, {&all, 1}, [&](const Run& run) { ++runs, ++lengths[run.length]; });
-  const auto usual = std::max_element(lengths.begin(), lengths.end(),
-                                      [](const auto& a, const auto& b) { return a.second < b.second; });
+  const auto usual = std::ranges::max_element(lengths, {}, [](const auto& each) { return each.second; });
   if (10 * usual->second < 9 * runs || runs <= 16 || usual->first == 1) return;
   found.push_back({"held", "each value stands " + std::to_string(usual->first) +
                                " times: the sensor's own rate is " +
