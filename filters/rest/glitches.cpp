@@ -156,7 +156,7 @@ std::string in_words(const Glitches& glitches, const std::function<double(std::s
                 one ? " leaps" : "s leap", one ? "" : "the first ", told_time(time_s(glitches.first)).c_str(),
                 glitches.most_times,
                 glitches.few.empty() ? "more than one in a thousand, which these figures take for noise"
-                                     : "a fault of the logger or the line, not used in these figures");
+                                     : "a fault of the logger or the line, dropped");
   return text.data();
 }
 
