@@ -15,6 +15,7 @@
 #include "daemon/pipeline/pipeline.h"
 #include "drivers/host/driver_instance.h"
 #include "drivers/transport/file/file.h"
+#include "tests/unit/daemon/kvh_frames.h"
 #include "tests/unit/daemon/private_network.h"
 #include "tests/unit/malloc_counter.h"
 
@@ -22,17 +23,7 @@ namespace ifog {
 namespace {
 
 std::string recording(int count) {
-  DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
-  std::vector<std::uint8_t> bytes;
-  for (int n = 0; n < count; ++n) {
-    ifog_sample sample{};
-    sample.flags = IFOG_SAMPLE_SEQUENCE;
-    sample.sequence = static_cast<std::uint32_t>(n % 128);
-    sample.valid_axes = 7;
-    for (double& value : sample.value) value = 0.01 + 1e-5 * (n % 17);
-    sample.environment_fresh = ~0U;
-    driver.encode_bytes(sample, bytes);
-  }
+  const std::vector<std::uint8_t> bytes = kvh_frames(0, count, [](int n) { return 0.01 + 1e-5 * (n % 17); });
   std::string path =
       std::filesystem::temp_directory_path() / ("ifog-allocation-" + std::to_string(getpid()) + ".kvh");
   std::ofstream(path, std::ios::binary)

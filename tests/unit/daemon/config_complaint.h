@@ -5,16 +5,12 @@
 #include <string>
 
 #include "daemon/config/config.h"
+#include "tests/unit/refusal.h"
 
 namespace ifog {
 
 inline std::string complaint(const std::string& text) {
-  try {
-    parse_config(text, "f.toml");
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { parse_config(text, "f.toml"); }, "");
 }
 
 }  // namespace ifog

@@ -5,11 +5,13 @@
 
 #include <filesystem>
 #include <fstream>
+#include <initializer_list>
 #include <string>
 
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/transport/clock.h"
 #include "tests/unit/daemon/config_complaint.h"
+#include "tests/unit/refusal.h"
 
 namespace ifog {
 namespace {
@@ -109,88 +111,56 @@ TEST(Config, WhatIsNotSaidOfTheLineIsTheDriversSpeedAnd8N1) {
   EXPECT_EQ(line.baud_base, 0U);
 }
 
-TEST(Config, ALineThatCannotBeIsRefused) {
-  for (const auto& [key, line] :
-       {std::pair{"parity = \"mark\"\n",
-                  "f.toml:7: sensor.transport.parity = 'mark': expected \"none\" | \"even\" | \"odd\""},
-        {"data_bits = 9\n", "f.toml:7: sensor.transport.data_bits = 9: expected a whole number 5 ... 8"},
-        {"stop_bits = 0\n", "f.toml:7: sensor.transport.stop_bits = 0: expected a whole number 1 ... 2"}}) {
-    try {
-      serial_sensor(key);
-      ADD_FAILURE() << key << " was accepted";
-    } catch (const ConfigError& error) {
-      EXPECT_STREQ(error.what(), line);
-    }
-  }
-}
+constexpr const char* kCan = "\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = \"can0\"\n";
+constexpr const char* kSerial =
+    "[[sensor]]\nname = \"b\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"serial\"\ndevice = "
+    "\"/dev/ttyS0\"\n";
 
-struct Wrong {
-  const char* extra;  // after kGood, whose lines are 1 … 7
-  const char* line;
-};
-
-TEST(Config, SaysWhereWhatAndWhatWasExpected) {
-  const Wrong cases[] = {
-      {"colour = 1\n",
-       "f.toml:8: sensor.transport.colour: unknown key; known here: await_writer, block_bytes, "
-       "bytes_per_second, format, interface, pace, path, speed, type"},
-      {"speed = \"fast\"\n", "f.toml:8: sensor.transport.speed = 'fast': expected a number 0.001 ... 1e+06"},
-      {"speed = -1\n", "f.toml:8: sensor.transport.speed = -1: expected a number 0.001 ... 1e+06"},
-      {"pace = \"slow\"\n", "f.toml:8: sensor.transport.pace = 'slow': expected \"free\" | \"recorded\""},
-      {"interface = \"\"\n", "f.toml:8: sensor.transport.interface = '': expected a text that is not empty"},
-      {"await_writer = 1\n", "f.toml:8: sensor.transport.await_writer = 1: expected true or false"},
-      {"[sensor.filter]\nwindow = 1\n",
-       "f.toml:9: sensor.filter.window = 1: expected a whole number 2 ... 100000"},
-      {"[sensor.filter]\nwindow = 5.5\n",
-       "f.toml:9: sensor.filter.window = 5.5: expected a whole number 2 ... 100000"},
-      {"[sensor.filter]\nprocess_noise = -1e-9\n",
-       "f.toml:9: sensor.filter.process_noise = -1e-09: expected a number 0 ... 1e+12"},
-      {"[sensor.filter]\nprocess_noise = nan\n",
-       "f.toml:9: sensor.filter.process_noise = nan: expected a number 0 ... 1e+12"},
-      {"[sensor.realtime]\nreader_cpus = [0, -1]\n",
-       "f.toml:9: sensor.realtime.reader_cpus = [ 0, -1 ]: expected a list of whole numbers 0 ... 1023"},
-      {"[[sensor.channel]]\nname = \"t_degC\"\n",
-       "f.toml:8: sensor.channel.source: missing; expected \"frame\" | \"can\" | \"lcm\" | \"file\""},
-      {"[[sensor]]\nname = \"NOSE\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
-       "\"can0\"\n",
-       "f.toml:9: sensor.name = 'NOSE': another sensor publishes on IFOG_NOSE already"},
-      {"[[sensor]]\nname = \"nose_status\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
-       "\"can0\"\n",
-       "f.toml:9: sensor.name = 'nose_status': expected one that does not end in _status or _imu, as other "
-       "channels do"},
-      {"[[sensor]]\nname = \"nose_imu\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = "
-       "\"can0\"\n",
-       "f.toml:9: sensor.name = 'nose_imu': expected one that does not end in _status or _imu, as other "
-       "channels do"},
-      {"[[sensor]]\nname = \"b\"\ndriver = \"x\"\n[sensor.transport]\ntype = \"serial\"\ndevice = "
-       "\"/dev/ttyS0\"\n"
-       "set_up = [\"=CONFIG,1\", \"DR\"]\n",
-       "f.toml:14: sensor.transport.set_up = ['DR']: expected \"=COMMAND\", \"?QUERY\" or \"WORDS -> "
-       "ANSWER\" of at most "
-       "1000 characters of ASCII"},
-      {"[[sensor.publish]]\nchannel = \"A\"\n",
-       "f.toml:8: sensor.publish.type: missing; expected the name of a type, \"bot_core.ins_t\""},
-      {"[[sensor.publish]]\ntype = \"bot_core.ins\"\nchannel = \"A\"\n",
-       "f.toml:9: sensor.publish.type = 'bot_core.ins': expected \"bot_core.ins_t\" | \"microstrain.ins_t\" "
-       "| \"bot_core.kvh_raw_imu_batch_t\" | \"ifog.inertial_t\" | \"ifog.imu_t\", did you mean "
-       "'bot_core.ins_t'?"},
-      {"[[sensor.publish]]\ntype = \"bot_core.ins_t\"\nchannel = \"IFOG_A\"\n",
-       "f.toml:10: sensor.publish.channel = 'IFOG_A': expected a name that does not begin with IFOG_, which "
-       "is for the daemon's own"},
-      {"[[sensor.publish]]\ntype = \"bot_core.ins_t\"\nchannel = \"A\"\n[[sensor.publish]]\ntype = "
-       "\"microstrain.ins_t\"\nchannel = \"A\"\n",
-       "f.toml:10: sensor.publish.channel = 'A': something else is published on it already, expected another "
-       "channel"},
-      {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nminimum = 5.0\nmaximum = 5.0\n",
-       "f.toml:12: sensor.channel.maximum: not above minimum; expected minimum < maximum"},
-      {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\nmax_step = -1.0\n",
-       "f.toml:11: sensor.channel.max_step = -1: expected a number > 0 and <= 2e+20"},
-      {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"lcm\"\nlcm_channel = \"A\"\nscale = inf\n",
-       "f.toml:12: sensor.channel.scale = inf: expected a number -1e+20 ... 1e+20"},
-      {"[daemon]\nlog_level = \"loud\"\n",
-       "f.toml:9: daemon.log_level = 'loud': expected \"debug\" | \"info\" | \"warning\" | \"error\""},
+// What is wrong is named by file, line, key and value, in one line.
+TEST(Config, NamesWhereAndWhat) {
+  struct Wrong {
+    std::string extra;  // after kGood, whose lines are 1 … 7
+    const char* place;
   };
-  for (const Wrong& wrong : cases) EXPECT_EQ(complaint(std::string(kGood) + wrong.extra), wrong.line);
+  const std::string frame = "[[sensor.channel]]\nname = \"t_degC\"\nsource = \"frame\"\n";
+  const std::string publish = "[[sensor.publish]]\ntype = \"bot_core.ins_t\"\nchannel = ";
+  for (const auto& [extra, place] : std::initializer_list<Wrong>{
+           {"colour = 1\n", "8: sensor.transport.colour: unknown key; known here: "},
+           {"speed = \"fast\"\n", "8: sensor.transport.speed = 'fast': expected a number 0.001 ... 1e+06"},
+           {"speed = -1\n", "8: sensor.transport.speed = -1: "},
+           {"pace = \"slow\"\n", "8: sensor.transport.pace = 'slow': expected \"free\" | \"recorded\""},
+           {"interface = \"\"\n", "8: sensor.transport.interface = '': "},
+           {"await_writer = 1\n", "8: sensor.transport.await_writer = 1: "},
+           {"[sensor.filter]\nwindow = 1\n", "9: sensor.filter.window = 1: "},
+           {"[sensor.filter]\nwindow = 5.5\n", "9: sensor.filter.window = 5.5: expected a whole number"},
+           {"[sensor.filter]\nprocess_noise = -1e-9\n", "9: sensor.filter.process_noise = -1e-09: "},
+           {"[sensor.filter]\nprocess_noise = nan\n", "9: sensor.filter.process_noise = nan: "},
+           {"[sensor.realtime]\nreader_cpus = [0, -1]\n", "9: sensor.realtime.reader_cpus = [ 0, -1 ]: "},
+           {"[[sensor.channel]]\nname = \"t_degC\"\n", "8: sensor.channel.source: missing; expected "},
+           {std::string("[[sensor]]\nname = \"NOSE\"") + kCan,
+            "9: sensor.name = 'NOSE': another sensor publishes"},
+           {std::string("[[sensor]]\nname = \"nose_status\"") + kCan, "9: sensor.name = 'nose_status': "},
+           {std::string("[[sensor]]\nname = \"nose_imu\"") + kCan, "9: sensor.name = 'nose_imu': "},
+           {std::string(kSerial) + "set_up = [\"=CONFIG,1\", \"DR\"]\n",
+            "14: sensor.transport.set_up = ['DR']: "},
+           {std::string(kSerial) + "parity = \"mark\"\n", "14: sensor.transport.parity = 'mark': "},
+           {std::string(kSerial) + "data_bits = 9\n", "14: sensor.transport.data_bits = 9: "},
+           {std::string(kSerial) + "stop_bits = 0\n", "14: sensor.transport.stop_bits = 0: "},
+           {"[[sensor.publish]]\nchannel = \"A\"\n", "8: sensor.publish.type: missing; expected "},
+           {"[[sensor.publish]]\ntype = \"bot_core.ins\"\nchannel = \"A\"\n",
+            "9: sensor.publish.type = 'bot_core.ins': "},
+           {publish + "\"IFOG_A\"\n", "10: sensor.publish.channel = 'IFOG_A': "},
+           {publish + "\"A\"\n" + publish + "\"A\"\n",
+            "10: sensor.publish.channel = 'A': something else is published"},
+           {frame + "minimum = 5.0\nmaximum = 5.0\n", "12: sensor.channel.maximum: not above minimum; "},
+           {frame + "max_step = -1.0\n", "11: sensor.channel.max_step = -1: "},
+           {"[[sensor.channel]]\nname = \"t_degC\"\nsource = \"lcm\"\nlcm_channel = \"A\"\nscale = inf\n",
+            "12: sensor.channel.scale = inf: "},
+           {"[daemon]\nlog_level = \"loud\"\n", "9: daemon.log_level = 'loud': "}}) {
+    const std::string said = complaint(kGood + extra);
+    EXPECT_TRUE(said.starts_with(std::string("f.toml:") + place)) << extra << said;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+  }
 }
 
 std::string network(const std::string& transport) {
@@ -213,26 +183,20 @@ TEST(Config, ReadsANetworkSensor) {
   EXPECT_EQ(udp.sensors[0].restart_for(tcp.sensors[0]), "transport");
 }
 
-TEST(Config, SaysWhatIsWrongWithANetworkSensor) {
-  for (const auto& [transport, line] :
-       {std::pair{"type = \"udp\"\n",
-                  "f.toml:4: sensor.transport.port: missing; expected a whole number 1 ... 65535"},
-        {"type = \"udp\"\nport = 70000\n",
-         "f.toml:6: sensor.transport.port = 70000: expected a whole number 1 ... 65535"},
-        {"type = \"udp\"\nport = 5000\ngroup = \"239.1.2.3\"\n",
-         "f.toml:4: sensor.transport.interface: missing; expected the interface on which the group is "
-         "joined, \"eth0\""},
+// What each setting may be is the transport's to say: udp_complaint() and tcp_complaint().
+TEST(Config, NamesWhatIsWrongWithANetworkSensor) {
+  for (const auto& [transport, place] :
+       {std::pair{"type = \"udp\"\n", "4: sensor.transport.port: missing; "},
+        {"type = \"udp\"\nport = 70000\n", "6: sensor.transport.port = 70000: "},
+        {"type = \"udp\"\nport = 5000\ngroup = \"239.1.2.3\"\n", "4: sensor.transport.interface: missing; "},
         {"type = \"udp\"\nport = 5000\nbind = \"::1\"\nhost = \"10.0.0.1\"\n",
-         "f.toml:8: sensor.transport.host = '10.0.0.1': expected an address of the same kind, IPv4 or IPv6, "
-         "as ::1"},
-        {"type = \"tcp\"\nport = 4001\n",
-         "f.toml:4: sensor.transport.host: missing; expected the sensor's numeric address, \"192.168.1.20\""},
-        {"type = \"tcp\"\nhost = \"gyro.local\"\nport = 4001\n",
-         "f.toml:6: sensor.transport.host = 'gyro.local': expected a numeric address, \"192.168.1.20\", "
-         "\"fd00::20\" or \"fe80::20%eth0\"; names are not looked up"},
+         "8: sensor.transport.host = '10.0.0.1': "},
+        {"type = \"tcp\"\nport = 4001\n", "4: sensor.transport.host: missing; "},
+        {"type = \"tcp\"\nhost = \"gyro.local\"\nport = 4001\n", "6: sensor.transport.host = 'gyro.local': "},
         {"type = \"tcp\"\nhost = \"10.0.0.1\"\nport = 4001\nbaud = 9600\n",
-         "f.toml:8: sensor.transport.baud: unknown key; known here: host, port, type"}})
-    EXPECT_EQ(complaint(network(transport)), line);
+         "8: sensor.transport.baud: unknown key; "}})
+    EXPECT_TRUE(complaint(network(transport)).starts_with(std::string("f.toml:") + place))
+        << complaint(network(transport));
 }
 
 TEST(Config, GathersAllErrors) {
@@ -272,13 +236,9 @@ TEST(Config, TheComputersRunHasTheNameThatTheKernelGivesIt) {
   unsetenv("IFOGD_BOOT_ID");
 }
 
-TEST(Config, NothingToDoIsAnError) {
+TEST(Config, NothingToDoAndNoTomlAreErrors) {
   EXPECT_EQ(complaint("[daemon]\n"), "f.toml: no [[sensor]]: expected at least one");
-}
-
-TEST(Config, BrokenTomlIsToldByLine) {
-  EXPECT_EQ(complaint("[daemon]\nlock_memory = \n").rfind("f.toml:2: ", 0), 0U)
-      << complaint("[daemon]\nlock_memory = \n");
+  EXPECT_TRUE(complaint("[daemon]\nlock_memory = \n").starts_with("f.toml:2: "));
 }
 
 // What the file holds may have line ends of its own.
@@ -290,19 +250,12 @@ TEST(Config, AComplaintIsOneLineWhateverTheFileHolds) {
     EXPECT_EQ(all.rfind("f.toml:1", 0), 0U) << all;
     EXPECT_EQ(all.find('\n'), std::string::npos) << all;
   }
-  EXPECT_EQ(complaint(std::string(kGood) + "speed = \"1\\n2\"\n"),
-            "f.toml:8: sensor.transport.speed = '''1\\n2''': expected a number 0.001 ... 1e+06");
 }
 
 TEST(Config, AMissingFileIsOneLine) {
-  try {
-    read_config("/nonexistent/ifogd.toml");
-    FAIL();
-  } catch (const ConfigError& error) {
-    const std::string line = error.what();
-    EXPECT_NE(line.find("/nonexistent/ifogd.toml"), std::string::npos);
-    EXPECT_EQ(line.find('\n'), std::string::npos);
-  }
+  const std::string line = test::refusal([] { read_config("/nonexistent/ifogd.toml"); });
+  EXPECT_NE(line.find("/nonexistent/ifogd.toml"), std::string::npos);
+  EXPECT_EQ(line.find('\n'), std::string::npos);
 }
 
 // As the reference has them; without, everything that a sensor can measure passes.

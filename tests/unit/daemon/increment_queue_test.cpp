@@ -76,30 +76,6 @@ TEST(IncrementQueue, AMergeCannotStarveInAFullRing) {
   EXPECT_GT(queue.merged(), 0U);
 }
 
-TEST(IncrementQueue, ASourceThatKeepsItsBytesWaitsInsteadOfMerging) {
-  IncrementQueue queue(8, IncrementQueue::WhenFull::wait);
-  constexpr std::uint64_t kCount = 20'000;
-  std::thread producer([&queue] {
-    for (std::uint64_t n = 1; n <= kCount; ++n) {
-      push(queue, n);
-      if (n % 7 == 0) queue.flush();
-    }
-    queue.close();
-  });
-  std::uint64_t expected = 1;
-  while (!queue.finished()) {
-    if (const Increment* const in = queue.front()) {
-      ASSERT_EQ(in->sequence, expected++);
-      queue.pop();
-    } else {
-      queue.wait();
-    }
-  }
-  producer.join();
-  EXPECT_EQ(expected, kCount + 1);
-  EXPECT_EQ(queue.merged(), 0U);
-}
-
 // The consumer's work is done by two threads in turn, and a third calls the consumer at any moment. What they
 // share is plain: ThreadSanitizer sees whether the place is handed over properly.
 TEST(IncrementQueue, AProducerThatBorrowsTheConsumersPlaceKeepsTheOrder) {

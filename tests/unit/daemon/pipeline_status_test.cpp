@@ -26,11 +26,8 @@ TEST(PipelineStatus, CountersGoOnOverAReload) {
   rig.pipeline->start();
   StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
   const auto look = [&](std::size_t messages) {
-    while (rig.publisher->messages().size() < messages) std::this_thread::sleep_for(1ms);
-    rig.pipeline->filter().ask();
-    FilterSnapshot snapshot;
-    while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
-    return report.update(*rig.pipeline, snapshot, 1.0);
+    rig.await_messages(messages);
+    return report.update(*rig.pipeline, rig.snapshot(), 1.0);
   };
   const status_t before = look(kHalf);
   EXPECT_EQ(before.gated, kHalf / 250);
@@ -86,9 +83,7 @@ TEST(PipelineStatus, FramesOfTwoDevicesAreNotTakenAndToldInWords) {
   rig.transport->stays_open_ = true;
   rig.pipeline->start();
   while (rig.pipeline->reader().books().decoded < 2 * kCount) std::this_thread::sleep_for(1ms);
-  rig.pipeline->filter().ask();
-  FilterSnapshot snapshot;
-  while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
+  const FilterSnapshot snapshot = rig.snapshot();
   StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
   const status_t status = report.update(*rig.pipeline, snapshot, 1.0);
   EXPECT_EQ(status.state, status_t::STATE_NO_DATA);
@@ -106,22 +101,6 @@ TEST(PipelineStatus, FramesOfTwoDevicesAreNotTakenAndToldInWords) {
   EXPECT_NEAR(angle_rad, 0.1 * taken_s, 0.5 * 0.03);
 }
 
-TEST(PipelineStatus, HousekeepingGetsASnapshotWhileSamplesFlow) {
-  Rig rig(frames(5000), kFrame, true, 64, 50us);
-  rig.pipeline->start();
-  FilterSnapshot snapshot;
-  int taken = 0;
-  while (!rig.pipeline->ended()) {
-    rig.pipeline->filter().ask();
-    std::this_thread::sleep_for(5ms);
-    if (rig.pipeline->filter().take_snapshot(snapshot)) ++taken;
-  }
-  rig.pipeline->stop();
-  EXPECT_GT(taken, 3);
-  EXPECT_TRUE(snapshot.has_health);
-  EXPECT_GT(snapshot.allan_octaves, 5);
-}
-
 // Reader and filter are asked at one instant: what is read between the answer and the report is not waiting.
 TEST(PipelineStatus, WhatIsReadAfterTheFiltersAnswerIsNotWaiting) {
   Rig rig(frames(1000), kFrame, true);
@@ -130,9 +109,7 @@ TEST(PipelineStatus, WhatIsReadAfterTheFiltersAnswerIsNotWaiting) {
   rig.pipeline->start();
   while (rig.publisher->messages().size() < 100 || rig.pipeline->reader().books().bytes_read < 100 * kFrame)
     std::this_thread::sleep_for(1ms);
-  rig.pipeline->filter().ask();
-  FilterSnapshot snapshot;
-  while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
+  const FilterSnapshot snapshot = rig.snapshot();
   rig.transport->allowed_ = ~std::size_t{0};
   while (rig.pipeline->reader().counters().samples.value() < 1000) std::this_thread::sleep_for(1ms);
   StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
@@ -151,7 +128,7 @@ TEST(PipelineStatus, TheLastWordTellsOfTheLastSample) {
   Rig rig(frames(kCount), kFrame, true);
   rig.transport->allowed_ = kHalf * kFrame;
   rig.pipeline->start();
-  while (rig.publisher->messages().size() < kHalf) std::this_thread::sleep_for(1ms);
+  rig.await_messages(kHalf);
   rig.pipeline->filter().ask();
   std::this_thread::sleep_for(20ms);  // answered, and not fetched
   rig.transport->allowed_ = ~std::size_t{0};
@@ -172,10 +149,8 @@ TEST(PipelineStatus, TheStatusCarriesTheAllanDeviation) {
   Rig rig(frames(kCount), kFrame, true);
   rig.transport->stays_open_ = true;
   rig.pipeline->start();
-  while (rig.publisher->messages().size() < kCount) std::this_thread::sleep_for(5ms);
-  rig.pipeline->filter().ask();
-  FilterSnapshot snapshot;
-  while (!rig.pipeline->filter().take_snapshot(snapshot)) std::this_thread::sleep_for(1ms);
+  rig.await_messages(kCount);
+  const FilterSnapshot snapshot = rig.snapshot();
   rig.pipeline->stop();
 
   StatusReport report("test", {"temperature_degC"}, {"x", "y", "z"}, 1000.0);

@@ -16,11 +16,10 @@
 #include <vector>
 
 #include "daemon/pipeline/pipeline.h"
-#include "drivers/host/driver_instance.h"
+#include "tests/unit/daemon/kvh_frames.h"
 
 namespace ifog {
 
-inline constexpr std::size_t kFrame = 36;                     // bytes, KVH 1750 format A
 inline constexpr std::int64_t kBegin_ns = 1'000'000'000'000;  // arrival of the first
 
 // Hands out what it was given, in portions, as fast as it is asked.
@@ -103,19 +102,8 @@ inline double rate_of(int n) { return 0.01 + 1e-4 * std::sin(0.01 * n); }
 inline double temperature_of(int n) { return n % 50; }
 
 inline std::vector<std::uint8_t> frames(int count, const std::function<double(int)>& disturbed = {}) {
-  DriverInstance driver = make_driver("kvh1750", {{"format", "a"}});
-  std::vector<std::uint8_t> out;
-  for (int n = 0; n < count; ++n) {
-    ifog_sample sample{};
-    sample.flags = IFOG_SAMPLE_SEQUENCE;
-    sample.sequence = static_cast<std::uint32_t>(n % 128);
-    sample.valid_axes = 7;
-    for (double& value : sample.value) value = rate_of(n) + (disturbed ? disturbed(n) : 0.0);
-    for (double& value : sample.environment) value = temperature_of(n);
-    sample.environment_fresh = ~0U;
-    driver.encode_bytes(sample, out);
-  }
-  return out;
+  return kvh_frames(
+      0, count, [&](int n) { return rate_of(n) + (disturbed ? disturbed(n) : 0.0); }, temperature_of);
 }
 
 struct Rig {
@@ -162,6 +150,16 @@ struct Rig {
     }
     transport->allowed_ = ~std::size_t{0};
     wait_for_the_end();
+  }
+  // What housekeeping would be told now.
+  FilterSnapshot snapshot() {
+    pipeline->filter().ask();
+    FilterSnapshot out;
+    while (!pipeline->filter().take_snapshot(out)) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    return out;
+  }
+  void await_messages(std::size_t count) {
+    while (publisher->messages().size() < count) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   void wait_for_the_end() {
     while (!pipeline->ended()) std::this_thread::sleep_for(std::chrono::milliseconds(1));

@@ -4,6 +4,7 @@
 #include <random>
 #include <thread>
 
+#include "tests/unit/daemon/messages.h"
 #include "tests/unit/daemon/running_daemon.h"
 
 namespace ifog {
@@ -114,6 +115,25 @@ TEST_F(RunningDaemon, ALogThatNobodyReadsOrThatIsClosedEndsNothing) {
   EXPECT_EQ(end(), 0);
 }
 
+TEST_F(RunningDaemon, ChannelsFromAFileAndFromLcmReachTheSensor) {
+  write("hwmon", "41250\n");
+  write("ifogd.toml",
+        kDaemon + sensor("nose") +
+            "[[sensor.channel]]\nname = \"coil_degC\"\nsource = \"file\"\npath = \"hwmon\"\nscale = 1e-3\n"
+            "period_s = 0.1\n"
+            "[[sensor.channel]]\nname = \"hull_degC\"\nsource = \"lcm\"\nlcm_channel = \"HULL\"\n"
+            "[[sensor.channel]]\nname = \"load_us\"\nsource = \"lcm\"\nlcm_channel = \"IFOG_NOSE_STATUS\"\n"
+            "field = \"input_rate_hz\"\n");
+  start();
+  const auto value = [&](const char* channel) { return listener_->channel("IFOG_NOSE_STATUS", channel); };
+  EXPECT_TRUE(await([&] {
+    send("nose", 5);
+    listener_->send("HULL", encoded(channel("hull_degC", 18.5)));
+    return value("coil_degC") == 41.25 && value("hull_degC") == 18.5 && value("load_us") > 0.0;
+  })) << said();
+  EXPECT_EQ(end(), 0) << said();
+}
+
 // kB that the daemon holds locked with so many sensors; 0 where it may not lock any.
 TEST_F(RunningDaemon, ASensorHoldsFewMegabytesOfLockedMemory) {
   const auto locked_kB = [&](int sensors) {
@@ -140,9 +160,7 @@ TEST_F(RunningDaemon, WhatIsNotThereIsSaidByTheCheck) {
   write("ifogd.toml",
         kDaemon + sensor("nose") +
             "[[sensor.channel]]\nname = \"coil_degC\"\nsource = \"file\"\npath = \"nothing\"\n");
-  const std::string command = "timeout 60 " IFOG_BINARY_DIR "/daemon/ifogd --check --config " +
-                              path("ifogd.toml") + " >" + path("said") + " 2>&1";
-  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 0) << said();
+  EXPECT_EQ(ifogd("--check"), 0) << said();
   EXPECT_EQ(times_said("nose: channel 'coil_degC': " + path("nothing") +
                        ": cannot read: No such file or directory, expected a file that holds one number"),
             1)
@@ -150,7 +168,7 @@ TEST_F(RunningDaemon, WhatIsNotThereIsSaidByTheCheck) {
   // A FIFO in the model's place was waited for.
   ASSERT_EQ(mkfifo(path("model").c_str(), 0600), 0);
   write("ifogd.toml", kDaemon + sensor("nose", "model = \"model\"\n"));
-  EXPECT_EQ(WEXITSTATUS(std::system(command.c_str())), 2) << said();
+  EXPECT_EQ(ifogd("--check"), 2) << said();
   EXPECT_EQ(times_said(path("model") + ": is no regular file"), 1) << said();
 }
 
@@ -159,33 +177,17 @@ TEST_F(RunningDaemon, WhatIsNotThereIsSaidByTheCheck) {
 TEST_F(RunningDaemon, NoiseIsKeptOverRestartsWithItsDate) {
   std::mt19937_64 engine(7);
   std::normal_distribution<double> noise(0.01, 1e-3);
-  std::vector<std::uint8_t> bytes;
-  for (int n = 0; n < 20'000; ++n) {
-    ifog_sample sample{};
-    sample.flags = IFOG_SAMPLE_SEQUENCE;
-    sample.sequence = static_cast<std::uint32_t>(n % 128);
-    sample.valid_axes = 7;
-    for (double& value : sample.value) value = noise(engine);
-    encoder_.encode_bytes(sample, bytes);
-  }
-  std::ofstream(path("frames"), std::ios::binary)
-      .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  const std::vector<std::uint8_t> bytes = kvh_frames(0, 20'000, [&](int) { return noise(engine); });
+  write("frames", {bytes.begin(), bytes.end()});
   const std::string config =
       "[daemon]\nlock_memory = false\nstate_folder = \"state\"\n[[sensor]]\nname = \"nose\"\ndriver = "
       "\"kvh1750\"\nnominal_rate_hz = 1000\n[sensor.transport]\ntype = \"file\"\npath = \"frames\"\n";
   fs::create_directories(folder_ / "state");
   const auto run_to_the_end = [&](const std::string& more) {
     write("ifogd.toml", config + more);
-    fs::remove(folder_ / "said");
-    start();
-    int status = 0;
-    waitpid(std::exchange(child_, -1), &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
+    return ifogd();
   };
-  const auto kept = [&] {
-    std::ifstream in(path("state/nose.noise.toml"));
-    return std::string(std::istreambuf_iterator<char>(in), {});
-  };
+  const auto kept = [&] { return text_of(path("state/nose.noise.toml")); };
   const auto samples = [&] {
     const std::string text = kept();
     return std::strtod(text.c_str() + text.find("\nsamples = ") + 11, nullptr);

@@ -10,15 +10,8 @@ namespace {
 class SecondDaemon : public RunningDaemon {
  protected:
   // Exit status of another daemon; what it says goes to `second`.
-  int run_second(const std::string& configuration) const {
-    const std::string command = "timeout 60 " IFOG_BINARY_DIR "/daemon/ifogd --config " +
-                                path(configuration) + " >" + path("second") + " 2>&1";
-    return WEXITSTATUS(std::system(command.c_str()));
-  }
-  std::string second_said() const {
-    std::ifstream in(path("second"));
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  int run_second(const std::string& configuration) const { return ifogd("", configuration, "second"); }
+  std::string second_said() const { return text_of(path("second")); }
 };
 
 TEST_F(SecondDaemon, OneFifoIsOneDaemons) {
@@ -111,15 +104,13 @@ TEST_F(SecondDaemon, AFolderOfRecordingsIsOneRecorders) {
 TEST_F(SecondDaemon, AStateFolderThatCannotBeMadeIsSaidByTheCheck) {
   write("file", "");
   write("ifogd.toml", std::string(kDaemon) + "state_folder = \"file/state\"\n" + sensor("nose"));
-  const std::string check = "timeout 60 " IFOG_BINARY_DIR "/daemon/ifogd --check --config " +
-                            path("ifogd.toml") + " >" + path("said") + " 2>&1";
-  EXPECT_EQ(WEXITSTATUS(std::system(check.c_str())), 0) << said();
+  EXPECT_EQ(ifogd("--check"), 0) << said();
   EXPECT_EQ(times_said("daemon.state_folder = \"" + path("file/state") +
                        "\": cannot be made: Not a directory, expected a folder that the daemon may write"),
             1)
       << said();
   write("ifogd.toml", std::string(kDaemon) + "state_folder = \"new/state\"\n" + sensor("nose"));
-  EXPECT_EQ(WEXITSTATUS(std::system(check.c_str())), 0) << said();
+  EXPECT_EQ(ifogd("--check"), 0) << said();
   EXPECT_EQ(times_said("state_folder"), 0) << said();
   EXPECT_FALSE(fs::exists(path("new")));
 }

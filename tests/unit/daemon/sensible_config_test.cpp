@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <set>
@@ -45,41 +46,30 @@ TEST(SensibleConfig, AChannelIsCalledByItsQuantityAndUnit) {
   EXPECT_EQ(complaint(channel("name = \"foo\"\nsource = \"frame\"\n")), "");
 }
 
+// One wrong key, one complaint.
 TEST(SensibleConfig, NumbersThatLetNothingThroughAreRefused) {
-  const std::string coil = "name = \"coil_degC\"\nsource = \"file\"\npath = \"b\"\n";
-  EXPECT_EQ(complaint(channel(coil + "max_step = 0\n")),
-            "f.toml:11: sensor.channel.max_step = 0: expected a number > 0 and <= 2e+20");
-  EXPECT_EQ(complaint(channel(coil + "scale = 0\n")),
-            "f.toml:11: sensor.channel.scale = 0: expected a number other than 0, of which every value would "
-            "be the offset");
-  EXPECT_EQ(
-      complaint(channel(coil + "maximum = -300\n")),
-      "f.toml:11: sensor.channel.maximum: expected limits within -273.15 ... 3000, what 'coil_degC' can "
-      "be");
-  EXPECT_EQ(complaint(channel(coil + "period_s = 60\n")),
-            "f.toml:11: sensor.channel.period_s: read every 60 s with max_age_s = 10: expected more often, "
-            "every value would be stale before the next");
-  EXPECT_EQ(complaint(channel(coil + "period_s = 60\nmax_age_s = 0\n")), "");
+  const std::string coil = channel("name = \"coil_degC\"\nsource = \"file\"\npath = \"b\"\n");
   const std::string head = "[[sensor]]\nname = \"nose\"\ndriver = \"x\"\n";
   const std::string tail = std::string("[sensor.transport]\n") + kFile;
-  EXPECT_EQ(complaint(head + "max_step = 0\n" + tail),
-            "f.toml:4: sensor.max_step = 0: expected a number > 0 and <= 20000");
-  EXPECT_EQ(complaint(head + "range_radps = 2.0\nminimum = 3.0\n" + tail),
-            "f.toml:5: sensor.minimum: expected less than range_radps, or no rate is left");
-}
-
-// One wrong key, one complaint.
-TEST(SensibleConfig, WhatIsWrongByItselfIsToldOnce) {
-  EXPECT_EQ(complaint(sensor("nose",
-                             "type = \"file\"\npath = \"a\"\npace = \"recorded\"\n"
-                             "bytes_per_second = 1e300\n")),
-            "f.toml:8: sensor.transport.bytes_per_second = 1e+300: expected a number 1 ... 1e+09");
-  EXPECT_EQ(complaint(sensor("nose", kFile,
-                             "[sensor.record]\nfolder = \"r\"\nbytes = 5\nfile_bytes = 900_000_000\n")),
-            "f.toml:9: sensor.record.bytes = 5: expected a whole number 1000000 ... 9223372036854775807");
-  EXPECT_EQ(complaint(sensor("a", "type = \"udp\"\nport = 0\n") + sensor("b", "type = \"udp\"\nport = 0\n")),
-            "f.toml:6: sensor.transport.port = 0: expected a whole number 1 ... 65535\n"
-            "f.toml:12: sensor.transport.port = 0: expected a whole number 1 ... 65535");
+  for (const auto& [text, place] : std::initializer_list<std::pair<std::string, const char*>>{
+           {coil + "max_step = 0\n", "11: sensor.channel.max_step = 0: "},
+           {coil + "scale = 0\n", "11: sensor.channel.scale = 0: "},
+           {coil + "maximum = -300\n", "11: sensor.channel.maximum: expected limits within -273.15 ... 3000"},
+           {coil + "period_s = 60\n", "11: sensor.channel.period_s: read every 60 s with max_age_s = 10: "},
+           {head + "max_step = 0\n" + tail, "4: sensor.max_step = 0: "},
+           {head + "range_radps = 2.0\nminimum = 3.0\n" + tail, "5: sensor.minimum: "},
+           {sensor("nose", kFile, "pace = \"recorded\"\nbytes_per_second = 1e300\n"),
+            "8: sensor.transport.bytes_per_second = 1e+300: "},
+           {sensor("nose", kFile, "[sensor.record]\nfolder = \"r\"\nbytes = 5\nfile_bytes = 900_000_000\n"),
+            "9: sensor.record.bytes = 5: "}}) {
+    const std::string said = complaint(text);
+    EXPECT_TRUE(said.starts_with(std::string("f.toml:") + place)) << text << said;
+    EXPECT_EQ(said.find('\n'), std::string::npos) << said;
+  }
+  EXPECT_EQ(complaint(coil + "period_s = 60\nmax_age_s = 0\n"), "");
+  const std::string twice =
+      complaint(sensor("a", "type = \"udp\"\nport = 0\n") + sensor("b", "type = \"udp\"\nport = 0\n"));
+  EXPECT_EQ(std::count(twice.begin(), twice.end(), '\n'), 1) << twice;
 }
 
 TEST(SensibleConfig, TheFieldOfAnLcmChannelIsOneThatMessagesHave) {
@@ -182,12 +172,6 @@ TEST(SensibleConfig, StandardInputIsOneSource) {
         << name;
   dup2(before, STDIN_FILENO);
   for (const int end : {before, ends[0], ends[1]}) close(end);
-}
-
-TEST(SensibleConfig, AWholeNumberWithAPointIsShownAsItStands) {
-  EXPECT_NE(complaint(sensor("nose", kFile, "[sensor.filter]\nwindow = 50.0\n"))
-                .find("sensor.filter.window = 50.0: expected a whole number"),
-            std::string::npos);
 }
 
 TEST(SensibleConfig, ARateDoesNotComeBackAsAChannelOfItsOwn) {

@@ -17,6 +17,8 @@
 #include <string>
 #include <thread>
 
+#include "tests/unit/refusal.h"
+
 namespace ifog {
 namespace {
 
@@ -39,12 +41,7 @@ class StateFile : public testing::Test {
     return {std::istreambuf_iterator<char>(in), {}};
   }
   [[nodiscard]] std::string refusal() const {
-    try {
-      (void)read_state_file(file().string(), 100);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "read";
+    return test::refusal([&] { (void)read_state_file(file().string(), 100); }, "read");
   }
 
   fs::path root_;

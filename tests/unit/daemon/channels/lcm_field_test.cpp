@@ -100,19 +100,5 @@ TEST(LcmField, WhatAMessageDoesNotHaveIsNotRead) {
   EXPECT_TRUE(std::isnan(read("clock_offset_ppm", cut).first));
 }
 
-TEST(LcmField, RefusesBracketsItDoesNotKnow) {
-  for (const char* text :
-       {"raw[3]", "raw[x]", "raw[0", "angle[0]", "channel_value[]", "clock_offset_ppm[0]"}) {
-    try {
-      LcmField{text};
-      ADD_FAILURE() << text << " was accepted";
-    } catch (const std::runtime_error& error) {
-      const std::string line = error.what();
-      EXPECT_EQ(line.rfind("sensor.channel.field = \"" + std::string(text) + "\": expected ", 0), 0U) << line;
-      EXPECT_EQ(line.find('\n'), std::string::npos);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace ifog

@@ -42,13 +42,6 @@ TEST(ProcessorShare, ABurstAfterASilenceIsReadAtOnce) {
   EXPECT_GT(share.rest_ns(begin + 100 * kMs, so_far), 0);
 }
 
-// Four seconds that passed in one turn are no work: the process was stopped.
-TEST(ProcessorShare, AHaltIsNotPaidForAfterwards) {
-  ProcessorShare share;
-  EXPECT_EQ(share.rest_ns(1 * kMs, [] { return std::int64_t{0}; }), 0);
-  EXPECT_LT(share.rest_ns(4'000 * kMs, [] { return 3'999 * kMs; }), 34 * kMs);
-}
-
 // Threads of one processor under SCHED_FIFO, as the kernel would run them: the one that has it keeps it until
 // it sleeps, and then whoever has waited longest gets it. A turn takes its work_ms; what it waits for comes
 // again every period_ms, or is there at once. The parts of a minute that each has had.
@@ -97,30 +90,6 @@ TEST(ProcessorShare, NobodyStandsBackWhileThreeQuartersAreNotTaken) {
   const std::vector<double> parts = parts_of_a_minute({{4, 10}, {3, 10}});
   EXPECT_NEAR(parts[0], 0.4, 1e-3);
   EXPECT_NEAR(parts[1], 0.3, 1e-3);
-}
-
-// Delayed for seconds in the middle of a turn, which another has used.
-TEST(ProcessorShare, WhoWasHeldUpDoesNotStandBackForThatToo) {
-  SharedProcessors processors(1);
-  ProcessorShare share(&processors);
-  EXPECT_EQ(share.rest_ns(1 * kMs, [] { return std::int64_t{0}; }), 0);
-  EXPECT_EQ(share.rest_ns(101 * kMs, [] { return 70 * kMs; }), 0);
-  processors.add(5'000 * kMs, 4'900 * kMs);
-  ASSERT_GT(processors.quiet_until_ns(), 5'000 * kMs);
-  const std::int64_t rest = share.rest_ns(150 * kMs, [] { return 75 * kMs; });
-  EXPECT_GT(rest, 0);
-  EXPECT_LE(rest, 100 * kMs);
-}
-
-// Where each has a processor of its own, two that take three quarters of one leave enough.
-TEST(ProcessorShare, EachOfTwoProcessorsHasAShare) {
-  SharedProcessors processors(2);
-  ProcessorShare a(&processors), b(&processors);
-  for (int n = 0; n < 1000; ++n) {
-    const auto used = [&] { return n * kMs * 7 / 10; };
-    EXPECT_EQ(a.rest_ns((n + 1) * kMs, used), 0) << n;
-    EXPECT_EQ(b.rest_ns((n + 1) * kMs, used), 0) << n;
-  }
 }
 
 }  // namespace

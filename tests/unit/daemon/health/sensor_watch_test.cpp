@@ -8,13 +8,10 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <numeric>
 #include <random>
 #include <regex>
-#include <utility>
 #include <vector>
 
-#include "daemon/health/level_noise.h"
 #include "daemon/health/sequential_tests.h"
 #include "daemon/health/step_test.h"
 #include "filters/chain/signal_chain.h"
@@ -234,31 +231,6 @@ double mean_time_to_alarm(int runs, Alarm&& alarm_after) {
   return sum / runs;
 }
 
-// The first time that the sum of the last w blocks is beyond c times its deviation, from the first full
-// window on.
-double first_crossing(double threshold, std::size_t w, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::normal_distribution<double> normal;
-  std::vector<double> sums{0.0};
-  for (;;) {
-    sums.push_back(sums.back() + normal(random));
-    if (sums.size() <= w) continue;
-    if (std::abs(sums.back() - sums[sums.size() - 1 - w]) > threshold * std::sqrt(static_cast<double>(w)))
-      return static_cast<double>(sums.size() - w);
-  }
-}
-
-TEST(StepTest, MovingSumsAreExceededAsOftenAsTheFormulaHasIt) {
-  // Mean times are exponential: 800 of them are known to 3.5 %, and the formula is for rare ones.
-  for (const auto& [w, z] : {std::pair<std::size_t, double>{1, 3.3}, {4, 3.2}, {15, 3.1}, {58, 2.9}}) {
-    const double expected = 1.0 / exceeded_per_block(z, 1.0 / static_cast<double>(w));
-    const double found = mean_time_to_alarm(800, [&, w = w, z = z](unsigned seed) {
-      return first_crossing(z, w, seed + 1000U * static_cast<unsigned>(w));
-    });
-    EXPECT_NEAR(found / expected, 1.0, 0.2) << w;
-  }
-}
-
 // What a filter of this gain makes of white innovations.
 LevelNoise::Innovation white(double value, double gain) {
   LevelNoise::Innovation out;
@@ -285,21 +257,6 @@ TEST(StepTest, AlarmsNoMoreOftenThanItIsAllowedTo) {
   }
 }
 
-TEST(StepTest, FindsAStepWithItsSizeInWhatAFilterLeavesOfIt) {
-  for (const double gain : {0.0, 0.1}) {
-    StepTest test(1e5);
-    std::mt19937_64 random(5);
-    std::normal_distribution<double> normal;
-    for (int i = 0; i < 200; ++i) ASSERT_FALSE(test.take(white(normal(random), gain)));
-    double left = 3.0;
-    int blocks = 1;
-    while (!test.take(white(left + normal(random), gain))) left *= 1.0 - gain, ++blocks;
-    EXPECT_LT(blocks, 12) << gain;
-    EXPECT_NEAR(test.step(), 3.0, 1.5) << gain;
-    EXPECT_LT(test.nearest(), 1.0);
-  }
-}
-
 TEST(SequentialTests, ACusumsAlarmsAreNoMoreFrequentThanLordenHasIt) {
   const double threshold = std::log(1000.0);
   const double follows = mean_time_to_alarm(200, [&](unsigned seed) {
@@ -320,73 +277,6 @@ TEST(SequentialTests, ACusumsAlarmsAreNoMoreFrequentThanLordenHasIt) {
     return n;
   });
   EXPECT_GT(usual, 1000.0);
-}
-
-TEST(LevelNoise, ItsInnovationsAreOfVarianceOneAndItsWalkTheOnePutIn) {
-  std::mt19937_64 random(9);
-  std::normal_distribution<double> normal;
-  LevelNoise noise;
-  double level = 4.0, squares = 0.0, gain = 0.0, n = 0.0;
-  for (int i = 0; i < 40000; ++i) {
-    level += 0.1 * normal(random);  // ratio 0.01
-    const LevelNoise::Innovation& now = noise.take(level + normal(random), 1.0);
-    if (!now.known || i < 1000) continue;
-    squares += now.value * now.value;
-    n += 1.0;
-    gain = std::accumulate(now.gain.begin(), now.gain.end(), 0.0);
-  }
-  EXPECT_NEAR(squares / n, 1.0, 0.04);
-  EXPECT_NEAR(noise.walk(), 0.01, 1e-9);
-  // Of a ratio q: P = (q + sqrt(q^2 + 4 q)) / 2 before the update, gain P / (P + 1). Of what is as likely it
-  // takes the quicker, but no other walk of the table: half a decade up that is 0.163.
-  EXPECT_GT(gain, 0.0951 - 0.002);
-  EXPECT_LT(gain, 0.5 * (0.0951 + 0.163));
-}
-
-// S(f) = B^2 / (2 pi f) as processes half a decade apart, another table than the filter's.
-TEST(LevelNoise, SumsOfItsInnovationsAreThoseOfWhiteOnesWhereTheLevelIsInstable) {
-  std::mt19937_64 random(10);
-  std::normal_distribution<double> normal;
-  constexpr std::array<double, 9> kBlocks{1.5, 5.0, 15.0, 50.0, 150.0, 500.0, 1.5e3, 5e3, 1.5e4};
-  std::array<double, kBlocks.size()> process{};
-  const double deviation = 0.2;
-  for (double& each : process) each = deviation * normal(random);
-  LevelNoise noise;
-  std::array<double, 60> last{};
-  double sum = 0.0, squares = 0.0, n = 0.0;
-  for (std::size_t i = 0; i < test::fewer(200000U, 60000U); ++i) {
-    double level = 0.0;
-    for (std::size_t p = 0; p < process.size(); ++p) {
-      const double keep = std::exp(-1.0 / kBlocks[p]);
-      level += process[p] = keep * process[p] + deviation * std::sqrt(1.0 - keep * keep) * normal(random);
-    }
-    const LevelNoise::Innovation& now = noise.take(level + normal(random), 1.0);
-    sum += now.value - last[i % last.size()];
-    last[i % last.size()] = now.value;
-    if (i < 20000) continue;
-    squares += sum * sum;
-    n += static_cast<double>(last.size());
-  }
-  // 3000 independent sums: known to 2.6 %; 670 under a sanitizer, to 5.5 %.
-  EXPECT_NEAR(squares / n, 1.0, 0.15);
-  EXPECT_GT(noise.instability(), 0.01);
-}
-
-TEST(LevelNoise, ALevelIsGuessedAnewAfterItWasForgottenAndTheNoiseIsKnownStill) {
-  std::mt19937_64 random(12);
-  std::normal_distribution<double> normal;
-  LevelNoise noise;
-  for (int i = 0; i < 2000; ++i) (void)noise.take(1.0 + normal(random), 1.0);
-  EXPECT_NEAR(noise.level(), 1.0, 0.2);
-  noise.forget_level();
-  EXPECT_FALSE(std::isfinite(noise.level()));
-  EXPECT_FALSE(noise.take(100.0, 1.0).known);
-  EXPECT_EQ(noise.level(), 100.0);
-  const LevelNoise::Innovation& next = noise.take(102.0, 1.0);
-  EXPECT_TRUE(next.known);
-  // Two means of one level differ by the square root of two.
-  EXPECT_NEAR(next.value, std::sqrt(2.0), 0.2);
-  EXPECT_NEAR(next.spread, std::sqrt(2.0), 0.2);
 }
 
 }  // namespace

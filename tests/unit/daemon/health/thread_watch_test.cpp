@@ -39,33 +39,6 @@ TEST(ThreadWatch, StarvedIsReadyBothTimesWithoutAProcessorBetween) {
   EXPECT_FALSE(starved_between({'?', 0}, {'?', 0}));
 }
 
-TEST(ThreadWatch, AThreadThatWaitsIsNotStarvedNorIsOneThatHasEnded) {
-  ThreadWatch watch;
-  EXPECT_FALSE(watch.starved());
-  std::atomic<int> number{0};
-  std::atomic<bool> end{false};
-  std::thread waits([&] {
-    watch.begin();
-    number = gettid();
-    number.notify_one();
-    end.wait(false);
-  });
-  number.wait(0);
-  ThreadTime asleep;
-  while (asleep.state != 'S') {
-    std::string line;
-    std::getline(std::ifstream("/proc/self/task/" + std::to_string(number) + "/stat"), line);
-    asleep = parse_thread_stat(line);
-  }
-  EXPECT_FALSE(watch.starved());
-  EXPECT_FALSE(watch.starved());
-  end = true;
-  end.notify_one();
-  waits.join();
-  EXPECT_FALSE(watch.starved());
-  EXPECT_FALSE(watch.starved());
-}
-
 bool on_processor(int cpu, int priority) {
   cpu_set_t set;
   CPU_ZERO(&set);

@@ -2,47 +2,27 @@
 // The daemon as it runs, its flight recorder on, a sensor at the other end of a FIFO and a subscriber.
 #pragma once
 
-#include <fcntl.h>
-#include <gtest/gtest.h>
 #include <ifog/decode.h>
 #include <lcm/lcm.h>
 #include <poll.h>
-#include <signal.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
-#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
-#include <sstream>
-#include <string>
-#include <vector>
+
 #include "drivers/host/driver_instance.h"
 #include "filters/model_file/kept_noise.h"
-#include "tests/unit/daemon/private_network.h"
+#include "tests/unit/daemon/daemon_process.h"
 
 namespace ifog {
 
-namespace fs = std::filesystem;
-
-inline constexpr const char* kUrl = "udpm://239.255.76.67:7667?ttl=0";
-
-inline std::string text_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-class RecordedFlight : public testing::Test {
+class RecordedFlight : public DaemonProcess {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("recorded-flight-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-    if (const std::string why = enter_private_network(); !why.empty())
-      GTEST_SKIP() << "no private network namespace (" << why << "); runs as root or with user namespaces";
+    DaemonProcess::SetUp();
+    if (IsSkipped()) return;
     ASSERT_EQ(mkfifo(path("line").c_str(), 0600), 0);
     line_ = open(path("line").c_str(), O_RDWR | O_CLOEXEC);
     lcm_ = lcm_create(kUrl);
@@ -56,28 +36,9 @@ class RecordedFlight : public testing::Test {
     lcm_subscription_set_queue_capacity(rates, 100'000);
   }
   void TearDown() override {
-    if (child_ > 0) kill(child_, SIGKILL);
-    if (child_ > 0) waitpid(child_, nullptr, 0);
+    DaemonProcess::TearDown();
     if (lcm_ != nullptr) lcm_destroy(lcm_);
     if (line_ >= 0) close(line_);
-    fs::remove_all(folder_);
-  }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
-  void start() {
-    child_ = fork();
-    ASSERT_GE(child_, 0);
-    if (child_ != 0) return;
-    close(STDERR_FILENO);
-    open(path("said").c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
-    execl(IFOG_BINARY_DIR "/daemon/ifogd", "ifogd", "--config", path("ifogd.toml").c_str(), nullptr);
-    _exit(127);
-  }
-  int end(int signal) {
-    kill(child_, signal);
-    int status = 0;
-    waitpid(std::exchange(child_, -1), &status, 0);
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
   }
   // Generous: only a test that fails waits so long.
   bool await(std::size_t messages) {
@@ -121,8 +82,7 @@ class RecordedFlight : public testing::Test {
     return status;
   }
   // What `ifog denoise` says of the samples that were published before the channel from elsewhere had a
-  // value;
-  // "" where there were none.
+  // value; "" where there were none.
   std::string stale_in_words(const std::string& recording) const {
     const auto stale = std::count_if(published_.begin(), published_.end(), [](const rate_t& message) {
       return (message.flags & rate_t::FLAG_STALE_CHANNEL) != 0;
@@ -163,10 +123,8 @@ class RecordedFlight : public testing::Test {
               "period_s = 0.01\nmax_age_s = 0.5\n");
   }
 
-  fs::path folder_;
   lcm_t* lcm_ = nullptr;
   int line_ = -1;
-  pid_t child_ = -1;
   std::string model_line_ = "model = \"model.toml\"\n";
   std::string rate_hz_ = "1000";
   std::string filter_lines_ = "[sensor.filter]\nprocess_noise = 1e-10\nmeasurement_noise = 1e-8\n";

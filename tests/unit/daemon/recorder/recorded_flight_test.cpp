@@ -12,44 +12,6 @@
 namespace ifog {
 namespace {
 
-TEST_F(RecordedFlight, DenoiseGivesWhatTheDaemonPublishedToTheBit) {
-  configure();
-  start();
-  for (int n = 0; n < 60; ++n) {
-    send(50);
-    if (n % 15 == 7) write("supply", std::to_string(11'600 + 100 * n) + "\n");
-    ASSERT_TRUE(await(static_cast<std::size_t>(samples_))) << text_of(path("said"));
-  }
-  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
-  EXPECT_NE(text_of(path("said")).find(" 0 lost, "), std::string::npos) << text_of(path("said"));
-  // Neither model nor configuration nor channel is there any more: the recording carries what it needs.
-  fs::remove(path("model.toml"));
-  fs::remove(path("ifogd.toml"));
-  fs::remove(path("supply"));
-  ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
-  EXPECT_EQ(complaint_, stale_in_words("record/nose"));
-  const auto rows = rows_of("denoised.csv");
-  ASSERT_EQ(rows.size(), published_.size());
-  bool corrected = false;
-  for (std::size_t n = 0; n < rows.size(); ++n)
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const rate_t& message = published_[n];
-      ASSERT_EQ(rows[n][1 + 4 * axis], message.raw[axis]) << n;
-      ASSERT_EQ(rows[n][2 + 4 * axis], message.compensated[axis]) << n;
-      ASSERT_EQ(rows[n][3 + 4 * axis], message.denoised[axis]) << n;
-      corrected = corrected || message.compensated[axis] != message.raw[axis];
-    }
-  EXPECT_TRUE(corrected);
-  // Every command reads it as a capture, the channel from elsewhere among its columns.
-  ASSERT_EQ(ifog("convert " + path("record/nose") + " " + path("capture.csv")), 0) << complaint_;
-  EXPECT_NE(text_of(path("capture.csv")).substr(0, 200).find("supply_V"), std::string::npos);
-  EXPECT_EQ(rows_of("capture.csv").size(), published_.size());
-  EXPECT_EQ(ifog("allan " + path("record/nose") + " --json " + path("allan.json")), 0) << complaint_;
-  // And it is sent again as it came, to the bit.
-  ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
-  EXPECT_EQ(text_of(path("again")), sent_);
-}
-
 // Of a sensor that has run before: what it knew of its noise is in the recording, too, though the state
 // folder has gone on since.
 TEST_F(RecordedFlight, DenoiseBeginsWithTheNoiseTheDaemonBeganWith) {
@@ -68,8 +30,8 @@ TEST_F(RecordedFlight, DenoiseBeginsWithTheNoiseTheDaemonBeganWith) {
   filter_lines_ = "";
   configure();
   start();
-  ASSERT_TRUE(send_and_await(1500)) << text_of(path("said"));
-  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  ASSERT_TRUE(send_and_await(1500)) << said();
+  ASSERT_EQ(end(SIGTERM), 0) << said();
   fs::remove_all(path("state"));
   fs::remove(path("ifogd.toml"));
   ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
@@ -91,48 +53,63 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   start();
   const auto reload = [&](const std::string& expected) {
     kill(child_, SIGHUP);
-    for (int n = 0; n < 600 && text_of(path("said")).find(expected) == std::string::npos; ++n) listen(20);
-    EXPECT_NE(text_of(path("said")).find(expected), std::string::npos) << text_of(path("said"));
+    for (int n = 0; n < 600 && said().find(expected) == std::string::npos; ++n) listen(20);
+    EXPECT_NE(said().find(expected), std::string::npos) << said();
     // New parts are in use from the next delivery on: the next one at the latest.
     std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   };
-  ASSERT_TRUE(send_and_await(600)) << text_of(path("said"));
+  for (int n = 0; n < 12; ++n) {
+    if (n % 4 == 2) write("supply", std::to_string(11'600 + 500 * n) + "\n");
+    ASSERT_TRUE(send_and_await(50)) << said();
+  }
   ASSERT_NE(published_.back().denoised[0], published_.back().compensated[0]);  // its noise is known
   reload("nothing changed, the filter continues");
   const std::size_t unchanged = published_.size();
-  ASSERT_TRUE(send_and_await(200)) << text_of(path("said"));
+  ASSERT_TRUE(send_and_await(200)) << said();
   for (std::size_t n = unchanged; n < published_.size(); ++n)
     ASSERT_EQ(published_[n].flags & static_cast<std::int32_t>(rate_t::FLAG_NOISE_UNKNOWN), 0) << n;
   std::string other = text_of(path("model.toml"));
   other.replace(other.find("1e-3"), 4, "4e-3");
   write("model.toml", other);
   reload("reloaded: model");
-  ASSERT_TRUE(send_and_await(600)) << text_of(path("said"));
+  ASSERT_TRUE(send_and_await(600)) << said();
   filter_lines_ = "[sensor.filter]\nprocess_noise = 2e-10\nmeasurement_noise = 1e-8\n";
   configure();
   write("model.toml", other);
   reload("reloaded: model");
-  ASSERT_TRUE(send_and_await(300)) << text_of(path("said"));
-  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  ASSERT_TRUE(send_and_await(300)) << said();
+  ASSERT_EQ(end(SIGTERM), 0) << said();
   start();
-  ASSERT_TRUE(send_and_await(300)) << text_of(path("said"));
-  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  ASSERT_TRUE(send_and_await(300)) << said();
+  ASSERT_EQ(end(SIGTERM), 0) << said();
   std::set<std::string> models;
   for (const rate_t& message : published_) models.insert(message.model);
   EXPECT_EQ(models.size(), 2U);
-  fs::remove(path("model.toml"));
+  // Neither model nor configuration nor channel is there any more: the recording carries what it needs.
+  for (const char* name : {"model.toml", "ifogd.toml", "supply"}) fs::remove(path(name));
   ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv")), 0) << complaint_;
   EXPECT_TRUE(complaint_.starts_with(path("record/nose") + ": 2 runs of what wrote it, with ")) << complaint_;
   EXPECT_EQ(complaint_.substr(complaint_.find('\n') + 1), stale_in_words("record/nose"));
   const auto rows = rows_of("denoised.csv");
   ASSERT_EQ(rows.size(), published_.size());
+  bool corrected = false;
   for (std::size_t n = 0; n < rows.size(); ++n)
     for (std::size_t axis = 0; axis < 3; ++axis) {
       ASSERT_EQ(rows[n][1 + 4 * axis], published_[n].raw[axis]) << n;
       ASSERT_EQ(rows[n][2 + 4 * axis], published_[n].compensated[axis]) << n;
       ASSERT_EQ(rows[n][3 + 4 * axis], published_[n].denoised[axis]) << n;
       ASSERT_EQ(rows[n][4 + 4 * axis], published_[n].variance[axis]) << n;
+      corrected = corrected || published_[n].compensated[axis] != published_[n].raw[axis];
     }
+  EXPECT_TRUE(corrected);
+  // Every command reads it as a capture, the channel from elsewhere among its columns.
+  ASSERT_EQ(ifog("convert " + path("record/nose") + " " + path("capture.csv")), 0) << complaint_;
+  EXPECT_NE(text_of(path("capture.csv")).substr(0, 200).find("supply_V"), std::string::npos);
+  EXPECT_EQ(rows_of("capture.csv").size(), published_.size());
+  EXPECT_EQ(ifog("allan " + path("record/nose") + " --json " + path("allan.json")), 0) << complaint_;
+  // And it is sent again as it came, to the bit.
+  ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
+  EXPECT_EQ(text_of(path("again")), sent_);
   // Without its beginning nobody knows how the filter stood: that is said.
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(path("record/nose"))) files.push_back(entry.path());
@@ -176,8 +153,8 @@ TEST_F(RecordedFlight, ANightThatCannotJudgeFails) {
 TEST_F(RecordedFlight, DenoiseLooksForDriversWhereTheConfigurationSays) {
   configure();
   start();
-  ASSERT_TRUE(send_and_await(100)) << text_of(path("said"));
-  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  ASSERT_TRUE(send_and_await(100)) << said();
+  ASSERT_EQ(end(SIGTERM), 0) << said();
   write("raw.bin", sent_);
   // A program that is not in the build tree finds no drivers near itself.
   fs::create_directories(path("bin"));
@@ -203,7 +180,7 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
   model_line_ = "";
   configure();
   start();
-  ASSERT_TRUE(send_and_await(500)) << text_of(path("said"));
+  ASSERT_TRUE(send_and_await(500)) << said();
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   ASSERT_EQ(end(SIGKILL), 1000 + SIGKILL);
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
@@ -211,7 +188,7 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
   EXPECT_NE(complaint_.find("without an end"), std::string::npos) << complaint_;
   published_.clear();
   start();
-  ASSERT_TRUE(send_and_await(500)) << text_of(path("said"));
+  ASSERT_TRUE(send_and_await(500)) << said();
   ASSERT_EQ(end(SIGTERM), 0);
   for (const auto& entry : fs::directory_iterator(path("record/nose")))
     EXPECT_EQ(entry.path().extension(), ".ifr") << entry.path();
@@ -241,10 +218,10 @@ TEST_F(RecordedFlight, WhatTheRingMergedIsToldByDenoise) {
   ASSERT_EQ(connect(line_, reinterpret_cast<const sockaddr*>(&to), sizeof to), 0);
   configure();
   start();
-  for (int n = 0; n < 600 && text_of(path("said")).find("reading udp") == std::string::npos; ++n) listen(50);
+  for (int n = 0; n < 600 && said().find("reading udp") == std::string::npos; ++n) listen(50);
   for (int n = 0; n < 200; ++n) {
     send(1);
-    ASSERT_TRUE(await(samples_)) << text_of(path("said"));
+    ASSERT_TRUE(await(samples_)) << said();
   }
   const auto came = [&] {
     std::uint64_t out = 0;
@@ -255,11 +232,11 @@ TEST_F(RecordedFlight, WhatTheRingMergedIsToldByDenoise) {
   for (int burst = 0; burst < 100 && published_.size() == came(); ++burst) {
     send(50);
     for (int n = 0; n < 600 && came() < samples_; ++n) listen(50);
-    ASSERT_EQ(came(), samples_) << text_of(path("said"));
+    ASSERT_EQ(came(), samples_) << said();
   }
   const std::size_t merged = static_cast<std::size_t>(samples_) - published_.size();
   ASSERT_GT(merged, 0U);
-  ASSERT_EQ(end(SIGTERM), 0) << text_of(path("said"));
+  ASSERT_EQ(end(SIGTERM), 0) << said();
   ASSERT_EQ(ifog("denoise " + path("record/nose") + " --output " + path("denoised.csv") + " --json " +
                  path("denoised.json")),
             0)
@@ -300,7 +277,7 @@ TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
   for (int n = 0; n < 300; ++n) {
     std::this_thread::sleep_until(due += std::chrono::milliseconds(10));
     send(1);
-    ASSERT_TRUE(await(before + static_cast<std::size_t>(samples_))) << text_of(path("said"));
+    ASSERT_TRUE(await(before + static_cast<std::size_t>(samples_))) << said();
   }
   std::this_thread::sleep_for(std::chrono::milliseconds(2200));  // two status messages
   ASSERT_EQ(end(SIGTERM), 0);

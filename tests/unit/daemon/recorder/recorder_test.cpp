@@ -214,19 +214,6 @@ TEST(Recorder, NewSettingsWaitForWhatIsBeforeThem) {
   EXPECT_EQ(read_back(disk.files.rbegin()->second).payloads, std::vector<std::vector<std::uint8_t>>{after});
 }
 
-TEST(Recorder, AFolderThatNeverWorksLosesAllAndSaysSo) {
-  MemoryDisk disk;
-  disk.refuses = ENOTDIR;
-  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
-  recorder.start();
-  Rig rig(frames(20'000), 100, true, 1024, 0us, true, &recorder.tape());
-  rig.run_to_the_end();
-  recorder.stop();
-  EXPECT_EQ(recorder.lost_deliveries(), recorder.tape().counters().deliveries.value());
-  EXPECT_EQ(recorder.lost_bytes(), 20'000 * kFrame);
-  EXPECT_EQ(rig.publisher->messages().size(), 20'000U);
-}
-
 // Nobody took anything away: the last word is of the disk, and of what waited for it.
 TEST(Recorder, ADiskThatIsFullToTheEndIsSaidToBeFull) {
   Recording recording;
@@ -241,22 +228,6 @@ TEST(Recorder, ADiskThatIsFullToTheEndIsSaidToBeFull) {
   EXPECT_FALSE(good);
   EXPECT_EQ(recorder.lost_deliveries(), 10U);
   EXPECT_EQ(recorder.lost_bytes(), 30U);
-}
-
-// New settings that no room was left for are no entry of the record.
-TEST(Recorder, OfWhatIsLeftAtTheEndOnlyEntriesAreCounted) {
-  Recording recording;
-  Recorder& recorder = recording.recorder;
-  recording.disk.refuses = EIO;
-  recorder.start();
-  for (std::uint32_t n = 0; n < 3; ++n) {
-    recorder.tape().put(delivery(kBytes, 2), 2, {}, 0);
-    recorder.set_header(header(), n + 1);
-    recorder.tape().note_settings(n + 1);
-  }
-  recorder.stop();
-  EXPECT_EQ(recorder.lost_deliveries(), 3U);
-  EXPECT_EQ(recorder.entries_unwritten(), 3U);
 }
 
 TEST(Recorder, ARecordingThatIsTakenAwayIsToldAndCounted) {

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: Apache-2.0
+// Environment channels from LCM messages.
+#include <gtest/gtest.h>
+#include <lcm/lcm.h>
+
+#include <chrono>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "daemon/channels/channel_sources.h"
+#include "drivers/transport/clock.h"
+#include "tests/unit/daemon/channels/awaited.h"
+#include "tests/unit/daemon/messages.h"
+#include "tests/unit/daemon/private_network.h"
+
+namespace ifog {
+namespace {
+
+using namespace std::chrono_literals;
+
+class LcmChannel : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (const std::string why = enter_private_network(); !why.empty())
+      GTEST_SKIP() << "no private network namespace (" << why << "); runs as root or with user namespaces";
+    lcm_ = lcm_create(kUrl);
+    ASSERT_NE(lcm_, nullptr);
+  }
+  void TearDown() override {
+    if (lcm_ != nullptr) lcm_destroy(lcm_);
+  }
+  static ChannelConfig config(const std::string& lcm_channel) {
+    ChannelConfig out;
+    out.name = "coil_degC";
+    out.source = ChannelConfig::Source::lcm;
+    out.lcm_channel = lcm_channel;
+    return out;
+  }
+  void send(const std::string& name, const std::vector<std::uint8_t>& message) {
+    lcm_publish(lcm_, name.c_str(), message.data(), static_cast<unsigned>(message.size()));
+  }
+
+ private:
+  lcm_t* lcm_ = nullptr;
+};
+
+TEST_F(LcmChannel, AnLcmMessageOfEitherType) {
+  ChannelConfig one = config("HULL");
+  one.scale = 2.0;
+  ChannelConfig other = config("IFOG_TAIL_STATUS");
+  other.field = "channel_value[temperature_degC]";
+  const auto hull = std::make_shared<ChannelTable>(1), tail = std::make_shared<ChannelTable>(1);
+  ChannelSources sources({{one, hull, 0}, {other, tail, 0}}, kUrl);
+  sources.start();
+  status_t now = status();
+  now.utime = realtime_ns() / 1000;
+  send("HULL", encoded(channel("other_degC", 5.0)));
+  send("HULL", encoded(channel("coil_degC", 10.0)));
+  send("IFOG_TAIL_STATUS", encoded(now));
+  EXPECT_EQ(await(*hull, 20.0).value, 20.0);
+  const Value seen = await(*tail, 41.5);
+  EXPECT_EQ(seen.value, 41.5);
+  EXPECT_GE(seen.age_s, 2.0F);
+  EXPECT_LT(seen.age_s, 60.0F);
+}
+
+// A name is a name: LCM would take it for a regular expression.
+TEST_F(LcmChannel, AnLcmChannelIsTheOneOfThatName) {
+  const std::vector<std::pair<std::string, std::string>> names = {{"HULL+1", "HULLL1"},
+                                                                  {"HULL.2", "HULLx2"},
+                                                                  {"(HULL)3", "HULL3"},
+                                                                  {"HULL[4]", "HULL4"},
+                                                                  {"HULL5$", "HULL5"}};
+  for (const auto& [name, other] : names) {
+    const auto hull = std::make_shared<ChannelTable>(1);
+    ChannelSources sources({{config(name), hull, 0}}, kUrl);
+    sources.start();
+    send(name, encoded(channel("coil_degC", 21.0)));
+    EXPECT_EQ(await(*hull, 21.0).value, 21.0) << name;
+    send(other, encoded(channel("coil_degC", 99.0)));
+    std::this_thread::sleep_for(100ms);
+    EXPECT_EQ(look(*hull).value, 21.0) << other << " is heard as " << name;
+  }
+}
+
+// By the sender's own dates, unless its clock was set back from a time that is still to come.
+TEST_F(LcmChannel, ALateMessageNeverReplacesANewerOne) {
+  ChannelConfig one = config("HULL");
+  one.limits.maximum = 100.0;
+  const auto hull = std::make_shared<ChannelTable>(1);
+  ChannelSources sources({{one, hull, 0}}, kUrl);
+  sources.start();
+  const std::int64_t now_us = realtime_ns() / 1000, hour_us = 3'600'000'000;
+  const auto send = [&](double value, std::int64_t utime) {
+    LcmChannel::send("HULL", encoded(channel("coil_degC", value, utime)));
+  };
+  send(22.0, now_us - 100'000);
+  EXPECT_EQ(await(*hull, 22.0).value, 22.0);
+  send(30.0, now_us - hour_us);
+  for (int n = 0; n < 500 && hull->refused() == 0; ++n) std::this_thread::sleep_for(10ms);
+  EXPECT_EQ(hull->refused(), 1U);
+  EXPECT_EQ(look(*hull).value, 22.0);
+  EXPECT_LT(look(*hull).age_s, 60.0F);
+  EXPECT_EQ(
+      describe(one, hull->fault(0)),
+      "channel 'coil_degC': LCM channel 'HULL': what comes was measured before what is held, by its utime");
+  send(23.0, now_us - 50'000);
+  EXPECT_EQ(await(*hull, 23.0).value, 23.0);
+  // What is refused is not held: nothing is late for it. Sent twice it is counted once.
+  for (int times = 0; times < 2; ++times) send(500.0, now_us - 20'000);
+  send(23.5, now_us - 30'000);
+  EXPECT_EQ(await(*hull, 23.5).value, 23.5);
+  EXPECT_EQ(hull->refused(), 2U);
+  // A sender from next year, which is then set right.
+  send(24.0, now_us + 8760 * hour_us);
+  EXPECT_EQ(await(*hull, 24.0).value, 24.0);
+  // It grows old from when it came, also where it is sent again and again.
+  for (int times = 1; times <= 3; ++times) {
+    std::this_thread::sleep_for(200ms);
+    EXPECT_GE(look(*hull).age_s, 0.19F * static_cast<float>(times));
+    send(24.0, now_us + 8760 * hour_us);
+  }
+  send(25.0, now_us);
+  EXPECT_EQ(await(*hull, 25.0).value, 25.0);
+  // Without a date it is from now.
+  send(26.0, 0);
+  EXPECT_EQ(await(*hull, 26.0).value, 26.0);
+  EXPECT_EQ(hull->refused(), 2U);
+}
+
+// Each value is new and all seem to be an hour old: that is the clock's, and they are fresh.
+TEST_F(LcmChannel, AValueFromAComputerWhoseClockIsBehindIsFresh) {
+  const ChannelConfig one = config("HULL");
+  const auto hull = std::make_shared<ChannelTable>(1);
+  ChannelSources sources({{one, hull, 0}}, kUrl);
+  sources.start();
+  for (int n = 0; n < 5; ++n) {
+    send("HULL", encoded(channel("coil_degC", 20.0 + n, realtime_ns() / 1000 - 3'600'000'000)));
+    EXPECT_EQ(await(*hull, 20.0 + n).value, 20.0 + n);
+  }
+  EXPECT_LT(hull->latest(0).age_s(arrival_clock_ns()), 10.0F);
+  EXPECT_EQ(
+      describe(one, hull->fault(0)),
+      "channel 'coil_degC': LCM channel 'HULL': the clock that dates it is 3600 s behind this computer's: "
+      "ages are counted from the newest that has come");
+}
+
+}  // namespace
+}  // namespace ifog
