@@ -2,52 +2,26 @@
 // The driver `dbc`: signals picked by options, samples gathered from several frames, nothing made of two
 // samples.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <bit>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
-#include <initializer_list>
 #include <numbers>
 #include <utility>
 #include <vector>
 
-#include "drivers/host/driver_instance.h"
 #include "drivers/host/timeline_frame.h"
 #include "drivers/timeline/timeline.h"
+#include "tests/unit/drivers/dbc_frames.h"
 
 namespace {
 
-namespace fs = std::filesystem;
-
-const std::string kExamples = std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/";
-
-ifog_can_frame frame(std::uint32_t id, std::initializer_list<int> bytes, std::int64_t arrival_ns = 0) {
-  ifog_can_frame f{};
-  f.id = id;
-  f.arrival_ns = arrival_ns;
-  for (const int byte : bytes) f.data[f.length++] = static_cast<std::uint8_t>(byte);
-  return f;
-}
-
-// A frame of ifogd_gyro.dbc, put together here byte by byte: little-endian float, 16-bit counter, status.
-ifog_can_frame axis_frame(std::uint32_t id, float rate, std::uint16_t counter, std::uint8_t status = 0) {
-  const auto bits = std::bit_cast<std::uint32_t>(rate);
-  return frame(id, {static_cast<int>(bits & 0xFF), static_cast<int>(bits >> 8 & 0xFF),
-                    static_cast<int>(bits >> 16 & 0xFF), static_cast<int>(bits >> 24), counter & 0xFF,
-                    counter >> 8, status, 0});
-}
-
-std::vector<ifog_sample> decode(ifog::DriverInstance& driver, const std::vector<ifog_can_frame>& frames) {
-  std::vector<ifog_sample> samples;
-  for (const ifog_can_frame& f : frames)
-    driver.decode_can(f, [&](const ifog_sample& sample) { samples.push_back(sample); });
-  return samples;
-}
+using ifog::axis_frame;
+using ifog::DbcText;
+using ifog::decode;
+using ifog::frame;
+using ifog::kDbcExamples;
 
 ifog::DriverInstance three_axes(const ifog::DriverSettings& more = {}) {
-  ifog::DriverSettings settings{{"dbc", kExamples + "ifogd_gyro.dbc"},
+  ifog::DriverSettings settings{{"dbc", kDbcExamples + "ifogd_gyro.dbc"},
                                 {"x", "Rate_x"},
                                 {"y", "Rate_y"},
                                 {"z", "Rate_Z.Rate_z"},
@@ -57,7 +31,7 @@ ifog::DriverInstance three_axes(const ifog::DriverSettings& more = {}) {
 }
 
 TEST(DbcDriver, GoettingFrameByHand) {
-  ifog::DriverInstance driver = ifog::make_driver("dbc", {{"dbc", kExamples + "goetting_hg_g_84300.dbc"},
+  ifog::DriverInstance driver = ifog::make_driver("dbc", {{"dbc", kDbcExamples + "goetting_hg_g_84300.dbc"},
                                                           {"signal", "Angle"},
                                                           {"kind", "angle"},
                                                           {"counter", "Cycle"},
@@ -88,7 +62,7 @@ TEST(DbcDriver, GoettingFrameByHand) {
 
 TEST(DbcDriver, RacelogicFrameByHand) {
   ifog::DriverInstance driver =
-      ifog::make_driver("dbc", {{"dbc", kExamples + "racelogic_yaw03.dbc"},
+      ifog::make_driver("dbc", {{"dbc", kDbcExamples + "racelogic_yaw03.dbc"},
                                 {"z", "Yaw_Rate"},
                                 {"environment", "accel_x_mps2=X_Accel, temperature_degC = Temp"}});
   EXPECT_EQ(driver.description().sequence_modulus, 0U);
@@ -108,27 +82,16 @@ TEST(DbcDriver, RacelogicFrameByHand) {
   EXPECT_EQ(samples[1].environment_fresh, 1U);
 }
 
-TEST(DbcDriver, ThreeFramesMakeOneSampleInAnyOrder) {
-  ifog::DriverInstance driver = three_axes();
-  const std::vector<ifog_sample> samples =
-      decode(driver, {axis_frame(258, 3.0F, 7), axis_frame(256, 1.0F, 7), axis_frame(257, 2.0F, 7)});
-  ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].sequence, 7U);
-  EXPECT_EQ(samples[0].value[0], 1.0);
-  EXPECT_EQ(samples[0].value[1], 2.0);
-  EXPECT_EQ(samples[0].value[2], 3.0);
-  EXPECT_EQ(driver.counters().frames_good, 3U);
-}
-
 // Each frame of a run is lost in turn: the samples that come out are exactly the ones that were complete.
 TEST(DbcDriver, ALostFrameCostsItsSampleAndMixesNone) {
   for (const bool counted : {true, false})
     for (std::size_t lost = 0; lost < 15; ++lost) {
-      ifog::DriverInstance driver = counted ? three_axes()
-                                            : ifog::make_driver("dbc", {{"dbc", kExamples + "ifogd_gyro.dbc"},
-                                                                        {"x", "Rate_x"},
-                                                                        {"y", "Rate_y"},
-                                                                        {"z", "Rate_z"}});
+      ifog::DriverInstance driver = counted
+                                        ? three_axes()
+                                        : ifog::make_driver("dbc", {{"dbc", kDbcExamples + "ifogd_gyro.dbc"},
+                                                                    {"x", "Rate_x"},
+                                                                    {"y", "Rate_y"},
+                                                                    {"z", "Rate_z"}});
       std::vector<ifog_can_frame> frames;
       for (int k = 0; k < 5; ++k)
         for (int axis = 0; axis < 3; ++axis)
@@ -177,34 +140,6 @@ TEST(DbcDriver, NaNIsInvalidAndLeavesTheOtherAxesValid) {
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_EQ(samples[0].valid_axes, 0b101U);
 }
-
-class DbcText : public testing::Test {
- protected:
-  void SetUp() override {
-    path_ = fs::temp_directory_path() / ("ifog-dbc-" + std::to_string(getpid()) + ".dbc");
-  }
-  void TearDown() override { fs::remove(path_); }
-  ifog::DriverInstance driver(const std::string& text, ifog::DriverSettings settings) {
-    std::ofstream(path_) << text;
-    settings["dbc"] = path_.string();
-    return ifog::make_driver("dbc", settings);
-  }
-  std::string refusal(const std::string& text, const ifog::DriverSettings& settings) {
-    try {
-      driver(text, settings);
-    } catch (const std::runtime_error& error) {
-      std::string what = error.what();
-      for (std::size_t at = what.find(path_.string()); at != std::string::npos;
-           at = what.find(path_.string()))
-        what.replace(at, path_.string().size(), "F");
-      return what;
-    }
-    return "accepted";
-  }
-
- private:
-  fs::path path_;
-};
 
 constexpr const char* kTwo =
     "BO_ 1 A: 8 X\n SG_ R : 0|16@1- (0.01,0) [0|0] \"deg/s\" X\n SG_ N : 16|4@1+ (1,0) [0|0] \"\" X\n"

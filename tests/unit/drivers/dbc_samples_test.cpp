@@ -2,31 +2,21 @@
 // The driver `dbc`: frames that come twice, samples that stay unfinished, files with bad lines; every loss is
 // counted.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <bit>
-#include <filesystem>
-#include <fstream>
+#include <string>
 #include <vector>
 
-#include "drivers/host/driver_instance.h"
+#include "tests/unit/drivers/dbc_frames.h"
+#include "tests/unit/drivers/decoded.h"
 
 namespace {
 
-namespace fs = std::filesystem;
+using ifog::DbcText;
 
-const std::string kBus = std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/ifogd_gyro.dbc";
-
-// Axis 0, 1 or 2: little-endian float, 16-bit counter.
-ifog_can_frame axis(int which, float rate, std::uint16_t counter) {
-  ifog_can_frame f{};
-  f.id = 256U + static_cast<std::uint32_t>(which);
-  f.length = 8;
-  const auto bits = std::bit_cast<std::uint32_t>(rate);
-  for (unsigned i = 0; i < 4; ++i) f.data[i] = static_cast<std::uint8_t>(bits >> 8U * i);
-  f.data[4] = static_cast<std::uint8_t>(counter);
-  f.data[5] = static_cast<std::uint8_t>(counter >> 8U);
-  return f;
+// Axis 0, 1 or 2 of ifogd_gyro.dbc.
+ifog_can_frame axis(int which, float rate, int counter) {
+  return ifog::axis_frame(256U + static_cast<std::uint32_t>(which), rate,
+                          static_cast<std::uint16_t>(counter));
 }
 
 class Samples : public testing::Test {
@@ -35,8 +25,11 @@ class Samples : public testing::Test {
     for (const ifog_can_frame& f : frames)
       driver_.decode_can(f, [&](const ifog_sample& sample) { samples_.push_back(sample); });
   }
-  ifog::DriverInstance driver_ = ifog::make_driver(
-      "dbc", {{"dbc", kBus}, {"x", "Rate_x"}, {"y", "Rate_y"}, {"z", "Rate_z"}, {"counter", "Counter"}});
+  ifog::DriverInstance driver_ = ifog::make_driver("dbc", {{"dbc", ifog::kDbcExamples + "ifogd_gyro.dbc"},
+                                                           {"x", "Rate_x"},
+                                                           {"y", "Rate_y"},
+                                                           {"z", "Rate_z"},
+                                                           {"counter", "Counter"}});
   std::vector<ifog_sample> samples_;
 };
 
@@ -46,8 +39,7 @@ TEST_F(Samples, AFrameThatComesTwiceCostsNothingAndIsCounted) {
   for (std::size_t distance : {0U, 1U, 2U}) {
     std::vector<ifog_can_frame> frames;
     for (int k = 0; k < 30; ++k)
-      for (int a = 0; a < 3; ++a)
-        frames.push_back(axis(a, static_cast<float>(k * 10 + a), static_cast<std::uint16_t>(k + 100)));
+      for (int a = 0; a < 3; ++a) frames.push_back(axis(a, static_cast<float>(k * 10 + a), k + 100));
     // From the end on, so that the places in front stay.
     for (std::size_t i = 80; i >= 6; i -= 7) {
       frames.insert(frames.begin() + static_cast<std::ptrdiff_t>(i + 1 + distance), frames[i]);
@@ -76,74 +68,35 @@ TEST_F(Samples, ACounterThatStandsStillTellsNothing) {
   EXPECT_EQ(driver_.counters().frames_repeated, 0U);
 }
 
-TEST_F(Samples, TheUnfinishedLastSampleIsCounted) {
-  feed({axis(0, 1, 1), axis(1, 2, 1), axis(2, 3, 1), axis(0, 4, 2), axis(1, 5, 2)});
-  EXPECT_EQ(samples_.size(), 1U);
-  EXPECT_EQ(driver_.counters().samples_incomplete, 0U);
-  driver_.reset();  // the log has ended
-  EXPECT_EQ(driver_.counters().samples_incomplete, 1U);
-  driver_.reset();
-  EXPECT_EQ(driver_.counters().samples_incomplete, 1U);
-}
+const std::string kGood = "BO_ 1 A: 8 X\n SG_ R : 0|16@1- (1,0) [0|0] \"deg/s\" X\n";
+const std::string kOneBad = kGood + " SG_ Q : 0|1x@1- (1,0) [0|0] \"deg/s\" X\n";
 
-class BadFile : public testing::Test {
- protected:
-  void SetUp() override {
-    path_ = fs::temp_directory_path() / ("ifog-bad-" + std::to_string(getpid()) + ".dbc");
-  }
-  void TearDown() override { fs::remove(path_); }
-  ifog::DriverInstance driver(const std::string& text, const std::string& signal) {
-    std::ofstream(path_, std::ios::binary) << text;
-    return ifog::make_driver("dbc", {{"dbc", path_.string()}, {"signal", signal}});
-  }
-  std::string refusal(const std::string& text, const std::string& signal) {
-    try {
-      driver(text, signal);
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "accepted";
-  }
-  fs::path path_;
-};
-
-const std::string kOneBad =
-    "BO_ 1 A: 8 X\n SG_ R : 0|16@1- (1,0) [0|0] \"deg/s\" X\n SG_ Q : 0|1x@1- (1,0) [0|0] \"deg/s\" X\n";
-
-TEST_F(BadFile, IsUsedAndItsBadLineNamed) {
-  const ifog::DriverInstance d = driver(kOneBad, "R");
+TEST_F(DbcText, WithABadLineIsUsedAndTheLineNamed) {
+  const std::string flaw = ":3: 'x@1- (1,0) [0|0] \"deg/s\"… (26 bytes)', expected '@'";
+  const ifog::DriverInstance d = driver(kOneBad, {{"signal", "R"}});
   ASSERT_EQ(d.warnings().size(), 1U);
-  EXPECT_EQ(d.warnings()[0],
-            "driver dbc: " + path_.string() + ":3: 'x@1- (1,0) [0|0] \"deg/s\"… (26 bytes)', expected '@'");
-  EXPECT_TRUE(driver("BO_ 1 A: 8 X\n SG_ R : 0|16@1- (1,0) [0|0] \"deg/s\" X\n", "R").warnings().empty());
+  EXPECT_TRUE(d.warnings()[0].ends_with(flaw)) << d.warnings()[0];
+  EXPECT_TRUE(driver(kGood, {{"signal", "R"}}).warnings().empty());
+  // A signal from a bad line is refused with the line.
+  EXPECT_EQ(refusal(kOneBad, {{"signal", "Q"}}), "driver dbc: F" + flaw);
+  EXPECT_EQ(refusal(kGood + " SG_ 3Q : 0|16@1- (1,0)\n", {{"signal", "Q"}}),
+            "driver dbc: signal is 'Q', expected a signal of F: A.R; 1 bad lines in it, the first: "
+            "F:3: '3Q : 0|16@1- (1,0)', expected the name of a signal");
 }
 
-TEST_F(BadFile, ASignalFromABadLineIsRefusedWithTheLine) {
-  EXPECT_EQ(refusal(kOneBad, "Q"),
-            "driver dbc: " + path_.string() + ":3: 'x@1- (1,0) [0|0] \"deg/s\"… (26 bytes)', expected '@'");
-  EXPECT_EQ(refusal("BO_ 1 A: 8 X\n SG_ R : 0|16@1- (1,0) [0|0] \"deg/s\" X\n SG_ 3Q : 0|16@1- (1,0)\n", "Q"),
-            "driver dbc: signal is 'Q', expected a signal of " + path_.string() +
-                ": A.R; 1 bad lines in it, the first: " + path_.string() +
-                ":3: '3Q : 0|16@1- (1,0)', expected the name of a signal");
-}
-
-TEST_F(BadFile, ManyWarningsAreCountedInTheLast) {
+TEST_F(DbcText, ManyWarningsAreCountedInTheLast) {
   std::string text = kOneBad;
   for (int i = 0; i < 500; ++i) text += "?? what\n";
-  const ifog::DriverInstance d = driver(text, "R");
+  const ifog::DriverInstance d = driver(text, {{"signal", "R"}});
   ASSERT_GT(d.warnings().size(), 5U);
   ASSERT_LT(d.warnings().size(), 100U);
   EXPECT_EQ(d.warnings().back(),
             "driver dbc: and " + std::to_string(501 - (d.warnings().size() - 1)) + " more warnings");
 }
 
-TEST_F(BadFile, ADeviceIsNotRead) {
-  try {
-    ifog::make_driver("dbc", {{"dbc", "/dev/zero"}, {"signal", "R"}});
-    ADD_FAILURE() << "accepted";
-  } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(error.what(), "driver dbc: dbc is '/dev/zero', expected a regular file");
-  }
+TEST(DbcDriver, ADeviceIsNotRead) {
+  EXPECT_EQ(ifog::refusal("dbc", {{"dbc", "/dev/zero"}, {"signal", "R"}}),
+            "driver dbc: dbc is '/dev/zero', expected a regular file");
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 
 #include "drivers/dbc/codec.h"
 #include "drivers/dbc/database.h"
+#include "tests/unit/refusal.h"
 
 namespace {
 
@@ -232,14 +233,11 @@ TEST(DbcFile, NestedMultiplexorsSelect) {
 }
 
 std::string refusal(const std::string& text) {
-  try {
+  return ifog::test::refusal([&] {
     const Database d = parse_database(text, "f.dbc");
     for (const Message& m : d.messages)
       for (const Signal& s : m.signals) check_fits(d, m, s);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "accepted";
+  });
 }
 
 TEST(DbcFile, RefusesWithFileAndLine) {

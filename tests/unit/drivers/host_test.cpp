@@ -10,7 +10,8 @@
 #include <span>
 #include <stdexcept>
 
-#include "drivers/host/driver_instance.h"
+#include "tests/unit/drivers/decoded.h"
+#include "tests/unit/refusal.h"
 
 namespace {
 
@@ -18,52 +19,30 @@ namespace fs = std::filesystem;
 
 const std::string kRefused = IFOG_REFUSED_PLUGINS;
 
-std::string refusal(const std::string& name, const ifog::DriverSettings& settings,
-                    const std::vector<std::string>& folders = ifog::plugin_folders()) {
-  try {
-    ifog::make_driver(name, settings, folders);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
-
 std::string refused_plugin(const std::string& name) {
-  const std::string line = refusal(name, {}, {kRefused});
+  const std::string line = ifog::refusal(name, {}, {kRefused});
   const std::string path = kRefused + "/" + name + ".so: ";
   return line.starts_with(path) ? line.substr(path.size()) : line;
 }
 
-TEST(DriverHost, FindsThePluginOfTheBuildTree) {
-  const ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", "b"}});
-  EXPECT_TRUE(driver.takes_bytes());
-  EXPECT_FALSE(driver.takes_can());
-  EXPECT_EQ(driver.description().axes, 3U);
-  EXPECT_EQ(driver.description().has_device_time, 1U);
-  EXPECT_STREQ(driver.description().environment[3], "temperature_degC");
-}
-
 TEST(DriverHost, NamesKeyValueAndExpectation) {
-  EXPECT_EQ(refusal("kvh1750", {{"formt", "a"}}),
+  EXPECT_EQ(ifog::refusal("kvh1750", {{"formt", "a"}}),
             "driver kvh1750: unknown option 'formt' (value 'a'), did you mean 'format'? Known here: format, "
             "angle_unit, output, acceleration, temperature, time_stamp, rate_hz, full_scale");
-  EXPECT_EQ(refusal("kvh1750", {{"format", "d"}}),
+  EXPECT_EQ(ifog::refusal("kvh1750", {{"format", "d"}}),
             "driver kvh1750: format is 'd', expected one of auto, a, b, c");
-  EXPECT_EQ(refusal("kvh1750", {{"rate_hz", "-3"}}),
+  EXPECT_EQ(ifog::refusal("kvh1750", {{"rate_hz", "-3"}}),
             "driver kvh1750: rate_hz is '-3', expected a number > 0, at most 100000");
-  EXPECT_EQ(refusal("kvh1750", {{"rate_hz", "1000x"}}),
+  EXPECT_EQ(ifog::refusal("kvh1750", {{"rate_hz", "1000x"}}),
             "driver kvh1750: rate_hz is '1000x', expected a number > 0, at most 100000");
-  EXPECT_EQ(refusal("dbc", {}),
+  EXPECT_EQ(ifog::refusal("dbc", {}),
             "driver dbc: option 'dbc' is missing, expected a file (Vector DBC file that describes the bus)");
 }
 
-TEST(DriverHost, AnotherInterfaceVersionIsRefusedByBothNumbers) {
+TEST(DriverHost, WhatIsNoDriverIsRefused) {
   EXPECT_EQ(refused_plugin("other_version"), "built for interface version 99, this program has version " +
                                                  std::to_string(IFOG_DRIVER_ABI) +
                                                  "; build the plugin against this version");
-}
-
-TEST(DriverHost, WhatIsNoDriverIsRefused) {
   EXPECT_EQ(refused_plugin("without_entry"), "is no ifogd plugin: it has no function ifog_driver_entry");
   EXPECT_EQ(refused_plugin("misnamed"), "calls itself 'something_else', expected the name of its file");
   EXPECT_EQ(refused_plugin("without_create"), "its table lacks 'create'");
@@ -73,14 +52,15 @@ TEST(DriverHost, WhatIsNoDriverIsRefused) {
 }
 
 TEST(DriverHost, AMissingDriverIsNamedWithThoseThereAre) {
-  const std::string line = refusal("kvh", {}, {kRefused});
+  const std::string line = ifog::refusal("kvh", {}, {kRefused});
   EXPECT_EQ(line,
             "driver is 'kvh', expected one of: misnamed, option_unsaid, other_version, too_many_axes, "
             "without_create, without_entry (looked in " +
                 kRefused + ")");
-  EXPECT_NE(refusal("other_verison", {}, {kRefused}).find("did you mean 'other_version'?"),
+  EXPECT_NE(ifog::refusal("other_verison", {}, {kRefused}).find("did you mean 'other_version'?"),
             std::string::npos);
-  EXPECT_NE(refusal("../plugins/kvh1750", {}).find("driver is '../plugins/kvh1750'"), std::string::npos);
+  EXPECT_NE(ifog::refusal("../plugins/kvh1750", {}).find("driver is '../plugins/kvh1750'"),
+            std::string::npos);
 }
 
 TEST(DriverHost, AFileThatIsNoObjectIsRefusedAndTheListGoesOn) {
@@ -128,12 +108,7 @@ TEST(DriverHost, WhatAnybodyMayWriteIsNotLoaded) {
   const fs::path copy = folder / "kvh1750.so";
   fs::copy_file(std::string(IFOG_BINARY_DIR) + "/plugins/kvh1750.so", copy);
   const auto refusal_of = [&] {
-    try {
-      (void)ifog::find_plugin("kvh1750", {folder.string()});
-    } catch (const std::runtime_error& error) {
-      return std::string(error.what());
-    }
-    return std::string("loaded");
+    return ifog::test::refusal([&] { (void)ifog::find_plugin("kvh1750", {folder.string()}); }, "loaded");
   };
   EXPECT_EQ(refusal_of(), "loaded");
   fs::permissions(copy, fs::perms::others_write, fs::perm_options::add);

@@ -10,29 +10,14 @@
 #include <vector>
 
 #include "drivers/host/driver_instance.h"
-#include "drivers/plugins/framing/crc32_mpeg2.h"
 #include "drivers/plugins/kvh1750/frame_finder.h"
 #include "tests/unit/drivers/damaged_stream.h"
+#include "tests/unit/drivers/decoded.h"
 #include "tests/unit/drivers/hex_bytes.h"
 #include "tests/unit/drivers/long_division.h"
+#include "tests/unit/refusal.h"
 
 namespace {
-
-using ifog::framing::crc32_mpeg2;
-
-std::span<const std::uint8_t> bytes_of(std::string_view text) {
-  return {reinterpret_cast<const std::uint8_t*>(text.data()), text.size()};
-}
-
-TEST(Crc32Mpeg2, HasTheCatalogueCheckValue) { EXPECT_EQ(crc32_mpeg2(bytes_of("123456789")), 0x0376E6E7U); }
-
-TEST(Crc32Mpeg2, EqualsLongDivision) {
-  std::vector<std::uint8_t> bytes;
-  for (unsigned i = 0; i < 300; ++i) {
-    bytes.push_back(static_cast<std::uint8_t>(i * 37 + i / 7));
-    ASSERT_EQ(crc32_mpeg2(bytes), ifog::long_division(bytes)) << i;
-  }
-}
 
 // ------------------------------------------------------------------------------------------------------------------
 // Frames packed by hand from the tables of the maker's manual; the CRCs at their ends come from long division
@@ -52,16 +37,9 @@ const std::string_view kFrameB =
 const std::string_view kFrameC =
     "FE81FF57 3F800000 C0000000 3F000000 00000000 3F800000 BF800000 3EFAE148 77 06 DCB3C67E";
 
-std::vector<ifog_sample> decode(ifog::DriverInstance& driver, const std::vector<std::uint8_t>& bytes,
-                                std::int64_t arrival_ns = 42) {
-  std::vector<ifog_sample> samples;
-  driver.decode_bytes(bytes, arrival_ns, [&](const ifog_sample& sample) { samples.push_back(sample); });
-  return samples;
-}
-
 TEST(Kvh1750, FormatAPackedByHand) {
   ifog::DriverInstance driver = ifog::make_driver("kvh1750", {});
-  const std::vector<ifog_sample> samples = decode(driver, hex(kFrameA));
+  const std::vector<ifog_sample> samples = ifog::decoded(driver, hex(kFrameA));
   ASSERT_EQ(samples.size(), 1U);
   const ifog_sample& s = samples[0];
   EXPECT_EQ(s.arrival_ns, 42);
@@ -84,7 +62,7 @@ TEST(Kvh1750, FormatAPackedByHand) {
 // down: delta angles in radians, about −1 g along x, all valid, sequence 61, 40 °C.
 TEST(Kvh1750, TheManualsSampleOutput) {
   ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"output", "delta"}});
-  const std::vector<ifog_sample> samples = decode(
+  const std::vector<ifog_sample> samples = ifog::decoded(
       driver, hex("FE81FF55 37A96A6E 38586C1F B75BF862 BF803E78 BB650D28 3B0A37AC 77 3D 0028 4BFA34D8"));
   ASSERT_EQ(samples.size(), 1U);
   const ifog_sample& s = samples[0];
@@ -101,7 +79,7 @@ TEST(Kvh1750, TheManualsSampleOutput) {
 TEST(Kvh1750, FormatBPackedByHand) {
   ifog::DriverInstance driver = ifog::make_driver(
       "kvh1750", {{"format", "b"}, {"angle_unit", "degrees"}, {"temperature", "centi_degC"}});
-  const std::vector<ifog_sample> samples = decode(driver, hex(kFrameB));
+  const std::vector<ifog_sample> samples = ifog::decoded(driver, hex(kFrameB));
   ASSERT_EQ(samples.size(), 1U);
   const ifog_sample& s = samples[0];
   EXPECT_EQ(s.flags, unsigned{IFOG_SAMPLE_SEQUENCE | IFOG_SAMPLE_DEVICE_TIME});
@@ -116,7 +94,7 @@ TEST(Kvh1750, FormatBPackedByHand) {
 
 TEST(Kvh1750, FormatCPackedByHand) {
   ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", "c"}});
-  const std::vector<ifog_sample> samples = decode(driver, hex(kFrameC));
+  const std::vector<ifog_sample> samples = ifog::decoded(driver, hex(kFrameC));
   ASSERT_EQ(samples.size(), 1U);
   const ifog_sample& s = samples[0];
   EXPECT_EQ(s.sequence, 6U);  // modulo four: 2, the field along y
@@ -132,7 +110,7 @@ TEST(Kvh1750, AnInvalidStatusBitInvalidatesItsAxisOnly) {
   frame.resize(32);
   frame[28] = 0x25;  // gyro x and z, accelerometer y
   ifog::append_crc32(frame);
-  const std::vector<ifog_sample> samples = decode(driver, frame);
+  const std::vector<ifog_sample> samples = ifog::decoded(driver, frame);
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_EQ(samples[0].valid_axes, 0b101U);
   EXPECT_EQ(samples[0].environment_fresh, 0b1010U);
@@ -140,8 +118,8 @@ TEST(Kvh1750, AnInvalidStatusBitInvalidatesItsAxisOnly) {
 
 TEST(Kvh1750, AnotherFormatThanConfiguredIsCountedNotTaken) {
   ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", "a"}});
-  EXPECT_TRUE(decode(driver, hex(kFrameB)).empty());
-  EXPECT_EQ(decode(driver, hex(kFrameA)).size(), 1U);
+  EXPECT_TRUE(ifog::decoded(driver, hex(kFrameB)).empty());
+  EXPECT_EQ(ifog::decoded(driver, hex(kFrameA)).size(), 1U);
   EXPECT_EQ(driver.counters().frames_format, 1U);
   EXPECT_EQ(driver.counters().frames_good, 1U);
   EXPECT_EQ(driver.counters().bytes_skipped, 0U);
@@ -156,7 +134,7 @@ TEST(Kvh1750, TheStampIsPassedOnAsSentWithWhereItGoesRound) {
       frame.resize(36);
       for (unsigned i = 0; i < 4; ++i) frame[28 + i] = static_cast<std::uint8_t>(stamp_us >> (24U - 8U * i));
       ifog::append_crc32(frame);
-      const ifog_sample sample = decode(driver, frame, 1).at(0);
+      const ifog_sample sample = ifog::decoded(driver, frame, 1).at(0);
       EXPECT_EQ(sample.device_time_ns, std::int64_t{stamp_us} * 1000);
       EXPECT_EQ(sample.device_wrap_ns, wrap_ns);
     }
@@ -205,7 +183,7 @@ TEST(Kvh1750, EncodesTheHandPackedFramesAgain) {
     ifog::DriverInstance driver = ifog::make_driver("kvh1750", {{"format", format}});
     const std::vector<std::uint8_t> bytes = hex(text);
     std::vector<std::uint8_t> again;
-    driver.encode_bytes(decode(driver, bytes).at(0), again);
+    driver.encode_bytes(ifog::decoded(driver, bytes).at(0), again);
     EXPECT_EQ(again, bytes) << format;
   }
 }
@@ -215,15 +193,9 @@ TEST(Kvh1750, EncodeRefusesWhatTheFormatCannotHold) {
   ifog_sample sample{};
   sample.environment[3] = 400.0;
   std::vector<std::uint8_t> bytes;
-  try {
-    driver.encode_bytes(sample, bytes);
-    FAIL() << "accepted";
-  } catch (const std::runtime_error& error) {
-    EXPECT_STREQ(
-        error.what(),
-        "driver kvh1750: temperature_degC is 400.000000, expected what 16 bits hold in the temperature "
-        "option's scale");
-  }
+  EXPECT_EQ(ifog::test::refusal([&] { driver.encode_bytes(sample, bytes); }),
+            "driver kvh1750: temperature_degC is 400.000000, expected what 16 bits hold in the temperature "
+            "option's scale");
   EXPECT_TRUE(bytes.empty());
 }
 

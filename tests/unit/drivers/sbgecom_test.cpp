@@ -11,6 +11,7 @@
 #include "drivers/plugins/framing/frame_finder.h"
 #include "drivers/plugins/sbgecom/message.h"
 #include "tests/unit/drivers/damaged_stream.h"
+#include "tests/unit/drivers/decoded.h"
 #include "tests/unit/drivers/hex_bytes.h"
 
 namespace ifog {
@@ -34,12 +35,6 @@ const char* const kData =
 const char* const kHighScale =
     "FF5A 2C 00 2000 00000000 FF07 00000000 00000000 00000000 2EBFBB00 00000000 00000000 0000 AADE 33";
 
-std::vector<ifog_sample> decode(DriverInstance& driver, const Bytes& bytes, std::int64_t arrival_ns = 42) {
-  std::vector<ifog_sample> samples;
-  driver.decode_bytes(bytes, arrival_ns, [&](const ifog_sample& sample) { samples.push_back(sample); });
-  return samples;
-}
-
 // As the protocol's description gives it: polynomial 0x8408, from 0, lowest bit first.
 std::uint16_t by_bits(std::span<const std::uint8_t> bytes) {
   unsigned crc = 0;
@@ -50,14 +45,9 @@ std::uint16_t by_bits(std::span<const std::uint8_t> bytes) {
   return static_cast<std::uint16_t>(crc);
 }
 
-TEST(SbgEcom, TheCrcHasTheCatalogueCheckValue) {
-  const Bytes digits{'1', '2', '3', '4', '5', '6', '7', '8', '9'};
-  EXPECT_EQ(sbgecom::crc16(digits), 0x2189);  // CRC-16/KERMIT
-}
-
 TEST(SbgEcom, ImuShortPackedByHand) {
   DriverInstance driver = make_driver("sbgecom", {});
-  const auto samples = decode(driver, hex_bytes(kShort));
+  const auto samples = decoded(driver, hex_bytes(kShort));
   ASSERT_EQ(samples.size(), 1U);
   const ifog_sample& s = samples[0];
   EXPECT_EQ(s.flags, unsigned{IFOG_SAMPLE_DEVICE_TIME});
@@ -76,7 +66,7 @@ TEST(SbgEcom, ImuShortPackedByHand) {
 
 TEST(SbgEcom, ImuDataPackedByHandGivesTheIncrements) {
   DriverInstance driver = make_driver("sbgecom", {});
-  const auto samples = decode(driver, hex_bytes(kData));
+  const auto samples = decoded(driver, hex_bytes(kData));
   ASSERT_EQ(samples.size(), 1U);
   const ifog_sample& s = samples[0];
   EXPECT_EQ(s.valid_axes, 0b101U);
@@ -91,7 +81,7 @@ TEST(SbgEcom, ImuDataPackedByHandGivesTheIncrements) {
 
 TEST(SbgEcom, TheHighScaleIsTheStatusBits) {
   DriverInstance driver = make_driver("sbgecom", {});
-  EXPECT_EQ(decode(driver, hex_bytes(kHighScale)).at(0).value[0], 1.0);
+  EXPECT_EQ(decoded(driver, hex_bytes(kHighScale)).at(0).value[0], 1.0);
   // 40 rad/s do not fit into the standard scale: the encoder goes over to the high one.
   ifog_sample sample{};
   sample.flags = IFOG_SAMPLE_DEVICE_TIME;
@@ -99,7 +89,7 @@ TEST(SbgEcom, TheHighScaleIsTheStatusBits) {
   sample.value[1] = -40.0;
   Bytes bytes;
   driver.encode_bytes(sample, bytes);
-  const auto back = decode(driver, bytes);
+  const auto back = decoded(driver, bytes);
   ASSERT_EQ(back.size(), 1U);
   EXPECT_EQ(back[0].status & 0x400U, 0x400U);
   EXPECT_NEAR(back[0].value[1], -40.0, 1.0 / 12304174.0);
@@ -119,7 +109,7 @@ TEST(SbgEcom, StatusBitsInvalidate) {
     const std::uint16_t crc = by_bits(std::span(frame).subspan(2, 36));
     frame[38] = static_cast<std::uint8_t>(crc & 0xFFU);
     frame[39] = static_cast<std::uint8_t>(crc >> 8U);
-    const auto samples = decode(driver, frame);
+    const auto samples = decoded(driver, frame);
     ASSERT_EQ(samples.size(), 1U);
     EXPECT_EQ(samples[0].valid_axes, valid) << status;
     EXPECT_EQ(samples[0].environment_fresh, fresh) << status;
@@ -131,7 +121,7 @@ TEST(SbgEcom, OneOfTwoLogsIsChosen) {
   const Bytes data = hex_bytes(kData);
   both.insert(both.end(), data.begin(), data.end());
   DriverInstance brief = make_driver("sbgecom", {{"message", "imu_short"}});
-  EXPECT_EQ(decode(brief, both).size(), 1U);
+  EXPECT_EQ(decoded(brief, both).size(), 1U);
   EXPECT_EQ(brief.counters().frames_good, 2U);
   EXPECT_EQ(brief.counters().bytes_skipped, 0U);
 }
@@ -170,7 +160,7 @@ TEST(SbgEcom, TheStampIsPassedOnAsSentWithWhereItGoesRound) {
     sample.device_time_ns = time_ns;
     driver.encode_bytes(sample, bytes);
   }
-  const auto samples = decode(driver, bytes, 0);
+  const auto samples = decoded(driver, bytes, 0);
   ASSERT_EQ(samples.size(), 3U);
   EXPECT_EQ(samples[0].device_time_ns, (wrap_ns - 5'000'000) / 1000 * 1000);
   EXPECT_EQ(samples[1].device_time_ns, 0);
@@ -182,7 +172,7 @@ TEST(SbgEcom, EncodesTheHandPackedFrameAgain) {
   DriverInstance driver = make_driver("sbgecom", {});
   const Bytes bytes = hex_bytes(kShort);
   Bytes again;
-  driver.encode_bytes(decode(driver, bytes).at(0), again);
+  driver.encode_bytes(decoded(driver, bytes).at(0), again);
   EXPECT_EQ(again, bytes);
 }
 

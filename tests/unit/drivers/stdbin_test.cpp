@@ -12,6 +12,7 @@
 #include "drivers/plugins/framing/frame_finder.h"
 #include "drivers/plugins/stdbin/telegram.h"
 #include "tests/unit/drivers/damaged_stream.h"
+#include "tests/unit/drivers/decoded.h"
 #include "tests/unit/drivers/hex_bytes.h"
 
 namespace ifog {
@@ -41,15 +42,9 @@ std::uint32_t sum(std::span<const std::uint8_t> bytes) {
   return std::accumulate(bytes.begin(), bytes.end(), 0U);
 }
 
-std::vector<ifog_sample> decode(DriverInstance& driver, const Bytes& bytes, std::int64_t arrival_ns = 42) {
-  std::vector<ifog_sample> samples;
-  driver.decode_bytes(bytes, arrival_ns, [&](const ifog_sample& sample) { samples.push_back(sample); });
-  return samples;
-}
-
 TEST(StdBin, Version2PackedByHand) {
   DriverInstance driver = make_driver("stdbin", {{"rate_block", "compensated"}});
-  const auto samples = decode(driver, hex_bytes(kVersion2));
+  const auto samples = decoded(driver, hex_bytes(kVersion2));
   ASSERT_EQ(samples.size(), 1U);
   const ifog_sample& s = samples[0];
   EXPECT_EQ(s.flags, unsigned{IFOG_SAMPLE_SEQUENCE | IFOG_SAMPLE_DEVICE_TIME});
@@ -64,7 +59,7 @@ TEST(StdBin, Version2PackedByHand) {
 
 TEST(StdBin, Version4PackedByHand) {
   DriverInstance driver = make_driver("stdbin", {});
-  const auto samples = decode(driver, hex_bytes(kVersion4));
+  const auto samples = decoded(driver, hex_bytes(kVersion4));
   ASSERT_EQ(samples.size(), 1U);
   const ifog_sample& s = samples[0];
   EXPECT_EQ(s.sequence, 0xABCDU);  // of 0x1ABCD
@@ -84,7 +79,7 @@ TEST(StdBin, Version4PackedByHand) {
 
 TEST(StdBin, ATelegramWithoutTheWantedRateIsCounted) {
   DriverInstance driver = make_driver("stdbin", {{"rate_block", "raw"}});
-  EXPECT_TRUE(decode(driver, hex_bytes(kVersion2)).empty());
+  EXPECT_TRUE(decoded(driver, hex_bytes(kVersion2)).empty());
   EXPECT_EQ(driver.counters().frames_format, 1U);
   EXPECT_EQ(driver.counters().frames_good, 0U);
   EXPECT_EQ(driver.counters().bytes_framed, 37U);
@@ -97,7 +92,7 @@ TEST(StdBin, AWrongLengthIsNoTelegram) {
   telegram[6] = 0x21;  // and block 0
   telegram[36] = static_cast<std::uint8_t>(telegram[36] + 1);
   EXPECT_EQ(sum(std::span(telegram).first(33)), 0x2D0U);
-  EXPECT_TRUE(decode(driver, telegram).empty());
+  EXPECT_TRUE(decoded(driver, telegram).empty());
 }
 
 TEST(StdBin, TheTimeOfDayGoesRoundAtMidnight) {
@@ -111,7 +106,7 @@ TEST(StdBin, TheTimeOfDayGoesRoundAtMidnight) {
     sample.device_time_ns = time_ns;
     driver.encode_bytes(sample, bytes);
   }
-  const auto samples = decode(driver, bytes, 0);
+  const auto samples = decoded(driver, bytes, 0);
   ASSERT_EQ(samples.size(), 3U);
   EXPECT_EQ(samples[0].device_time_ns, kDay_ns - 10'000'000);
   EXPECT_EQ(samples[1].device_time_ns, 0);
@@ -135,7 +130,7 @@ TEST(StdBin, EncodesEveryVersionSoThatItReadsBack) {
     Bytes bytes;
     driver.encode_bytes(sample, bytes);
     EXPECT_EQ(bytes[2], version[0] - '0');
-    const auto back = decode(driver, bytes);
+    const auto back = decoded(driver, bytes);
     ASSERT_EQ(back.size(), 1U) << version;
     EXPECT_EQ(back[0].sequence, 77U);
     EXPECT_EQ(back[0].device_time_ns, 1'234'500'000);

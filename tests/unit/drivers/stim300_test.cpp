@@ -14,6 +14,7 @@
 #include "drivers/plugins/framing/frame_finder.h"
 #include "drivers/plugins/stim300/datagram.h"
 #include "tests/unit/drivers/damaged_stream.h"
+#include "tests/unit/drivers/decoded.h"
 #include "tests/unit/drivers/hex_bytes.h"
 #include "tests/unit/drivers/long_division.h"
 
@@ -36,18 +37,12 @@ const char* const kF1 =
     "F1 004000 000000 000000 00 080000 080000 080000 00"
     "000264 00 04 0100 DF9CF924";  // PPS 612 µs and its status; counter 4, latency 256; no dummy byte
 
-std::vector<ifog_sample> decode(DriverInstance& driver, const Bytes& bytes) {
-  std::vector<ifog_sample> samples;
-  driver.decode_bytes(bytes, 42, [&](const ifog_sample& sample) { samples.push_back(sample); });
-  return samples;
-}
-
 // Section 5.5.7 of the datasheet: the CRC is of the bytes and of the dummy bytes behind them.
 void append_crc(Bytes& bytes) { append_crc32(bytes, 4); }
 
 TEST(Stim300, ADatagramPackedByHand) {
   DriverInstance driver = make_driver("stim300", {{"rate_hz", "1000"}});
-  const auto samples = decode(driver, hex_bytes(kA7));
+  const auto samples = decoded(driver, hex_bytes(kA7));
   ASSERT_EQ(samples.size(), 1U);
   const ifog_sample& s = samples[0];
   EXPECT_EQ(s.arrival_ns, 42);
@@ -70,7 +65,7 @@ TEST(Stim300, ADatagramPackedByHand) {
 // The datasheet's example of an error (figure 9-2): overload of the z-channel, bits 4 and 2.
 TEST(Stim300, AnOverloadInvalidatesItsAxisOnly) {
   DriverInstance driver = make_driver("stim300", {});
-  const auto samples = decode(driver, hex_bytes(k90));
+  const auto samples = decoded(driver, hex_bytes(k90));
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_EQ(samples[0].valid_axes, 0b011U);
   EXPECT_EQ(samples[0].status, 0x14U);
@@ -88,7 +83,7 @@ TEST(Stim300, StatusBitsInvalidate) {
     datagram.resize(datagram.size() - 4);
     datagram[10] = static_cast<std::uint8_t>(status);
     append_crc(datagram);
-    const auto samples = decode(driver, datagram);
+    const auto samples = decoded(driver, datagram);
     ASSERT_EQ(samples.size(), 1U);
     EXPECT_EQ(samples[0].valid_axes, valid) << status;
   }
@@ -96,7 +91,7 @@ TEST(Stim300, StatusBitsInvalidate) {
 
 TEST(Stim300, PpsAndLatency) {
   DriverInstance driver = make_driver("stim300", {{"datagram", "0xF1"}, {"rate_hz", "500"}});
-  const auto samples = decode(driver, hex_bytes(kF1));
+  const auto samples = decoded(driver, hex_bytes(kF1));
   ASSERT_EQ(samples.size(), 1U);
   EXPECT_EQ(samples[0].environment[14], 612.0);
   EXPECT_EQ(samples[0].environment[13], 256.0);
@@ -106,7 +101,7 @@ TEST(Stim300, PpsAndLatency) {
 TEST(Stim300, IncrementalAndIntegratedAngles) {
   DriverInstance increments = make_driver("stim300", {{"output", "incremental_angle"}});
   EXPECT_EQ(increments.description().kind, unsigned{IFOG_DELTA_ANGLE});
-  EXPECT_DOUBLE_EQ(decode(increments, hex_bytes(k90)).at(0).value[0], kDegree);  // 2^21 counts
+  EXPECT_DOUBLE_EQ(decoded(increments, hex_bytes(k90)).at(0).value[0], kDegree);  // 2^21 counts
   DriverInstance angle = make_driver("stim300", {{"output", "integrated_angle"}});
   EXPECT_EQ(angle.description().kind, unsigned{IFOG_ANGLE});
   EXPECT_DOUBLE_EQ(angle.description().angle_wrap_rad, 8 * kDegree);
@@ -116,22 +111,22 @@ TEST(Stim300, IncrementalAndIntegratedAngles) {
   sample.value[0] = 5 * kDegree;
   Bytes bytes;
   angle.encode_bytes(sample, bytes);
-  EXPECT_NEAR(decode(angle, bytes).at(0).value[0], -3 * kDegree, 1e-8);
+  EXPECT_NEAR(decoded(angle, bytes).at(0).value[0], -3 * kDegree, 1e-8);
 }
 
 TEST(Stim300, VelocityIncrementsBecomeSpecificForce) {
   DriverInstance driver = make_driver(
       "stim300", {{"acceleration", "delta_velocity"}, {"acceleration_range", "30"}, {"rate_hz", "250"}});
   // Equation 4 for 30 g: 2^21 counts are 1 m/s; 2^19 of them in 4 ms are 62.5 m/s².
-  EXPECT_DOUBLE_EQ(decode(driver, hex_bytes(kA7)).at(0).environment[0], 62.5);
+  EXPECT_DOUBLE_EQ(decoded(driver, hex_bytes(kA7)).at(0).environment[0], 62.5);
   // Equation 6: 2^25 counts are 1 m/s.
-  EXPECT_DOUBLE_EQ(decode(driver, hex_bytes(kA7)).at(0).environment[3], 31.25);
+  EXPECT_DOUBLE_EQ(decoded(driver, hex_bytes(kA7)).at(0).environment[3], 31.25);
 }
 
 TEST(Stim300, AnotherDatagramThanConfiguredIsCountedNotTaken) {
   DriverInstance driver = make_driver("stim300", {{"datagram", "0xA7"}});
-  EXPECT_TRUE(decode(driver, hex_bytes(k90)).empty());
-  EXPECT_EQ(decode(driver, hex_bytes(kA7)).size(), 1U);
+  EXPECT_TRUE(decoded(driver, hex_bytes(k90)).empty());
+  EXPECT_EQ(decoded(driver, hex_bytes(kA7)).size(), 1U);
   EXPECT_EQ(driver.counters().frames_format, 1U);
   EXPECT_EQ(driver.counters().frames_good, 1U);
 }
@@ -141,7 +136,7 @@ TEST(Stim300, TheTerminationBelongsToTheDatagram) {
   Bytes bytes = hex_bytes(kA7);
   const std::size_t length = bytes.size();
   bytes.insert(bytes.end(), {'\r', '\n'});
-  EXPECT_EQ(decode(driver, bytes).size(), 1U);
+  EXPECT_EQ(decoded(driver, bytes).size(), 1U);
   EXPECT_EQ(driver.counters().bytes_framed, length + 2);
   EXPECT_EQ(driver.counters().bytes_skipped + driver.counters().bytes_pending, 0U);
 }
@@ -151,7 +146,7 @@ TEST(Stim300, EncodesTheHandPackedDatagramsAgain) {
     DriverInstance driver = make_driver("stim300", {{"datagram", datagram}, {"rate_hz", "1000"}});
     const Bytes bytes = hex_bytes(text);
     Bytes again;
-    ifog_sample sample = decode(driver, bytes).at(0);
+    ifog_sample sample = decoded(driver, bytes).at(0);
     driver.encode_bytes(sample, again);
     // Three temperatures of the inclinometer are passed on as their mean.
     if (bytes[0] == 0xA7) {
@@ -165,18 +160,11 @@ TEST(Stim300, EncodesTheHandPackedDatagramsAgain) {
 }
 
 TEST(Stim300, RefusesInOneLine) {
-  const auto complaint = [](const DriverSettings& settings) -> std::string {
-    try {
-      make_driver("stim300", settings);
-      return "accepted";
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-  };
-  EXPECT_NE(complaint({{"datagram", "0xBC"}}).find("datagram is '0xBC', expected auto or the identifier"),
-            std::string::npos)
-      << complaint({{"datagram", "0xBC"}});
-  EXPECT_NE(complaint({{"rate_hz", "300"}}).find("rate_hz is '300'"), std::string::npos);
+  EXPECT_NE(
+      refusal("stim300", {{"datagram", "0xBC"}}).find("datagram is '0xBC', expected auto or the identifier"),
+      std::string::npos)
+      << refusal("stim300", {{"datagram", "0xBC"}});
+  EXPECT_NE(refusal("stim300", {{"rate_hz", "300"}}).find("rate_hz is '300'"), std::string::npos);
   DriverInstance driver = make_driver("stim300", {});
   ifog_sample sample{};
   sample.valid_axes = 1;
@@ -210,7 +198,7 @@ TEST(Stim300, EncodesEveryDatagramThereIs) {
       Bytes again(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(covered));
       append_crc(again);
       EXPECT_TRUE(std::equal(again.begin(), again.end(), bytes.begin())) << name.data();
-      const std::vector<ifog_sample> samples = decode(driver, bytes);
+      const std::vector<ifog_sample> samples = decoded(driver, bytes);
       ASSERT_EQ(samples.size(), 1U) << name.data();
       EXPECT_NEAR(samples[0].value[2], 3 * kDegree, 1e-6) << name.data();
     }
@@ -226,10 +214,10 @@ TEST(Stim300, ADatagramInsideAnotherIsTheSameHoweverItComes) {
   outer.resize(55);
   append_crc(outer);
   DriverInstance whole = make_driver("stim300", {}), bytewise = make_driver("stim300", {});
-  const std::vector<ifog_sample> at_once = decode(whole, outer);
+  const std::vector<ifog_sample> at_once = decoded(whole, outer);
   std::vector<ifog_sample> one_by_one;
   for (const std::uint8_t byte : outer)
-    for (const ifog_sample& sample : decode(bytewise, {byte})) one_by_one.push_back(sample);
+    for (const ifog_sample& sample : decoded(bytewise, {&byte, 1})) one_by_one.push_back(sample);
   ASSERT_EQ(at_once.size(), 1U);
   ASSERT_EQ(one_by_one.size(), 1U);
   EXPECT_DOUBLE_EQ(at_once[0].value[0], one_by_one[0].value[0]);

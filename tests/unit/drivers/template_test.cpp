@@ -6,25 +6,17 @@
 #include <numbers>
 #include <vector>
 
-#include "drivers/host/driver_instance.h"
+#include "tests/unit/drivers/decoded.h"
 
 namespace {
 
 constexpr double kMicroDegree = 1e-6 * std::numbers::pi / 180.0;
 
-std::vector<ifog_sample> decode(ifog::DriverInstance& driver, const std::vector<std::uint8_t>& bytes,
-                                std::size_t portion) {
-  std::vector<ifog_sample> samples;
-  for (std::size_t at = 0; at < bytes.size(); at += portion)
-    driver.decode_bytes({bytes.data() + at, std::min(portion, bytes.size() - at)}, 1,
-                        [&](const ifog_sample& sample) { samples.push_back(sample); });
-  return samples;
-}
-
 TEST(TemplateDriver, AFrameByHand) {
   ifog::DriverInstance driver = ifog::make_driver("template", {{"mounted", "inverted"}});
   // counter 7, -2 µdeg/s, -5 °C; 0xA5 + 7 + 0xFF + 0xFF + 0xFF + 0xFE + 0xFB = 0x5A2
-  const std::vector<ifog_sample> s = decode(driver, {0xA5, 7, 0xFF, 0xFF, 0xFF, 0xFE, 0xFB, 0xA2}, 3);
+  const std::vector<ifog_sample> s =
+      ifog::decoded(driver, std::vector<std::uint8_t>{0xA5, 7, 0xFF, 0xFF, 0xFF, 0xFE, 0xFB, 0xA2}, 1, 3);
   ASSERT_EQ(s.size(), 1U);
   EXPECT_DOUBLE_EQ(s[0].value[0], 2.0 * kMicroDegree);
   EXPECT_EQ(s[0].sequence, 7U);
@@ -44,7 +36,7 @@ TEST(TemplateDriver, KeepsEveryIntactFrameAroundDamage) {
   }
   for (const std::size_t portion : {std::size_t{1}, std::size_t{7}, bytes.size()}) {
     ifog::DriverInstance fresh = ifog::make_driver("template", {});
-    const std::vector<ifog_sample> s = decode(fresh, bytes, portion);
+    const std::vector<ifog_sample> s = ifog::decoded(fresh, bytes, 1, portion);
     ASSERT_EQ(s.size(), 50U);
     for (std::uint32_t i = 0; i < 50; ++i) EXPECT_NEAR(s[i].value[0], i * 1e-3, kMicroDegree);
     EXPECT_EQ(fresh.counters().frames_good, 50U);

@@ -354,19 +354,6 @@ TEST_F(FileTransport, RefusesAFolderAndSettingsThatContradict) {
   EXPECT_EQ(refusal(), "file transport: no path, expected a file, a FIFO or '-'");
 }
 
-TEST_F(FileTransport, StopEndsAReadThatWaitsForBytes) {
-  fifo();
-  const auto transport = opened();
-  std::thread stopper([&] {
-    std::this_thread::sleep_for(20ms);
-    transport->stop();
-  });
-  EXPECT_TRUE(transport->read(kForever).empty());
-  EXPECT_TRUE(transport->stopped());
-  EXPECT_TRUE(transport->read(kForever).empty());
-  stopper.join();
-}
-
 TEST_F(FileTransport, StopEndsAReadThatWaitsForARecordedTime) {
   candump("(1.0) can0 001#01\n(3600.0) can0 001#02\n");
   settings_.pace = FileSettings::Pace::recorded;
@@ -378,20 +365,6 @@ TEST_F(FileTransport, StopEndsAReadThatWaitsForARecordedTime) {
   });
   EXPECT_TRUE(transport->read(kForever).empty());
   stopper.join();
-}
-
-TEST_F(FileTransport, CountersMayBeReadWhileTheReaderWorks) {
-  content(pattern(3'000'000));
-  const auto transport = opened();
-  std::thread reader([&] { all_bytes(*transport); });
-  std::uint64_t before = 0;
-  while (transport->state() == TransportState::open) {
-    const std::uint64_t now = transport->counters().bytes;
-    EXPECT_GE(now, before);
-    before = now;
-  }
-  reader.join();
-  EXPECT_EQ(transport->counters().bytes, 3'000'000U);
 }
 
 }  // namespace

@@ -1,24 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Calls that wait for bytes end when they are to: at their time, and by another thread's wish, at whichever
-// moment of the way into the call that comes.
-#include "drivers/transport/stoppable_wait.h"
-
+// A call that waits for bytes ends when another thread wishes it, at whichever moment of the way into the call.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <atomic>
-#include <cerrno>
 #include <chrono>
 #include <filesystem>
-#include <memory>
 #include <random>
 #include <string>
 #include <thread>
-#include <vector>
 
-#include "drivers/transport/clock.h"
 #include "drivers/transport/file/file.h"
 #include "drivers/transport/network/udp.h"
 #include "tests/unit/transport/loopback.h"
@@ -27,65 +20,6 @@ namespace ifog {
 namespace {
 
 using namespace std::chrono_literals;
-
-constexpr std::int64_t kLong_ns = 600'000'000'000;
-
-// A pipe that nobody writes to.
-class EmptyPipe {
- public:
-  EmptyPipe() { EXPECT_EQ(pipe(ends_), 0); }
-  ~EmptyPipe() {
-    close(ends_[0]);
-    close(ends_[1]);
-  }
-  EmptyPipe(const EmptyPipe&) = delete;
-  EmptyPipe& operator=(const EmptyPipe&) = delete;
-  // errno of a read that waits for a byte.
-  [[nodiscard]] int read() const {
-    char byte = 0;
-    return ::read(ends_[0], &byte, 1) < 0 ? errno : 0;
-  }
-
- private:
-  int ends_[2] = {-1, -1};
-};
-
-TEST(ReadAlarm, EndsACallAtItsTimeAndNotBefore) {
-  const EmptyPipe pipe;
-  ReadAlarm& alarm = ReadAlarm::of_this_thread();
-  const std::int64_t until_ns = monotonic_ns() + 20'000'000;
-  EXPECT_FALSE(alarm.is_set(until_ns));
-  ASSERT_TRUE(alarm.set(until_ns));
-  EXPECT_TRUE(alarm.is_set(until_ns));
-  EXPECT_TRUE(alarm.is_set(until_ns + 1));
-  EXPECT_FALSE(alarm.is_set(until_ns - 1));
-  ASSERT_TRUE(alarm.enter());
-  EXPECT_EQ(pipe.read(), EINTR);
-  alarm.leave();
-  EXPECT_GE(monotonic_ns(), until_ns);
-  EXPECT_FALSE(alarm.is_set(until_ns)) << "it has rung";
-}
-
-TEST(ReadAlarm, RungOutsideACallKeepsTheThreadFromEnteringOne) {
-  ReadAlarm& alarm = ReadAlarm::of_this_thread();
-  ASSERT_TRUE(alarm.set(monotonic_ns() + kLong_ns));
-  ReadAlarm::ring(alarm.number());
-  while (alarm.enter()) alarm.leave();  // the signal comes within a moment
-  EXPECT_FALSE(alarm.is_set(monotonic_ns() + kLong_ns));
-  ASSERT_TRUE(alarm.set(monotonic_ns() + kLong_ns));
-  EXPECT_TRUE(alarm.enter()) << "it rings once where there is no call to end";
-  alarm.leave();
-  alarm.off();
-  EXPECT_FALSE(alarm.is_set(monotonic_ns() + kLong_ns));
-}
-
-TEST(ReadAlarm, OfAThreadThatIsNoMoreDisturbsNobody) {
-  int number = -1;
-  std::thread([&] { number = ReadAlarm::of_this_thread().number(); }).join();
-  EXPECT_GE(number, 0);
-  ReadAlarm::ring(number);
-  ReadAlarm::ring(-1);
-}
 
 FileSettings at(const std::string& path) {
   FileSettings settings;

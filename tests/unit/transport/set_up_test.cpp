@@ -7,6 +7,7 @@
 #include <mutex>
 #include <thread>
 
+#include "tests/unit/refusal.h"
 #include "tests/unit/transport/forever.h"
 #include "tests/unit/transport/terminal.h"
 
@@ -94,12 +95,7 @@ class SetUpByLines : public testing::Test {
     imu_.answer("?IS", "IS,0815");
   }
   std::string refusal() {
-    try {
-      transport_->open({});
-    } catch (const OpenError& error) {
-      return error.what();
-    }
-    return "accepted";
+    return test::refusal([&] { transport_->open({}); });
   }
   // Until it is so, or ten seconds are over.
   template <typename Is>

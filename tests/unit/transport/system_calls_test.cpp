@@ -6,12 +6,10 @@
 #include <poll.h>
 #include <sys/stat.h>
 #include <sys/syscall.h>
-#include <termios.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <chrono>
-#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -21,8 +19,8 @@
 #include "drivers/transport/file/file.h"
 #include "drivers/transport/network/tcp.h"
 #include "drivers/transport/network/udp.h"
-#include "drivers/transport/serial/serial.h"
 #include "tests/unit/transport/loopback.h"
+#include "tests/unit/transport/terminal.h"
 
 namespace {
 std::atomic<int> polled{0};
@@ -95,35 +93,11 @@ TEST(SystemCalls, AFifoIsReadWithoutALook) {
   std::filesystem::remove(path);
 }
 
-class Terminal final : public SerialPort {
- public:
-  explicit Terminal(const char* path) : fd_(open(path, O_RDWR | O_NOCTTY | O_NONBLOCK | O_CLOEXEC)) {
-    termios raw{};
-    tcgetattr(fd_, &raw);
-    cfmakeraw(&raw);
-    raw.c_cc[VMIN] = 0;  // as libserialport sets it
-    tcsetattr(fd_, TCSANOW, &raw);
-  }
-  ~Terminal() override { close(fd_); }
-  Terminal(const Terminal&) = delete;
-  Terminal& operator=(const Terminal&) = delete;
-  [[nodiscard]] int fd() const override { return fd_; }
-
- private:
-  int fd_;
-};
-
 TEST(SystemCalls, ASerialLineIsReadWithoutALook) {
-  const int gyro = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-  ASSERT_EQ(grantpt(gyro), 0);
-  ASSERT_EQ(unlockpt(gyro), 0);
-  const std::string path = ptsname(gyro);
-  const auto transport = make_serial_transport(
-      {.device = path, .baud = 921600},
-      [&](const SerialSettings&, std::string&) { return std::make_unique<Terminal>(path.c_str()); });
+  Gyro gyro;
+  const auto transport = make_serial_transport({.device = "gyro", .baud = 921600}, gyro.opener());
   transport->open({});
-  expect_no_look(*transport, [&] { write_byte(gyro); });
-  close(gyro);
+  expect_no_look(*transport, [&] { gyro.send("x"); });
 }
 
 TEST(SystemCalls, DatagramsAreReadWithoutALook) {

@@ -3,6 +3,7 @@
 #include "drivers/transport/network/udp.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/network/ip_address.h"
+#include "tests/unit/refusal.h"
 
 #include <gtest/gtest.h>
 #include <net/if.h>
@@ -69,7 +70,7 @@ TEST_P(Udp, EachDeliveryIsADatagramWithTheKernelsTimeOfIt) {
   }
   const std::int64_t before = arrival_clock_ns();
   gyro.send_to(settings_.port, "first");
-  std::this_thread::sleep_for(20ms);  // both are read together, long after they came
+  std::this_thread::sleep_for(120ms);  // both are read together, long after they came
   const std::int64_t between = arrival_clock_ns();
   const std::string longest(65507 - 40, 'x');
   gyro.send_to(settings_.port, longest);
@@ -83,24 +84,6 @@ TEST_P(Udp, EachDeliveryIsADatagramWithTheKernelsTimeOfIt) {
   EXPECT_GT(second.arrival_ns, first.arrival_ns);
   EXPECT_GT(second.arrival_ns, between - 1'000'000);
   EXPECT_EQ(transport->counters().bytes, 7U * warm_ups + 5U + longest.size());
-}
-
-// A reader that was delayed finds datagrams of long ago, each with its own time.
-TEST_P(Udp, ADatagramReadLateHasTheTimeItCame) {
-  const auto transport = make_udp_transport(settings_);
-  transport->open({});
-  LoopbackSocket gyro(GetParam(), SOCK_DGRAM);
-  for (int i = 0; i < 500; ++i) {
-    gyro.send_to(settings_.port, "warm up");
-    if (transport->read(kForever).stamped) break;
-    std::this_thread::sleep_for(10ms);
-  }
-  gyro.send_to(settings_.port, "a");
-  std::this_thread::sleep_for(120ms);
-  const Delivery late = transport->read(kForever);
-  EXPECT_EQ(text_of(late), "a");
-  EXPECT_LT(late.arrival_ns, arrival_clock_ns() - 100'000'000);
-  EXPECT_NE(late.arrival_ns, 0);
 }
 
 TEST_P(Udp, WhatTheKernelDroppedIsCounted) {
@@ -161,14 +144,11 @@ TEST(UdpTransport, TheOpeningGoesToTheHost) {
   EXPECT_EQ(std::string(got, 3), opening);
   settings.host = "";
   settings.bind = "127.0.0.1";
-  try {
-    make_udp_transport(settings)->open(
-        {reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
-    FAIL();
-  } catch (const OpenError& error) {
-    EXPECT_NE(std::string(error.what()).find("expected host, the sensor's address"), std::string::npos)
-        << error.what();
-  }
+  EXPECT_NE(test::refusal([&] {
+              make_udp_transport(settings)->open(
+                  {reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
+            }).find("expected host, the sensor's address"),
+            std::string::npos);
 }
 
 TEST(UdpTransport, APortThatIsTakenIsAwaited) {
@@ -207,16 +187,6 @@ TEST(UdpTransport, AGroupIsJoinedOnItsInterface) {
   gyro.send_to(settings.port, "not for the group");  // to the port, but not to the group
   gyro.send_to(settings.port, "to all", "239.255.12.34");
   EXPECT_EQ(text_of(transport->read(kForever)), "to all");
-}
-
-TEST(UdpTransport, StopEndsAWaitingRead) {
-  UdpSettings settings{
-      .port = free_port(AF_INET, SOCK_DGRAM), .bind = "127.0.0.1", .group = "", .interface = "", .host = ""};
-  const auto transport = make_udp_transport(settings);
-  transport->open({});
-  std::thread stopper([&] { transport->stop(); });
-  EXPECT_TRUE(transport->read(kForever).empty());
-  stopper.join();
 }
 
 TEST(UdpTransport, SaysWhichSettingIsWrong) {

@@ -18,6 +18,7 @@
 #include "drivers/transport/can/can.h"
 #include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/clock.h"
+#include "tests/unit/refusal.h"
 #include "tests/unit/transport/forever.h"
 
 namespace {
@@ -189,13 +190,9 @@ TEST_F(Vcan, StopEndsTheWaitForFrames) {
 
 TEST_F(Vcan, RefusesAnInterfaceThatIsDown) {
   ip("set vcan0 down");
-  try {
-    ifog::make_can_transport({.interface = "vcan0", .ids = {}})->open({});
-    ADD_FAILURE() << "accepted";
-  } catch (const ifog::OpenError& error) {
-    EXPECT_STREQ(error.what(),
-                 "vcan0: cannot open: Network is down, expected the interface up (ip link set vcan0 up)");
-  }
+  EXPECT_EQ(
+      ifog::test::refusal([&] { ifog::make_can_transport({.interface = "vcan0", .ids = {}})->open({}); }),
+      "vcan0: cannot open: Network is down, expected the interface up (ip link set vcan0 up)");
   ip("set vcan0 up");
 }
 

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// Frames of a bus, the samples that the driver `dbc` makes of them, and DBC files of a test's own.
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <bit>
+#include <filesystem>
+#include <fstream>
+#include <initializer_list>
+#include <string>
+#include <vector>
+
+#include "drivers/host/driver_instance.h"
+
+namespace ifog {
+
+inline const std::string kDbcExamples = std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/";
+
+inline ifog_can_frame frame(std::uint32_t id, std::initializer_list<int> bytes, std::int64_t arrival_ns = 0) {
+  ifog_can_frame f{};
+  f.id = id;
+  f.arrival_ns = arrival_ns;
+  for (const int byte : bytes) f.data[f.length++] = static_cast<std::uint8_t>(byte);
+  return f;
+}
+
+// A frame of ifogd_gyro.dbc, put together here byte by byte: little-endian float, 16-bit counter, status.
+inline ifog_can_frame axis_frame(std::uint32_t id, float rate, std::uint16_t counter,
+                                 std::uint8_t status = 0) {
+  const auto bits = std::bit_cast<std::uint32_t>(rate);
+  return frame(id, {static_cast<int>(bits & 0xFF), static_cast<int>(bits >> 8 & 0xFF),
+                    static_cast<int>(bits >> 16 & 0xFF), static_cast<int>(bits >> 24), counter & 0xFF,
+                    counter >> 8, status, 0});
+}
+
+inline std::vector<ifog_sample> decode(DriverInstance& driver, const std::vector<ifog_can_frame>& frames) {
+  std::vector<ifog_sample> samples;
+  for (const ifog_can_frame& f : frames)
+    driver.decode_can(f, [&](const ifog_sample& sample) { samples.push_back(sample); });
+  return samples;
+}
+
+// A DBC file that a test writes.
+class DbcText : public testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = std::filesystem::temp_directory_path() / ("ifog-dbc-" + std::to_string(getpid()) + ".dbc");
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+  DriverInstance driver(const std::string& text, DriverSettings settings) {
+    std::ofstream(path_, std::ios::binary) << text;
+    settings["dbc"] = path_.string();
+    return make_driver("dbc", settings);
+  }
+  std::string refusal(const std::string& text, const DriverSettings& settings) {
+    try {
+      driver(text, settings);
+    } catch (const std::runtime_error& error) {
+      std::string what = error.what();
+      for (std::size_t at = what.find(path_.string()); at != std::string::npos;
+           at = what.find(path_.string()))
+        what.replace(at, path_.string().size(), "F");
+      return what;
+    }
+    return "accepted";
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+}  // namespace ifog
