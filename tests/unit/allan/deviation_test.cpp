@@ -73,22 +73,6 @@ TEST(Deviation, TheLongestAverageIsTheLastWithADifference) {
     }
 }
 
-std::vector<double> angles(const AngleSum& sum) {
-  const auto all = sum.angle().in_memory();
-  return {all.begin(), all.end()};
-}
-
-TEST(Deviation, TheSumInPlaceIsTheSameSum) {
-  auto rate = ifog::simulate::noise({.N = 1e-6, .R = 1e-7}, 100.0, 5000, 6);
-  const std::vector<Stretch> all{{0, rate.size()}};
-  const AngleSum copied(rate, all);
-  auto cramped = rate;
-  cramped.shrink_to_fit();
-  rate.reserve(rate.size() + 1);
-  EXPECT_EQ(angles(AngleSum(std::move(rate), all)), angles(copied));
-  EXPECT_EQ(angles(AngleSum(std::move(cramped), all)), angles(copied));
-}
-
 TEST(Deviation, StretchesNeverMixAcrossAHole) {
   // Two stretches at different rates: the step between them must not appear at any averaging time.
   std::vector<double> rate(300, 1.0);

@@ -35,61 +35,6 @@ TEST(GaussMarkov, ItsAllanVarianceIsTheStandardsIntegral) {
   EXPECT_NEAR(at(3e6) * 3e6 / (correlation * correlation), 1.0, 1e-3);
 }
 
-TEST(GaussMarkov, EquivalentTermsHaveItsVarianceAndSlope) {
-  ifog::GaussMarkovFit fit;
-  fit.correlation = 300.0;
-  fit.variances = {0.0, 2.0, 0.0, 0.5};
-  const auto variance = [&](double m) {
-    return 2.0 / m + 0.5 * ifog::returning_variance(fit.correlation, m);
-  };
-  for (const double m : {1.0, 100.0, 567.0, 5000.0}) {
-    const ifog::TermVariances terms = ifog::equivalent_terms(fit, m);
-    const auto law = [&](double at) { return terms[ifog::kN] / at + terms[ifog::kK] * at / 3.0; };
-    EXPECT_NEAR(law(m) / variance(m), 1.0, 1e-9) << m;
-    EXPECT_NEAR(law(1.01 * m) / law(m), variance(1.01 * m) / variance(m), 1e-3) << m;
-  }
-}
-
-// The slow part's covariance of a return that takes far longer than the record is the walk's.
-TEST(GaussMarkov, AReturnThatTakesForEverIsAWalk) {
-  const std::vector<double> rate = ifog::simulate::noise({.N = 1.0}, 1.0, 4000, 3);
-  const std::vector<ifog::Stretch> whole{{0, rate.size()}};
-  const ifog::AngleSum sum(rate, whole);
-  const ifog::NoiseSpectrum walk = ifog::noise_spectrum(sum), slow = ifog::with_return(walk, 1e7);
-  for (std::size_t p = 0; p < walk.slow.size(); ++p)
-    EXPECT_LT((walk.slow[p].covariance[ifog::kK] - slow.slow[p].covariance[ifog::kK]).norm(),
-              2e-3 * walk.slow[p].covariance[ifog::kK].norm());
-  for (std::size_t i = 0; i < walk.bins.size(); ++i)
-    EXPECT_NEAR(slow.bins[i].expected[ifog::kK] / walk.bins[i].expected[ifog::kK], 1.0, 1e-6);
-}
-
-// Oracle: the mean square of what simulated records' slow parts are.
-TEST(GaussMarkov, TheSlowPartsCovarianceIsThatOfSimulatedRecords) {
-  constexpr std::size_t kSamples = 1000, kRecords = 600;
-  const double correlation = 60.0, sigma = 1.0;
-  std::vector<double> square;
-  ifog::NoiseSpectrum last;
-  for (std::size_t r = 0; r < kRecords; ++r) {
-    ifog::simulate::GaussMarkov bias(sigma, correlation, 1.0, ifog::simulate::Draw(r, 5));
-    std::vector<double> rate(kSamples);
-    for (double& value : rate) value = bias.next();
-    const std::vector<ifog::Stretch> whole{{0, rate.size()}};
-    const ifog::AngleSum sum(rate, whole);
-    last = ifog::noise_spectrum(sum);
-    square.resize(static_cast<std::size_t>(last.slow[0].value.size()));
-    for (std::size_t i = 0; i < square.size(); ++i)
-      square[i] += std::pow(last.slow[0].value[static_cast<Eigen::Index>(i)], 2) / kRecords;
-  }
-  const ifog::NoiseSpectrum expected = ifog::with_return(last, correlation);
-  const double drive = 2.0 * sigma * sigma / correlation;
-  for (std::size_t i = 0; i < square.size(); ++i) {
-    const auto j = static_cast<Eigen::Index>(i);
-    EXPECT_NEAR(square[i] / (drive * expected.slow[0].covariance[ifog::kK](j, j)), 1.0,
-                4.5 * std::sqrt(2.0 / kRecords))
-        << i;
-  }
-}
-
 // Eight hours of 0.003 °/√h with a bias of 0.1 °/h that remembers 300 s, in units of the white noise.
 TEST(GaussMarkov, ABiasThatComesBackIsNamedWithItsTime) {
   std::vector<double> rate = ifog::simulate::noise({.N = 1.0}, 1.0, 28800, 11);

@@ -94,25 +94,4 @@ TEST(LongRecord, HasTheDeviationsOfOneInMemory) {
   }
 }
 
-TEST(LongRecord, HasTheNoiseTermsOfOneInMemory) {
-  const Record r = record();
-  const ifog::SampleClock clock = ifog::sample_clock(r.time);
-  const std::vector<SeriesView> axes{r.rate};
-  const auto parts =
-      ifog::common(ifog::stretches(r.time, r.rate, clock), ifog::find_rest(axes, {}, 0.01).at_rest);
-  const AngleSum in_memory(r.rate, parts), filed(r.long_rate, parts);
-  const auto a = ifog::noise_coefficients(in_memory, 0.01), b = ifog::noise_coefficients(filed, 0.01);
-  for (const auto term :
-       {&ifog::NoiseCoefficients::Q, &ifog::NoiseCoefficients::N, &ifog::NoiseCoefficients::B,
-        &ifog::NoiseCoefficients::K, &ifog::NoiseCoefficients::R}) {
-    EXPECT_EQ((a.*term).present, (b.*term).present);
-    EXPECT_EQ((a.*term).value, (b.*term).value);
-    EXPECT_EQ((a.*term).upper, (b.*term).upper);
-  }
-  const auto one = ifog::theo1(in_memory, a.variances, 0.683, 5),
-             other = ifog::theo1(filed, a.variances, 0.683, 5);
-  ASSERT_EQ(one.size(), other.size());
-  for (std::size_t i = 0; i < one.size(); ++i) EXPECT_EQ(one[i].variance, other[i].variance);
-}
-
 }  // namespace

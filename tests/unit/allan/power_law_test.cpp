@@ -121,23 +121,6 @@ double by_brute_force(std::size_t n, std::size_t m1, std::size_t m2, const ifog:
   return sum / (4.0 * sq(m1) * sq(m2) * static_cast<double>(p1) * static_cast<double>(p2));
 }
 
-// Second differences averaged over m neighbours, their covariances added one by one.
-TEST(PowerLaw, TheModifiedMeanIsTheSumOverItsNeighbours) {
-  for (const std::size_t m : {1U, 2U, 4U, 9U, 40U})
-    for (std::size_t t = 0; t < ifog::kTerms; ++t) {
-      const double w[3] = {1.0, -2.0, 1.0}, x = static_cast<double>(m);
-      double sum = 0.0;
-      for (double lag = 1.0 - x; lag < x; ++lag)
-        for (int a = 0; a < 3; ++a)
-          for (int b = 0; b < 3; ++b)
-            sum += (x - std::abs(lag)) * w[a] * w[b] * ifog::covariance_of_angle(lag + (a - b) * x)[t];
-      EXPECT_NEAR(ifog::expected_variance(Deviation::kModified, static_cast<ifog::Term>(t), m) /
-                      (sum / (2.0 * x * x * x * x)),
-                  1.0, 1e-8)
-          << m << ' ' << t;
-    }
-}
-
 TEST(PowerLaw, TheVarianceIsTheSumOverAllPairsOfPlacesOfAMixture) {
   const std::vector<std::size_t> samples{600};
   for (const std::size_t m : {1U, 5U, 64U, 200U})
@@ -146,36 +129,6 @@ TEST(PowerLaw, TheVarianceIsTheSumOverAllPairsOfPlacesOfAMixture) {
       const double found = ifog::EstimateVariance(Deviation::kAllan, m, samples).at(v);
       EXPECT_NEAR(found / by_brute_force(600, m, m, v), 1.0, 2e-4) << m << " v0 " << v[0];
     }
-}
-
-// Their oracle is simulation, and for mixtures and several stretches it is the only one.
-TEST(PowerLaw, TheVarianceIsTheScatterOfSimulatedMixtures) {
-  const std::vector<std::size_t> m{1, 8, 64, 200};
-  const std::vector<std::size_t> samples{1024, 700};
-  const ifog::TermVariances v{0.0, 1.0, 0.02, 1e-4};
-  const std::vector<ifog::Stretch> parts{{0, 1024}, {1024, 1724}};
-  constexpr int kRecords = 1500;
-  for (const Deviation kind : {Deviation::kAllan, Deviation::kModified, Deviation::kHadamard}) {
-    std::vector<double> sum(m.size()), squares(m.size());
-    for (int record = 0; record < kRecords; ++record) {
-      auto rate = ifog::simulate::noise({.N = 1.0, .B = std::sqrt(0.02), .K = 1e-2}, 1.0, 1024,
-                                        static_cast<std::uint64_t>(2 * record));
-      const auto second = ifog::simulate::noise({.N = 1.0, .B = std::sqrt(0.02), .K = 1e-2}, 1.0, 700,
-                                                static_cast<std::uint64_t>(2 * record + 1));
-      rate.insert(rate.end(), second.begin(), second.end());
-      const auto points = ifog::deviation(ifog::AngleSum(rate, parts), m, kind);
-      for (std::size_t i = 0; i < m.size(); ++i) {
-        sum[i] += points[i].variance / kRecords;
-        squares[i] += points[i].variance * points[i].variance / kRecords;
-      }
-    }
-    for (std::size_t i = 0; i < m.size(); ++i) {
-      const double variance = squares[i] - sum[i] * sum[i];
-      EXPECT_NEAR(sum[i] / ifog::expected_variance(kind, v, m[i]), 1.0, 0.05) << m[i];
-      EXPECT_NEAR(variance / ifog::EstimateVariance(kind, m[i], samples).at(v), 1.0, 0.2)
-          << static_cast<int>(kind) << ' ' << m[i];
-    }
-  }
 }
 
 }  // namespace

@@ -14,14 +14,6 @@
 namespace ifog {
 namespace {
 
-TEST(Compensator, SubtractsTheEffectOfTheChannel) {
-  Model model;
-  model.effects = {linear(1e-6)};
-  Compensator compensator(model, {""});
-  ASSERT_EQ(compensator.channels(), std::vector<std::string>{"temperature_degC"});
-  EXPECT_NEAR(step(compensator, 1e-3, {30.0}).compensated_radps[0], 1e-3 - 5e-6, 1e-18);
-}
-
 // z made from a known rate by the model's own statement, solved back.
 TEST(Compensator, InvertsAScaleFactorThatDependsOnTemperatureAndRate) {
   Model model;
@@ -229,21 +221,6 @@ TEST(Compensator, AnUnmeasuredAxisIsNotOutsideTheRange) {
   EXPECT_EQ(step(compensator, kMissing, {}).flags & kOutOfRange, 0U);
 }
 
-// A series of one row has no step; it is corrected all the same.
-TEST(Compensator, OneSampleIsASeries) {
-  Model model;
-  model.effects = {linear(1e-6)};
-  Compensator compensator(model, {""});
-  const std::vector<double> time{5.0}, rate{1e-3}, temperature{30.0};
-  int calls = 0;
-  compensate_series(compensator, {time, {rate}, {temperature}},
-                    [&](std::size_t, const CompensatorOutput& out) {
-                      ++calls;
-                      EXPECT_NEAR(out.compensated_radps[0], 1e-3 - 5e-6, 1e-18);
-                    });
-  EXPECT_EQ(calls, 1);
-}
-
 TEST(Compensator, WhatIsOnlyShownIsNotTakenAway) {
   Model model;
   model.effects = {linear(1e-6)};
@@ -277,18 +254,6 @@ TEST(Compensator, VarianceIsThatOfTheParameters) {
   const double c = 3.0;
   EXPECT_NEAR(step(compensator, 0.0, {28.0}).variance_rad2ps2[0],
               4e-16 * c * c - 2e-17 * c * c * c + 9e-18 * c * c * c * c, 1e-26);
-}
-
-TEST(Compensator, AxesAreTheirOwn) {
-  Model model;
-  Effect only_y = linear(1e-6);
-  only_y.axis = "y";
-  model.effects = {only_y};
-  Compensator compensator(model, {"x", "y", "z"});
-  const auto out = step(compensator, 0.0, {26.0});
-  EXPECT_EQ(out.compensated_radps[0], 0.0);
-  EXPECT_NEAR(out.compensated_radps[1], -1e-6, 1e-20);
-  EXPECT_EQ(out.compensated_radps[2], 0.0);
 }
 
 TEST(Compensator, TakesOverTheStateOfTheModelBefore) {

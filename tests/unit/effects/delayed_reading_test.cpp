@@ -34,15 +34,6 @@ TEST(DelayedReading, IsTheReadingOfSoLongAgo) {
   }
 }
 
-TEST(DelayedReading, IsHeldWithoutOneAndBeginsAnew) {
-  DelayedReading delayed(1.0);
-  EXPECT_EQ(delayed.step(5.0, 0.5), 5.0);
-  EXPECT_EQ(delayed.hold(10.0), 5.0);
-  EXPECT_EQ(delayed.step(9.0, 10.0), 5.0 + 4.0 * 0.9);
-  delayed.restart();
-  EXPECT_EQ(delayed.step(7.0, 0.5), 7.0);
-}
-
 Compensator waiting(double early_s) {
   Model model;
   model.effects = {linear(1e-6)};

@@ -146,17 +146,6 @@ TEST(RampTracker, OneLostSampleIsBridged) {
   }
 }
 
-TEST(RampTracker, AStartInTheMiddleIsTheSameAsAnyOther) {
-  Gyro gyro(steadily, kNoise, 5);
-  RampTracker tracker(settings());
-  run(tracker, gyro, 6000);
-  tracker.restart();
-  EXPECT_FALSE(tracker.locked());
-  const Result again = run(tracker, gyro, 6000);
-  EXPECT_LT(again.until_locked, 1000);
-  EXPECT_LT(again.after, 0.05 * again.before);
-}
-
 // k as the model has it is 3e-5 off, as after a change of temperature, and the gyro has a bias of 0.01 °/h.
 TEST(RampTracker, FollowsASlowlyWrongK) {
   Gyro gyro([](double) { return kEarth; }, kNoise, 7, kCycles * (1.0 + 3e-5));

@@ -161,11 +161,5 @@ TEST(Shape, AngleLookupIntegratesToItsTable) {
   }
 }
 
-TEST(Shape, RefusesWhatItCannotBe) {
-  EXPECT_THROW(Shape(of(Form::kLookup)), std::invalid_argument);
-  EXPECT_THROW(Shape(of(Form::kRate, -1.0)), std::invalid_argument);
-  EXPECT_THROW(Shape(of(Form::kLine)), std::invalid_argument);
-}
-
 }  // namespace
 }  // namespace ifog

@@ -91,47 +91,6 @@ INSTANTIATE_TEST_SUITE_P(Orders, ArmaLikelihood,
                                          ArmaCase{"arma(2,2)", {0.6, 0.2}, {0.5, 0.3}},
                                          ArmaCase{"arma(0,2)", {}, {0.7, -0.2}}));
 
-TEST(GaussMarkovLikelihood, IsThatOfTheDenseCovariance) {
-  constexpr int kLength = 100;
-  constexpr double kTau = 0.2, kProcess = 4e-7, kMeasurement = 1e-8;
-  Eigen::MatrixXd covariance(kLength, kLength);
-  for (int i = 0; i < kLength; ++i) {
-    for (int j = 0; j < kLength; ++j) {
-      covariance(i, j) = 0.5 * kProcess * kTau * std::exp(-std::abs(i - j) * kPeriod / kTau);
-    }
-  }
-  covariance.diagonal().array() += kMeasurement;
-  Eigen::VectorXd record(kLength);
-  for (int i = 0; i < kLength; ++i) record(i) = 2e-4 * std::sin(0.7 * i) + 1e-4 * std::cos(0.05 * i * i);
-  const auto model = ifog::make_state_model("gauss-markov", std::vector{kTau}, kPeriod);
-  EXPECT_NEAR(
-      ifog::likelihood(*model, kProcess, kMeasurement, std::vector(record.begin(), record.end()), kPeriod)
-          .log_likelihood(),
-      dense_log_likelihood(covariance, record), 1e-7);
-}
-
-// With a free starting value the differences of a random walk in white noise carry all the information: their
-// likelihood is the diffuse one. Cov of the differences: q dt + 2R on the diagonal, -R beside it.
-TEST(RandomWalkLikelihood, IsThatOfItsDifferences) {
-  constexpr int kLength = 150;
-  constexpr double kProcess = 2e-7, kMeasurement = 3e-8;
-  std::vector<double> record(kLength);
-  for (std::size_t i = 0; i < record.size(); ++i)
-    record[i] = 0.02 + 2e-4 * std::sin(1.3 * static_cast<double>(i * i));
-  Eigen::VectorXd differences(kLength - 1);
-  for (int i = 0; i + 1 < kLength; ++i) {
-    differences(i) = record[static_cast<std::size_t>(i + 1)] - record[static_cast<std::size_t>(i)];
-  }
-  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(kLength - 1, kLength - 1);
-  covariance.diagonal().setConstant(kProcess * kPeriod + 2 * kMeasurement);
-  covariance.diagonal(1).setConstant(-kMeasurement);
-  covariance.diagonal(-1).setConstant(-kMeasurement);
-  const auto model = ifog::make_state_model("random-walk", {}, kPeriod);
-  const auto terms = ifog::likelihood(*model, kProcess, kMeasurement, record, kPeriod);
-  EXPECT_EQ(terms.count, kLength - 1);
-  EXPECT_NEAR(terms.log_likelihood(), dense_log_likelihood(covariance, differences), 1e-4);
-}
-
 // The filter's equations by the textbook, one covariance step a sample, for a long record: what holding the
 // gain costs. Three axes and missing samples go through the same covariance.
 struct Long {

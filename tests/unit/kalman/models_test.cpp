@@ -89,6 +89,8 @@ TEST_P(ModelLikelihood, IsThatOfTheDenseCovariance) {
 INSTANTIATE_TEST_SUITE_P(
     Kinds, ModelLikelihood,
     testing::Values(
+        Case{"random-walk", {}, 1, [](int i, int j) { return walk(i, j, kQ, kStart); }},
+        Case{"gauss-markov", {0.2}, 0, [](int i, int j) { return markov(i, j, 0.2L, kQ); }},
         Case{"harmonic", {4.17}, 2, [](int i, int j) { return line(i, j, 4.17L, kQ, kStart); }},
         Case{"random-walk + harmonic",
              {12.3, 0.2},

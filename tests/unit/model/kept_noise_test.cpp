@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "tests/unit/refusal.h"
+
 namespace ifog {
 namespace {
 
@@ -26,12 +28,7 @@ KeptNoise some() {
 }
 
 std::string noise_complaint(const std::string& text) {
-  try {
-    (void)parse_kept_noise(text, "f.toml");
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
+  return test::refusal([&] { (void)parse_kept_noise(text, "f.toml"); }, "");
 }
 
 std::string noise_with(const std::string& from, const std::string& to) {

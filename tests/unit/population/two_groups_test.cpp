@@ -117,18 +117,6 @@ TEST(TwoGroups, NothingOnAGridIsLikelier) {
   EXPECT_GE(ratio(found.share, found.mean, found.spread), best - 1e-3);
 }
 
-TEST(TwoGroups, LeavingOutIsFittingWithout) {
-  std::mt19937 random(8);
-  const Drawn drawn = population(random, 25, prior_of(0.8, 5.0, 1.0));
-  const TypePrior all = fit_two_groups(drawn.estimates);
-  std::vector<Estimate> rest = drawn.estimates;
-  rest.erase(rest.begin() + 3);
-  const TypePrior without = without_member(drawn.estimates, 3, all), direct = fit_two_groups(rest);
-  EXPECT_NEAR(without.mean, direct.mean, 0.02);
-  EXPECT_NEAR(without.spread, direct.spread, 0.05);
-  EXPECT_NEAR(without.share, direct.share, 0.01);
-}
-
 TEST(TwoGroups, TheShrunkAreNearerToTheTruth) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal;

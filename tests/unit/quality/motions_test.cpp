@@ -32,54 +32,6 @@ double largest(const std::vector<double>& rate, std::size_t from, std::size_t un
   return most;
 }
 
-TEST(Motions, RampRisesAndHolds) {
-  const auto rate = ifog::bench::ramp(1000, 100, 600, 0.01);
-  EXPECT_EQ(largest(rate, 0, 101), 0.0);
-  for (std::size_t i = 101; i <= 600; ++i) EXPECT_NEAR(rate[i] - rate[i - 1], 0.01, 1e-12);
-  for (std::size_t i = 600; i < 1000; ++i) EXPECT_DOUBLE_EQ(rate[i], 5.0);
-}
-
-TEST(Motions, StepsAreOfOneSizeAndSevenToTwelveSecondsApart) {
-  Random random(1);
-  const auto rate = ifog::bench::steps(random, 200'000, 5000, 20.0);
-  EXPECT_EQ(largest(rate, 0, 5000), 0.0);
-  std::vector<std::size_t> when;
-  double net = 0.0;
-  for (std::size_t i = 1; i < rate.size(); ++i) {
-    if (rate[i] == rate[i - 1]) continue;
-    EXPECT_DOUBLE_EQ(std::abs(rate[i] - rate[i - 1]), 20.0);
-    net = std::max(net, std::abs(rate[i]));
-    when.push_back(i);
-  }
-  ASSERT_GT(when.size(), 80U);
-  EXPECT_EQ(when.front(), 5000U);
-  EXPECT_DOUBLE_EQ(net, 20.0);
-  std::size_t least = when[1] - when[0], most = least;
-  for (std::size_t i = 1; i < when.size(); ++i) {
-    least = std::min(least, when[i] - when[i - 1]);
-    most = std::max(most, when[i] - when[i - 1]);
-  }
-  EXPECT_GE(least, 1500U);
-  EXPECT_LE(most, 2500U);
-  EXPECT_GT(most - least, 700U) << "the intervals are to differ";
-}
-
-// The edges are symmetrical: a turn's angle is that of the rectangle, and the next turn takes it back.
-TEST(Motions, TurnsHaveTheAreaOfTheirRectangle) {
-  const auto rate = ifog::bench::turns(9000, 1000, 30.0);
-  EXPECT_EQ(largest(rate, 0, 1000), 0.0);
-  const auto area = [&](std::ptrdiff_t from, std::ptrdiff_t until) {
-    return std::accumulate(rate.begin() + from, rate.begin() + until, 0.0);
-  };
-  EXPECT_NEAR(area(1000, 5000), 30.0 * 2000.0, 1e-8);
-  EXPECT_NEAR(area(5000, 9000), -30.0 * 2000.0, 1e-8);
-  EXPECT_DOUBLE_EQ(largest(rate, 1100, 1200), 30.0);
-  EXPECT_EQ(largest(rate, 3050, 5000), 0.0);
-  // The steepest of a raised cosine of 50 samples: π/2 of its mean slope.
-  for (std::size_t i = 1; i < rate.size(); ++i)
-    EXPECT_LE(std::abs(rate[i] - rate[i - 1]), 30.0 / 50.0 * kPi / 2.0);
-}
-
 TEST(Motions, SwayHasItsAmplitudeAfterOnePeriod) {
   for (const double frequency_hz : {0.1, 0.02}) {
     Random random(2);
@@ -93,23 +45,6 @@ TEST(Motions, SwayHasItsAmplitudeAfterOnePeriod) {
     for (std::size_t i = 300 + period; i < rate.size(); ++i) squares += rate[i] * rate[i];
     EXPECT_NEAR(squares / static_cast<double>(4 * period), 450.0, 1e-8);
   }
-}
-
-TEST(Motions, PhasesDiffer) {
-  Random random(3);
-  const auto one = ifog::bench::sway(random, 4000, 0, 1.0, 0.1),
-             other = ifog::bench::sway(random, 4000, 0, 1.0, 0.1);
-  double apart = 0.0;
-  for (std::size_t i = 0; i < one.size(); ++i) apart = std::max(apart, std::abs(one[i] - other[i]));
-  EXPECT_GT(apart, 0.1);
-}
-
-TEST(Motions, SwayThatEndsIsThereFromTheFirstSample) {
-  Random random(4);
-  const auto rate = ifog::bench::sway_that_ends(random, 30'000, 20'000, 30.0, 0.02);
-  EXPECT_NEAR(amplitude(rate, 0, 10'000, 0.02), 30.0, 1e-9);
-  EXPECT_LT(largest(rate, 19'900, 20'000), 30.0 * 0.01);
-  EXPECT_EQ(largest(rate, 20'000, 30'000), 0.0);
 }
 
 // One-sided density at `frequency_hz` by the mean of periodograms with Hann's window, of overlapping

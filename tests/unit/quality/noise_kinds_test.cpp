@@ -11,7 +11,6 @@
 
 namespace {
 
-using ifog::bench::Noise;
 using ifog::bench::Random;
 
 constexpr std::size_t kSamples = 400'000;
@@ -85,58 +84,6 @@ TEST(NoiseKinds, Bimodal) {
   expect_moment(values, 1, 0.0, 1.0);
   expect_moment(values, 2, 1.0, 3.0 - 2.0 * std::pow(0.9, 4));
   expect_white(values);
-}
-
-TEST(NoiseKinds, MissingOnesAreIndependent) {
-  Random random(5);
-  const auto values = ifog::bench::missing_noise(random, kSamples, 0.1).value;
-  const auto n = static_cast<double>(kSamples);
-  double missing = 0.0, twice = 0.0, squares = 0.0;
-  for (std::size_t i = 0; i < kSamples; ++i) {
-    const bool gone = std::isnan(values[i]);
-    missing += gone ? 1.0 : 0.0;
-    twice += gone && i > 0 && std::isnan(values[i - 1]) ? 1.0 : 0.0;
-    squares += gone ? 0.0 : values[i] * values[i];
-  }
-  EXPECT_NEAR(missing / n, 0.1, 5.0 * std::sqrt(0.09 / n));
-  EXPECT_NEAR(twice / n, 0.01, 5.0 * std::sqrt(0.01 * 1.2 / n));  // neighbouring pairs share a sample
-  EXPECT_NEAR(squares / (n - missing), 1.0, 5.0 * std::sqrt(2.0 / (n - missing)));
-}
-
-TEST(NoiseKinds, Outliers) {
-  Random random(6);
-  constexpr std::size_t kMany = 10 * kSamples;  // they are few
-  const Noise noise = ifog::bench::outlier_noise(random, kMany, 0.01, 20.0);
-  double up = 0.0, down = 0.0, misnamed = 0.0;
-  for (std::size_t i = 0; i < kMany; ++i) {
-    // Nothing of unit variance comes near 10.
-    misnamed += noise.variance[i] != (std::abs(noise.value[i]) > 10.0 ? 401.0 : 1.0) ? 1.0 : 0.0;
-    up += noise.value[i] > 10.0 ? 1.0 : 0.0;
-    down += noise.value[i] < -10.0 ? 1.0 : 0.0;
-  }
-  constexpr auto kCount = static_cast<double>(kMany);
-  EXPECT_EQ(misnamed, 0.0);
-  EXPECT_NEAR(up / kCount, 0.005, 5.0 * std::sqrt(0.005 / kCount));
-  EXPECT_NEAR(down / kCount, 0.005, 5.0 * std::sqrt(0.005 / kCount));
-  // Fourth moment of N(0, 1) displaced by 20: 20⁴ + 6·20² + 3.
-  expect_moment(noise.value, 2, 1.0 + 0.01 * 400.0, 0.99 * 3.0 + 0.01 * (160'000.0 + 2'400.0 + 3.0));
-}
-
-TEST(NoiseKinds, ChangesInTurns) {
-  Random random(7);
-  constexpr std::size_t kFrom = 50'000, kTurn = 70'000;
-  const Noise noise = ifog::bench::changing_noise(random, kSamples, kFrom, kTurn, 5.0);
-  const std::vector<std::size_t> edges{0, kFrom, kFrom + kTurn, kFrom + 2 * kTurn, kFrom + 3 * kTurn};
-  for (std::size_t part = 0; part + 1 < edges.size(); ++part) {
-    const double expected = part % 2 == 1 ? 25.0 : 1.0;
-    double squares = 0.0;
-    for (std::size_t i = edges[part]; i < edges[part + 1]; ++i) {
-      squares += noise.value[i] * noise.value[i];
-      ASSERT_EQ(noise.variance[i], expected) << "sample " << i;
-    }
-    const auto n = static_cast<double>(edges[part + 1] - edges[part]);
-    EXPECT_NEAR(squares / n / expected, 1.0, 5.0 * std::sqrt(2.0 / n)) << "part " << part;
-  }
 }
 
 // Bartlett: n var r_k = Σ over all m of ρ_m² + ρ_{m+k} ρ_{m−k}, at most twice (1 + ρ²)/(1 − ρ²).

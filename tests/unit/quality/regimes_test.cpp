@@ -46,21 +46,6 @@ TEST(Regimes, EveryRecordIsWhole) {
   EXPECT_EQ(names.size(), 33U + 2 + 2 * (4 * 3 + 12));
 }
 
-TEST(Regimes, RecordsDependOnRegimeRatioAndSeedOnly) {
-  const RegimeRecord one = regime("random-1-to-1Hz").make(1e-3, 7),
-                     again = regime("random-1-to-1Hz").make(1e-3, 7);
-  EXPECT_EQ(one.truth, again.truth);
-  EXPECT_EQ(one.measured, again.measured);
-  const auto noise = [](const std::string& name, double ratio, std::uint64_t seed) {
-    const RegimeRecord record = regime(name).make(ratio, seed);
-    return record.measured[0] - record.truth[0];
-  };
-  std::set<double> all{noise("sea-3", 1e-3, 7)};
-  EXPECT_TRUE(all.insert(noise("sea-30", 1e-3, 7)).second);
-  EXPECT_TRUE(all.insert(noise("sea-3", 1e-6, 7)).second);
-  EXPECT_TRUE(all.insert(noise("sea-3", 1e-3, 8)).second);
-}
-
 // Increments of the walk and the noise on top, at rest and before every motion. The squares of Gaussians
 // scatter by √(2/n) of their mean.
 TEST(Regimes, WalkAndNoiseHaveTheirVariances) {
@@ -79,35 +64,6 @@ TEST(Regimes, WalkAndNoiseHaveTheirVariances) {
   }
 }
 
-// The mean of a Gaussian of unit variance in steps of 5 about a level v: Σ 5k·P(5k − 2.5 < v + n < 5k + 2.5).
-TEST(Regimes, QuantisedMeanIsThatOfItsLevel) {
-  for (const std::uint64_t seed : {1U, 2U, 3U}) {
-    const RegimeRecord record = regime("quantised-5").make(1e-11, seed);
-    double sum = 0.0, expected = 0.0;
-    for (std::size_t i = 0; i < 100'000; ++i) {
-      ASSERT_EQ(std::fmod(record.measured[i], 5.0), 0.0);
-      sum += record.measured[i];
-    }
-    for (int k = -3; k <= 4; ++k)
-      expected += 5.0 * k * 0.5 *
-                  (std::erfc((5.0 * k - 2.5 - record.truth[0]) / std::sqrt(2.0)) -
-                   std::erfc((5.0 * k + 2.5 - record.truth[0]) / std::sqrt(2.0)));
-    // The walk strays by 0.001 in that time; a sample's deviation is no more than half a step.
-    EXPECT_NEAR(sum / 1e5, expected, 0.005 + 5.0 * 2.5 / std::sqrt(1e5));
-  }
-  EXPECT_EQ(ifog::bench::quantised(2.4, 5.0), 0.0);
-  EXPECT_EQ(ifog::bench::quantised(-2.6, 5.0), -5.0);
-}
-
-TEST(Regimes, ADriftComesBeforeItsStep) {
-  const RegimeRecord record = regime("drift-then-step").make(1e-9, 1);
-  const std::size_t settle = 158'114;
-  // The walk's part: its deviation over those samples is 0.01.
-  EXPECT_NEAR(record.truth[record.from - 1] - record.truth[settle],
-              1e-4 * static_cast<double>(record.from - 1 - settle), 0.05);
-  EXPECT_NEAR(record.truth[record.from] - record.truth[record.from - 1], 20.0 + 1e-4, 1e-3);
-}
-
 // Without a walk the estimate is the mean of all so far, its variance one over their number.
 TEST(Conventional, WithoutAWalkIsTheMean) {
   RegimeRecord record;
@@ -119,20 +75,6 @@ TEST(Conventional, WithoutAWalkIsTheMean) {
   EXPECT_DOUBLE_EQ(got.value[3], 6.0);
   EXPECT_DOUBLE_EQ(got.variance[2], 1.0 / 2.0);
   EXPECT_DOUBLE_EQ(got.variance[3], 1.0 / 3.0);
-}
-
-TEST(Conventional, InformedWeighsAndStartsAfresh) {
-  RegimeRecord record;
-  record.measured = {3.0, 5.0, 8.0, 10.0};
-  record.noise_variance = {1.0, 4.0, 1.0, 1.0};
-  Filtered got = ifog::bench::conventional(record, 0.0, true);
-  EXPECT_DOUBLE_EQ(got.value[1], (3.0 + 5.0 / 4.0) / 1.25);
-  EXPECT_DOUBLE_EQ(got.variance[1], 1.0 / 1.25);
-  EXPECT_DOUBLE_EQ(got.value[3], (3.0 + 5.0 / 4.0 + 8.0 + 10.0) / 3.25);
-  record.rest_from = 2;
-  got = ifog::bench::conventional(record, 0.0, true);
-  EXPECT_DOUBLE_EQ(got.value[3], 9.0);
-  EXPECT_DOUBLE_EQ(got.variance[3], 0.5);
 }
 
 // The steady state of the Riccati equation with R = 1: P = (√(Q² + 4Q) − Q)/2 after the update.
@@ -156,15 +98,6 @@ TEST(Judge, TheConventionalFilterScoresOne) {
   EXPECT_NEAR(figures.nees_conventional, 1.0, 5.0 * scatter);
   EXPECT_LT(figures.over_better, 1.001);
   EXPECT_TRUE(std::isnan(figures.over_informed));
-}
-
-TEST(Judge, RefusesAFilterItDoesNotKnow) {
-  try {
-    ifog::bench::judge(regime("gaussian"), "kalmann", 1e-3, 1);
-    FAIL() << "expected std::invalid_argument";
-  } catch (const std::invalid_argument& error) {
-    EXPECT_NE(std::string(error.what()).find("kalmann"), std::string::npos) << error.what();
-  }
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <cmath>
 #include <vector>
 
-#include "filters/random/inverse_law.h"
 #include "filters/random/log_exp.h"
 
 namespace {
@@ -46,30 +45,6 @@ TEST(Exponential, AgreesWithExtendedPrecision) {
     worst = std::max(worst, static_cast<double>(std::abs((ifog::exponential(x) - exact) / exact)));
   }
   EXPECT_LT(worst, 1e-15);
-}
-
-// The inversion -ln((bits + 1/2) 2^-32), at both ends of every octave, around the corners of the table's
-// parts and spread over everything, against the C library in extended precision. Both lanes.
-TEST(InverseLaw, AgreesWithExtendedPrecision) {
-  double worst = 0.0;
-  const auto check = [&worst](std::uint32_t bits) {
-    const auto uniform = (static_cast<long double>(bits) + 0.5L) * 0x1p-32L;
-    const auto exact = static_cast<double>(-std::log(uniform));
-    const std::uint32_t other = 2654435761U * bits;
-    const auto lower = ifog::exponential_deviates(bits | std::uint64_t{other} << 32U);
-    const auto upper = ifog::exponential_deviates(other | std::uint64_t{bits} << 32U);
-    worst = std::max({worst, std::abs(lower[0] - exact), std::abs(upper[1] - exact)});
-    ASSERT_GT(lower[0], 0.0) << bits;
-    ASSERT_EQ(ifog::uniform_deviates(bits)[0], static_cast<double>(uniform));
-  };
-  for (unsigned octave = 0; octave < 32; ++octave) {
-    for (int beside = -3; beside <= 3; ++beside) check((1U << octave) + static_cast<std::uint32_t>(beside));
-  }
-  for (std::uint32_t part = 0; part < 512; ++part) {
-    for (int beside = -2; beside <= 2; ++beside) check((part << 23U) + static_cast<std::uint32_t>(beside));
-  }
-  for (std::uint32_t i = 0; i < 1'000'000; ++i) check(i * 4294U + 17U);
-  EXPECT_LT(worst, 1e-11);
 }
 
 // Twenty classes of equal probability of Exp(1), by its own distribution function: chi-square with 19 degrees

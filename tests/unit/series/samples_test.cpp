@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "filters/series/long_series.h"
-#include "filters/series/samples_writer.h"
 #include "filters/series/shared_samples.h"
 
 namespace {
@@ -76,20 +75,6 @@ std::size_t mapped_at_all() {
   return all * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
-TEST(Samples, TakeTheRoomThatOthersAsLongGaveBack) {
-  constexpr std::size_t kLong = 5 * kFew;
-  const double* room = nullptr;
-  {
-    const Samples first(kLong, 1.0);
-    room = first.data();
-  }
-  const Samples second(kLong - 100, 2.0);
-  EXPECT_EQ(second.data(), room);
-  EXPECT_EQ(std::accumulate(second.begin(), second.end(), 0.0), 2.0 * static_cast<double>(kLong - 100));
-  const Samples third(kLong, 3.0);  // there is no other
-  EXPECT_NE(third.data(), room);
-}
-
 TEST(Samples, KeepNoMoreRoomThanAFew) {
   constexpr std::size_t kLong = 7 * kFew, kBytes = kLong * sizeof(double);
   const std::size_t before = mapped_at_all();
@@ -99,30 +84,6 @@ TEST(Samples, KeepNoMoreRoomThanAFew) {
     EXPECT_GE(mapped_at_all(), before + 2 * ifog::kMostSpare * kBytes);
   }
   EXPECT_LE(mapped_at_all(), before + (ifog::kMostSpare + 1) * kBytes);
-}
-
-// What is given back is there for whoever writes a series of about that length, and for one only.
-TEST(LongSeries, WritesIntoAFileThatWasGivenBack) {
-  constexpr std::size_t kLong = 2 * kFew, kBytes = kLong * sizeof(double);
-  while (ifog::take_spare_file(kBytes)) {
-  }
-  { const Samples given_back(kLong, 1.0); }
-  ifog::LongSeries first(0), second(0);
-  first.expect(kLong - 5);
-  EXPECT_FALSE(ifog::take_spare_file(kBytes));
-  second.expect(kLong - 5);
-  std::vector<double> some(100000);
-  for (std::size_t i = 0; i < some.size(); ++i) some[i] = static_cast<double>(i);
-  for (ifog::LongSeries* series : {&first, &second}) {
-    series->add(some);
-    series->add(7.0);
-    EXPECT_EQ(series->size(), some.size() + 1);
-    std::vector<double> read(some.size() + 1);
-    series->read(0, read);
-    EXPECT_TRUE(std::equal(some.begin(), some.end(), read.begin()));
-    EXPECT_EQ(read.back(), 7.0);
-    EXPECT_EQ(series->all().back(), 7.0);
-  }
 }
 
 TEST(SharedSamples, AreOneUntilOneIsChanged) {
@@ -153,21 +114,6 @@ TEST(SharedSamples, ThoseOfOthersAreCopiedBeforeTheyAreChanged) {
   EXPECT_EQ(others, (std::vector<double>{1.0, 2.0, 3.0}));
   one.anew(1)[0] = 7.0;
   EXPECT_EQ(one.values(), std::vector<double>{7.0});
-}
-
-TEST(SamplesWriter, WritesThemWhereverTheyAre) {
-  for (const std::size_t n : {std::size_t{0}, std::size_t{3}, kFew, kFew + 1, 2 * kFew + 12345}) {
-    std::vector<double> values(n);
-    std::iota(values.begin(), values.end(), 1.0);
-    ifog::SamplesWriter writer(n);
-    const std::size_t one_by_one = std::min<std::size_t>(n, 1000);
-    for (std::size_t i = 0; i < one_by_one; ++i) writer.add(values[i]);
-    writer.add(std::span<const double>(values).subspan(one_by_one));
-    Samples written = std::move(writer).done();
-    EXPECT_EQ(written, Samples(values)) << n;
-    written.resize(n + 5);  // what is new is zero, as in any vector
-    EXPECT_EQ(std::accumulate(written.end() - 5, written.end(), 0.0), 0.0);
-  }
 }
 
 // A size that no test before has left in the spare room.

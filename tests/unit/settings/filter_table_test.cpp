@@ -8,84 +8,14 @@
 #include <fstream>
 #include <set>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 
-#include "daemon/config/config.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/toml_file.h"
 
 namespace {
 
 using namespace ifog;
-
-const std::string kSensor =
-    "[[sensor]]\nname = \"n\"\ndriver = \"d\"\n[sensor.transport]\ntype = \"file\"\npath = \"p\"\n"
-    "[sensor.filter]\n";
-
-// What a source says of KEY = VALUE: "" where it takes it, its complaint where not.
-std::string by_configuration(const std::string& line) {
-  try {
-    static_cast<void>(parse_config(kSensor + line + "\n", "f"));
-  } catch (const ConfigError& error) {
-    return error.what();
-  }
-  return "";
-}
-
-std::string by_model(const std::string& line) {
-  try {
-    static_cast<void>(parse_model("version = 1\n[filter]\n" + line + "\n", "f"));
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
-}
-
-TEST(FilterTable, BothFilesTakeAndRefuseTheSame) {
-  for (const char* const good :
-       {"window = 2", "window = 100000", "draws = 1", "draws = 1000", "floor = 0", "floor = 0.999",
-        "process_noise = 0", "process_noise = 1", "process_noise = 1e-310", "measurement_noise = 0",
-        "measurement_noise = 1e-60", "seed = 0", "seed = 9223372036854775807", "weights = \"fresh\"",
-        "state_parameters = [1, -0.5]", "conserve_angle = false"}) {
-    EXPECT_EQ(by_configuration(good), "") << good;
-    EXPECT_EQ(by_model(good), "") << good;
-  }
-  // 2^32 + 50 is 50 once narrowed.
-  for (const char* const bad : {"window = 1",
-                                "window = 100001",
-                                "window = 4294967346",
-                                "window = 50.0",
-                                "window = true",
-                                "process_noise = 1e308",
-                                "process_noise = 1e13",
-                                "measurement_noise = 1e-308",
-                                "measurement_noise = 1e13",
-                                "draws = 0",
-                                "draws = 1001",
-                                "draws = 4294967297",
-                                "floor = 1",
-                                "floor = -0.1",
-                                "floor = nan",
-                                "process_noise = -1",
-                                "process_noise = inf",
-                                "measurement_noise = nan",
-                                "measurement_noise = \"1\"",
-                                "seed = -1",
-                                "seed = 1.5",
-                                "weights = \"some\"",
-                                "weights = 1",
-                                "rule = \"\"",
-                                "state = 3",
-                                "state_parameters = [nan]",
-                                "state_parameters = 1",
-                                "follow_manoeuvres = 1"}) {
-    const std::string key = std::string(bad).substr(0, std::string(bad).find(' '));
-    const std::string should = ": expected " + expected(filter_setting(key));
-    EXPECT_NE(by_configuration(bad).find(should), std::string::npos) << bad << by_configuration(bad);
-    EXPECT_NE(by_model(bad).find(should), std::string::npos) << bad << by_model(bad);
-  }
-}
 
 TEST(FilterTable, AModelFileKeepsEverySetting) {
   Model model;

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "filters/kalman/likelihood.h"
-#include "filters/tune/noise_term.h"
 #include "filters/tune/spectrum.h"
 
 namespace {
@@ -233,14 +232,6 @@ TEST(Tune, FindsTheCorrelationTimeOfAGaussMarkovProcess) {
   ASSERT_TRUE(tau.std_error.has_value());
   EXPECT_NEAR(tau.value, kTau, 3.0 * *tau.std_error);
   EXPECT_LT(*tau.std_error, 0.2 * kTau);
-}
-
-// Closed form: partial autocorrelations (a, b) of an AR(2) give phi = (a(1−b), b).
-TEST(Tune, PartialAutocorrelationsGiveTheKnownCoefficients) {
-  const std::vector<double> partial{0.9, -0.5};
-  const auto phi = ifog::ar_from_partial(partial);
-  EXPECT_NEAR(phi[0], 0.9 * 1.5, 1e-15);
-  EXPECT_NEAR(phi[1], -0.5, 1e-15);
 }
 
 TEST(Tune, RefusesWhatItCannotFit) {

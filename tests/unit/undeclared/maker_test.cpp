@@ -69,15 +69,6 @@ TEST(UndeclaredNoise, VisibilityIsThatOfDenseLeastSquares) {
   EXPECT_NEAR(oracle.of(wave, {linear}) * std::sqrt(covariance(1, 1)), 1.0, 1e-6);
 }
 
-TEST(UndeclaredSensor, IsMadeAgainFromItsSeedAndChangesItsEnvironmentNotItself) {
-  const Sensor a = draw_sensor(42, Kind::kTwo, 30.0), b = draw_sensor(42, Kind::kTwo, 30.0);
-  EXPECT_EQ(truth_text(a), truth_text(b));
-  const Record first = record(a, 0), again = record(b, 0), next = record(a, 50);
-  EXPECT_EQ(first.capture.rate_radps, again.capture.rate_radps);
-  EXPECT_NE(first.capture.channels[0].values, next.capture.channels[0].values);
-  EXPECT_NE(first.bias, next.bias);
-}
-
 TEST(UndeclaredScore, AnEstimatorThatIsToldTheTruthIsScoredRightAndItsIntervalsHold) {
   std::vector<Score> scores;
   std::uint64_t seed = 100;
@@ -133,24 +124,6 @@ TEST(UndeclaredScore, AnotherNameIsRightOnlyWhenNobodyCouldTell) {
   const Score wrong = under(claim("linear", "humidity_percent", humidity));
   EXPECT_EQ(wrong.missed, 1);
   EXPECT_EQ(wrong.extra, 1);
-}
-
-TEST(UndeclaredScore, TheTurningPointsLineIsTheLawsOwnUnlessItIsPlacedWrong) {
-  const Sensor sensor = draw_sensor(5, Kind::kTemperatureQuadratic, 40.0);
-  const auto with_line = [&](double value, double std_error) {
-    const auto square = [](const ifog::Capture& c) {
-      std::vector<double> waveform(c.channels[0].values.size(), 0.0);
-      return waveform;
-    };
-    Finding f = claim("quadratic", sensor.effects[0].channel, square);
-    f.effects.push_back(claim("linear", sensor.effects[0].channel, square).effects[0]);
-    f.effects[1].effect.parameters = {{"coefficient", value, std_error, "rad/s/degC"}};
-    return score(sensor, [&](const std::vector<ifog::Capture>&) { return f; });
-  };
-  EXPECT_EQ(with_line(2e-9, 1e-9).extra, 0);
-  EXPECT_EQ(with_line(2e-9, 1e-9).completed, 1);
-  EXPECT_EQ(with_line(4e-9, 1e-9).extra, 1);
-  EXPECT_EQ(with_line(4e-9, 1e-9).completed, 0);
 }
 
 }  // namespace
