@@ -70,30 +70,5 @@ TEST(MessageArchive, WhatIsLostHereIsNotLostOnTheWayAsWell) {
   EXPECT_EQ(held + reader.counts().lost_messages, 20'000U);
 }
 
-TEST(MessageArchive, ASecondRecorderOfAFolderIsRefusedAndWritesNothing) {
-  const std::string folder = fs::temp_directory_path() / ("message_archive." + std::to_string(::getpid()));
-  fs::remove_all(folder);
-  {
-    MessageArchive first(make_flight_folder(folder), {}, of_messages());
-    first.open(0, kWall);
-    first.take("IFOG_NOSE", rate(0), kWall / 1000, 0, kWall);
-    first.turn(0, kWall);
-    first.turn(2 * kSecond, kWall);
-    MessageArchive second(make_flight_folder(folder), {}, of_messages());
-    try {
-      second.open(0, kWall);
-      ADD_FAILURE() << "accepted";
-    } catch (const std::runtime_error& error) {
-      EXPECT_EQ(error.what(), folder + ": another recorder writes into it (expected a folder of its own)");
-    }
-    second.close(0, kWall);
-    EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
-  }
-  // With its recorder the lock has gone.
-  MessageArchive third(make_flight_folder(folder), {}, of_messages());
-  EXPECT_NO_THROW(third.open(0, kWall));
-  fs::remove_all(folder);
-}
-
 }  // namespace
 }  // namespace ifog::tools

@@ -15,6 +15,7 @@
 #include "daemon/config/config.h"
 #include "daemon/state/running_mark.h"
 #include "daemon/state/state_folder.h"
+#include "tests/unit/refusal.h"
 #include "tools/ifog/field/bookmark.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/field/history.h"
@@ -43,12 +44,7 @@ class StateFolder : public testing::Test {
   }
   template <typename Call>
   static std::string complaint(Call&& call) {
-    try {
-      call();
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "";
+    return test::refusal([&] { call(); }, "");
   }
 
   fs::path folder_;
@@ -84,19 +80,6 @@ Proposal proposal_of(const Model& model, const ModelName& against) {
   return out;
 }
 
-// What `ifog proposals` and `status` print to be copied is about the field that they were asked about.
-TEST_F(StateFolder, ACommandToBeCopiedLooksAfterTheSameField) {
-  FieldOptions options;
-  options.state = path("its state");
-  EXPECT_EQ(Field(options).command("adopt", "nose"), "ifog adopt nose --state '" + path("its state") + "'");
-  options = {};
-  options.config = path("a b.toml");
-  write("a b.toml",
-        "[[sensor]]\nname = \"nose\"\ndriver = \"kvh1750\"\n[sensor.transport]\ntype = \"serial\"\ndevice = "
-        "\"/dev/ttyS0\"\n");
-  EXPECT_EQ(Field(options).command("revert", "nose"), "ifog revert nose --config '" + path("a b.toml") + "'");
-}
-
 TEST_F(StateFolder, AProposalComesBackAsItWasWritten) {
   const Model model = model_with(4e-8);
   write_proposal(state(), proposal_of(model, {"abc", "abcdef"}), model, "<html>");
@@ -112,16 +95,6 @@ TEST_F(StateFolder, AProposalComesBackAsItWasWritten) {
   EXPECT_EQ(text(back->report_file), "<html>");
   EXPECT_EQ(sensors_with_proposal(state()), std::vector<std::string>{"nose"});
   EXPECT_FALSE(read_proposal(state(), "tail"));
-}
-
-TEST_F(StateFolder, ANewProposalTakesTheOldOnesPlaceAndRemovalLeavesNothing) {
-  const Model first = model_with(4e-8), second = model_with(5e-8);
-  write_proposal(state(), proposal_of(first, {}), first, "1");
-  write_proposal(state(), proposal_of(second, {}), second, "2");
-  EXPECT_EQ(files(), 3U);
-  EXPECT_EQ(read_proposal(state(), "nose")->model, name_of(second));
-  remove_proposal(state(), "nose");
-  EXPECT_EQ(files(), 0U);
 }
 
 // A night whose disk is full, at whichever of the three files: the proposal that waited stands, and nothing
@@ -203,13 +176,6 @@ TEST_F(StateFolder, TheHistoryKeepsEveryModelAndRevertsCloseLikeBrackets) {
   history.take_back();
   EXPECT_EQ(history.in_force()->model, name_of(a));
   EXPECT_EQ(History(state(), "nose").changes().size(), 3U);
-}
-
-TEST_F(StateFolder, BookmarksComeBack) {
-  EXPECT_FALSE(read_bookmark(state(), "nose"));
-  write_bookmark(state(), "nose", {17, "2026-01-31T02:30:00Z", "nothing found"});
-  EXPECT_EQ(read_bookmark(state(), "nose")->until, 17U);
-  EXPECT_EQ(read_bookmark(state(), "nose")->said, "nothing found");
 }
 
 TEST_F(StateFolder, OneCommandAtATime) {

@@ -12,7 +12,6 @@
 
 #include "tools/ifog/monitor/message_json.h"
 #include "tools/ifog/monitor/sensor_view.h"
-#include "tools/ifog/monitor/spark_line.h"
 #include "tools/ifog/monitor/view_lines.h"
 
 namespace ifog::tools {
@@ -90,13 +89,6 @@ TEST(MonitorView, WhatIsStaleOrAbsentIsNotShownAsLive) {
   EXPECT_NE(text.find("no message for 6 s"), std::string::npos) << text;
 }
 
-TEST(MonitorView, ASensorWithoutSamplesIsShownByItsStatus) {
-  SensorView view;
-  view.take(status_message());
-  view.end_interval(1.0);
-  EXPECT_TRUE(view.shown());
-}
-
 TEST(MonitorView, FlagsAndLossesInWords) {
   SensorView view;
   rate_t message = rate(10, {0.0});
@@ -117,27 +109,6 @@ TEST(MonitorView, FlagsAndLossesInWords) {
   text = joined(view_lines("NOSE", view, {}));
   EXPECT_EQ(text.find("lost on LCM"), std::string::npos) << text;
   EXPECT_NE(text.find("frames with a wrong checksum 2"), std::string::npos) << text;
-}
-
-// Before the first second is over nothing is said of a second; and of two counts of one kind each says when.
-TEST(MonitorView, EachCountSaysOfWhen) {
-  SensorView view;
-  rate_t message = rate(10, {0.0});
-  message.flags = 32;  // invalid
-  view.take(message);
-  status_t health = status_message();
-  health.invalid_samples = 400;
-  view.take(health);
-  std::string text = joined(view_lines("NOSE", view, {}));
-  EXPECT_EQ(text.find("Hz"), std::string::npos) << text;
-  EXPECT_EQ(text.find("no samples"), std::string::npos) << text;
-  EXPECT_NE(text.find("its first second is not over"), std::string::npos) << text;
-  view.end_interval(1.0);
-  text = joined(view_lines("NOSE", view, {}));
-  EXPECT_NE(text.find("1.0 Hz  1 messages"), std::string::npos) << text;
-  EXPECT_NE(text.find("  in the last second: invalid 1\n"), std::string::npos) << text;
-  EXPECT_NE(text.find("  so far: "), std::string::npos) << text;
-  EXPECT_NE(text.find("invalid 400"), std::string::npos) << text;
 }
 
 TEST(MonitorView, NoLineIsWiderThanTheScreen) {
@@ -165,60 +136,6 @@ TEST(MonitorView, NoLineIsWiderThanTheScreen) {
   EXPECT_NE(wide[1].text.find("█"), std::string::npos);
 }
 
-// At rest the rate steps by 1e-6 rad/s (0.2063 °/h): the line is as high as its seven steps.
-TEST(MonitorView, TheSparkLineSaysHowHighItIs) {
-  SensorView view;
-  for (int i = 0; i < 8; ++i) {
-    view.take(rate(i, {1e-6 * i}));
-    view.end_interval(1.0);
-  }
-  EXPECT_TRUE(
-      has(view_lines("NOSE", view, {120, true, RateUnit::automatic})[1].text, "▁▂▃▄▅▆▇█  span 1.4439"))
-      << joined(view_lines("NOSE", view, {120, true, RateUnit::automatic}));
-}
-
-// What a sensor does not have is no fault of it; a channel that somebody configured is missed.
-TEST(MonitorView, WhatASensorDoesNotHaveIsNotShown) {
-  SensorView view;
-  view.take(rate(0, {1e-6, 1e-6, 1e-6}));
-  status_t health = status_message();
-  health.nis_mean[1] = health.whiteness[1] = 0.0;
-  view.take(health);
-  view.end_interval(1.0);
-  std::string text = joined(view_lines("NOSE", view, {}));
-  EXPECT_FALSE(has(text, "latency")) << text;
-  EXPECT_FALSE(has(text, "y NIS")) << text;
-  EXPECT_TRUE(has(text, "z NIS 0.99")) << text;
-  EXPECT_TRUE(has(text, "supply_V 12 (5 s old)")) << text;
-  EXPECT_FALSE(has(text, "not heard of")) << text;
-  KnownSensor known;
-  known.channels = {"hull\x1b[2J"};
-  text = joined(view_lines("NOSE", view, {}, &known));
-  EXPECT_TRUE(has(text, "hull\\x1b[2J not heard of")) << text;
-}
-
-TEST(MonitorView, DriverModelAndProposalAreNamedWhereTheyAreKnown) {
-  SensorView view;
-  rate_t message = rate(0, {1e-6});
-  message.model = "0123456789ab";
-  view.take(message);
-  view.take(status_message());
-  view.end_interval(1.0);
-  KnownSensor known{"kvh1750, serial /dev/ttyUSB0",
-                    "nose.toml of 2026-11-27 01:30",
-                    "0123456789ab",
-                    "proposal of today",
-                    {}};
-  std::string text = joined(view_lines("NOSE", view, {}, &known));
-  EXPECT_TRUE(has(text, "model nose.toml of 2026-11-27 01:30\n")) << text;
-  EXPECT_TRUE(has(text, "driver kvh1750, serial /dev/ttyUSB0")) << text;
-  EXPECT_TRUE(has(text, "proposal of today")) << text;
-  EXPECT_FALSE(has(text, "0123456789ab")) << text;
-  known.identity = "another";
-  text = joined(view_lines("NOSE", view, {}, &known));
-  EXPECT_TRUE(has(text, "model 0123456789ab, not what nose.toml of 2026-11-27 01:30 holds")) << text;
-}
-
 // Rates without the statuses that belong to them: what the last one said is not of now.
 TEST(MonitorView, AnOldStatusIsNotShownWithNewRates) {
   SensorView view;
@@ -233,13 +150,6 @@ TEST(MonitorView, AnOldStatusIsNotShownWithNewRates) {
   for (const char* old : {"running", "nothing lost", "fault", "NIS", "books", "coil_degC"})
     EXPECT_FALSE(has(text, old)) << old << " is in\n" << text;
   EXPECT_EQ(lines[0].tone, Tone::warning);
-}
-
-TEST(MonitorView, ASparkLineGoesFromTheLeastToTheGreatest) {
-  EXPECT_EQ(spark_line(std::vector<double>{0, 1, 2, 3, 4, 5, 6, 7}, 20).text, "▁▂▃▄▅▆▇█");
-  EXPECT_EQ(spark_line(std::vector<double>{9, 0, std::nan(""), 1}, 3).text, "▁ █");
-  EXPECT_EQ(spark_line(std::vector<double>{5, 5}, 3).text, "▅▅");
-  EXPECT_EQ(spark_line(std::vector<double>{}, 3).text, "");
 }
 
 TEST(MonitorJson, EveryFieldByTheNameOfItsType) {

@@ -46,14 +46,6 @@ TEST(Lateness, PercentilesAreWithinABucketOfTheSortedValues) {
   EXPECT_EQ(late.percentile_ns(1.0), late.max_ns());
 }
 
-TEST(Lateness, EarlyCountsAsOnTimeAndNothingHasNoPercentile) {
-  ifog::tools::Lateness late;
-  EXPECT_EQ(late.percentile_ns(0.5), 0U);
-  late.add(-5);
-  EXPECT_EQ(late.percentile_ns(0.99), 0U);
-  EXPECT_EQ(late.count(), 1U);
-}
-
 TEST(Pace, DeadlinesComeFromTheFirstAndKeepNanosecondsForDays) {
   ifog::Pace pace;
   pace.start(1'700'000'000'000'000'000, 5);

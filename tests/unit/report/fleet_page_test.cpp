@@ -63,15 +63,6 @@ TEST(FleetPage, SaysWhatTheTypeHasWhoStandsOutAndWhoFailed) {
   EXPECT_TRUE(has(html, "12 of 13 gyros have a result"));
 }
 
-TEST(FleetPage, AxesHaveTheSerials) {
-  const Population population = example();
-  FleetPage page;
-  page.population = &population;
-  const std::string html = fleet_page(page);
-  EXPECT_TRUE(has(html, ">G0</text>") && has(html, ">G6</text>"));
-  EXPECT_FALSE(has(html, ">6</text>"));
-}
-
 TEST(FleetPage, WhatFilesSayIsText) {
   const Population population = example();
   FleetPage page;

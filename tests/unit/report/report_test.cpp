@@ -61,15 +61,6 @@ TEST(ReportText, ALineHasAmplitudeAndPhase) {
   EXPECT_NEAR(shown[1].std_error, 5.12, 0.01);
 }
 
-// Fitted terms are drawn as guides next to data of which some is dashed.
-TEST(ReportChart, GuidesAreNeitherDashedNorAsStrongAsData) {
-  const std::string style = page_style();
-  const std::size_t at = style.find(".chart .guide{");
-  const std::string rule = style.substr(at, style.find('}', at) - at);
-  EXPECT_EQ(rule.find("dasharray"), std::string::npos) << rule;
-  EXPECT_NE(rule.find("stroke-opacity:.5"), std::string::npos) << rule;
-}
-
 // Where the data says a dot is, the picture has it: 0 and 10 on a linear axis, 1 and 100 on a logarithmic
 // one.
 TEST(ReportChart, DrawsDataWhereItIs) {
@@ -131,44 +122,6 @@ TEST(ReportChart, ALineInTimeIsOpenWhereThereIsAHole) {
   };
   EXPECT_EQ(strokes(true), 2);
   EXPECT_EQ(strokes(false), 1);
-}
-
-TEST(ReportChart, BandsWidenTheAxesAndGuidesDoNot) {
-  Chart chart("t", "d", {"x", false, 0.0, 10.0}, {"y", false, {}, {}});
-  chart.line(Role::kAfter, "", {0.0, 10.0}, {1.0, 1.0});
-  chart.band(Role::kAfter, {0.0, 10.0}, {0.0, 0.0}, {2.0, 2.0});
-  chart.guide(Role::kAfter, {0.0, 10.0}, {100.0, 100.0}, {"far above", 5.0, 100.0});
-  const std::string svg = chart.svg(1000, 500);
-  std::smatch m;
-  ASSERT_TRUE(
-      std::regex_search(svg, m,
-                        std::regex("class=\"band after\" d=\"M[\\d.]+ ([\\d.]+)L[\\d.]+ ([\\d.]+)L[\\d.]+ "
-                                   "([\\d.]+)L[\\d.]+ ([\\d.]+)Z")));
-  EXPECT_EQ(m[1], m[2]);
-  EXPECT_EQ(m[3], m[4]);
-  // 2 at the upper edge and 0 at the lower one, less the margin of 4 % of the span on each side.
-  const double inner = 500.0 - 46.0 - 34.0;
-  EXPECT_NEAR(std::stod(m[3]) - std::stod(m[1]), inner / 1.08, 0.3);
-}
-
-TEST(ReportChart, LegendsThatAreLongTakeAnotherRow) {
-  Chart chart("t", "d", {"x", false, {}, {}}, {"y", false, {}, {}});
-  for (int i = 0; i < 6; ++i)
-    chart.line(role_of(static_cast<std::size_t>(i)), "a capture with a long name " + std::to_string(i),
-               {0.0, 1.0}, {0.0, 1.0});
-  const std::string both = chart.svg(720, 320);
-  const std::size_t narrow = both.find("<svg class=\"chart narrow");
-  ASSERT_NE(narrow, std::string::npos);
-  for (const auto& [svg, width] : {std::pair{both.substr(0, narrow), 720.0}, {both.substr(narrow), 350.0}}) {
-    double right = 0.0;
-    const std::regex entry(
-        "<text class=\"tick\" x=\"([\\d.]+)\" y=\"[\\d.]+\" text-anchor=\"start\">(a capture[^<]*)");
-    int entries = 0;
-    for (std::sregex_iterator at(svg.begin(), svg.end(), entry), end; at != end; ++at, ++entries)
-      right = std::max(right, std::stod((*at)[1]) + 6.0 * static_cast<double>((*at)[2].length()));
-    EXPECT_EQ(entries, 6);
-    EXPECT_LT(right, width);
-  }
 }
 
 std::string bytes_of(const std::string& path) {
@@ -259,37 +212,6 @@ TEST(ReportPage, HoldsEverySectionAndFetchesNothing) {
   EXPECT_LT(html.size(), 2'000'000U);
   // For the browser's test.
   if (const char* path = std::getenv("IFOG_REPORT_OUTPUT")) std::ofstream(path) << html;
-}
-
-// Parts that each take all of the variance are no parts of one whole.
-TEST(ReportPage, SharesThatOverlapSaySo) {
-  ifog::example::Example e = ifog::example::make();
-  for (ifog::FoundEffect& found : e.diagnosis.effects) found.variance_explained = 0.4;
-  EXPECT_EQ(count_of(page_of(e), "alone, overlapping with other parts: 40"), 0U);
-  for (ifog::FoundEffect& found : e.diagnosis.effects) found.variance_explained = 1.0;
-  EXPECT_EQ(count_of(page_of(e), "alone, overlapping with other parts: 100"), 2U);
-}
-
-TEST(ReportPage, ManyEffectsAreAListInShort) {
-  ifog::example::Example e = ifog::example::make();
-  while (e.diagnosis.effects.size() < 11) e.diagnosis.effects.push_back(e.diagnosis.effects.front());
-  const std::string html = page_of(e);
-  const std::string account = html.substr(html.find("class=\"account\""),
-                                          html.find("class=\"tiles\"") - html.find("class=\"account\""));
-  EXPECT_EQ(count_of(account, "<li>"), 11U);
-  EXPECT_NE(account.find("By the model as written and on data held out of the fit"), std::string::npos);
-  e.diagnosis.effects.resize(1);
-  EXPECT_EQ(count_of(page_of(e).substr(0, html.find("class=\"tiles\"")),
-                     "<p><strong>One effect was found.</strong> "),
-            1U);
-}
-
-// The heading gained most, to an eighteenth.
-TEST(ReportPage, TheStrongestFigureComesFirst) {
-  const std::string html = page_of(ifog::example::make());
-  const std::size_t first = html.find("class=\"tile\""), end = html.find("</div>", first);
-  EXPECT_NE(html.substr(first, end - first).find("heading at the end"), std::string::npos)
-      << html.substr(first, end - first);
 }
 
 TEST(ReportPage, NothingFoundIsAResult) {
