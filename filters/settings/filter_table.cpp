@@ -250,12 +250,6 @@ std::string type_and_range(const FilterSetting& setting) {
 
 std::span<const FilterSetting> filter_table() { return kTable; }
 
-const FilterSetting& filter_setting(std::string_view key) {
-  for (const FilterSetting& setting : kTable)
-    if (setting.key == key) return setting;
-  throw std::out_of_range("no filter setting '" + std::string(key) + "'");
-}
-
 std::string expected(const FilterSetting& setting) {
   return std::visit([&]<typename T>(const SettingMember<T>&) { return type_and_range<T>(setting); },
                     setting.member);

@@ -10,7 +10,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -50,8 +49,6 @@ struct FilterSetting {
 
 // In the order in which a model file holds them.
 std::span<const FilterSetting> filter_table();
-// Throws std::out_of_range for a key that the table does not have.
-const FilterSetting& filter_setting(std::string_view key);
 
 // Type and range, in words: "a whole number 2 ... 100000".
 std::string expected(const FilterSetting& setting);

@@ -88,6 +88,12 @@ TEST_F(Ifogd, ACheckSaysThatAModelIsOfASensorWithOneAxis) {
   EXPECT_EQ(times_said("the noise of an axis 'q'"), 1) << said();
 }
 
+TEST_F(Ifogd, AnOptionThatIsNearlyRightIsTold) {
+  configure(kFile);
+  EXPECT_EQ(ifogd("--chekc"), 2);
+  EXPECT_EQ(times_said("ifogd: unknown option '--chekc', did you mean '--check'?"), 1) << said();
+}
+
 TEST_F(Ifogd, WhatCannotBeSaidHasFailed) {
   configure(kFile);
   const std::string daemon = IFOG_BINARY_DIR "/daemon/ifogd ";

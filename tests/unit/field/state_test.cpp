@@ -97,6 +97,36 @@ TEST_F(StateFolder, AProposalComesBackAsItWasWritten) {
   EXPECT_FALSE(read_proposal(state(), "tail"));
 }
 
+// What `ifog proposals` and `status` print to be copied is about the field that they were asked about.
+TEST_F(StateFolder, ACommandToBeCopiedLooksAfterTheSameField) {
+  FieldOptions options;
+  options.state = path("its state");
+  EXPECT_EQ(Field(options).command("adopt", "nose"), "ifog adopt nose --state '" + path("its state") + "'");
+  options = {};
+  options.config = path("a b.toml");
+  write("a b.toml",
+        "[[sensor]]\nname = \"nose\"\ndriver = \"kvh1750\"\n[sensor.transport]\ntype = \"serial\"\ndevice = "
+        "\"/dev/ttyS0\"\n");
+  EXPECT_EQ(Field(options).command("revert", "nose"), "ifog revert nose --config '" + path("a b.toml") + "'");
+}
+
+TEST_F(StateFolder, ANewProposalTakesTheOldOnesPlaceAndRemovalLeavesNothing) {
+  const Model first = model_with(4e-8), second = model_with(5e-8);
+  write_proposal(state(), proposal_of(first, {}), first, "1");
+  write_proposal(state(), proposal_of(second, {}), second, "2");
+  EXPECT_EQ(files(), 3U);
+  EXPECT_EQ(read_proposal(state(), "nose")->model, name_of(second));
+  remove_proposal(state(), "nose");
+  EXPECT_EQ(files(), 0U);
+}
+
+TEST_F(StateFolder, BookmarksComeBack) {
+  EXPECT_FALSE(read_bookmark(state(), "nose"));
+  write_bookmark(state(), "nose", {17, "2026-01-31T02:30:00Z", "nothing found"});
+  EXPECT_EQ(read_bookmark(state(), "nose")->until, 17U);
+  EXPECT_EQ(read_bookmark(state(), "nose")->said, "nothing found");
+}
+
 // A night whose disk is full, at whichever of the three files: the proposal that waited stands, and nothing
 // of the new one is left.
 TEST_F(StateFolder, AProposalThatCouldNotBeWrittenLeavesNothing) {

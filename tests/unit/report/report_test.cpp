@@ -124,6 +124,44 @@ TEST(ReportChart, ALineInTimeIsOpenWhereThereIsAHole) {
   EXPECT_EQ(strokes(false), 1);
 }
 
+TEST(ReportChart, BandsWidenTheAxesAndGuidesDoNot) {
+  Chart chart("t", "d", {"x", false, 0.0, 10.0}, {"y", false, {}, {}});
+  chart.line(Role::kAfter, "", {0.0, 10.0}, {1.0, 1.0});
+  chart.band(Role::kAfter, {0.0, 10.0}, {0.0, 0.0}, {2.0, 2.0});
+  chart.guide(Role::kAfter, {0.0, 10.0}, {100.0, 100.0}, {"far above", 5.0, 100.0});
+  const std::string svg = chart.svg(1000, 500);
+  std::smatch m;
+  ASSERT_TRUE(
+      std::regex_search(svg, m,
+                        std::regex("class=\"band after\" d=\"M[\\d.]+ ([\\d.]+)L[\\d.]+ ([\\d.]+)L[\\d.]+ "
+                                   "([\\d.]+)L[\\d.]+ ([\\d.]+)Z")));
+  EXPECT_EQ(m[1], m[2]);
+  EXPECT_EQ(m[3], m[4]);
+  // 2 at the upper edge and 0 at the lower one, less the margin of 4 % of the span on each side.
+  const double inner = 500.0 - 46.0 - 34.0;
+  EXPECT_NEAR(std::stod(m[3]) - std::stod(m[1]), inner / 1.08, 0.3);
+}
+
+TEST(ReportChart, LegendsThatAreLongTakeAnotherRow) {
+  Chart chart("t", "d", {"x", false, {}, {}}, {"y", false, {}, {}});
+  for (int i = 0; i < 6; ++i)
+    chart.line(role_of(static_cast<std::size_t>(i)), "a capture with a long name " + std::to_string(i),
+               {0.0, 1.0}, {0.0, 1.0});
+  const std::string both = chart.svg(720, 320);
+  const std::size_t narrow = both.find("<svg class=\"chart narrow");
+  ASSERT_NE(narrow, std::string::npos);
+  for (const auto& [svg, width] : {std::pair{both.substr(0, narrow), 720.0}, {both.substr(narrow), 350.0}}) {
+    double right = 0.0;
+    const std::regex entry(
+        "<text class=\"tick\" x=\"([\\d.]+)\" y=\"[\\d.]+\" text-anchor=\"start\">(a capture[^<]*)");
+    int entries = 0;
+    for (std::sregex_iterator at(svg.begin(), svg.end(), entry), end; at != end; ++at, ++entries)
+      right = std::max(right, std::stod((*at)[1]) + 6.0 * static_cast<double>((*at)[2].length()));
+    EXPECT_EQ(entries, 6);
+    EXPECT_LT(right, width);
+  }
+}
+
 std::string bytes_of(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), {}};

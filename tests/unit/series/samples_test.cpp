@@ -75,6 +75,20 @@ std::size_t mapped_at_all() {
   return all * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
+TEST(Samples, TakeTheRoomThatOthersAsLongGaveBack) {
+  constexpr std::size_t kLong = 5 * kFew;
+  const double* room = nullptr;
+  {
+    const Samples first(kLong, 1.0);
+    room = first.data();
+  }
+  const Samples second(kLong - 100, 2.0);
+  EXPECT_EQ(second.data(), room);
+  EXPECT_EQ(std::accumulate(second.begin(), second.end(), 0.0), 2.0 * static_cast<double>(kLong - 100));
+  const Samples third(kLong, 3.0);  // there is no other
+  EXPECT_NE(third.data(), room);
+}
+
 TEST(Samples, KeepNoMoreRoomThanAFew) {
   constexpr std::size_t kLong = 7 * kFew, kBytes = kLong * sizeof(double);
   const std::size_t before = mapped_at_all();
@@ -84,6 +98,30 @@ TEST(Samples, KeepNoMoreRoomThanAFew) {
     EXPECT_GE(mapped_at_all(), before + 2 * ifog::kMostSpare * kBytes);
   }
   EXPECT_LE(mapped_at_all(), before + (ifog::kMostSpare + 1) * kBytes);
+}
+
+// What is given back is there for whoever writes a series of about that length, and for one only.
+TEST(LongSeries, WritesIntoAFileThatWasGivenBack) {
+  constexpr std::size_t kLong = 2 * kFew, kBytes = kLong * sizeof(double);
+  while (ifog::take_spare_file(kBytes)) {
+  }
+  { const Samples given_back(kLong, 1.0); }
+  ifog::LongSeries first(0), second(0);
+  first.expect(kLong - 5);
+  EXPECT_FALSE(ifog::take_spare_file(kBytes));
+  second.expect(kLong - 5);
+  std::vector<double> some(100000);
+  for (std::size_t i = 0; i < some.size(); ++i) some[i] = static_cast<double>(i);
+  for (ifog::LongSeries* series : {&first, &second}) {
+    series->add(some);
+    series->add(7.0);
+    EXPECT_EQ(series->size(), some.size() + 1);
+    std::vector<double> read(some.size() + 1);
+    series->read(0, read);
+    EXPECT_TRUE(std::equal(some.begin(), some.end(), read.begin()));
+    EXPECT_EQ(read.back(), 7.0);
+    EXPECT_EQ(series->all().back(), 7.0);
+  }
 }
 
 TEST(SharedSamples, AreOneUntilOneIsChanged) {

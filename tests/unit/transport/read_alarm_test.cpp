@@ -12,8 +12,10 @@
 #include <string>
 #include <thread>
 
+#include "drivers/transport/clock.h"
 #include "drivers/transport/file/file.h"
 #include "drivers/transport/network/udp.h"
+#include "drivers/transport/stoppable_wait.h"
 #include "tests/unit/transport/loopback.h"
 
 namespace ifog {
@@ -21,10 +23,25 @@ namespace {
 
 using namespace std::chrono_literals;
 
+constexpr std::int64_t kLong_ns = 600'000'000'000;
+
 FileSettings at(const std::string& path) {
   FileSettings settings;
   settings.path = path;
   return settings;
+}
+
+TEST(ReadAlarm, RungOutsideACallKeepsTheThreadFromEnteringOne) {
+  ReadAlarm& alarm = ReadAlarm::of_this_thread();
+  ASSERT_TRUE(alarm.set(monotonic_ns() + kLong_ns));
+  ReadAlarm::ring(alarm.number());
+  while (alarm.enter()) alarm.leave();  // the signal comes within a moment
+  EXPECT_FALSE(alarm.is_set(monotonic_ns() + kLong_ns));
+  ASSERT_TRUE(alarm.set(monotonic_ns() + kLong_ns));
+  EXPECT_TRUE(alarm.enter()) << "it rings once where there is no call to end";
+  alarm.leave();
+  alarm.off();
+  EXPECT_FALSE(alarm.is_set(monotonic_ns() + kLong_ns));
 }
 
 // The reader is caught everywhere between the look whether it is stopped and deep in its call. One that was

@@ -186,6 +186,17 @@ TEST(SerialTransport, RefusesInOneLine) {
   EXPECT_EQ(refusal({}), "serial transport: no device, expected a serial device such as /dev/ttyUSB0");
 }
 
+TEST(SerialTransport, LibserialportRefusesAPseudoTerminal) {
+  Gyro gyro;
+  const int fd = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  ASSERT_GE(fd, 0);
+  ASSERT_EQ(grantpt(fd), 0);
+  ASSERT_EQ(unlockpt(fd), 0);
+  const std::string path = ptsname(fd);
+  EXPECT_EQ(refusal({.device = path, .baud = 9600}).substr(0, path.size() + 15), path + ": cannot open: ");
+  close(fd);
+}
+
 // What the port asks for on whatever line it has opened.
 TEST(SerialTransport, ALineIsOneReaders) {
   const int master = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);

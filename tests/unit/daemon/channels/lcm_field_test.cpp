@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "tests/unit/daemon/messages.h"
+#include "tests/unit/refusal.h"
 
 namespace ifog {
 namespace {
@@ -98,6 +99,14 @@ TEST(LcmField, WhatAMessageDoesNotHaveIsNotRead) {
   std::vector<std::uint8_t> cut = s;
   cut.resize(cut.size() / 2);
   EXPECT_TRUE(std::isnan(read("clock_offset_ppm", cut).first));
+}
+
+TEST(LcmField, RefusesBracketsItDoesNotKnow) {
+  for (const char* text : {"raw[3]", "raw[x]", "raw[0", "angle[0]", "channel_value[]", "clock_offset_ppm[0]"})
+    EXPECT_EQ(
+        test::refusal([&] { LcmField{text}; }).find("sensor.channel.field = \"" + std::string(text) + "\": "),
+        0U)
+        << text;
 }
 
 }  // namespace

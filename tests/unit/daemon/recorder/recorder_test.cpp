@@ -230,6 +230,35 @@ TEST(Recorder, ADiskThatIsFullToTheEndIsSaidToBeFull) {
   EXPECT_EQ(recorder.lost_bytes(), 30U);
 }
 
+// New settings that no room was left for are no entry of the record.
+TEST(Recorder, OfWhatIsLeftAtTheEndOnlyEntriesAreCounted) {
+  Recording recording;
+  Recorder& recorder = recording.recorder;
+  recording.disk.refuses = EIO;
+  recorder.start();
+  for (std::uint32_t n = 0; n < 3; ++n) {
+    recorder.tape().put(delivery(kBytes, 2), 2, {}, 0);
+    recorder.set_header(header(), n + 1);
+    recorder.tape().note_settings(n + 1);
+  }
+  recorder.stop();
+  EXPECT_EQ(recorder.lost_deliveries(), 3U);
+  EXPECT_EQ(recorder.entries_unwritten(), 3U);
+}
+
+TEST(Recorder, AFolderThatNeverWorksLosesAllAndSaysSo) {
+  MemoryDisk disk;
+  disk.refuses = ENOTDIR;
+  Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
+  recorder.start();
+  Rig rig(frames(20'000), 100, true, 1024, 0us, true, &recorder.tape());
+  rig.run_to_the_end();
+  recorder.stop();
+  EXPECT_EQ(recorder.lost_deliveries(), recorder.tape().counters().deliveries.value());
+  EXPECT_EQ(recorder.lost_bytes(), 20'000 * kFrame);
+  EXPECT_EQ(rig.publisher->messages().size(), 20'000U);
+}
+
 TEST(Recorder, ARecordingThatIsTakenAwayIsToldAndCounted) {
   MemoryDisk disk;
   Recorder recorder("rec", Tape::kLeastBytes, std::make_unique<MemoryFolder>(disk), {}, header());
