@@ -21,9 +21,6 @@ constexpr double kCorrelated = 2.8, kPaid = 1.27;
 // More than an output filter makes of white noise, so that what was given says that it is no motion.
 constexpr double kStronglyColoured = 8.0;
 
-// Samples of rest that are told from the crest of a swing of ten seconds.
-constexpr double kLeastRest = 128.0;
-
 double certain(double nats) { return 1.0 / (1.0 + exponential(-std::clamp(nats, -30.0, 30.0))); }
 
 }  // namespace
@@ -51,7 +48,7 @@ void Mix::begin_rest() noexcept {
 }
 
 bool Mix::rest_found() const noexcept {
-  return least(rest_ratio_) > kFound && rest_age_ >= std::max(kLeastRest, 3.0 * failed_after_);
+  return least(rest_ratio_) > kFound && rest_age_ >= std::max(kRestMemory, 3.0 * failed_after_);
 }
 
 void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexcept {

@@ -77,7 +77,7 @@ TEST(UnlikeAxes, EachVarianceIsThatOfItsOwnAxis) {
       for (std::size_t a = 0; a < kAxes; ++a) {
         squares[a] += said.squares[a] / kSeeds;
         // What the gain is too small for is in the innovations, and no noise.
-        EXPECT_GT(said.health.nis_mean[a], 0.65) << "axis " << a << ", seed " << seed;
+        EXPECT_GT(said.health.nis_mean[a], 0.7) << "axis " << a << ", seed " << seed;
         EXPECT_LT(said.health.nis_mean[a], 1.8) << "axis " << a << ", seed " << seed;
         EXPECT_NEAR(said.health.measurement_noise[a] / (kLoud[a] * kLoud[a]), 1.0, 0.3) << "axis " << a;
       }
