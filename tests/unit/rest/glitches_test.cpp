@@ -46,8 +46,7 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
   const std::vector<Stretch> all{{0, rate.size()}};
   const Glitches found = find_glitches(rate, all);
   EXPECT_EQ(found.count, 3U);
-  EXPECT_NE(in_words(found, [](std::size_t) { return 0.0; }).find("dropped"),
-            std::string::npos);
+  EXPECT_NE(in_words(found, [](std::size_t) { return 0.0; }).find("dropped"), std::string::npos);
   const auto without = [&](const std::vector<double>& from) {
     std::vector<ValueFault> faults;
     return without_leaps(
