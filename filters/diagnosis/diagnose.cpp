@@ -73,7 +73,7 @@ class Run {
     std::vector<std::string> ramps;
     for (const RampFit& ramp : ramps_) ramps.push_back(ramp.found.effect.channel);
     say(unused_channels(records_, data_, ramps));
-    for (std::string& each : mark_motion(data_, options_.allow_motion_channels)) say(std::move(each));
+    for (auto& each : mark_motion(records_, data_, options_.allow_motion_channels)) say(std::move(each));
     reconstructed_ = with_reconstructed_channels(data_);
   }
 

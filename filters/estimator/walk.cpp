@@ -50,7 +50,7 @@ std::array<Shapes, kTrials> make_shapes() noexcept {
     for (std::size_t k = 0; k < Walk::kOctaves; ++k) {
       const double block = std::ldexp(1.0, static_cast<int>(k));
       const double variance = 1.0 / block + ratio_of(trial) * block / 3.0;
-      all[trial][k] = {variance, std::log(variance)};
+      all[trial][k] = {variance, logarithm(variance)};
     }
   return all;
 }
@@ -62,7 +62,7 @@ const Shapes& shapes_of(std::size_t trial) noexcept {
 
 }  // namespace
 
-Walk::Walk(double stretch) noexcept : stretch_(stretch) {}
+Walk::Walk(double stretch) noexcept : stretch_(stretch) { static_cast<void>(shapes_of(0)); }
 
 void Walk::recall(double ratio, double samples) noexcept {
   ratio_ = std::clamp(ratio, ratio_of(0), kMostRatio);

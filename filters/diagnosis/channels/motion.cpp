@@ -5,6 +5,7 @@
 
 #include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
+#include "filters/series/finite_sum.h"
 
 namespace ifog {
 namespace {
@@ -97,23 +98,22 @@ std::string rotation_in_words(const BlockData& data, std::size_t c, Motion motio
          name + reading_of(motion, change, best.value) + ": that is rotation and stays in the rate";
 }
 
-// The share of a channel's variance that its means over a time keep.
-double kept_by_means(const BlockData& data, std::size_t c, double time_s) {
-  const auto steps = static_cast<std::size_t>(std::max(1.0, std::round(time_s / data.grid.fine_s)));
+// The share of a channel's variance that means of so many samples keep. A long record's grid hides what is quick.
+double kept_by_means(const std::vector<Record>& records, const std::string& name, double count) {
+  const auto each = static_cast<std::size_t>(std::max(1.0, std::round(count)));
   double all = 0.0, kept = 0.0;
-  for (const BlockRange& record : data.grid.records) {
-    const BlockRange fine = data.grid.fine_steps(record);
-    const std::vector<double>& values = data.channels[c].values;
-    double mean = 0.0;
-    for (std::size_t k = fine.first; k < fine.end; ++k) mean += values[k] / static_cast<double>(fine.size());
-    for (std::size_t from = fine.first; from + steps <= fine.end; from += steps) {
-      double sum = 0.0;
-      for (std::size_t k = from; k < from + steps; ++k) {
-        sum += values[k] - mean;
-        all += (values[k] - mean) * (values[k] - mean);
-        if (!data.channels[c].power.empty()) all += data.channels[c].power[k];
+  for (const Record& record : records) {
+    const std::span<const double> values = values_of(record, name);
+    const auto [total, there] = finite_sum(values);
+    for (std::size_t from = 0; from + each <= values.size(); from += each) {
+      double sum = 0.0, square = 0.0;
+      for (const double value : values.subspan(from, each)) {
+        sum += value - total / there;
+        square += std::pow(value - total / there, 2);
       }
-      kept += sum * sum / static_cast<double>(steps);
+      if (!std::isfinite(square)) continue;
+      all += square;
+      kept += sum * sum / static_cast<double>(each);
     }
   }
   return all > 0.0 ? kept / all : 0.0;
@@ -121,7 +121,7 @@ double kept_by_means(const BlockData& data, std::size_t c, double time_s) {
 
 }  // namespace
 
-std::vector<std::string> mark_motion(BlockData& data, bool allowed) {
+std::vector<std::string> mark_motion(const std::vector<Record>& records, BlockData& data, bool allowed) {
   std::vector<std::string> said;
   if (data.reference >= 0 || allowed) return said;
   std::string names;
@@ -130,9 +130,11 @@ std::vector<std::string> mark_motion(BlockData& data, bool allowed) {
     const Motion motion = motion_of(channel.name);
     if (!channel.varies || motion == Motion::kNone) continue;
     channel.moves = true;
-    const bool accelerates = motion == Motion::kAcceleration;
-    channel.held = accelerates && kept_by_means(data, c, kHeld_s) > kHeldShare;
-    channel.shakes = accelerates && kept_by_means(data, c, kSwing_s) < 0.5;
+    if (motion == Motion::kAcceleration) {
+      const double each_s = data.grid.sample_s;
+      channel.held = kept_by_means(records, channel.name, kHeld_s / each_s) > kHeldShare;
+      channel.shakes = kept_by_means(records, channel.name, kSwing_s / each_s) < 0.5;
+    }
     names += (names.empty() ? "" : ", ") + channel.name;
     if (std::string words = rotation_in_words(data, c, motion); !words.empty())
       said.push_back(std::move(words));

@@ -18,6 +18,6 @@ inline constexpr double kStandardGravity = 9.80665;  // m/s^2
 // what they would explain, read as rotation, in sentences. An acceleration that stays for half a minute at a
 // time is left to the search, which takes it only at a size that makers specify (see search/plausible.h).
 // `allowed`: nothing is marked.
-std::vector<std::string> mark_motion(BlockData& data, bool allowed);
+std::vector<std::string> mark_motion(const std::vector<Record>& records, BlockData& data, bool allowed);
 
 }  // namespace ifog

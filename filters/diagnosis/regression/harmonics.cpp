@@ -119,11 +119,9 @@ NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump&
 }
 
 NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, const Hump& hump) {
-  NoiseFit likelier;
-  likelier.log_likelihood = -1e300;
+  NoiseFit likelier{{}, -1e300, 0.0};
   for (const auto of : {DampedHarmonic::Of::kAngle, DampedHarmonic::Of::kRate}) {
-    NoiseFit best;
-    best.log_likelihood = -1e300;
+    NoiseFit best{{}, -1e300, 0.0};
     for (const double white : {1.0, std::sqrt(hump.floor), hump.floor}) {
       for (const double wider : {1.0, 4.0}) {
         NoiseShape start = with_hump(grid, fit.shape, hump, white, of);

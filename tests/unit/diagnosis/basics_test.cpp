@@ -7,7 +7,9 @@
 #include <cmath>
 #include <random>
 
+#include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/diagnose.h"
+#include "filters/diagnosis/record/blocks.h"
 #include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
 #include "filters/model_file/toml_text.h"
@@ -103,8 +105,7 @@ TEST(Motion, ExplainsNothingWithoutAReference) {
   }
 }
 
-// Shaken by broad-band noise that comes and goes over minutes, and rectified by what answers to its quick part:
-// `size` of that part's mean square over half a second is in the rate.
+// Broad-band noise that comes and goes over minutes; `size` of its quick part's mean square is in the rate.
 Rows shaken(std::uint64_t seed, double size) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -131,6 +132,25 @@ TEST(Rectification, IsFoundWhereItsBandIsHardlyKnown) {
     EXPECT_EQ(found.effects[0].effect.form, "band_power") << seed;
     EXPECT_TRUE(diagnose({shaken(seed, 0.0).record()}, {}).effects.empty()) << seed;
   }
+}
+
+// A sway of 2 s for a day, whose grid has steps of 1.3 s, and a machine for ten minutes.
+TEST(Rectification, IsNotLookedForWhereASwellSwings) {
+  const auto shakes = [](int samples, double period_s, double turn) {
+    Rows rows;
+    rows.name = "accel_x_mps2";
+    for (int i = 0; i < samples; ++i) {
+      rows.time.push_back(period_s * i);
+      rows.rate.push_back(1e-6 * (i % 7));
+      rows.channel.push_back(std::sin(turn * period_s * i));
+    }
+    const std::vector<Record> records{rows.record()};
+    BlockData data = cut_to_blocks(records);
+    static_cast<void>(mark_motion(records, data, false));
+    return data.channels[0].shakes;
+  };
+  EXPECT_FALSE(shakes(345600, 0.25, 2.0 * M_PI / 2.0));
+  EXPECT_TRUE(shakes(60000, 0.01, 2.0 * M_PI * 17.0));
 }
 
 TEST(Motion, IsToldByUnitAndName) {

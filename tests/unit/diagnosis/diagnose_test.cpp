@@ -66,16 +66,6 @@ TEST(Diagnose, FindsATemperatureEffectAndItsSize) {
   EXPECT_LT(d.after.at("rms_100s_radps"), 0.5 * d.before.at("rms_100s_radps"));
 }
 
-TEST(Diagnose, TwoEffectsAtOnce) {
-  Sensor s = quiet(22);
-  for (std::size_t i = 0; i < s.rate.size(); ++i) {
-    s.rate[i] += 5e-8 * (s.temperature[i] - 25.0) + 4e-6 * (s.supply[i] - 12.0);
-  }
-  const Diagnosis d = diagnose({s.record()}, {});
-  ASSERT_EQ(d.effects.size(), 2U);
-  EXPECT_NE(d.effects[0].effect.channel, d.effects[1].effect.channel);
-}
-
 // An effect whose size depends on a second channel is tried once the first channel has one.
 TEST(Diagnose, AProductOfTwoChannels) {
   Sensor s = quiet(28);
