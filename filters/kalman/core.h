@@ -14,6 +14,26 @@
 
 namespace ifog {
 
+// Eq. (10): the covariance of the next sample's prediction, with the driving covariance taken `factor` times.
+template <class Matrix>
+void predict_covariance(Matrix& p, const Matrix& transition, const Matrix& driving,
+                        double factor = 1.0) noexcept {
+  const Matrix carried = transition.lazyProduct(p);
+  p = carried.lazyProduct(transition.transpose()) + factor * driving;
+}
+
+// Gain and covariance for innovation covariance c >= h'P h. In Joseph's form, in which R = c - h'P h enters
+// as a square: it equals (13) exactly and stays positive where (13) loses digits.
+template <class Matrix, class Vector>
+void correct_covariance(Matrix& p, Vector& gain, const Vector& h, double c) noexcept {
+  const Vector ph = p * h;
+  gain = ph / c;
+  const Matrix keep = Matrix::Identity(h.size(), h.size()) - gain * h.transpose();
+  const Matrix kept = keep.lazyProduct(p);
+  const Matrix joseph = kept.lazyProduct(keep.transpose()) + (c - h.dot(ph)) * gain * gain.transpose();
+  p = 0.5 * (joseph + joseph.transpose());
+}
+
 template <int n>
 struct KalmanCore {
   static constexpr int kAxes = kMaxAxes;
@@ -25,7 +45,7 @@ struct KalmanCore {
   Vector h = Vector::Zero();
   Vector gain = Vector::Zero();
 
-  // Eqs. (9), (10), with the driving covariance taken `factor` times.
+  // Eqs. (9), (10).
   void predict(const Matrix& transition, const Matrix& driving, double factor = 1.0) noexcept {
     if constexpr (n == 1) {
       x *= transition(0, 0);
@@ -38,7 +58,7 @@ struct KalmanCore {
     if constexpr (n == 1) {
       p(0, 0) = transition(0, 0) * transition(0, 0) * p(0, 0) + factor * driving(0, 0);
     } else {
-      p = (transition * p * transition.transpose()).eval() + factor * driving;
+      ifog::predict_covariance(p, transition, driving, factor);
     }
   }
 
@@ -52,19 +72,13 @@ struct KalmanCore {
     return h.dot(p * h);
   }
 
-  // Gain and covariance for innovation covariance c >= h'P h. In Joseph's form, in which R = c - h'P h enters
-  // as a square: it equals (13) exactly and stays positive where (13) loses digits.
+  // As correct_covariance. One division serves gain and covariance of a single state.
   void correct(double c) noexcept {
     if constexpr (n == 1) {
-      // One division then serves gain and covariance.
       gain(0) = p(0, 0) / c;
       p(0, 0) = gain(0) * (c - p(0, 0));
     } else {
-      const Vector ph = p * h;
-      gain = ph / c;
-      const Matrix keep = Matrix::Identity() - gain * h.transpose();
-      const Matrix joseph = keep * p * keep.transpose() + (c - h.dot(ph)) * gain * gain.transpose();
-      p = 0.5 * (joseph + joseph.transpose());
+      correct_covariance(p, gain, h, c);
     }
   }
 

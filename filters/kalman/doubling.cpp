@@ -10,15 +10,15 @@ FewStatesMatrix symmetric(const FewStatesMatrix& p) { return 0.5 * (p + p.transp
 
 // (I + a b)^-1 c
 FewStatesMatrix solved(const FewStatesMatrix& a, const FewStatesMatrix& b, const FewStatesMatrix& c) {
-  FewStatesMatrix sum = a * b;
+  FewStatesMatrix sum = a.lazyProduct(b);
   sum.diagonal().array() += 1.0;
   return Eigen::PartialPivLU<FewStatesMatrix>(sum).solve(c);
 }
 
 // a + f b f'
 FewStatesMatrix carried(const FewStatesMatrix& a, const FewStatesMatrix& f, const FewStatesMatrix& b) {
-  const FewStatesMatrix fb = f * b;
-  return a + fb * f.transpose();
+  const FewStatesMatrix fb = f.lazyProduct(b);
+  return a + fb.lazyProduct(f.transpose());
 }
 
 }  // namespace
@@ -36,7 +36,8 @@ FewStatesMatrix CovarianceDoubling::ahead(const FewStatesMatrix& p, std::size_t 
 CovarianceDoubling::Map CovarianceDoubling::twice(const Map& one) {
   // P -> second(first(P)); both are the same map, so the order does not matter.
   const FewStatesMatrix back = one.f.transpose();
-  return {one.f * solved(one.h, one.g, one.f), symmetric(carried(one.g, back, solved(one.g, one.h, one.g))),
+  return {one.f.lazyProduct(solved(one.h, one.g, one.f)),
+          symmetric(carried(one.g, back, solved(one.g, one.h, one.g))),
           symmetric(carried(one.h, one.f, solved(one.h, one.g, one.h)))};
 }
 

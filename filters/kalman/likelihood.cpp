@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <optional>
 
 #include "filters/kalman/core.h"
@@ -22,177 +23,148 @@ constexpr std::size_t kFollowed = 256;
 constexpr std::size_t kRecovery = 16;
 // A gain that changes by less than this share from one hold to the next has settled.
 constexpr double kSettled = 1e-9;
+// Axes that are filtered side by side.
+constexpr int kLanes = 4;
 
-// Covariance and gain, which no measurement changes, so of any number of axes: compiled once for each number
-// of states, and apart from the samples' loop.
-template <int n>
-class GainOf {
- public:
-  using Vector = Eigen::Matrix<double, n, 1>;
-  using Matrix = Eigen::Matrix<double, n, n>;
+// States of up to kLanes axes, one state after the other.
+using States = std::array<double, static_cast<std::size_t>(kMaxStates* kLanes)>;
 
-  GainOf(const StateModel& model, double process_noise, double measurement_noise, double dt_s);
-
-  [[nodiscard]] const Vector& gain() const { return core_.gain; }
-  [[nodiscard]] const Vector& measurement() const { return core_.h; }
-  [[nodiscard]] const Matrix& transition() const { return transition_; }
-  // Variance of the innovation.
-  [[nodiscard]] double variance() const { return variance_; }
-
-  // To the next sample's prediction.
-  void predict();
-  // Corrects this sample's prediction.
-  void correct();
-  // Over 2^half samples and as many again, with the gain in their middle; whether it is still what it was.
-  bool hold(std::size_t half);
-
- private:
-  KalmanCore<n> core_;
-  Matrix transition_, driving_;
-  double noise_, variance_ = 0.0;
-  std::optional<CovarianceDoubling> doubling_;
-};
-
-template <int n>
-GainOf<n>::GainOf(const StateModel& model, double process_noise, double measurement_noise, double dt_s)
-    : noise_(measurement_noise) {
-  core_.h = model.measurement();
-  model.discretise(dt_s, transition_, driving_);
-  driving_ *= process_noise;
-  core_.p = process_noise * model.stationary();
-  const double loudness = noise_ + core_.variance() + core_.h.dot(driving_ * core_.h);
-  core_.p.diagonal() += kDiffuse * loudness * model.diffuse();
-  doubling_.emplace(transition_, driving_, core_.h, noise_);
-}
-
-template <int n>
-void GainOf<n>::predict() {
-  core_.predict_covariance(transition_, driving_);
-}
-
-template <int n>
-void GainOf<n>::correct() {
-  variance_ = core_.variance() + noise_;
-  core_.correct(variance_);
-}
-
-template <int n>
-bool GainOf<n>::hold(std::size_t half) {
-  const Vector before = core_.gain;
-  core_.p = doubling_->ahead(core_.p, half);
-  const Vector ph = core_.p * core_.h;
-  variance_ = core_.h.dot(ph) + noise_;
-  core_.gain = ph / variance_;
-  const bool settled = (core_.gain - before).norm() <= kSettled * core_.gain.norm();
-  core_.p = doubling_->ahead(core_.p, half);
-  return settled;
-}
-
+// Carries `states` over `count` samples at one gain, from prediction to prediction, with transition times gain as
+// `predictor`. Returns the sum of the squared innovations of every lane. The only loop over samples, and so the
+// only one that is compiled for each size.
 template <int n, int lanes>
+double carry(States& states, const double* row, std::size_t count, const FewStatesMatrix& of_transition,
+             const FewStatesVector& of_predictor, const FewStatesVector& of_measurement) {
+  using Row = Eigen::Array<double, lanes, 1>;
+  const Eigen::Matrix<double, n, n> transition = of_transition;
+  const Eigen::Matrix<double, n, 1> predictor = of_predictor, h = of_measurement;
+  std::array<Row, n> x, next;
+  const auto at = [](int i) { return static_cast<std::size_t>(i); };
+  for (int i = 0; i < n; ++i) x[at(i)] = Eigen::Map<const Row>(&states[at(i * lanes)]);
+  Row squares = Row::Zero();
+  for (std::size_t k = 0; k < count; ++k, row += lanes) {
+    Row innovation = Eigen::Map<const Row>(row);
+    for (int i = 0; i < n; ++i) innovation -= h(i) * x[at(i)];
+    squares += innovation.square();
+    for (int i = 0; i < n; ++i) {
+      next[at(i)] = predictor(i) * innovation;
+      for (int j = 0; j < n; ++j) next[at(i)] += transition(i, j) * x[at(j)];
+    }
+    x = next;
+  }
+  for (int i = 0; i < n; ++i) std::copy_n(x[at(i)].data(), lanes, &states[at(i * lanes)]);
+  return squares.sum();
+}
+
+template <int lanes>
+constexpr std::array kCarry{carry<1, lanes>, carry<2, lanes>, carry<3, lanes>, carry<4, lanes>,
+                            carry<5, lanes>, carry<6, lanes>, carry<7, lanes>, carry<8, lanes>};
+
+// The filter of axes that miss the same samples. Covariance and gain are the same for all of them, as no
+// measurement changes them.
 class Pass {
  public:
   Pass(const StateModel& model, double process_noise, double measurement_noise, double dt_s)
-      : gain_(model, process_noise, measurement_noise, dt_s),
+      : h_(model.measurement()),
         level_(model.level()),
-        diffuse_(static_cast<std::size_t>((model.diffuse().array() > 0).count())) {}
+        gain_(FewStatesVector::Zero(model.states())),
+        p_(process_noise * model.stationary()),
+        transition_(model.states(), model.states()),
+        driving_(model.states(), model.states()),
+        noise_(measurement_noise),
+        diffuse_(static_cast<std::size_t>((model.diffuse().array() > 0).count())) {
+    model.discretise(dt_s, transition_, driving_);
+    driving_ *= process_noise;
+    const double scale = noise_ + h_.dot((p_ + driving_) * h_);
+    p_.diagonal() += kDiffuse * scale * model.diffuse();
+    doubling_.emplace(transition_, driving_, h_, noise_);
+  }
 
   LikelihoodTerms over(const LikelihoodRecord::Group& group) {
+    const std::size_t lanes = group.lanes;
+    const auto carry = (lanes == 1 ? kCarry<1> : kCarry<kLanes>)[static_cast<std::size_t>(h_.size() - 1)];
     const double* row = group.rows.data();
     LikelihoodTerms terms;
     std::size_t measured = 0;
     for (const LikelihoodRecord::Run& run : group.runs) {
       if (run.missing) {
-        for (std::size_t k = 0; k < run.length && measured > 0; ++k) predict();
+        if (measured > 0) predict(run.length, lanes);
         row += run.length * lanes;
         continue;
       }
-      if (measured == 0 && diffuse_ > 0) start(row);
+      if (measured == 0 && diffuse_ > 0)
+        states(lanes) = Eigen::Map<const Eigen::VectorXd>(row, states(lanes).rows()) * level_.transpose();
       bool settled = false;
       for (std::size_t done = 0; done < run.length;) {
         const std::size_t left = run.length - done;
-        const std::size_t hold = settled ? left : held(measured, done, left);
-        if (hold == 1)
-          gain_.correct();
-        else if (!settled)
-          settled = gain_.hold(static_cast<std::size_t>(std::bit_width(hold) - 2));
-        const double squares = take(row, hold, group.axes);
-        if (hold == 1) gain_.predict();
-        if (measured >= diffuse_) {
-          terms.count += static_cast<long>(hold * group.axes);
-          terms.sum_log_variance += static_cast<double>(hold * group.axes) * std::log(gain_.variance());
-          terms.sum_normalised += squares / gain_.variance();
+        const std::size_t count = settled ? left : held(measured, done, left);
+        if (count == 1) {
+          variance_ = noise_ + h_.dot(p_ * h_);
+          correct_covariance(p_, gain_, h_, variance_);
+        } else if (!settled) {
+          settled = hold(static_cast<std::size_t>(std::bit_width(count) - 2));
         }
-        done += hold;
-        measured += hold;
-        row += hold * lanes;
+        const FewStatesVector predictor = transition_ * gain_;
+        // Lanes without an axis are zero, and so are their innovations.
+        const double squares = carry(x_, row, count, transition_, predictor, h_);
+        if (count == 1) predict_covariance(p_, transition_, driving_);
+        if (measured >= diffuse_) {
+          terms.count += static_cast<long>(count * group.axes);
+          terms.sum_log_variance += static_cast<double>(count * group.axes) * std::log(variance_);
+          terms.sum_normalised += squares / variance_;
+        }
+        done += count;
+        measured += count;
+        row += count * lanes;
       }
     }
     return terms;
   }
 
  private:
-  using Row = Eigen::Array<double, lanes, 1>;
-
   // Samples over which the gain may be held, a power of two.
   static std::size_t held(std::size_t measured, std::size_t since_missing, std::size_t left) {
     if (measured < 2 * kFollowed || since_missing < kRecovery) return 1;
     return std::bit_floor(std::min(measured / kFollowed, left));
   }
 
-  void start(const double* row) {
-    for (int a = 0; a < lanes; ++a) x_.row(a) = level_.transpose() * row[a];
+  // Over 2^half samples and as many again, with the gain in their middle; whether it is still what it was.
+  bool hold(std::size_t half) {
+    const FewStatesVector before = gain_;
+    p_ = doubling_->ahead(p_, half);
+    const FewStatesVector ph = p_ * h_;
+    variance_ = h_.dot(ph) + noise_;
+    gain_ = ph / variance_;
+    p_ = doubling_->ahead(p_, half);
+    return (gain_ - before).norm() <= kSettled * gain_.norm();
   }
 
-  void predict() {
-    x_ = (x_.matrix() * gain_.transition().transpose()).array().eval();
-    gain_.predict();
-  }
-
-  // `count` samples at this gain, from prediction to prediction. Returns the sum of the squared innovations.
-  double take(const double* row, std::size_t count, std::size_t axes) {
-    const typename GainOf<n>::Matrix& transition = gain_.transition();
-    const typename GainOf<n>::Vector& h = gain_.measurement();
-    const typename GainOf<n>::Vector predictor = transition * gain_.gain();
-    std::array<Row, n> x, next;
-    for (int i = 0; i < n; ++i) x[at(i)] = x_.col(i);
-    Row squares = Row::Zero();
-    for (std::size_t k = 0; k < count; ++k, row += lanes) {
-      Row innovation = Eigen::Map<const Row>(row);
-      for (int i = 0; i < n; ++i) innovation -= h(i) * x[at(i)];
-      squares += innovation.square();
-      for (int i = 0; i < n; ++i) {
-        next[at(i)] = predictor(i) * innovation;
-        for (int j = 0; j < n; ++j) next[at(i)] += transition(i, j) * x[at(j)];
+  // Over `count` samples that are missing, by powers of two of them.
+  void predict(std::size_t count, std::size_t lanes) {
+    FewStatesMatrix transition = transition_, driving = driving_;
+    for (; count > 0; count >>= 1) {
+      if (count % 2 == 1) {
+        states(lanes) = (states(lanes) * transition.transpose()).eval();
+        predict_covariance(p_, transition, driving);
       }
-      x = next;
+      const FewStatesMatrix once = driving;
+      predict_covariance(driving, transition, once);
+      transition = transition.lazyProduct(transition).eval();
     }
-    for (int i = 0; i < n; ++i) x_.col(i) = x[at(i)];
-    double sum = 0.0;
-    for (std::size_t a = 0; a < axes; ++a) sum += squares(static_cast<Eigen::Index>(a));
-    return sum;
   }
-  static constexpr std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
-  GainOf<n> gain_;
-  typename GainOf<n>::Vector level_;
+  // A row an axis, a column a state.
+  Eigen::Map<Eigen::MatrixXd> states(std::size_t lanes) {
+    return {x_.data(), static_cast<Eigen::Index>(lanes), h_.size()};
+  }
+
+  FewStatesVector h_, level_, gain_;
+  FewStatesMatrix p_, transition_, driving_;
+  double noise_, variance_ = 0.0;
   std::size_t diffuse_;
-  Eigen::Array<double, lanes, n> x_ = Eigen::Array<double, lanes, n>::Zero();
+  std::optional<CovarianceDoubling> doubling_;
+  States x_{};
 };
-
-template <int n>
-LikelihoodTerms sized(const StateModel& model, double process_noise, double measurement_noise,
-                      const LikelihoodRecord& record, double dt_s) {
-  LikelihoodTerms sum;
-  for (const LikelihoodRecord::Group& group : record.groups()) {
-    const LikelihoodTerms one = group.lanes == 1
-                                    ? Pass<n, 1>(model, process_noise, measurement_noise, dt_s).over(group)
-                                    : Pass<n, 4>(model, process_noise, measurement_noise, dt_s).over(group);
-    sum.count += one.count;
-    sum.sum_log_variance += one.sum_log_variance;
-    sum.sum_normalised += one.sum_normalised;
-  }
-  return sum;
-}
 
 bool same_missing(std::span<const double> a, std::span<const double> b) {
   return a.size() == b.size() && std::equal(a.begin(), a.end(), b.begin(), [](double x, double y) {
@@ -203,7 +175,7 @@ bool same_missing(std::span<const double> a, std::span<const double> b) {
 LikelihoodRecord::Group grouped(std::span<const std::span<const double>> axes) {
   LikelihoodRecord::Group group;
   group.axes = axes.size();
-  group.lanes = axes.size() == 1 ? 1 : 4;
+  group.lanes = axes.size() == 1 ? 1 : static_cast<std::size_t>(kLanes);
   group.rows.assign(axes[0].size() * group.lanes, 0.0);
   for (std::size_t k = 0; k < axes[0].size(); ++k) {
     const bool missing = !std::isfinite(axes[0][k]);
@@ -219,12 +191,12 @@ LikelihoodRecord::Group grouped(std::span<const std::span<const double>> axes) {
 }  // namespace
 
 LikelihoodRecord::LikelihoodRecord(std::span<const std::span<const double>> axes) {
-  constexpr std::size_t kMostAxes = 4;
   std::vector<std::span<const double>> left(axes.begin(), axes.end());
   while (!left.empty()) {
     std::vector<std::span<const double>> together, others;
     for (const auto& axis : left)
-      (same_missing(left[0], axis) && together.size() < kMostAxes ? together : others).push_back(axis);
+      (same_missing(left[0], axis) && together.size() < std::size_t{kLanes} ? together : others)
+          .push_back(axis);
     groups_.push_back(grouped(together));
     left = std::move(others);
   }
@@ -237,9 +209,14 @@ double LikelihoodTerms::log_likelihood() const {
 
 LikelihoodTerms likelihood(const StateModel& model, double process_noise, double measurement_noise,
                            const LikelihoodRecord& record, double dt_s) {
-  constexpr std::array kSized{sized<1>, sized<2>, sized<3>, sized<4>, sized<5>, sized<6>, sized<7>, sized<8>};
-  return kSized.at(static_cast<std::size_t>(model.states() - 1))(model, process_noise, measurement_noise,
-                                                                 record, dt_s);
+  LikelihoodTerms sum;
+  for (const LikelihoodRecord::Group& group : record.groups()) {
+    const LikelihoodTerms one = Pass(model, process_noise, measurement_noise, dt_s).over(group);
+    sum.count += one.count;
+    sum.sum_log_variance += one.sum_log_variance;
+    sum.sum_normalised += one.sum_normalised;
+  }
+  return sum;
 }
 
 LikelihoodTerms likelihood(const StateModel& model, double process_noise, double measurement_noise,
