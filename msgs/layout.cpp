@@ -42,7 +42,7 @@ std::int64_t number(std::span<const std::uint8_t> from, std::size_t bytes) {
   return static_cast<std::int64_t>(value);
 }
 
-// Of an array whose length is part of the type; 0: another member says it.
+// Length of an array if it is part of the type; 0: another member has it.
 std::size_t fixed_count(std::string_view text) {
   std::size_t count = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);

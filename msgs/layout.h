@@ -19,8 +19,8 @@ namespace ifog {
 
 class MessageLayout {
  public:
-  // Of the text of a .lcm file with one struct of numbers, strings and arrays of them. Throws
-  // std::invalid_argument: anything else.
+  // Reads the text of a .lcm file with one struct of numbers, strings and arrays of them. Throws
+  // std::invalid_argument for anything else.
   explicit MessageLayout(std::string_view definition);
 
   // `members`: the message behind its hash. True: every count is one, and with them it has exactly these

@@ -63,7 +63,7 @@ class Parser {
     building_ = named_ = nullptr;
   }
 
-  // What cannot be read may have been a BO_: signals behind it must not be taken for the message before.
+  // What cannot be read may have been a BO_: signals behind it must not go to the message before.
   void unknown_message(const std::string& why) {
     Message m;
     m.line = in_.line();

@@ -17,7 +17,7 @@ bool begins_word(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z
 bool digit(char c) { return c >= '0' && c <= '9'; }
 bool space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-// A longer one is taken for an open quote, and the search for its end stays bounded.
+// A longer one counts as an open quote, and the search for its end stays bounded.
 constexpr std::size_t kLongestString = 65536;
 
 }  // namespace

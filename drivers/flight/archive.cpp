@@ -187,13 +187,13 @@ int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_
   if (const int finished = folder_->finish(file_.name); error == 0) error = finished;
   file_.open = false;
   file_.bytes = 0;
-  // Files may have been taken away or put back meanwhile; what could not be renamed is taken over.
+  // Files may have been removed or put back meanwhile; what could not be renamed is adopted.
   kept_.known = false;
   if (const int looked = look(now_ns, wall_ns); error == 0) error = looked;
   return error;
 }
 
-// The open file has been taken away, and what it held with it.
+// The open file has been removed, and its contents with it.
 void FlightArchive::forget_file() {
   folder_->leave();
   lost_.with_files += std::exchange(file_.load, {});
@@ -225,7 +225,7 @@ int FlightArchive::write_waiting(std::int64_t now_ns, std::int64_t wall_ns) {
     if (error == 0) error = write(BlockType::data, waiting_.bytes);
   }
   if (error == EBADF)
-    file_.open = kept_.known = false;  // a half-written block could not be taken back: another file
+    file_.open = kept_.known = false;  // a half-written block could not be removed: another file
   if (error != 0) return error;
   file_.entries += waiting_.entries;
   if (header_.carries != FlightHeader::Carries::messages) remember_state();

@@ -34,7 +34,7 @@ class Plugin {
 
 // Where plugins are looked for, in this order: `first` (the configuration's), the colon-separated
 // IFOG_PLUGIN_PATH, the build tree's folder when the running program lies in a build tree, lib/ifogd/plugins
-// beside the program's bin, the folder of the installation prefix. Folders that do not exist are skipped,
+// next to the program's bin, the folder of the installation prefix. Folders that do not exist are skipped,
 // except those of `first`.
 std::vector<std::string> plugin_folders(const std::vector<std::string>& first = {});
 

@@ -36,7 +36,7 @@ inline std::string shell_word(std::string_view word) {
   return out + "'";
 }
 
-// The same for a file, which an option's dashes would not be taken for: "./-x.csv".
+// The same for a file, which must not look like an option: "./-x.csv".
 inline std::string shell_file(std::string_view path) {
   const bool dashed = path.size() > 1 && path.front() == '-';
   return shell_word((dashed ? "./" : "") + std::string(path));

@@ -64,7 +64,7 @@ class UnnamedFile {
     }
   }
 
-  // Room for so many bytes, all of them zero, taken at once, so that no later write finds the disk full.
+  // Room for so many bytes, all of them zero, reserved at once, so that no later write finds the disk full.
   void reserve(std::size_t bytes) {
     int error = 0;
     do error = ::posix_fallocate(fd_, 0, static_cast<off_t>(bytes));

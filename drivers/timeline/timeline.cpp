@@ -54,7 +54,7 @@ Timeline::Step Timeline::next(const Frame& frame) noexcept {
     two_.saw(frame.sequence, modulus_,
              now.ahead == 0 || (back < recent_.size() && recent_.had(back, now.digest) != Had::other));
     if (two_.found()) return leave_out(frame);
-    if (was_found) {  // of another device than what was taken, for all that is known
+    if (was_found) {  // possibly of another device than what was accepted
       restart(now, step);
       step.time_ns = first(frame);
       return step;
@@ -83,7 +83,7 @@ Timeline::Look Timeline::look(const Frame& frame) const noexcept {
   now.counted = frame.counts && modulus_ > 0;
   now.clocked = frame.clocked && last_.clocked;
   if (now.counted) now.ahead = (frame.sequence % modulus_ + modulus_ - last_.sequence % modulus_) % modulus_;
-  // What is read much faster than it was taken, as from a file, has arrival times that tell nothing.
+  // Samples read much faster than they were measured, as from a file, have arrival times that say nothing.
   now.timed = frame.arrival_ns > 0 && due_ns_ > 0 && pace_.arrivals_tell();
   if (now.timed) look_at_arrival(frame, now);
   if (now.counted) now.counted_samples = rolled_over(now, frame.reopened);
@@ -144,7 +144,7 @@ bool Timeline::Look::contradicts(double claimed_s) const noexcept {
   return timed && claimed_s > most_s + kClocksApart * claimed_s;
 }
 
-// A duplicate, or overtaken by what was taken: counter or clock go back by little without a silence.
+// A duplicate, or overtaken by what was accepted: counter or clock go back by little without a silence.
 bool Timeline::out_of_turn(const Frame& frame, const Look& now) const noexcept {
   if (now.silent) return false;
   const bool again = now.digest == last_.digest && now.passed_s == 0.0;
@@ -237,7 +237,7 @@ void Timeline::by_counter(const Frame& frame, const Look& now, Step& step) const
 }
 
 // For a device with neither, or whose clock begins. Behind a silence a frame that comes by itself is prompt;
-// else what is told is what the line of due times advances by, spread over a few samples.
+// else the interval is what the line of due times advances by, spread over a few samples.
 void Timeline::by_elapsed(const Frame& frame, const Look& now, Step& step) noexcept {
   constexpr std::uint32_t kAlone = 2;
   const bool prompt = frame.reopened || (frame.at_once > 0 && frame.at_once <= kAlone);
@@ -252,7 +252,7 @@ void Timeline::by_elapsed(const Frame& frame, const Look& now, Step& step) noexc
   owed_s_ -= more_s;
 }
 
-// What the arrival of a frame that is taken tells of the frames behind it.
+// What the arrival of an accepted frame says about the frames behind it.
 void Timeline::settle(const Frame& frame, const Look& now, Step& step) noexcept {
   const bool by_time = (now.clocked && !step.by_count) || step.restarted || !pace_.known();
   const double due_s = by_time ? step.dt_s : pace_.time_s(step.samples);
@@ -309,7 +309,7 @@ void Timeline::end_delay(const Frame& frame, const Look& now, double late_s, Ste
   step.by_count = now.clocked;
 }
 
-// Nothing comes before it was taken: the line of due times is the earliest that arrivals allow. It follows
+// Nothing arrives before it was measured: the line of due times is the earliest that arrivals allow. It follows
 // slowly what comes later, for the device's crystal is another one.
 void Timeline::follow(double late_s, std::int64_t arrival_ns) noexcept {
   constexpr double kFollows = 1.0 / 256.0, kForgets = 1.0 - 1.0 / 1024.0;

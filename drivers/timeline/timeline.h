@@ -41,7 +41,7 @@ class Timeline {
     double dt_s = 0.0;          // they took
     bool gap = false;
     bool restarted = false;    // counter or clock jumped: the device was switched off and on
-    bool out_of_turn = false;  // a duplicate, overtaken, or of another device: not taken, all else is unset
+    bool out_of_turn = false;  // a duplicate, overtaken, or of another device: dropped, all else is unset
     bool clock_moved = false;  // deliveries take longer from here on: labels follow, no sample is missing
     double late_s = 0.0;       // delayed by this much on its way; its arrival tells nothing of its time
     bool by_count = false;     // dt_s is not what time_ns moved by
@@ -59,7 +59,7 @@ class Timeline {
   Step next(const Frame& frame) noexcept;
   // The device's clock has stood still while it measured: only the sum of its steps tells time.
   [[nodiscard]] bool clock_stood() const noexcept { return ticks_.stood(); }
-  // The sequence runs to and fro: two devices send on one line, and no frame is taken.
+  // The sequence runs to and fro: two devices send on one line, and no frame is accepted.
   [[nodiscard]] bool two_devices() const noexcept { return two_.found(); }
 
  private:
@@ -122,8 +122,8 @@ class Timeline {
   RecentFrames recent_;
   Last last_;
   std::int64_t due_ns_ = 0;     // when the last frame was due; 0: no arrival is known
-  std::int64_t seen_ns_ = 0;    // when any frame last came, taken or not; 0: unknown
-  double owed_s_ = 0.0;         // that due_ns_ moved by and no step has told
+  std::int64_t seen_ns_ = 0;    // when any frame last arrived, accepted or not; 0: unknown
+  double owed_s_ = 0.0;         // by which due_ns_ moved and which no step has reported
   int early_ = 0, strays_ = 0;  // frames in a row
   std::optional<Delay> delay_;
   double scatter_s_ = 0.0;  // most that deliveries are late by, of late

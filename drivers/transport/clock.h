@@ -30,7 +30,7 @@ std::int64_t arrival_clock_at_boot_ns() noexcept;
 // priority hold up between the two as much more): a label must not jitter.
 class WallShift {
  public:
-  // Now; `arrival`: a reading of the arrival clock that was taken just before. Reads both clocks again
+  // Now; `arrival`: a reading of the arrival clock made just before. Reads both clocks again
   // where that was too long ago to tell. No allocation, no system call where the clocks need none.
   std::int64_t at(std::int64_t arrival) noexcept;
   // The same from readings of the two clocks; doubt_ns: by how much they may not be of one time.

@@ -93,7 +93,7 @@ void Transport::lost(int reason) noexcept {
   link_.open = false;
   enter(TransportState::gone, reason);
   const std::int64_t now = monotonic_ns();
-  // One that opens and at once goes away again (a server that is taken, a line that only errs) is not tried
+  // One that opens and at once goes away again (a busy server, a line that only errs) is not tried
   // without a pause.
   if (now - link_.since_ns > Backoff::kLongest_ns)
     backoff_.restart(now);

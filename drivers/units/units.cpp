@@ -91,7 +91,7 @@ struct Spelling {
 
 // Longer ones first: the byte B0 alone is Latin-1, and within C2 B0 it is not.
 constexpr std::array kSpellings{
-    Spelling{"\xC3\x82\xC2\xB0", "deg"},  // UTF-8 taken for Latin-1 and coded again
+    Spelling{"\xC3\x82\xC2\xB0", "deg"},  // UTF-8 read as Latin-1 and encoded again
     Spelling{"\xC2\xB0", "deg"},
     Spelling{"\xC2\xBA", "deg"},              // the ordinal sign, easily mistaken for it
     Spelling{"\x81\x8B", "deg"},              // Shift-JIS

@@ -12,7 +12,7 @@
 namespace ifog {
 
 // Distribution of estimate over mean. `degrees` is what EstimateVariance says of the same; where it is small the weights
-// are the eigenvalues of the differences' covariance, taken at places an eighth of m apart: the slow terms
+// are the eigenvalues of the differences' covariance, at places an eighth of m apart: the slow terms
 // change little between them, and what quantisation adds, independent from place to place, is one more part.
 // One part where it is large. samples: lengths of the stretches. Empty where no difference fits.
 [[nodiscard]] std::vector<WeightedChiSquared> estimate_law(Deviation kind, std::size_t m,

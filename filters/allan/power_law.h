@@ -21,7 +21,7 @@ enum Term : std::size_t { kQ = 0, kN = 1, kB = 2, kK = 3 };
 using TermVariances = std::array<double, kTerms>;
 
 // Generalised covariance of the angle at lag t for one unit of each term, up to the polynomials that a second
-// difference does not see: spike, −|t|/2, t² ln|t|/2π, |t|³/12. The spike is told apart by t == 0 exactly.
+// difference does not see: spike, −|t|/2, t² ln|t|/2π, |t|³/12. The spike is recognised by t == 0 exactly.
 [[nodiscard]] std::array<double, kTerms> covariance_of_angle(double t);
 
 // Covariance of the differences of `kind`, not normalised, at places `lag` samples apart, for one unit of
@@ -45,7 +45,7 @@ using TermVariances = std::array<double, kTerms>;
 // result is quadratic in the terms' variances, so the sums are made once and serve every set of them.
 class EstimateVariance {
  public:
-  // samples: lengths of the stretches, taken as independent of each other; one too short for the difference
+  // samples: lengths of the stretches, assumed independent of each other; one too short for the difference
   // counts nothing.
   EstimateVariance(Deviation kind, std::size_t m, std::span<const std::size_t> samples);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the rows of a capture were taken: what every command makes of its time column.
+// When the rows of a capture were measured: what every command makes of its time column.
 #pragma once
 
 #include <cstddef>

@@ -75,7 +75,7 @@ class Clock {
   }
 
   double period_s_;
-  double late_ = 0.0, rate_ = 0.0;  // of the stamp taken last; by which the period is longer
+  double late_ = 0.0, rate_ = 0.0;  // of the last stamp used; by which the period is longer
   double squares_ = 0.0;            // of how far stamps are off
 };
 

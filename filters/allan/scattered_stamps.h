@@ -13,7 +13,7 @@ namespace ifog {
 
 // found(i, lost, step_s) for each sample i behind which samples are lost, with the step of time there, in
 // order. period_s: within a percent of the true one. Right as long as a stamp is off by less than half a
-// period; where a few are off by more, a hole is taken for real only if most of the next stamps say so, too.
+// period; where a few are off by more, a hole counts as real only if most of the next stamps say so, too.
 // Other holes close by are no hindrance: the median of numbers that only ever rise is not moved by where else
 // they do.
 //

@@ -80,7 +80,7 @@ struct Period {
 };
 
 // By the gaps that there are with this period. Of stamps that scatter a short gap counts as so many steps:
-// its length says less of when the next sample was taken than its number.
+// its length says less of when the next sample was measured than its number.
 Period mean_period(const SeriesView& time_s, double period_s, bool scatters) {
   constexpr std::size_t kShort = 8;
   const std::size_t count = time_s.size() - 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a capture's time column says before any variance is taken: the true sample time, and where samples are
+// What a capture's time column says before any variance is computed: the true sample time, and where samples are
 // missing. An Allan variance over a hole would compare averages that do not touch, so holes end a stretch.
 #pragma once
 
@@ -23,7 +23,7 @@ struct SampleClock {
   std::size_t gaps = 0;         // steps over which samples are missing
   std::size_t missing = 0;      // so many
   double scatter = 0.0;  // deviation of a stamp, in periods, by the steps' median distance from period_s
-  // The stamps are off by more than distinguishes steps of an even clock: when a sample was taken its number
+  // The stamps are off by more than distinguishes steps of an even clock: when a sample was measured its number
   // says better.
   [[nodiscard]] bool scatters() const { return scatter >= 0.1; }
   std::size_t first_gap = 0;  // index of the sample before the first gap; meaningful when gaps > 0

@@ -5,7 +5,7 @@
 //
 // Growing-memory least squares (E. Brookner, "Tracking and Kalman Filtering Made Easy", 1998, section 1.2.10:
 // g-h gains 2(2n+1)/((n+1)(n+2)) and 6/((n+1)(n+2))) up to `memory` samples, then with fixed gains, which
-// follows drift. No sample arrives before it was taken: a line that later samples precede began with a delayed
+// follows drift. No sample arrives before it was measured: a line that later samples precede began with a delayed
 // sample, and restarts.
 #pragma once
 

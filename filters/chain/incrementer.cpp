@@ -174,7 +174,7 @@ bool Incrementer::wall_was_set(const Reading& reading) const noexcept {
   return by_ns > kLeast_ns + since_ns / kSlews;
 }
 
-// Whether the line of labels is to restart at this arrival: nothing arrives before it was taken, and what
+// Whether the line of labels is to restart at this arrival: nothing arrives before it was measured, and what
 // stays late is not delayed any more. A single stamp that is early or late moves no label.
 bool Incrementer::apart(double late_s, std::int64_t arrival_ns) noexcept {
   const double usual_s = std::max(kApart_s, kScatters * labels_.clock.spread_s());
@@ -188,7 +188,7 @@ bool Incrementer::apart(double late_s, std::int64_t arrival_ns) noexcept {
   return labels_.early >= kEarly || stands;
 }
 
-// When the sample was taken, by a line through the times of arrival.
+// When the sample was measured, by a line through the times of arrival.
 void Incrementer::label(const Reading& reading, const Step& step, Increment& out) noexcept {
   const double periods = periods_of(step, reading.device_time_ns.has_value());
   bool moved = step.clock_moved;

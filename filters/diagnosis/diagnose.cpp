@@ -77,7 +77,7 @@ class Run {
     reconstructed_ = with_reconstructed_channels(data_);
   }
 
-  // Noise and effects together, beside lines that are given.
+  // Fits noise and effects together; spectral lines are given.
   void search(const std::vector<Candidate>& given) {
     SearchOptions search;
     search.significance = options_.significance;
@@ -91,7 +91,7 @@ class Run {
     if (!options_.allow_proxies) doubt_proxies(reconstructed_, found_);
   }
 
-  // Of the errors, what the effects as the search has them leave.
+  // Subtracts the effects that the search found from the errors.
   void subtract_found() {
     const std::vector<Candidate> chosen = candidates_of(found_.chosen);
     result_.effects.clear();
@@ -187,8 +187,7 @@ class Run {
     write_before_and_after(errors_, data_.grid.sample_s, data_.reference >= 0, result_);
   }
 
-  // Of the effects that are corrected the one that its own error bar leaves to chance; none when there is
-  // none.
+  // The corrected effect that is most likely chance by its own error bar, if there is one.
   [[nodiscard]] std::optional<std::size_t> least_proven() const {
     std::optional<std::size_t> least;
     for (std::size_t i = 0; i < found_.chosen.size(); ++i) {
@@ -200,8 +199,8 @@ class Run {
     return least;
   }
 
-  // Of the effects as they are now written, by runs of the daemon's own correction and on blocks that were
-  // left out of the fit: index of the one to leave out, none when they make no error larger.
+  // Index of the effect to drop, judged by runs of the daemon's own correction on blocks that the fit did not see;
+  // none if no effect makes an error larger.
   std::optional<std::size_t> what_makes_it_worse() {
     if (const auto uncertain = least_proven()) return uncertain;
     if (!grows_over_many(result_, errors_)) return std::nullopt;
@@ -235,7 +234,7 @@ class Run {
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
     say(unexplained_beside_claims(result_, records_.size()));
-    // Of figures that the part kept back takes the place of, judge() says it.
+    // With a part held back, judge() says this of the figures of that part.
     if (TimeShare{options_.fit_from, options_.fit_to}.whole())
       say(grown_in_words(result_, samples_of(errors_)));
     say(lines_of_a_ramp_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a diagnosis says: the effects it found, how large the error is before and after, what cannot be told
-// apart, what stays, and what the record leaves open. Data, which every room of the diagnosis may know.
+// What a diagnosis says: the effects it found, how large the error is before and after, what cannot be
+// distinguished, what stays, and what the record leaves open. Data, which every room of the diagnosis may know.
 #pragma once
 
 #include <cstddef>
@@ -38,10 +38,10 @@ struct Hysteresis {
   double likelihood_ratio = 0.0;
 };
 
-// All effects, with one of them replaced by what it cannot be told from.
+// All effects, with one of them replaced by an alternative that fits as well.
 struct OtherExplanation {
   std::vector<Effect> effects;
-  double weight = 0.0;  // likelihood beside that of the effects reported
+  double weight = 0.0;  // likelihood relative to that of the effects reported
 };
 
 struct FoundEffect {
@@ -49,7 +49,7 @@ struct FoundEffect {
   double p_value = 1.0;  // after correction for the number of tries
   double variance_explained =
       0.0;  // share of the variance of the error's 1 s means (or of single samples if longer)
-  double likelihood_ratio = 0.0;  // what the fit loses without it, noise fitted anew
+  double likelihood_ratio = 0.0;  // what the fit loses without it, with the noise fitted again
 };
 
 struct Indistinguishable {
@@ -81,15 +81,15 @@ struct HeadingPrediction {
   std::vector<double> sigma_rad;  // root of the expected square of the heading error then
 };
 
-// Of a record whose reference was logged late: the true rate at a time stands delay_s behind it. Before and
-// after are those of the shifted reference.
+// Delay of a reference that was logged late: the true rate at a time is found delay_s later. The figures before
+// and after are those of the shifted reference.
 struct ReferenceDelay {
   std::string record;
   double delay_s = 0.0;  // below zero: early, or the rate late
   double std_error_s = 0.0;
 };
 
-// Of a channel that was logged late: what it says at a time was so delay_s before.
+// Delay of a channel that was logged late: a value holds for the time delay_s before its stamp.
 struct ChannelDelay {
   std::string channel;
   double delay_s = 0.0;  // below zero: early
@@ -118,14 +118,14 @@ struct NoiseChangeIn {
 struct Diagnosis {
   std::size_t samples = 0;
   double sample_rate_hz = 0.0;
-  NoiseTerms noise;                             // after the effects, as noise_coefficients finds it at rest
-  NoiseTerms noise_error;                       // standard deviations of those
-  std::optional<MarkovNoise> markov;            // a bias that comes back; K is then no law of long times
-  std::vector<NoiseChangeIn> noise_changes;     // which make noise an average of unlike parts
-  std::vector<FoundEffect> effects;             // traced to channels, then ramps, then lines of the samples
-  std::optional<ModelParameter> bias;           // beside a reference: corrected; an effect where it is clear
-  std::vector<double> covariance;               // of all parameters of all effects in order, row-major
-  std::vector<ChannelRange> ranges;             // of the channels the effects use
+  NoiseTerms noise;                          // after the effects, as noise_coefficients finds it at rest
+  NoiseTerms noise_error;                    // standard deviations of those
+  std::optional<MarkovNoise> markov;         // a bias that comes back; K is then no law of long times
+  std::vector<NoiseChangeIn> noise_changes;  // which make noise an average of unlike parts
+  std::vector<FoundEffect> effects;          // traced to channels, then ramps, then lines of the samples
+  std::optional<ModelParameter> bias;  // relative to a reference: corrected; an effect where it is clear
+  std::vector<double> covariance;      // of all parameters of all effects in order, row-major
+  std::vector<ChannelRange> ranges;    // of the channels the effects use
   std::map<std::string, double> before, after;  // held-out figures, units in their names
   std::vector<Indistinguishable> indistinguishable;
   Unexplained unexplained;

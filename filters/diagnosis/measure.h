@@ -4,7 +4,7 @@
 // single diagnosis as well.
 //
 // The captures are prepared as diagnose() prepares them, and the regression is its own: the noise model
-// fitted anew under every set of effects, generalised least squares in its innovations, coefficients averaged
+// fitted again under every set of effects, generalised least squares in its innovations, coefficients averaged
 // over the noise that the captures allow. Time constants are as given. What depends on the rate counts from
 // the bias that the effects leave, as in a diagnosis.
 #pragma once
@@ -22,15 +22,15 @@ struct EffectsToMeasure {
   std::vector<Effect> together;  // in one fit; of their parameters the time constants count
   // By effect of `together`: others that are each tried in its place. As many entries, or none.
   std::vector<std::vector<Effect>> instead;
-  // What the sensor has beside them, fitted along: a step and a line in the captures that they can be of.
+  // Other effects of the sensor, fitted along: a step or a line only in the captures that can have it.
   std::vector<Effect> beside;
-  // Of the sensor's own model, for how early its channels are: the daemon waits for those before it corrects.
+  // Ranges of the sensor's own model, which say how early its channels are: the daemon waits for those.
   std::vector<ChannelRange> ranges = {};
 };
 
 struct MeasuredEffect {
   Effect effect;                  // coefficient and its standard error in its parameters
-  double likelihood_ratio = 0.0;  // twice the log-likelihood lost without it, noise fitted anew
+  double likelihood_ratio = 0.0;  // twice the log-likelihood lost without it, with the noise fitted again
   std::string not_measured;       // why; empty: it was
   std::vector<double> instead;    // likelihood ratios of the others in its place, 0 where not measured
 };

@@ -17,7 +17,7 @@ namespace ifog {
 struct RecordChannel {
   std::string name;                // the capture's column, NAME_UNIT
   std::span<const double> values;  // NaN: missing, held
-  double period = 0.0;             // of an angle whose wraps were taken out, in its unit; 0: none
+  double period = 0.0;             // of an unwrapped angle, in its unit; 0: not an angle
 };
 
 // What a record's times are counted from, where they are large numbers: the sum of the two.
@@ -33,7 +33,7 @@ struct Record {
   std::string name;
   std::span<const double> time_s;             // strictly increasing
   std::span<const double> rate_radps;         // NaN: missing
-  std::span<const double> reference_radps{};  // empty: none; then the true rate is taken as constant
+  std::span<const double> reference_radps{};  // empty: none; then the true rate is assumed constant
   std::string reference_name = "reference_rate_radps";
   std::vector<RecordChannel> channels;
   // Rates of the same sensor, by the names of their columns: it rests when all of them do.
@@ -43,7 +43,7 @@ struct Record {
   RecordOrigin origin;                                      // that time_s is counted from
 };
 
-// Of the channel of that name; empty when the record has none.
+// Values of the channel of that name; empty if the record has none.
 inline std::span<const double> values_of(const Record& record, std::string_view name) {
   for (const RecordChannel& channel : record.channels) {
     if (channel.name == name) return channel.values;

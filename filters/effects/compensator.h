@@ -30,8 +30,8 @@ enum CompensatorFlags : std::uint32_t {
   // value.
   kStaleChannel = 1,
   kOutOfRange = 2,  // a channel is outside the range the model was fitted on: see reach.h; variance inflated
-  kNoChannelYet = 4,  // a channel has never had a value: its effects are left out
-  kRampUnknown = 8,   // the phase of a rebuilt feedback ramp is not known: its effect is left out
+  kNoChannelYet = 4,  // a channel has never had a value: its effects are not corrected
+  kRampUnknown = 8,   // the phase of a rebuilt feedback ramp is not known: its effect is not corrected
 };
 
 struct CompensatorInput {

@@ -5,7 +5,7 @@
 // phase at the start, after a gap or after a long turn nobody knows, and is acquired from the rate itself.
 //
 // Acquiring: 256 phases side by side, each with the share of the rate's energy that the table explains from
-// there. One is taken when its likelihood is e^25 times that of no ramp at all, the size of the noise being
+// there. One is accepted if its likelihood is e^25 times that of no ramp at all, the size of the noise being
 // free: without a ramp that happens, by Ville's inequality, once in 10^8 tries. Until then nothing is
 // corrected.
 // Following: the same for 64 phases close together around the likeliest, whose likelihoods are tempered by
@@ -36,7 +36,7 @@ struct RampSettings {
   // One cycle at even steps, the first value not repeated, rad. Between them the band-limited function
   // through them.
   std::vector<double> angle_rad;
-  double noise_density = 0.0;  // of the rate beside the ramp, rad/s/sqrt(Hz)
+  double noise_density = 0.0;  // of the rate without the ramp, rad/s/sqrt(Hz)
   double phase_walk = 0.0;     // of the true phase against k times the angle, cycles/sqrt(s)
 };
 
@@ -73,7 +73,7 @@ struct RampState {
   double frequency_ = 0.0;           // Hz
   double settled_ = 0.0;             // cycles/s, at which the phase has been followed of late
   std::size_t table_ = 0;            // in use
-  double angle_ = 0.0;               // taken away so far, rad
+  double angle_ = 0.0;               // removed so far, rad
   double proof_ = 0.0;               // energy that the correction explains, recent
 };
 

@@ -14,7 +14,7 @@
 
 namespace ifog {
 
-// Eq. (10): the covariance of the next sample's prediction, with the driving covariance taken `factor` times.
+// Eq. (10): the covariance of the next sample's prediction, with `factor` times the driving covariance.
 template <class Matrix>
 void predict_covariance(Matrix& p, const Matrix& transition, const Matrix& driving,
                         double factor = 1.0) noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes columns out of others: what ordinary least squares on them leaves.
+// Removes columns from others: what ordinary least squares on them leaves.
 #pragma once
 
 #include "filters/linear/columns.h"
@@ -8,8 +8,8 @@ namespace ifog {
 
 class Projection {
  public:
-  // columns: independent of each other, no more of them than rows (Householder QR; what they span is what is
-  // taken out).
+  // columns: independent of each other, no more of them than rows (Householder QR; their span is
+  // removed).
   explicit Projection(const Eigen::MatrixXd& columns);
 
   // In place; as many rows as the columns have.

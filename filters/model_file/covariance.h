@@ -17,8 +17,8 @@ namespace ifog {
 // hundred rows passes.
 std::string covariance_flaw(const std::vector<double>& values, std::size_t size);
 
-// Of all parameters of the effects in their order, those that a file has covariances of: of effects that are
-// corrected online. Of what is reported only, such as a line, the standard errors say enough.
+// Indices, among all parameters of the effects, of those whose covariances a file has: the parameters of effects
+// that are corrected online. For what is only reported, such as a line, standard errors suffice.
 std::vector<std::size_t> rows_in_file(const std::vector<Effect>& effects);
 
 // The rows and columns `rows` of a size × size matrix.

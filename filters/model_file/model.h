@@ -77,8 +77,8 @@ struct Model {
   std::map<std::string, NoiseTerms> noise;  // by axis
   std::optional<FilterSettings> filter;     // from `ifog tune`
   std::vector<Effect> effects;
-  // Of all effect parameters in order, row-major, SI; empty when unknown. A file has it of the effects that
-  // are corrected online, or, as files had it before, of all.
+  // Covariance of all effect parameters in order, row-major, SI; empty if unknown. A file has the rows of effects
+  // that are corrected online; files of older versions have all rows.
   std::vector<double> covariance;
   std::vector<ChannelRange> ranges;
   ModelSource source;

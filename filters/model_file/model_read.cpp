@@ -308,7 +308,7 @@ Effect read_effect(Table table) {
   return effect;
 }
 
-// Of the parameters of the effects that are corrected online, or of all.
+// Reads the covariance of the parameters of effects that are corrected online, or of all parameters.
 void read_covariance(Table& table, std::size_t parameters, Model& model) {
   const std::size_t numbers = model.covariance.size();
   if (numbers == 0) return;

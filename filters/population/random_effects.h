@@ -12,7 +12,7 @@ namespace ifog {
 struct RandomEffects {
   std::size_t count = 0;
   double mean = 0.0, mean_std_error = 0.0;
-  double spread = 0.0;     // standard deviation from member to member, errors of measurement taken out
+  double spread = 0.0;     // standard deviation from member to member, without the errors of measurement
   double q = 0.0;          // Cochran's: chi-square of count - 1 degrees of freedom where there is no spread
   double i_squared = 0.0;  // share of the variance of the values that is spread (Higgins and Thompson 2002)
 };

@@ -20,7 +20,7 @@ struct TypePrior {
   double likeliest_spread = 0.0;
 };
 
-// Maximum likelihood by expectation and maximisation, the share with one member for and one against it beside
+// Maximum likelihood by expectation and maximisation, the share with one member for and one against it besides
 // those there are. Throws std::invalid_argument as random_effects() does.
 TypePrior likeliest_two_groups(std::span<const Estimate> estimates);
 

@@ -15,7 +15,7 @@ struct FoundInGyro {
   Effect effect;  // as its own diagnosis wrote it
 };
 
-// One effect of the type, under each form that it was taken for: what is a lag in one gyro is linear in
+// One effect of the type, under each form that it was found in: what is a lag in one gyro is linear in
 // another, where the noise hides the difference. The form most gyros took it for comes first.
 struct TypeCandidate {
   std::vector<Effect> forms;  // coefficient zero; time constants: the median of those found

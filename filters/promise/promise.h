@@ -8,7 +8,7 @@
 // The noise is slow as well as white, so share is estimated in the innovations of a local level: both series
 // through one Kalman filter with a diffuse start, which takes the bias out (generalised least squares; A. C.
 // Harvey, "Forecasting, Structural Time Series Models and the Kalman Filter", 1989, section 3.4). The ratio
-// of walk to noise is that of greatest likelihood with d taken out. The error of the share is not that of
+// of walk to noise is that of greatest likelihood without d. The error of the share is not that of
 // white innovations, which real ones are not, but from the scatter of its parts between chapters of the data
 // (the sandwich of H. White, Econometrica 48, 1980).
 #pragma once

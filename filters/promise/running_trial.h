@@ -26,7 +26,7 @@ class RunningTrial {
   // dropped.
   void add(double time_s, std::span<const double> before_radps, std::span<const double> after_radps);
   // Nothing where the correction does not move, the sensor turned, or rested for fewer than 100 of the
-  // stretches: a rotation that goes along with what is corrected would be taken for it.
+  // stretches: a rotation correlated with the correction would be mistaken for it.
   [[nodiscard]] std::optional<ShareThere> weigh(std::size_t axis) const;
 
  private:

@@ -18,7 +18,7 @@ constexpr double kFar = 30.0;
 // In white noise a sample less the median of its neighbours has 1.5 times its variance.
 constexpr double kOfMedian = 1.4826 / 1.224744871391589;
 // Samples about one: a change of the noise fills at least half of a block or of the next one. Of fewer second
-// differences no deviation is taken, and of as many it is off by a fifth at times.
+// differences no deviation is computed, and of as many it is off by a fifth at times.
 constexpr std::size_t kNear = 64, kLeast = 16;
 constexpr double kLouder = 2.0;
 constexpr std::size_t kOneInAtMost = 1000;
@@ -76,7 +76,7 @@ class Yardstick {
   [[nodiscard]] bool is_quiet() const { return 2.0 * largest_ <= kFar * least(); }
   // No more than at() says anywhere.
   [[nodiscard]] double least() const { return std::max(all_, least_); }
-  // At sample i: of the whole record; of those about it where they are louder, so that what grows louder is
+  // At sample i: noise of the whole record, or of the neighbourhood where that is higher, so that growing noise is
   // no fault; 0 where nothing moves. i: none before that of the last call.
   [[nodiscard]] double at(std::size_t i) {
     const std::size_t block = i / kNear;
@@ -93,11 +93,11 @@ class Yardstick {
   };
 
   // The deviation of a block of samples, of those of them that have two neighbours. Worked out when something
-  // in it or beside it may leap, which is seldom.
+  // in it or next to it may leap, which is seldom.
   double near_at(std::size_t block) {
     Near& known = near_[block % near_.size()];
     if (known.block == block) return known.deviation;
-    // Parts and the samples that begin and end them beside what is asked for.
+    // Parts and their first and last samples besides what is asked for.
     const std::size_t begin = block * kNear, end = std::min(begin + kNear, rate_.size());
     std::vector<Stretch> here;
     for (const Stretch& part : parts_)

@@ -36,12 +36,12 @@ enum class LeapOf { kOneSample, kOneValue, kPlaceholder };
 // parts: without holes, and for one sample at rest, as a blow is one too. What leaps stands between two that
 // differ by less than half of the leap, by more than 30 standard deviations: of Gaussian noise not one in
 // 1e190. The deviation is that of the record, or of the hundred samples about it where those are more than
-// twice as loud: noise that grows louder is no fault of the logger; and half the smallest step of a coarse
+// twice as high: growing noise is no fault of the logger; and half the smallest step of a coarse
 // sensor at least.
 [[nodiscard]] Glitches find_glitches(const SeriesView& rate_radps, std::span<const Stretch> parts,
                                      LeapOf of = LeapOf::kOneSample);
 
-// "1 sample leaps away and back (at 100.3 s, 1e+05 times the noise); ..." and whether it is left out;
+// "1 sample leaps away and back (at 100.3 s, 1e+05 times the noise); ..." and whether it is dropped;
 // empty for none. time_s: of a sample.
 [[nodiscard]] std::string in_words(const Glitches& glitches,
                                    const std::function<double(std::size_t)>& time_s);

@@ -270,7 +270,7 @@ Found surest(const std::vector<Loudness>& all) {
     const std::vector<double> sums = sums_of(of);
     for (std::size_t begin = 0; begin < of.root.size(); ++begin)
       for (std::size_t end = begin + 1; end <= of.root.size(); ++end) {
-        // Half of them at most: of two parts it is the shorter one that is told from the rest. Not across a
+        // Half of them at most: of two parts the shorter one is distinguished from the rest. Not across a
         // hole.
         const bool hole = end - begin > 1 && of.cell[end - 1] != of.cell[end - 2] + of.cells_each;
         if (hole || 2 * (end - begin) > of.root.size()) break;

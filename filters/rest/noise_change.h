@@ -7,8 +7,8 @@
 // variance changes in the presence of long memory", Journal of Statistical Computation and Simulation 68,
 // 2000). The wavelet is Daubechies' of four taps, which sees neither a level nor a ramp and leaves of white
 // noise, flicker and a random walk coefficients that hardly depend on one another. What is looked for is one
-// stretch, from any of those times to any other, that is louder or quieter than the rest; then another one
-// beside it.
+// stretch, from any of those times to any other, with more or less noise than the rest; then another one
+// next to it.
 #pragma once
 
 #include <functional>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which part of a record a sensor was at rest in. Noise figures, a heading forecast or a filter's tuning
-// taken from a sensor that was being turned or shaken say nothing about the sensor.
+// of a sensor that was being turned or shaken say nothing about the sensor.
 //
 // Two kinds of window of about half a second do not count as rest:
 //   - turned: the mean departs from the running median of the seconds around it, or steps, by 20 times what
@@ -24,7 +24,7 @@ namespace ifog {
 struct Rest {
   std::vector<Stretch> at_rest;  // in order; all of the record when nothing moved
   std::size_t samples = 0;       // of the record
-  std::size_t turned = 0;        // samples left out
+  std::size_t turned = 0;        // samples not used
   std::size_t shaken = 0;
   // Rest, but the rate leaps there by more than noise does and less than is surely a turn; of the largest.
   struct SlowTurns {
@@ -36,10 +36,10 @@ struct Rest {
 };
 
 // axes: rates of one sensor, rad/s, equally long, NaN where missing; it rests when all of them do. Records of
-// fewer than 16 windows, or slower than a sample in two seconds, are taken to be at rest.
+// fewer than 16 windows, or slower than a sample in two seconds, are assumed to be at rest.
 [[nodiscard]] Rest find_rest(std::span<const std::span<const double>> axes, double period_s);
 // references: what else measured rates of the same axes, as long as these; may be none. Samples more than a
-// second apart beside one may be the dwells of a rate table, each at a rate of its own: there the references
+// second apart with one may be the dwells of a rate table, each at a rate of its own: there the references
 // alone say where the sensor was turned, where one departs by more than 0.001 rad/s from its own median.
 [[nodiscard]] Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references,
                              double period_s);

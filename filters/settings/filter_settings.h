@@ -17,7 +17,7 @@ struct FilterSettings {
 
   // Variances per second of the driving noise and per sample of the measurement. For the random walk: process
   // noise spectral density of the rate, (rad/s)^2/s; measurement variance at the nominal period, (rad/s)^2.
-  double process_noise = 0.0;      // 0: not given; taken from the model file, else from start-up data
+  double process_noise = 0.0;      // 0: not given; from the model file, else from start-up data
   double measurement_noise = 0.0;  // 0: not given, likewise
   // Parameters of the state model: AR/MA coefficients, correlation time, line frequency…
   std::vector<double> state_parameters;

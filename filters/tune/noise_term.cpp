@@ -193,7 +193,7 @@ class HarmonicTerm final : public NoiseTerm {
   }
   void add_density(std::span<const double> /*theta*/, const RecordSpectrum& /*spectrum*/,
                    std::span<double> /*out*/) const override {
-    // The line has been taken out.
+    // The line has been removed.
   }
   [[nodiscard]] std::vector<double> parameters(std::span<const double> theta,
                                                double period_s) const override {

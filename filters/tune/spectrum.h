@@ -32,7 +32,7 @@ struct RecordSpectrum {
   std::array<std::vector<double>, kOrders> cosine, sine;
   std::vector<double> coarse;    // the density averaged over neighbours until 16 squares are in it
   std::size_t samples = 0;       // of the transform
-  std::vector<TakenLine> lines;  // taken out beforehand, strongest first
+  std::vector<TakenLine> lines;  // removed beforehand, strongest first
 
   [[nodiscard]] std::size_t bins() const { return omega.size(); }
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture's time as people are told it: as large as it is, to the µs.
+// A capture's time as text for users: in full, to the µs.
 #pragma once
 
 #include <array>

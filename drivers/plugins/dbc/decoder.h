@@ -12,7 +12,7 @@
 namespace ifog::dbc {
 
 // A sample may be spread over several frames; it is complete when every axis has arrived. The frames of one
-// sample are told from those of the next by
+// sample are distinguished from those of the next by
 //   - the counter, in each frame that carries it;
 //   - an axis that comes a second time;
 //   - where some axis's frame carries no counter: the frame of the lowest id. It begins a sample, because

@@ -28,7 +28,7 @@ struct Telegram {
   std::uint8_t version = 3;
   std::uint32_t validity_100us = 0;
   std::uint32_t counter = 0;
-  std::optional<Triad> rate_degps;             // navigation block 5, Earth's rotation taken out
+  std::optional<Triad> rate_degps;             // navigation block 5, Earth's rotation removed
   std::optional<Triad> raw_rate_degps;         // extended block 2, as measured
   std::optional<Triad> raw_acceleration_mps2;  // navigation block 28, gravity included
   std::optional<Triad> temperature_degC;  // navigation block 25: mean of the gyros, the accelerometers, board

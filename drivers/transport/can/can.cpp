@@ -99,7 +99,7 @@ Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
 }
 
 // What is in the socket: frames, or none and, where the interface is gone, why. ENETDOWN (set down) and
-// ENODEV (taken away) are each said once; frames that came before are read after them.
+// ENODEV (unplugged) are each said once; frames that came before are read after them.
 int CanTransport::receive_waiting() noexcept {
   constexpr int kErrors = 4;  // more than can be said of one socket
   for (int errors = 0; errors < kErrors; ++errors) {

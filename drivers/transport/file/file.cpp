@@ -54,7 +54,7 @@ class FileTransport : public Transport {
   // Waits until the recorded time is due; false when `until_ns` or stop() comes first.
   bool await(std::int64_t recorded_ns, std::int64_t until_ns) noexcept;
 
-  // A new file is open, nothing of it is taken yet.
+  // A new file is open, nothing of it is read yet.
   virtual void begin() noexcept = 0;
   // Takes one delivery from what is unread, empty when that is not enough for one.
   virtual Delivery take(std::int64_t until_ns) noexcept = 0;
@@ -87,7 +87,7 @@ Delivery FileTransport::receive(std::int64_t until_ns) noexcept {
   return delivery;
 }
 
-// The reader has taken all there was.
+// The reader has read all there was.
 void FileTransport::finish() noexcept {
   if (!file_.is_fifo() || !settings_.await_writer || read_error_ != 0) {
     file_.close();

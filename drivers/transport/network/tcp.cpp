@@ -122,7 +122,7 @@ void TcpTransport::check_answer() {
   if (error != 0) refuse("cannot connect", error, "a device or server that listens there");
 }
 
-// A server that turned us away may do so again: its line is taken for open when it does not, for a while.
+// A server that turned us away may do so again: its line counts as open if it does not, for a while.
 void TcpTransport::hear_out(std::int64_t until_ns) {
   std::array<std::uint8_t, 256> said{};
   for (ssize_t n = 0;;) {

@@ -173,7 +173,7 @@ Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
     delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(got.n));
     return delivery;
   }
-  // Nothing to read is no fault of the device (another process may have taken it), a hang-up is.
+  // Nothing to read is no fault of the device (another process may have read it), a hang-up is.
   const int error = got.error;
   const bool hung_up = (got.happened & (POLLHUP | POLLERR | POLLNVAL)) != 0;
   if (error == EINTR || (!hung_up && (error == 0 || error == EAGAIN))) {

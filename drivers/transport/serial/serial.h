@@ -10,7 +10,7 @@
 
 namespace ifog {
 
-// Arrival times are taken right after the read. Overruns of the UART and of the kernel's buffer are counted
+// Arrival times are read right after the bytes. Overruns of the UART and of the kernel's buffer are counted
 // as kernel drops, framing and parity errors and breaks as error frames, where the driver tells them
 // (TIOCGICOUNT): ten times a second, when the line hangs up and after the last read.
 // With `set_up` the device is set up whenever the line opens, and again when it has been silent for over a

@@ -11,7 +11,7 @@ namespace ifog {
 // Half-octave bands of the bins in use that stand farther from the likeliest terms than kTolerated of the
 // deviation are dropped, the one whose absence helps most first and at most half of them. Only those above
 // the terms: what disturbs adds power, and terms that a band has less power than are refuted by it. But for
-// the highest bands, which a filter has taken the noise out of; these are not counted in the half. What
+// the highest bands, from which a filter has removed the noise; these are not counted in the half. What
 // misfit stays is made part of the uncertainty: it lowers the bins' degrees of freedom.
 struct Described {
   NoiseSpectrum spectrum;

@@ -34,7 +34,7 @@ struct NoiseCoefficient {
 
 // A bias that wanders and comes back (gauss_markov.h), where the record shows that it does.
 struct MarkovNoise {
-  bool present = false;        // else a forecast weighs it, and nobody is told
+  bool present = false;        // else only forecasts weigh it, and it is not reported
   double sigma_radps = 0.0;    // of the bias
   double correlation_s = 0.0;  // and how long it remembers, with its 95 % interval
   double lower_s = 0.0, upper_s = 0.0;

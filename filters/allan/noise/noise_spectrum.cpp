@@ -18,7 +18,8 @@ namespace {
 constexpr std::size_t kSegment = 480;  // steps of a level; one fits where twice the slow part's least do
 constexpr std::size_t kMostSegments = 8192;  // of a level
 constexpr std::size_t kSlow = 32;            // cosines of a stretch
-constexpr std::size_t kSlowMeans = 256;  // of the angle they are taken of, at least: fewer than twice this
+constexpr std::size_t kSlowMeans =
+    256;  // of the angle they are computed from, at least: fewer than twice this
 constexpr std::size_t kMostSlowStretches = 4;
 constexpr double kTopOfLevel = 1.0 / 16.0;     // cycles a sample of the level; above, the level below has it:
 constexpr double kBottomOfLevel = 1.0 / 32.0;  // averaging folds next to nothing onto frequencies this low
@@ -113,7 +114,7 @@ class Segment {
   std::vector<std::vector<TermVariances>> expected_;  // by level and bin
 };
 
-// How far up a stretch is averaged before its slow part is taken.
+// How far up a stretch is averaged before its slow part is computed.
 int last_level(std::size_t samples) {
   int level = 0;
   while (((samples + 1) >> (level + 1)) >= kSlowMeans) ++level;
@@ -122,7 +123,7 @@ int last_level(std::size_t samples) {
 
 std::size_t slow_count(std::size_t averages) { return std::min(kSlow, averages / 2); }
 
-// The highest level whose spectrum is taken: half as far averaged as the slow part, so that a segment fits.
+// The highest level whose spectrum is computed: half as far averaged as the slow part, so that a segment fits.
 int last_spectrum(std::size_t samples) { return std::max(0, last_level(samples) - 1); }
 
 // Lowest bin frequency that the slow part leaves to the last spectrum, cycles a sample of that level.

@@ -22,14 +22,14 @@ constexpr double kCertain = 40.0;
 constexpr double kOfRate = 0.02;  // of the rate's variance, below which nothing is said
 // Phase velocities of surface waves, from soft soil to the mantle, m/s.
 constexpr double kSlowestWave = 80.0, kFastestWave = 8000.0;
-// Of what gravity gives in a tilt, from an accelerometer with noise of its own to one that is off axis.
+// Share of gravity that an accelerometer shows in a tilt: less with noise of its own, more if it is off axis.
 constexpr double kLeastOfTilt = 0.3, kMostOfTilt = 1.5;
 
 struct Slope {
   double value = 0.0, share = 0.0, gain = 0.0;  // share: of y's variance; gain: twice the log-likelihood
 };
 
-// Of changes from block to block, in which slow drifts of either have no part.
+// Slope of y over x, by their changes from block to block, so that slow drifts of either have no part in it.
 Slope slope_of(const BlockGrid& grid, const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
   double xx = 0.0, xy = 0.0, yy = 0.0, n = 0.0;
   for (const BlockRange& record : grid.records)

@@ -151,8 +151,8 @@ struct Drive {
   double drive, likelihood;
 };
 
-// Of the slope's, or the level's, random walk over the variance of a reading, a step: over the decades, then
-// within one.
+// The likeliest ratio, per step, of the random walk of the slope (or level) to the variance of a reading: searched
+// by decades, then within one.
 Drive best_drive(std::span<const Reading> readings, Course course) {
   double best = 0.0;
   double most = -std::numeric_limits<double>::infinity();
@@ -284,7 +284,7 @@ bool stands_still(std::span<const double> readings) {
   return true;
 }
 
-// Of what both channels were: readings in steps, one taken from the other, are steps of neither.
+// Computes differences again from the two channels: the difference of two quantised readings has steps of neither.
 void rebuild_differences(BlockData& data) {
   const auto named = [&](const std::string& name) {
     return std::find_if(data.channels.begin(), data.channels.end(),

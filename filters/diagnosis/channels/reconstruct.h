@@ -33,7 +33,7 @@ bool stands_still(std::span<const double> readings);
 // and which stand still.
 BlockData with_reconstructed_channels(const BlockData& data);
 
-// Channels that are the difference of two others, anew from those.
+// Recomputes channels that are the difference of two others from those.
 void rebuild_differences(BlockData& data);
 
 }  // namespace ifog

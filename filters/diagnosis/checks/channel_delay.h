@@ -13,8 +13,8 @@ namespace ifog {
 // the ends of a record.
 void undo_delay(const BlockGrid& grid, double delay_s, FineChannel& channel);
 
-// Of the channels that the model uses those whose delay within 60 s makes the model far likelier, everything
-// else as it is. Below zero: early.
+// Channels of the model whose delay, within 60 s, makes the model far likelier with everything else unchanged.
+// Delays below zero are early.
 std::vector<ChannelDelay> delayed_channels(const BlockData& data, const std::vector<Candidate>& model,
                                            const NoiseShape& shape);
 

@@ -40,8 +40,8 @@ Eigen::VectorXd without_fold(Columns white, const std::vector<int>& fold, int he
 
 std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& grid, const NoiseShape& shape,
                                                             const Columns& columns) {
-  // Whitened on all blocks, then fitted on the rows of the others: a fold is left out of the fit, not cut
-  // out of the filter, which would start anew behind every gap. The constants are projected out on all
+  // Whitened on all blocks, then fitted on the rows of the others: a fold is excluded from the fit, not from the
+  // filter, which would otherwise restart behind every gap. The constants are projected out on all
   // blocks.
   Columns white = columns;
   Whitening(grid, shape).apply(white);
@@ -80,8 +80,8 @@ Eigen::VectorXd held_out_change(const BlockData& data, const std::vector<Candida
 
 namespace {
 
-// Of a step's size, what the means before and after have to differ by, all of them and the halves farther
-// from it.
+// Share of a step's size by which the means before and after it have to differ: the whole means, and those of the
+// halves farther from it.
 constexpr double kLasting = 0.4;
 constexpr double kLastingFar = 0.25;
 

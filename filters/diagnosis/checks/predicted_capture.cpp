@@ -47,7 +47,7 @@ Split split_at(const BlockData& data, const std::vector<Candidate>& effects,
   return split;
 }
 
-// Whitened, with all else taken out.
+// Whitened, with all else projected out.
 struct Whitened {
   Eigen::VectorXd error;
   Eigen::MatrixXd others, here;  // the group's columns
@@ -55,7 +55,7 @@ struct Whitened {
 };
 
 Whitened whitened(const BlockGrid& grid, const Split& split, const NoiseFit& noise) {
-  // The noise that was fitted beside one coefficient for all has swallowed what they differ by.
+  // The noise that was fitted with one coefficient for all captures has absorbed their differences.
   Columns white = split.columns;
   Whitening(grid, fit_noise(grid, split.columns, noise.shape).shape).apply(white);
   const Eigen::Index g = split.group;

@@ -16,8 +16,8 @@ namespace ifog {
 struct DeniedEffects {
   std::vector<std::size_t> effects;  // ascending
   std::size_t record = 0;            // that denies them
-  // Of what the other captures predict for it, the share that is there. Below one half a correction leaves
-  // more than none does. NaN: they predict nothing certain, but their regressors move as much here as where
+  // Share of what the other captures predict that is present in this one. Below one half a correction leaves
+  // more error than none does. NaN: they predict nothing certain, but their regressors move as much here as where
   // they are seen, and they are not.
   double share = 0.0, share_error = 0.0;
 };

@@ -11,7 +11,7 @@
 
 namespace ifog {
 
-// Of one record; NaN where no sample is. What is the same is there once.
+// The error of one record on an even grid, NaN where there is no sample. Series that are equal share their samples.
 struct EvenError {
   RecordOrigin origin{};  // that start_s is counted from
   double start_s = 0.0;
@@ -28,10 +28,10 @@ struct EvenError {
 std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
                                    double sample_s);
 
-// Of one series of all of them.
+// The sum of one series over all records.
 FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::*series);
 
-// Of the record with the most steps; at least one.
+// The error of the record with the most steps. At least one record is given.
 const EvenError& longest_of(const std::vector<EvenError>& errors);
 
 // A stuck device, or a placeholder: rounding would be all there is to explain. Throws std::invalid_argument

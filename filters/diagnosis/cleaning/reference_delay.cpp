@@ -144,7 +144,7 @@ std::vector<Series> whitened(const std::vector<Series>& columns, const Autoregre
   return white;
 }
 
-// Of the noise that is left where the reference is moved so. columns: the last is its slope.
+// Autoregression of the noise that remains next to a reference moved so. The last of `columns` is its slope.
 Autoregression noise_beside(const std::vector<Series>& columns) {
   const std::vector<Series> without(columns.begin(), columns.end() - 1);
   const SeriesFit plain = least_squares(without, complete_rows(without));
@@ -272,12 +272,12 @@ namespace {
 constexpr double kJumpOfFourth = 50.0;  // deviations of the noise: a jump of eight
 constexpr std::size_t kRings = 12;      // samples on either side: half the width of the interpolation
 constexpr double kMostOfJumps = 0.25;
-// Of what is smooth against the samples the fourth difference is a small part of the second; of a jump or a
-// kink it is twice to six times that.
+// Ratio of the fourth difference to the second: small for what is smooth over a few samples, two to six at a jump
+// or a kink.
 constexpr double kRough = 1.0;
 constexpr std::size_t kEnough = 50000;  // steps, to tell the noise by
 
-// Of one sample, from neighbours: the median of what they differ by.
+// Noise of one sample, by the median difference of neighbours.
 double noise_beside_reference(const Samples& reference, std::span<const double> rate) {
   std::vector<double> steps;
   const std::size_t stride = std::max<std::size_t>(1, rate.size() / kEnough);

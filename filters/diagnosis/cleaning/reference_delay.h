@@ -11,7 +11,7 @@
 
 namespace ifog {
 
-// The delay within 60 s of greatest likelihood, beside a constant and a cubic of the reference, in
+// The delay within 60 s of greatest likelihood, together with a constant and a cubic of the reference, in
 // innovations of an autoregressive noise. Sought by generalised cross-correlation (Knapp and Carter 1976:
 // both series whitened as the rate demands), then by Gauss and Newton to a part of a sample. Applied where it
 // gains more likelihood than the lags tried would by chance, and more than what repeats with an angle that

@@ -14,7 +14,7 @@
 namespace ifog {
 namespace {
 
-// Of a record without an even clock, such as a list of dwells, nothing can be said.
+// The sample period; none for a record without an even clock, such as a list of dwells.
 std::optional<double> period_of(const Record& record) {
   try {
     return sample_clock(record.time_s).period_s;

@@ -18,7 +18,7 @@
 namespace ifog {
 
 inline constexpr std::size_t kRampParts = 4;   // held out in turn
-inline constexpr double kSlowSamples = 512.0;  // of the mean that a slow part is taken out by
+inline constexpr double kSlowSamples = 512.0;  // length of the running mean that removes the slow part
 
 // Which of them a sample is in; each is made of four pieces, spread over the record.
 inline std::size_t ramp_part(std::size_t sample, std::size_t samples) {
@@ -31,7 +31,7 @@ struct PhasedRecord {
   std::function<double(std::size_t)> cycles;
 };
 
-// Of a sample whose phase and the one before are known.
+// Phase of a sample and of the one before it, both known.
 struct PhaseStep {
   double before, now;  // cycles, in [0, 1)
   double dt_s;

@@ -28,8 +28,8 @@ struct RampFit {
   std::vector<Samples> held_out;    // each part from the fit to the other parts
 };
 
-// Of one channel of the records; nothing when the table does not predict the parts held out of its fit, or by
-// chance would do as well more often than `significance`.
+// Fits the ramp of one channel. Nothing if the table does not predict the parts held out of its fit, or if chance
+// would do as well more often than `significance`.
 std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::string& channel,
                                 double significance);
 

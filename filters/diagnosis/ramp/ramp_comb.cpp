@@ -62,7 +62,7 @@ void divide_by_floor(std::vector<double>& power) {
   }
   for (std::size_t i = 0; i < power.size(); ++i) {
     const std::size_t block = i / kBlock;
-    // The last block may be short, and where noise falls off steeply the louder neighbour counts.
+    // The last block may be short, and where noise falls off steeply the neighbour with more of it counts.
     power[i] /= std::max(floor[block], floor[std::min(block + 1, floor.size() - 1)]);
   }
 }
@@ -102,7 +102,7 @@ double score_of(const std::vector<double>& power, double bin) {
   return best;
 }
 
-// Cycles a radian that the part can show: from a fundamental above the slow part that was taken out, with
+// Cycles a radian that the part can show: from a fundamental above the slow part that was removed, with
 // twenty cycles or more, to one below half the sample rate. Empty (least > most) near zero rate.
 struct VisibleCycles {
   double least = 0.0, most = 0.0;
@@ -175,7 +175,7 @@ bool counts_pulses(const UnbrokenPart& part, double cycles_per_rad) {
   return false;
 }
 
-// Of the errors' square, by the table's first harmonic alone.
+// Share of the squared error that the table's first harmonic alone explains.
 double explained_by_line(const UnbrokenPart& part, double cycles_per_rad) {
   Complex sum = 0.0;
   double square = 0.0;

@@ -58,7 +58,7 @@ constexpr double kCertain = 3.0;  // standard errors of the table
 // measured walks. A line that walks more, of a swaying structure or a machine, follows itself.
 constexpr double kMostWalk = 0.002;  // cycles/sqrt(s)
 
-// Of a comb that is not corrected.
+// Sentence about the spectral lines of a comb that is not corrected.
 std::string lines_in_words(const RampComb& comb, const UnbrokenPart& part) {
   const double hz = comb.cycles_per_rad * std::abs(part.mean_turn_rad()) / part.sample_s();
   return "lines at " + printed("%.4g", hz) +
@@ -172,7 +172,7 @@ Effect effect_of(const RampComb& comb, const RampSettings& settings, const Phase
   return effect;
 }
 
-// Of record `fitted` each part as the table of the others corrects it.
+// Corrects each part of record `fitted` by the table of the other parts.
 void correct_all(const std::vector<Record>& records, std::size_t fitted, const UnbrokenPart& part,
                  const RampComb& comb, const RampSettings& settings, RampFit& fit) {
   for (const Record& record : records) fit.correction.emplace_back(record.time_s.size(), 0.0);

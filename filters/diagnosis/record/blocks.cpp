@@ -142,7 +142,7 @@ MeansSlope slope_of_means(const std::vector<Record>& records, std::size_t m) {
   return {value, std::sqrt(std::max(0.0, yy - value * xy) / n / xx), n};
 }
 
-// Samples that a mean needs beside a reference with noise of its own (interpolated, or read from angles).
+// Samples that a mean needs next to a reference with noise of its own (interpolated, or read from angles).
 // That noise draws the slope of short means away from the scale factor (errors in variables) and averages out
 // in longer ones: they are long enough when means of twice the length have the same slope.
 std::size_t long_enough(const std::vector<Record>& records) {
@@ -224,7 +224,7 @@ FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& gr
   return channel;
 }
 
-// Of two values. A thermometer of whole degrees in a steady room takes two values and is no switch.
+// Whether the channel has two values. A thermometer of whole degrees in a steady room also has, and is no switch.
 bool is_switch(const std::vector<Record>& records, const std::string& name) {
   if (kind_of(name) != ChannelKind::kOther) return false;
   std::set<double> different;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records cut to means over blocks of equal length, a few thousand in all: slow effects are told from slow
+// Records cut to means over blocks of equal length, a few thousand in all: slow effects are distinguished from slow
 // noise just as well there, at a thousandth of the cost. Channels keep a finer grid, on which the causal
 // shapes run before they are averaged, so that lags and derivatives are not blurred by the block.
 #pragma once
@@ -102,7 +102,7 @@ void check_columns(const std::vector<Record>& records);
 // Throws std::invalid_argument as diagnose() does.
 BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks = 4096);
 
-// Means over blocks of a shape of a channel, or of the product of two; a record starts it anew.
+// Means over blocks of a shape of a channel, or of the product of two; each record restarts it.
 Eigen::VectorXd column(const BlockData& data, const ShapeSettings& shape, std::size_t channel);
 Eigen::VectorXd column(const BlockData& data, const ShapeSettings& shape, std::size_t channel,
                        const ShapeSettings& with, std::size_t with_channel);

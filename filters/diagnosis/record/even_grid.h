@@ -17,7 +17,7 @@ Samples on_even_grid(const Record& record, double sample_s, std::span<const doub
 // rate - reference by sample.
 Samples error_of(const Record& record);
 
-// About the mean, NaN left out; 0, or nothing, of fewer than two.
+// Deviation from the mean, without NaN; 0, or nothing, for fewer than two values.
 double variance_of(std::span<const double> values);
 std::optional<double> variance_of_two(std::span<const double> values);
 

@@ -9,7 +9,7 @@
 
 namespace ifog {
 
-// Of a record's time, as fractions.
+// A part of a record's time, as fractions of it.
 struct TimeShare {
   double from = 0.0, to = 1.0;
   [[nodiscard]] bool whole() const { return from <= 0.0 && to >= 1.0; }

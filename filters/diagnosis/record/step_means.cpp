@@ -8,8 +8,8 @@
 namespace ifog {
 namespace {
 
-// Where the record has no rows the channel went on: linear between the steps beside such a hole. Held there
-// and then jumping, its derivative would be that of no temperature.
+// Where the record has no rows the channel is interpolated linearly between the steps on both sides of the hole.
+// Held there and then jumping, its derivative would be that of no temperature.
 void bridge_holes(const StepStarts& first, std::span<double> means) {
   std::size_t last = 0;
   for (std::size_t k = 0; k < means.size(); ++k) {

@@ -21,7 +21,7 @@ struct StepMeans {
   std::vector<double> means, power;  // power: of what is within a step, about its mean
 };
 
-// Of a column. Steps without a value hold the last one; linear where the record has no rows.
+// Means of a column over each step. Steps without a value hold the last one; linear where the record has no rows.
 StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power);
 
 }  // namespace ifog

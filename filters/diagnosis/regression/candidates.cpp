@@ -123,8 +123,8 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
   const auto add = [&](Form form, double tau) { found.push_back(candidate_of(form, channel, tau)); };
   const FineChannel& source = data.channels[channel];
   add(Form::kLinear, 0.0);
-  // Of a channel that stands still the rest are pictures of reading noise, low-passed into a random walk that
-  // slow noise will follow somewhere.
+  // On a channel that stands still the other forms are shapes of reading noise, low-passed into a random walk that
+  // slow noise resembles somewhere.
   if (!source.still) {
     for (const Form form : {Form::kQuadratic, Form::kCubic}) add(form, 0.0);
     add_transitions(data, channel, found);
@@ -143,7 +143,7 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
   add_vibration(data, channel, found);
 }
 
-// The coil makes the scale factor, and a thermometer beside it is ahead of it. product: of the reference.
+// The coil makes the scale factor, and a thermometer next to it is ahead of it. product: of the reference.
 void add_lagging_scale(const BlockData& data, Candidate product, std::vector<Candidate>& found) {
   if (data.grid.dwells || kind_of(data.channels[product.with_channel].name) != ChannelKind::kTemperature)
     return;
@@ -299,7 +299,7 @@ std::vector<Candidate> library(const BlockData& data) {
 
 namespace {
 // Two band powers, one that weighs high frequencies more, make with coefficients of their own the power of
-// one band beside another: a resonance of the coil answers one machine and not the next.
+// one band and not another: a resonance of the coil answers one machine and not the next.
 void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPair>& pairs) {
   const FineChannel& source = data.channels[channel];
   if (!source.vibrates() || !source.power.empty()) return;

@@ -63,10 +63,9 @@ bool has_shape(std::span<const Candidate> effects, const Candidate& wanted);
 // show.
 std::vector<double> time_constants(const BlockGrid& grid, Form form);
 
-// Of the forms only those are tried on a channel that can be its: of a switch no powers, of an angle only
-// what repeats with it, of another axis' rate, where that was turned, the misalignment; and a transition
-// of temperatures alone. lookup is not among
-// them: a table of a channel has a coefficient a knot, and polynomials to the cubic say what a few knots
+// Only forms that a channel can have are tried: no powers of a switch, only periodic forms of an angle, the
+// misalignment of another axis' rate where that axis was turned, and transitions of temperatures alone. lookup is
+// not among them: a table of a channel has a coefficient a knot, and polynomials to the cubic say what a few knots
 // would (the feedback ramp's table is fitted in ramp.h). Neither are steps, which scan.h places, nor lines,
 // which lines.h finds, nor the forms that have nothing to subtract; earth_rate is the same regressor as
 // acceleration, see findings.cpp.
@@ -93,7 +92,7 @@ std::vector<Candidate> products_of(const BlockData& data, std::size_t channel);
 // Regressors: one column, or two (cosine, sine) for a line. Unit: that of the form's value.
 Columns regressors(const BlockData& data, const Candidate& candidate);
 
-// Preference in units of twice the log-likelihood: of two that fit alike the plainer one is taken.
+// Preference in units of twice the log-likelihood: of two that fit alike the plainer one is chosen.
 double complexity(const Candidate& candidate);
 double complexity(const std::vector<Candidate>& effects);  // of all of them
 

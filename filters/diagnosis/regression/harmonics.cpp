@@ -27,8 +27,8 @@ constexpr double kSmallWalk = 1e-5, kSmallFlicker = 1e-3;
 constexpr double kRough = 1.4;
 constexpr double kFine = 1.05;
 
-// Of the innovations, over that of white noise of the same power; bins 0 … length / 2. Empty when they are no
-// numbers.
+// Spectrum of the innovations, divided by that of white noise of the same power; bins 0 … length / 2. Empty if an
+// innovation is not a number.
 struct Periodogram {
   std::vector<double> power;
   double ordinates = 1.0;  // independent ones a bin

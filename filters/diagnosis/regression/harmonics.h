@@ -8,14 +8,14 @@
 
 namespace ifog {
 
-// Of what may be called a harmonic on this grid.
+// Limits of what may be called a harmonic on this grid.
 struct HarmonicLimits {
   double least_cycles = 0.0;                   // a block: slower ones an effect may be mistaken for
   double least_decay = 0.0, most_decay = 0.0;  // blocks: what keeps its phase longer is a line
 };
 HarmonicLimits harmonic_limits(const BlockGrid& grid);
 
-// Less is better. Of the noise's parameters beside white noise, flicker and walk; constants left out.
+// Less is better. Counts the noise parameters besides white noise, flicker and walk, without constants.
 double information_criterion(const BlockGrid& grid, const NoiseFit& fit);
 
 // `fit` with harmonics added, those it has kept where they are still worth their parameters, all refitted;

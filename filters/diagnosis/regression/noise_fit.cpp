@@ -77,7 +77,7 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
 
 namespace {
 
-// Below these a component changes the likelihood of a few thousand blocks by nothing: it is taken for zero.
+// Below these a component changes the likelihood of a few thousand blocks by nothing: it is set to zero.
 constexpr double kLeastWalk = 1e-10;
 constexpr double kLeastFlicker = 1e-6;
 // Above this there is no white noise left to be relative to.
@@ -113,7 +113,7 @@ void add_ways(const BlockGrid& grid, std::size_t harmonic, std::vector<Way>& way
   });
 }
 
-// White noise that was taken for more than it is makes all else too small together.
+// An overestimate of the white noise makes all other components too small together.
 bool against_white(NoiseShape& shape, double factor) {
   shape.walk *= factor;
   shape.flicker *= factor;

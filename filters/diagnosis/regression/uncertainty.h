@@ -22,8 +22,8 @@ struct JointFit {
   // two of a transition, the logarithm of its half width, and its middle in half widths.
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;
-  // Of the coefficients where what was searched is known. Whether there is an effect is asked by this one, for where
-  // there is none no time constant changes anything.
+  // Covariance of the coefficients with the searched parameters known. It decides whether there is an effect: where
+  // there is none, no time constant changes anything.
   Eigen::MatrixXd of_coefficients;
   std::vector<std::size_t> searched;  // effect of each of those last entries
 };

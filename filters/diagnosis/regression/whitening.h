@@ -24,8 +24,8 @@ namespace ifog {
 // What has the covariance variance exp(-k / decay) cos(2 pi cycles k) at a distance of k blocks, as a resonance
 // driven by white noise does.
 struct DampedHarmonic {
-  // Of a structure that is the angle, over a block's length, of which a block sees the change: what sways does
-  // not turn away, and has nothing at slow frequencies. Of a line inside the sensor it is the rate.
+  // What the harmonic is of. A structure sways in angle, of which a block sees the change: it does not turn away and
+  // has no power at slow frequencies. A line inside the sensor is in the rate.
   enum class Of { kAngle, kRate };
 
   double variance = 0.0;
@@ -33,12 +33,12 @@ struct DampedHarmonic {
   double decay = 0.0;   // blocks
   Of of = Of::kAngle;
 
-  // Of its density at so many cycles a block, what a block sees.
+  // Share of its density at so many cycles a block that a block sees.
   [[nodiscard]] double seen_at(double at_cycles) const {
     const double half_step = std::sin(std::numbers::pi * at_cycles);
     return of == Of::kAngle ? 4.0 * half_step * half_step : 1.0;
   }
-  // Of what a block sees.
+  // Variance of what a block sees.
   [[nodiscard]] double seen_variance() const {
     if (of == Of::kRate) return variance;
     return 2.0 * variance * (1.0 - std::exp(-1.0 / decay) * std::cos(2.0 * std::numbers::pi * cycles));
@@ -59,7 +59,7 @@ class Whitening {
  public:
   Whitening(const BlockGrid& grid, const NoiseShape& shape);
 
-  // Innovations of every column, in place: starts anew at each record, predicts across blocks that are not
+  // Innovations of every column, in place: restarts at each record, predicts across blocks that are not
   // valid and leaves zero there.
   void apply(Columns& columns) const;
 

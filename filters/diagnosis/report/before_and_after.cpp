@@ -52,7 +52,7 @@ namespace {
 
 constexpr double kGrown = 1.02;
 constexpr double kMany = 100.0;  // an RMS of so many is known to 7 %
-// Of fewer, the standard errors of an RMS that chance may add.
+// With fewer means than that, the number of standard errors of an RMS that chance may add.
 constexpr double kByChance = 1.5;
 
 struct Figure {

@@ -122,7 +122,7 @@ bool is_of_rate(const Effect& effect) {
 }
 
 // By its tangent a square leaves as much again one span beyond its range as it did within. Where the
-// curvature is far above its error the form itself is the better guess; not beside higher powers of the same
+// curvature is far above its error the form itself is the better guess; not next to higher powers of the same
 // channel, for then all of them are a series that ends somewhere. A cube is a law of the rate; of the
 // surroundings none is known, and there it is a series by itself (of a supply below which a regulator lets
 // go, three times the effect was left where the cube went on).

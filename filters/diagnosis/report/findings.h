@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The search's result as a report tells it: effects with parameters and their errors, the covariance, the
-// ranges they were fitted on, and what each cannot be told from.
+// ranges they were fitted on, and which alternatives fit as well.
 #pragma once
 
 #include <string>
@@ -17,7 +17,7 @@ struct Findings {
   std::vector<FoundEffect> effects;      // as in `chosen`
   std::vector<Eigen::VectorXd> parts;    // rad/s by block, of each
   std::vector<Indistinguishable> pairs;  // of them
-  std::vector<OtherExplanation> others;  // with the effects' parameters fitted anew
+  std::vector<OtherExplanation> others;  // with the effects' parameters fitted again
 };
 
 // Coefficients, time constants and their errors from `joint`. reconstructed: the reconstructed channels.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a diagnosis left out and why, and what it judged beside, in sentences.
+// What a diagnosis did not use and why, and what it judged besides, in sentences.
 #pragma once
 
 #include <cstddef>

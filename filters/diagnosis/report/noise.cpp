@@ -82,7 +82,7 @@ void write_noise(const std::vector<Record>& records, const std::vector<EvenError
   NoiseTerms &value = diagnosis.noise, &error = diagnosis.noise_error;
   if (grid.dwells) {
     value = noise_terms(regression.shape, regression.white_variance, grid.block_s);
-    // Of the scatter of independent dwells about what was fitted to them.
+    // Degrees of freedom of the scatter of independent dwells about the fit.
     double degrees = static_cast<double>(grid.used()) - static_cast<double>(grid.constants());
     for (const FoundEffect& found : diagnosis.effects)
       degrees -= static_cast<double>(found.effect.parameters.size());

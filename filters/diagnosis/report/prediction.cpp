@@ -79,7 +79,7 @@ struct Effects {
 };
 
 // held: the channels at the edge of their ranges; followed: as far as a linear form goes. Of a higher power,
-// which goes on by its tangent, the larger error of being held is taken. ramp_s: for how long a ramp in time
+// which goes on by its tangent, the larger error, that of holding, is used. ramp_s: for how long a ramp in time
 // was fitted, which goes on for as much again; none: it is not corrected.
 Effects effects_on(const BlockData& next, const BlockData& held, const BlockData& followed,
                    std::optional<double> ramp_s, const std::vector<Effect>& effects) {

@@ -11,15 +11,15 @@
 namespace ifog {
 
 // bias taken over aligned_s, angle integrated from then to each of after_s. Of `next` only times and channels
-// count, and the reference when effects use one. Effects without a channel in it are taken as not corrected
+// count, and the reference when effects use one. Effects without a channel in it count as not corrected
 // and not there.
 HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
                                   const std::vector<double>& after_s);
 
-// Of a next capture whose channels run as they did in the longest of the records.
+// Heading error of a next capture whose channels run as they did in the longest record.
 HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records);
 
-// Of the noise alone, without the motion of what the sensor stands on: variance of the heading error, rad^2.
+// Variance of the heading error by noise alone, without the motion of what the sensor stands on, rad^2.
 double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s);
 
 }  // namespace ifog

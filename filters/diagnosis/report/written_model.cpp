@@ -77,7 +77,7 @@ class Uncorrected {
     }
   }
 
-  // Of a record's sample, at that time.
+  // Value for a record's sample at that time.
   [[nodiscard]] double at(std::size_t record, std::size_t sample, double time_s) const {
     double sum = between_blocks(grid_, grid_.records[record], shown_, sample);
     for (const Event& each : events_) {

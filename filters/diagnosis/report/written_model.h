@@ -26,8 +26,8 @@ void name_bias(const BlockGrid& grid, const JointFit& joint, double value, const
 void subtract_effects(const std::vector<Record>& records, const BlockData& data, const SearchResult& found,
                       const Diagnosis& diagnosis, std::vector<EvenError>& errors);
 
-// Of the diagnosis' first `candidates` effects that are corrected online, the one whose absence leaves least
-// of the error, means of a two-thousandth of the record; none where none is corrected.
+// Among the diagnosis' first `candidates` effects, the online-corrected one whose absence leaves least error, in
+// means over a two-thousandth of the record; none if none is corrected.
 std::optional<std::size_t> least_missed_effect(const std::vector<Record>& records, const Diagnosis& diagnosis,
                                                std::size_t candidates, double sample_s);
 

@@ -12,10 +12,10 @@ namespace {
 
 constexpr double kWidest = 0.5;       // of the largest rate
 constexpr double kFactor = 1.15;      // between widths that are independent tries
-constexpr double kShare = 0.1;        // of the significance: one question beside all others
+constexpr double kShare = 0.1;        // of the significance: one question among all others
 constexpr double kWithoutOne = 12.0;  // twice the log-likelihood that all passages but any one have to gain
 constexpr double kNearlyWhole = 0.1;  // of a coefficient of -1, and three standard errors
-constexpr std::size_t kWindow = 64;   // samples of the mean that a slow error is taken out by
+constexpr std::size_t kWindow = 64;   // samples of the running mean that removes a slow error
 
 // A sample whose rate is small. Its error is what is left about the mean of those around it.
 struct Slow {

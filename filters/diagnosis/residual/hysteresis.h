@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A bias that depends on which way a channel came: the loop of the play operator, which no form of the model
-// file describes. It is told apart all the same, since for as long as the channel moves one way it looks like
+// file describes. It is recognised all the same, since for as long as the channel moves one way it looks like
 // the channel's rate, or like a polynomial of it, and fails as soon as the channel turns.
 #pragma once
 
@@ -14,7 +14,7 @@
 namespace ifog {
 
 // What is left of the play operator (Prandtl and Ishlinskii; Krasnosel'skii and Pokrovskii, Systems with
-// Hysteresis, 1989) when the channel itself is taken out: within half_width of zero, from block to block.
+// Hysteresis, 1989) when the channel itself is removed: within half_width of zero, from block to block.
 // It starts at zero, as nothing says where the channel came from.
 Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, double half_width);
 

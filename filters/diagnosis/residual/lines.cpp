@@ -17,7 +17,7 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Noise power right beside a peak. On a resonance it is far above the noise of the wider band, and every
+// Noise power right next to a peak. On a resonance it is far above the noise of the wider band, and every
 // ripple of the resonance would pass for a line against that.
 double noise_beside(std::span<const double> power, std::size_t k) {
   constexpr std::size_t kNear = 4;
@@ -82,7 +82,7 @@ double best_offset(const std::vector<Complex>& sums) {
   return boost::math::tools::brent_find_minima(power_lacking, -1.0, 1.0, kBits, most_evaluations).first;
 }
 
-// Of what chance would do as well only the p-value is said.
+// For peaks that chance would make as well, only the p-value is set.
 SpectralLine refine(const Search& in, std::size_t bin, double floor) {
   const auto& [error, start_s, period_s, significance, spectrum] = in;
   const auto n = static_cast<double>(error.size()), length = static_cast<double>(spectrum.length);
@@ -120,7 +120,7 @@ SpectralLine refine(const Search& in, std::size_t bin, double floor) {
   return line;
 }
 
-// Bins in which a peak has no other beside it.
+// Bins within which a peak has no other.
 std::size_t beside(std::size_t k) { return std::max<std::size_t>(6, k / 100); }
 
 // peaks: strongest first.

@@ -45,7 +45,7 @@ struct CoherentLines {
   std::vector<FastLine> fast;
 };
 
-// Of what is left of each record's error.
+// Lines in what is left of each record's error.
 CoherentLines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid,
                              double significance);
 

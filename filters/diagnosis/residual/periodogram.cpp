@@ -35,7 +35,7 @@ Periodogram periodogram(std::span<const double> error) {
 }
 
 NoiseFloor::NoiseFloor(std::span<const double> power) {
-  // Noise is taken from +-15 % of the frequency, and at least so many bins.
+  // Noise is estimated from ±15 % of the frequency, and at least so many bins.
   constexpr double kBand = 0.15;
   constexpr std::size_t kLeastBins = 25;
   std::vector<double> window;

@@ -12,7 +12,7 @@ namespace ifog {
 struct Periodogram {
   std::vector<double> power;  // of bins 0 … length / 2, not scaled
   std::size_t length = 0;     // cut to a product of small primes for the transform's sake
-  double mean = 0.0;          // of all samples that are there, which is taken out first
+  double mean = 0.0;          // of all samples present, subtracted first
 };
 
 // A transform has room in memory for so many samples, an hour at 1 kHz: what comes behind is not looked at.

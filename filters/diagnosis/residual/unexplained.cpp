@@ -21,7 +21,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Of those that are measured; 0 when none is.
+// Median of the values that are measured; 0 if none is.
 double usual_of(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   return values.empty() ? 0.0 : median(std::move(values));
@@ -165,8 +165,7 @@ void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
   }
 }
 
-// Of means of a second. What sways is part of the noise as block means have it, so with harmonics it is of
-// those.
+// Describes means of a second, or block means with harmonics: what sways is part of the noise of block means.
 void describe_share(std::span<const double> error, std::span<const double> left, double period_s,
                     const NoiseFit& noise, const BlockGrid& grid, Unexplained& found) {
   const bool sways = !noise.shape.harmonics.empty();

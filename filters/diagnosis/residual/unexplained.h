@@ -20,7 +20,7 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
                                  const std::vector<SpectralLine>& peaks,
                                  std::span<const NoiseChange> changes = {});
 
-// Of the longest record's error, peaks looked for in what is left (none on a rate table).
+// Describes the longest record's error. Peaks are sought in what is left (none on a rate table).
 Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
                           double significance, const std::vector<NoiseChangeIn>& noise_changes);
 

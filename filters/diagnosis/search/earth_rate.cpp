@@ -65,7 +65,7 @@ bool may_be_tilt(const BlockData& data, std::size_t channel) {
   const double mean = all.mean();
   const bool all_of_gravity = std::abs(std::sqrt(mean) - g) < kOfGravity * g;
   if (!all_of_gravity) return count < 3;
-  // Of a triad the force itself may not change, whichever axis drives it.
+  // The magnitude of a triad's specific force may not change, whichever axis drives it.
   all.array() -= mean;
   const double changes = all.squaredNorm() / (4.0 * mean);
   const double moves = variance_of(mine.values) * static_cast<double>(mine.values.size());

@@ -26,14 +26,15 @@ struct EarthRateOptions {
 // alone that stays within g leaves that open: true. channel: an acceleration.
 bool may_be_tilt(const BlockData& data, std::size_t channel);
 
-// Of a linear (or lagged) effect of this acceleration, rad/s per unit of the channel.
+// Largest slope that the Earth's rate gives a linear (or lagged) effect of this acceleration, rad/s per unit of
+// the channel.
 double largest_earth_rate(const std::string& channel, const EarthRateOptions& options);
 
 // Sets the reading of the effects of acceleration that the Earth's rate would explain, within two standard
 // errors of their coefficients. data: reconstructed.
 void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, SearchResult& found);
 
-// For people: what is read as the Earth's rate, and how that would be told; empty without.
+// Sentence for users: what is read as the Earth's rate, and which capture would show it. Empty if nothing is.
 std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& options,
                                 const SearchResult& found);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coefficients beside what makers specify. A channel that drifts with a thermometer that was not logged, or
+// Coefficients compared with what makers specify. A channel that drifts with a thermometer that was not logged, or
 // with the sensor's own ageing, explains the bias with a coefficient that no gyro has; on the next capture,
 // where it moves by itself, the correction by it is many times the error.
 #pragma once

@@ -47,8 +47,8 @@ void refine_transition(const BlockData& data, const NoiseShape& shape, std::vect
     const Candidate now = model[at];
     best(&Candidate::centre, std::max(channel.low + kEdge * span, now.centre - now.half_width),
          std::min(channel.high - kEdge * span, now.centre + now.half_width));
-    // Of the widths that leave both levels to be seen, see levels_seen(): a wider one may be a little
-    // likelier, and then it is the widest of these that the law is, not something else.
+    // Only widths that leave both levels visible, see levels_seen(): a wider one may be a little likelier, and then
+    // the law is the widest of these and not something else.
     const double centre = model[at].centre;
     best(&Candidate::half_width, std::max(kNarrowest * span, now.half_width / 2.0),
          std::min({kWidest * span, now.half_width * 2.0, centre - channel.low, channel.high - centre}));

@@ -30,7 +30,7 @@ std::vector<NoiseShape> spread(const NoiseShape& shape, bool thorough) {
       shapes.push_back(each);
     }
   }
-  // A channel that goes up and down may be what a harmonic has been taken for.
+  // A harmonic may stand in for a channel that goes up and down.
   for (std::size_t i = 0; i < shape.harmonics.size(); ++i) {
     NoiseShape each = shape;
     each.harmonics.erase(each.harmonics.begin() + static_cast<std::ptrdiff_t>(i));
@@ -39,7 +39,7 @@ std::vector<NoiseShape> spread(const NoiseShape& shape, bool thorough) {
   return shapes;
 }
 
-// Of the square of what is left of the measurement, taken away by one column, or by two. Projected columns.
+// Reduction of the squared remainder of the measurement by one column, or by two. Columns are projected.
 double gain_of(const Eigen::VectorXd& xy, const Eigen::VectorXd& xx, Eigen::Index j) {
   return xx[j] > 0.0 ? xy[j] * xy[j] / xx[j] : 0.0;
 }

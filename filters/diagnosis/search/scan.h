@@ -30,7 +30,7 @@ class Scan {
 
   [[nodiscard]] std::size_t size() const { return candidates_.size(); }
 
-  // Further candidates; those of a shape that is there already are passed over.
+  // Further candidates; those of a shape that is there already are skipped.
   void add(const std::vector<Candidate>& more);
 
   // thorough: the full spread of noise models; otherwise a few of them.

@@ -15,9 +15,10 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kShortlist = 4;   // candidates of different shape that are refined at each step
-constexpr std::size_t kPairsTried = 2;  // beside the shortlist
-constexpr double kRise = 1.0;         // twice the log-likelihood that any change has to gain beyond its price
-constexpr double kLikeness = 6.0;     // loss below which another effect cannot be told from the chosen one
+constexpr std::size_t kPairsTried = 2;  // besides the shortlist
+constexpr double kRise = 1.0;  // twice the log-likelihood that any change has to gain beyond its price
+constexpr double kLikeness =
+    6.0;  // loss below which another effect cannot be distinguished from the chosen one
 constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision before the shape is refined
 constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
 constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
@@ -83,7 +84,7 @@ class EffectSearch {
     return ratio;
   }
 
-  // Whether with one of those beside it `candidate` is one law: what is proven then needs no second proof,
+  // Whether `candidate` is one law together with one of the others: what is proven then needs no second proof,
   // only what the Bayesian information criterion asks of one coefficient more.
   [[nodiscard]] bool completes_a_law(const Candidate& candidate, std::span<const Candidate> beside) const {
     if (std::any_of(beside.begin(), beside.end(),
@@ -105,7 +106,7 @@ class EffectSearch {
       const bool law = completes_a_law(model[i], std::span(model).first(i));
       sum -= complexity(model[i]) + (law ? std::log(n) : threshold(model[i]));
     }
-    // Of few points: Hurvich and Tsai's correction of the criterion, Biometrika 76, 1989.
+    // For few points: Hurvich and Tsai's correction of the criterion, Biometrika 76, 1989.
     const auto k = static_cast<double>(model.size()) + 2.0;
     return sum - 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
   }
@@ -142,8 +143,8 @@ class EffectSearch {
   }
 
   // What every gyro has is fitted jointly with the noise before the noise can swallow it: scale factor,
-  // misalignment, temperature to the second order. What does not pay is left out again, one at a time; the
-  // noise begins at what it is without them and from nothing, and the likelier one is taken.
+  // misalignment, temperature to the second order. What does not pay is dropped again, one at a time; the
+  // noise fit starts from the noise without them and from nothing, and the likelier result is used.
   void start_with_basics() {
     if (data_.reference < 0) return;
     Trial basics{model_, {}, 0.0};
@@ -216,7 +217,7 @@ class EffectSearch {
       model.push_back(each.candidate);
       if (each.with) model.push_back(last);
       Trial trial = refined(model, model.size() - 1, each.shape);
-      // A knock that does not last is no effect, nor does it speak against one that is hidden beside it.
+      // A knock that does not last is no effect, nor does it speak against one that it hides.
       if (last.form == Form::kStep && !proven(trial)) continue;
       if (trial.score > best.score) best = std::move(trial);
     }
@@ -263,7 +264,7 @@ class EffectSearch {
       const NoiseFit noise = fit_noise(data_.grid, design(data_, rest), noise_.shape);
       Chosen chosen{model_[i], 2.0 * (noise_.log_likelihood - noise.log_likelihood), 1.0};
       chosen.of_a_law = completes_a_law(model_[i], rest);
-      // Of a law whose other term is proven only this one was tried.
+      // Only this term was tried of a law whose other term is proven.
       chosen.p_value = chosen.of_a_law ? std::min(1.0, kProfiled * tail(chosen.likelihood_ratio, 1))
                                        : p_value(model_[i], chosen.likelihood_ratio);
       result.chosen.push_back(chosen);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The search of the diagnosis: basics first, then one loop that adds, swaps and removes effects by one score
-// in the innovations of the noise model, each fitted anew with the noise. What is added also has to predict
+// in the innovations of the noise model, each fitted together with the noise. What is added also has to predict
 // held-out blocks.
 #pragma once
 
@@ -15,7 +15,7 @@ namespace ifog {
 
 struct Chosen {
   Candidate candidate;
-  double likelihood_ratio = 0.0;  // twice the log-likelihood lost without it, noise fitted anew
+  double likelihood_ratio = 0.0;  // twice the log-likelihood lost without it, with the noise fitted again
   double p_value = 1.0;           // after correction for everything tried
   bool of_a_law = false;          // of two coefficients that are one law; see natural_pairs()
 };
