@@ -199,7 +199,8 @@ std::string channel_of(Table& table, const std::string& key, const std::string& 
   std::string channel = table.words(key);
   const std::string less = table.words(minus_key);
   if (less.empty()) return channel;
-  if (channel.empty()) table.fail(key, nullptr, "expected the channel that " + minus_key + " is taken from");
+  if (channel.empty())
+    table.fail(key, nullptr, "expected the channel that " + minus_key + " is subtracted from");
   return difference_of(channel, less);
 }
 

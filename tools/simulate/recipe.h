@@ -14,7 +14,7 @@ struct Recipe {
   std::string kind;  // a channel's shape, an effect's form, a motion's kind
   std::string name;  // of a channel: its column
   std::string axis;  // "" all axes
-  // "rate": the true rate of the axis, "rate_y" that of axis y; minus_channel is taken from `channel`.
+  // "rate": the true rate of the axis, "rate_y" that of axis y; minus_channel is subtracted from `channel`.
   std::string channel, with_channel, minus_channel;
   std::map<std::string, double> number;
   std::map<std::string, std::vector<double>> list;

@@ -128,8 +128,8 @@ RepairedChannel repaired_channel(const Record& record, const RecordChannel& chan
   if (samples == 0 || static_cast<double>(samples) > kMostFaults * static_cast<double>(readings)) return {};
   return {interpolated(record, column, fault),
           channel.name + where +
-              printed(" leaps away and back %zu time(s), for %zu sample(s) in all, first to %.6g: taken for "
-                      "faults of logging, interpolated for up to a minute",
+              printed(" leaps away and back %zu time(s), for %zu sample(s) in all, first to %.6g: treated "
+                      "as faults of logging, interpolated for up to a minute",
                       times, samples, column[first])};
 }
 

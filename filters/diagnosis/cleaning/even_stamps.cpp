@@ -31,7 +31,7 @@ bool keeps_a_beat(std::span<const double> time_s, const SampleClock& clock) {
 std::string in_words(const Record& record, const SampleClock& clock) {
   return record.name + printed(
                            ": the time stamps are up to %.3g ms off an even clock of %.6g Hz, so samples "
-                           "were taken by that clock, again behind each hole",
+                           "are placed by that clock, which restarts behind each hole",
                            1e3 * clock.worst_jitter_s, 1.0 / clock.period_s);
 }
 

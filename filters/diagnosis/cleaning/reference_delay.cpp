@@ -259,8 +259,7 @@ OwnedRecords align_references(OwnedRecords given) {
     const std::size_t jumps = leave_out_jumps(moved, record.rate_radps);
     record.reference_radps = moved;
     given.remarks.push_back(in_words(found, record.reference_name + given.of_several(record)));
-    if (jumps > 0)
-      given.remarks.back() += "; " + std::to_string(jumps) + " sample(s) where it jumps left out";
+    if (jumps > 0) given.remarks.back() += "; " + std::to_string(jumps) + " sample(s) dropped where it jumps";
     given.delays.push_back(std::move(found));
   }
   return given;

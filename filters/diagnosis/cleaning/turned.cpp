@@ -49,7 +49,7 @@ OwnedRecords without_turns(OwnedRecords given) {
     try {
       require_rest(rest, period_s, start_s);
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(std::string(error.what()) + ", or a reference rate beside it");
+      throw std::invalid_argument(std::string(error.what()) + ", or a reference rate");
     }
     Samples& rate = given.columns.emplace_back(record.rate_radps.size(), std::nan(""));
     for (const Stretch& part : rest.at_rest)

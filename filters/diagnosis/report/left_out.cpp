@@ -23,7 +23,7 @@ std::string named(const Effect& effect) {
 std::string harmful_in_words(const Effect& effect) {
   return "the innovations suggest " + named(effect) +
          ", but by its own error bar it is chance, or the daemon's own correction by it would leave a larger "
-         "error than none: left out";
+         "error than none: not used";
 }
 
 std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,
