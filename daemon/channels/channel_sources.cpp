@@ -29,7 +29,7 @@
 namespace ifog {
 namespace {
 
-constexpr auto kTurn = std::chrono::milliseconds(250);
+constexpr auto kSourceTurn = std::chrono::milliseconds(250);
 
 // The way of a value into the sensor's table: scaled, and refused where it cannot be.
 class Entrance {
@@ -172,7 +172,7 @@ struct CanGroup {
 
   void listen() {
     while (!transport->stopped()) {
-      const Delivery delivery = transport->read(kTurn);
+      const Delivery delivery = transport->read(kSourceTurn);
       for (const ifog_can_frame& frame : delivery.frames)
         for (auto& [in, channel] : channels)
           if (double value = 0.0; channel.decode(frame, value)) in.put(value, frame.arrival_ns);

@@ -15,10 +15,10 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kMostDifferences = 6;
-constexpr double kWholeTurn = 0.9;  // of the period, that a wrap jumps and the values reach
-constexpr double kInside = 0.95;    // share of the values that lie within the turn
-constexpr double kRounding = 1e-3;  // of the period, beyond its ends
-constexpr double kUnsure = 0.01;    // share of steps too long to say which way the angle went
+constexpr double kWholeTurn = 0.9;    // of the period, that a wrap jumps and the values reach
+constexpr double kInsideTurn = 0.95;  // share of the values that lie within the turn
+constexpr double kRounding = 1e-3;    // of the period, beyond its ends
+constexpr double kUnsure = 0.01;      // share of steps too long to say which way the angle went
 
 double period_by_unit(const std::string& channel) {
   const std::string unit = unit_of(channel);
@@ -39,7 +39,7 @@ std::optional<Turn> turn_of(std::span<const double> values, double period) {
     const auto finite =
         std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
     const auto inside = std::count_if(values.begin(), values.end(), [&](double v) { return turn.has(v); });
-    if (static_cast<double>(inside) >= kInside * static_cast<double>(finite)) return turn;
+    if (static_cast<double>(inside) >= kInsideTurn * static_cast<double>(finite)) return turn;
   }
   return std::nullopt;
 }

@@ -18,7 +18,7 @@ constexpr double kHeldShare = 0.1;
 // over this keep more than half of the power of the ones, and less of the others.
 constexpr double kSwing_s = 0.5;
 // Twice the log-likelihood that a slope has to gain: one in a million by chance, with a hundred looks.
-constexpr double kCertain = 40.0;
+constexpr double kCertainMotion = 40.0;
 constexpr double kOfRate = 0.02;  // of the rate's variance, below which nothing is said
 // Phase velocities of surface waves, from soft soil to the mantle, m/s.
 constexpr double kSlowestWave = 80.0, kFastestWave = 8000.0;
@@ -92,7 +92,7 @@ std::string rotation_in_words(const BlockData& data, std::size_t c, Motion motio
   const Slope by_change = slope_of(data.grid, change_of(data.grid, value), data.grid.error);
   const bool change = by_change.gain > by_value.gain;
   const Slope& best = change ? by_change : by_value;
-  if (best.gain < kCertain || best.share < kOfRate) return "";
+  if (best.gain < kCertainMotion || best.share < kOfRate) return "";
   return printed("%.0f %% of the changes of the rate go with the %s of ", 100.0 * best.share,
                  change ? "change" : "value") +
          name + reading_of(motion, change, best.value) + ": that is rotation and stays in the rate";

@@ -13,9 +13,9 @@
 namespace ifog {
 namespace {
 
-constexpr double kGridFactor = 2.0;  // between the delays tried, from a block on
+constexpr double kDelayFactor = 2.0;  // between the delays tried, from a block on
 // Twice the log-likelihood that a delay has to gain: one in ten thousand by chance after some thirty tries.
-constexpr double kCertain = 24.0;
+constexpr double kCertainlyDelayed = 24.0;
 
 // Twice the log-likelihood of the model with the channel as it was so long before.
 class Profile {
@@ -76,15 +76,15 @@ std::vector<ChannelDelay> delayed_channels(const BlockData& data, const std::vec
     Profile profile(data, model, shape, c);
     const double none = profile.at(0.0);
     double best = 0.0, top = none;
-    for (double delay = grid.block_s; delay <= longest; delay *= kGridFactor)
+    for (double delay = grid.block_s; delay <= longest; delay *= kDelayFactor)
       for (const double each : {delay, -delay})
         if (const double value = profile.at(each); value > top) best = each, top = value;
-    if (top - none < kCertain) continue;
+    if (top - none < kCertainlyDelayed) continue;
     constexpr int kBits = 9;  // of the bracket, whose ends were tried
     std::uintmax_t most = 20;
     const auto [delay, lacking] = boost::math::tools::brent_find_minima(
-        [&](double at) { return -profile.at(at); }, std::min(best / kGridFactor, best * kGridFactor),
-        std::max(best / kGridFactor, best * kGridFactor), kBits, most);
+        [&](double at) { return -profile.at(at); }, std::min(best / kDelayFactor, best * kDelayFactor),
+        std::max(best / kDelayFactor, best * kDelayFactor), kBits, most);
     // By how far twice the log-likelihood falls by one: the standard deviation of a parabola.
     const double step = 0.1 * std::abs(delay), falls = -lacking - profile.at(delay + step);
     found.push_back({data.channels[c].name, delay, step / std::sqrt(std::max(falls, 1e-6))});

@@ -10,7 +10,7 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kSteps = 16;
+constexpr std::size_t kStampsApart = 16;
 constexpr double kOwnLengths = 4.0;
 
 // What one late stamp adds to a step it takes from the next, so sums of steps scatter as one does; of steps
@@ -18,9 +18,9 @@ constexpr double kOwnLengths = 4.0;
 bool keeps_a_beat(std::span<const double> time_s, const SampleClock& clock) {
   const double period = clock.period_s;
   double one = 0.0, many = 0.0;
-  for (std::size_t i = kSteps; i < time_s.size(); i += kSteps) {
+  for (std::size_t i = kStampsApart; i < time_s.size(); i += kStampsApart) {
     const double step = time_s[i] - time_s[i - 1] - period;
-    const double sum = time_s[i] - time_s[i - kSteps] - static_cast<double>(kSteps) * period;
+    const double sum = time_s[i] - time_s[i - kStampsApart] - static_cast<double>(kStampsApart) * period;
     if (std::abs(sum) > 2.0 * period) continue;  // a hole
     one += step * step;
     many += sum * sum;

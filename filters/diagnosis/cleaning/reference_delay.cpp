@@ -26,8 +26,8 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kMost = 1U << 17U;  // steps that the delay is sought on
-constexpr std::size_t kLeast = 200;       // and the fewest that tell
+constexpr std::size_t kMostDelaySteps = 1U << 17U;  // steps that the delay is sought on
+constexpr std::size_t kLeast = 200;                 // and the fewest that tell
 constexpr int kRounds = 20;
 constexpr double kSettled = 1e-5;       // of a step
 constexpr double kCertainDelay = 25.0;  // twice the log-likelihood, beyond what the lags tried bring
@@ -68,7 +68,7 @@ std::optional<Pair> pair_of(const Record& record) {
     period_s = sample_clock(record.time_s).period_s;
     if (period_s > kSlowest_s) return std::nullopt;
     const Samples rate = on_even_grid(record, period_s, record.rate_radps);
-    const std::size_t count = (rate.size() + kMost - 1) / kMost;
+    const std::size_t count = (rate.size() + kMostDelaySteps - 1) / kMostDelaySteps;
     pair.rate = means(rate, count);
     Samples reference = on_even_grid(record, period_s, record.reference_radps);
     pair.reference = means(reference, count);
@@ -273,7 +273,7 @@ constexpr std::size_t kRings = 12;      // samples on either side: half the widt
 constexpr double kMostOfJumps = 0.25;
 // Ratio of the fourth difference to the second: small for what is smooth over a few samples, two to six at a jump
 // or a kink.
-constexpr double kRough = 1.0;
+constexpr double kRoughness = 1.0;
 constexpr std::size_t kEnough = 50000;  // steps, to tell the noise by
 
 // Noise of one sample, by the median difference of neighbours.
@@ -302,7 +302,7 @@ std::size_t leave_out_jumps(Samples& reference, std::span<const double> rate) {
     double second = 0.0;
     for (std::size_t k = i - 1; k <= i + 1; ++k)
       second = std::max(second, std::abs(x[k - 1] - 2.0 * x[k] + x[k + 1]));
-    if (fourth < kRough * second) continue;
+    if (fourth < kRoughness * second) continue;
     std::fill(out.begin() + static_cast<std::ptrdiff_t>(i < kRings ? 0 : i - kRings),
               out.begin() + static_cast<std::ptrdiff_t>(std::min(n, i + kRings + 1)), std::uint8_t{1});
   }

@@ -26,8 +26,8 @@ struct Sums {
   }
 };
 
-// Weights of the steps that the phases now and before lie between; the first has no column, as it is zero.
-struct Weights {
+// StepWeights of the steps that the phases now and before lie between; the first has no column, as it is zero.
+struct StepWeights {
   std::array<std::pair<Eigen::Index, double>, 4> entry{};
   std::size_t count = 0;
 
@@ -45,7 +45,7 @@ std::array<Sums, kRampParts> sums_by_part(const std::vector<PhasedRecord>& recor
   for (const PhasedRecord& record : records) {
     const std::size_t n = record.record->time_s.size();
     each_phase_step(record, [&](std::size_t i, const PhaseStep& step) {
-      Weights weights;
+      StepWeights weights;
       weights.add(step.now, steps, 1.0 / step.dt_s);
       weights.add(step.before, steps, -1.0 / step.dt_s);
       Sums& sums = parts[ramp_part(i, n)];

@@ -53,7 +53,7 @@ namespace {
 constexpr double kOverOthers = 30.0;
 // Slower sensors cannot show a ramp, and nothing is said of it.
 constexpr double kQuickSensor_hz = 20.0;
-constexpr double kCertain = 3.0;  // standard errors of the table
+constexpr double kCertainTable = 3.0;  // standard errors of the table
 // The ramp's phase is the angle's, and stays it: a tenth of a cycle in 40 min is more than the one that was
 // measured walks. A line that walks more, of a swaying structure or a machine, follows itself.
 constexpr double kMostWalk = 0.002;  // cycles/sqrt(s)
@@ -216,7 +216,8 @@ std::optional<RampFit> fit_of(const std::vector<Record>& records, std::size_t at
   const Phase phase = phase_of(part, comb);
   const RampSettings settings{comb.cycles_per_rad, cycle_of(table.angle_rad),
                               std::sqrt(table.left() / table.samples * part.sample_s()), phase.walk};
-  if (rms(settings.angle_rad) < kCertain * table.angle_error || phase.walk > kMostWalk) return std::nullopt;
+  if (rms(settings.angle_rad) < kCertainTable * table.angle_error || phase.walk > kMostWalk)
+    return std::nullopt;
   RampFit fit;
   fit.found = {effect_of(comb, settings, phase), chance_of(comb), 0.0, table.ratio()};
   correct_all(records, at, part, comb, settings, fit);

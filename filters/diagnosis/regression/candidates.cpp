@@ -6,16 +6,18 @@
 
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/effects/meaning.h"
+#include "filters/units/field_units.h"
 
 namespace ifog {
 namespace {
-constexpr double kHour = 3600.0;
+
 constexpr double kGridFactor = 2.5;    // between time constants: neighbours correlate above 0.95
 constexpr double kBlocksOfRate = 2.0;  // the shortest smoothing of a derivative: beyond a thermometer's steps
 // What warms up has a mass. What settles faster is how the record began.
 constexpr double kShortestWarmUp_s = 10.0;
 constexpr double kHighest = 0.5;  // of a sample: a band power of the frequencies near half the sample rate
-constexpr double kInside = 0.1;   // of the range from its edge: of a transition both levels have to be seen
+constexpr double kCentreInside =
+    0.1;  // of the range from its edge: of a transition both levels have to be seen
 // Twice log-likelihood that a bolder claim has to gain: a gradient is bolder than a temperature, another axis
 // than the own, a product of two components of a field, which has a direction, than their sum, and a fringe,
 // whose period is free, than a polynomial.
@@ -79,11 +81,11 @@ void add_transitions(const BlockData& data, std::size_t channel, std::vector<Can
   if (kind_of(source.name) != ChannelKind::kTemperature) return;
   const double span = source.high - source.low;
   for (const double width : {0.07, 0.15, 0.32}) {
-    const double room = 1.0 - 2.0 * kInside;
+    const double room = 1.0 - 2.0 * kCentreInside;
     const double steps = std::ceil(room / (1.3 * width));
     for (double i = 0.0; i <= steps; i += 1.0) {
       Candidate candidate = candidate_of(Form::kTransition, channel);
-      candidate.centre = source.low + span * (kInside + room * i / steps);
+      candidate.centre = source.low + span * (kCentreInside + room * i / steps);
       candidate.half_width = width * span;
       found.push_back(candidate);
     }

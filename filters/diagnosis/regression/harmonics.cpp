@@ -24,25 +24,25 @@ constexpr std::size_t kFewestBlocks = 512;
 constexpr std::size_t kMostOrders = 6;
 constexpr double kOfHarmonic = 3.0;  // parameters
 constexpr double kSmallWalk = 1e-5, kSmallFlicker = 1e-3;
-constexpr double kRough = 1.4;
+constexpr double kRoughStep = 1.4;
 constexpr double kFine = 1.05;
 
 // Spectrum of the innovations, divided by that of white noise of the same power; bins 0 … length / 2. Empty if an
 // innovation is not a number.
-struct Periodogram {
+struct WhiteSpectrum {
   std::vector<double> power;
   double ordinates = 1.0;  // independent ones a bin
   [[nodiscard]] double cycles(double bin) const { return 0.5 * bin / static_cast<double>(power.size() - 1); }
 };
 
-Periodogram of_innovations(const BlockGrid& grid, const Columns& columns, const NoiseShape& shape) {
+WhiteSpectrum of_innovations(const BlockGrid& grid, const Columns& columns, const NoiseShape& shape) {
   Columns white = columns;
   Whitening(grid, shape).apply(white);
   const Eigen::VectorXd left = left_by(white.rightCols(white.cols() - 1), white.col(0));
   if (!std::isfinite(left.squaredNorm())) return {};
   const std::size_t length = std::bit_ceil(grid.longest());
-  Periodogram found{std::vector<double>(length / 2 + 1, 0.0),
-                    static_cast<double>(grid.used()) / static_cast<double>(length)};
+  WhiteSpectrum found{std::vector<double>(length / 2 + 1, 0.0),
+                      static_cast<double>(grid.used()) / static_cast<double>(length)};
   for (const BlockRange& record : grid.records) {
     std::vector<double> values(length, 0.0);
     for (std::size_t b = record.first; b < record.end; ++b)
@@ -63,7 +63,7 @@ struct Hump {
 };
 
 // Half of the short stretches of the spectrum lie below it.
-double floor_of(const Periodogram& spectrum, std::size_t first) {
+double floor_of(const WhiteSpectrum& spectrum, std::size_t first) {
   constexpr std::size_t kBins = 16;
   std::vector<double> means;
   for (std::size_t k = first; k + kBins <= spectrum.power.size(); k += kBins) {
@@ -75,7 +75,7 @@ double floor_of(const Periodogram& spectrum, std::size_t first) {
 }
 
 // The stretch of the spectrum that stands highest above the floor for its width (Whittle's likelihood).
-std::optional<Hump> highest_hump(const Periodogram& spectrum, const HarmonicLimits& limits) {
+std::optional<Hump> highest_hump(const WhiteSpectrum& spectrum, const HarmonicLimits& limits) {
   const std::size_t n = spectrum.power.size();
   if (n < 2) return std::nullopt;
   const auto first = static_cast<std::size_t>(std::ceil(limits.least_cycles / spectrum.cycles(1.0)));
@@ -131,7 +131,7 @@ NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& 
         if (value > best.log_likelihood) best = {start, value, 0.0};
       }
     }
-    best = climb(grid, columns, best.shape, kRough, true);
+    best = climb(grid, columns, best.shape, kRoughStep, true);
     if (best.log_likelihood > likelier.log_likelihood) likelier = best;
   }
   return likelier;
@@ -145,7 +145,7 @@ bool is_better(const BlockGrid& grid, const NoiseFit& one, const NoiseFit& than)
 NoiseFit with_less(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, std::size_t harmonic) {
   NoiseShape shape = fit.shape;
   shape.harmonics.erase(shape.harmonics.begin() + static_cast<std::ptrdiff_t>(harmonic));
-  const NoiseFit without = climb(grid, columns, shape, kRough, true);
+  const NoiseFit without = climb(grid, columns, shape, kRoughStep, true);
   return is_better(grid, without, fit) ? without : fit;
 }
 
@@ -168,7 +168,7 @@ NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const Noi
   if (grid.dwells || grid.longest() < kFewestBlocks) return fit;
   const HarmonicLimits limits = harmonic_limits(grid);
   NoiseFit best = fit;
-  if (!fit.shape.harmonics.empty()) best = climb(grid, columns, fit.shape, kRough, true);
+  if (!fit.shape.harmonics.empty()) best = climb(grid, columns, fit.shape, kRoughStep, true);
   while (best.shape.harmonics.size() < kMostOrders) {
     const std::optional<Hump> hump = highest_hump(of_innovations(grid, columns, best.shape), limits);
     if (!hump || hump->gain < cost(grid, kOfHarmonic)) break;

@@ -81,7 +81,7 @@ namespace {
 constexpr double kLeastWalk = 1e-10;
 constexpr double kLeastFlicker = 1e-6;
 // Above this there is no white noise left to be relative to.
-constexpr double kMost = 1e6;
+constexpr double kMostNoise = 1e6;
 
 // One parameter a factor further; false where that leads nowhere.
 using Way = std::function<bool(NoiseShape&, double)>;
@@ -90,7 +90,7 @@ Way way_of(double NoiseShape::*parameter) {
   const double least = parameter == &NoiseShape::walk ? kLeastWalk : kLeastFlicker;
   return [=](NoiseShape& shape, double factor) {
     shape.*parameter *= factor;
-    return shape.*parameter >= least && (factor < 1.0 || shape.*parameter <= kMost);
+    return shape.*parameter >= least && (factor < 1.0 || shape.*parameter <= kMostNoise);
   };
 }
 
@@ -98,7 +98,7 @@ void add_ways(const BlockGrid& grid, std::size_t harmonic, std::vector<Way>& way
   const HarmonicLimits limits = harmonic_limits(grid);
   ways.emplace_back([=](NoiseShape& shape, double factor) {
     shape.harmonics[harmonic].variance *= factor;
-    return factor < 1.0 || shape.harmonics[harmonic].seen_variance() <= kMost;
+    return factor < 1.0 || shape.harmonics[harmonic].seen_variance() <= kMostNoise;
   });
   ways.emplace_back([=](NoiseShape& shape, double factor) {
     double& decay = shape.harmonics[harmonic].decay;
@@ -119,9 +119,9 @@ bool against_white(NoiseShape& shape, double factor) {
   shape.flicker *= factor;
   for (DampedHarmonic& each : shape.harmonics) each.variance *= factor;
   return factor < 1.0 ||
-         (shape.walk <= kMost && shape.flicker <= kMost &&
+         (shape.walk <= kMostNoise && shape.flicker <= kMostNoise &&
           std::all_of(shape.harmonics.begin(), shape.harmonics.end(),
-                      [](const DampedHarmonic& each) { return each.seen_variance() <= kMost; }));
+                      [](const DampedHarmonic& each) { return each.seen_variance() <= kMostNoise; }));
 }
 
 std::vector<Way> ways_of(const BlockGrid& grid, const NoiseShape& shape, bool with_harmonics) {

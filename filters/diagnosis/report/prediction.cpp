@@ -16,7 +16,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kSteps = 4000.0;  // of a capture, for the noise
+constexpr double kCaptureSteps = 4000.0;  // of a capture, for the noise
 
 // Variance that a first-order process with the given factor and drive brings into the sum of weight times
 // value. A random walk (factor 1) starts anywhere: the weights sum to zero.
@@ -31,23 +31,23 @@ double brought_by(const std::vector<double>& weight, double factor, double drive
   return variance;
 }
 
-struct Weights {
+struct HeadingWeights {
   std::vector<double> of_step;  // s: the heading error is their sum with the rate's error
   double step_s;
 };
 
 // Sums to zero: what stays the same is aligned out.
-Weights heading_weights(double aligned_s, double after_s, double step_s, std::size_t most) {
+HeadingWeights heading_weights(double aligned_s, double after_s, double step_s, std::size_t most) {
   const auto aligned = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(aligned_s / step_s)));
   auto moving = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(after_s / step_s)));
   moving = std::min(moving, most > aligned ? most - aligned : 1);
-  Weights weights{std::vector<double>(aligned + moving, step_s), step_s};
+  HeadingWeights weights{std::vector<double>(aligned + moving, step_s), step_s};
   for (std::size_t k = 0; k < aligned; ++k)
     weights.of_step[k] = -step_s * static_cast<double>(moving) / static_cast<double>(aligned);
   return weights;
 }
 
-double along(const Weights& weights, const Eigen::VectorXd& column) {
+double along(const HeadingWeights& weights, const Eigen::VectorXd& column) {
   double sum = 0.0;
   const auto n = std::min(weights.of_step.size(), static_cast<std::size_t>(column.size()));
   for (std::size_t k = 0; k < n; ++k) sum += weights.of_step[k] * column[static_cast<Eigen::Index>(k)];
@@ -139,7 +139,7 @@ void add_loop(const BlockData& data, const Hysteresis& known, Eigen::VectorXd& t
 }
 
 // Mean square over the phase of a line of this frequency and amplitude.
-double line_square(const Weights& weights, const Effect& line) {
+double line_square(const HeadingWeights& weights, const Effect& line) {
   const double turn = 2.0 * std::numbers::pi * parameter(line, "frequency_hz") * weights.step_s;
   const double half = 0.5 * turn;
   const double kept = half < 1e-9 ? 1.0 : std::sin(half) / half;
@@ -153,7 +153,8 @@ double line_square(const Weights& weights, const Effect& line) {
 }  // namespace
 
 double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s) {
-  const double steps = std::ceil(aligned_s / std::min((aligned_s + after_s) / kSteps, 0.1 * aligned_s));
+  const double steps =
+      std::ceil(aligned_s / std::min((aligned_s + after_s) / kCaptureSteps, 0.1 * aligned_s));
   const double step = aligned_s / steps;
   const std::vector<double> weight = heading_weights(aligned_s, after_s, step, SIZE_MAX).of_step;
   double square = 0.0;
@@ -204,7 +205,7 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
   const auto n = static_cast<Eigen::Index>(on.gradient.cols());
   const bool with_covariance = n > 0 && diagnosis.covariance.size() == static_cast<std::size_t>(n * n);
   for (const double horizon : after_s) {
-    const Weights weights = heading_weights(aligned_s, horizon, data.grid.block_s, data.grid.size());
+    const HeadingWeights weights = heading_weights(aligned_s, horizon, data.grid.block_s, data.grid.size());
     double square = heading_variance(diagnosis.noise_posterior, aligned_s, horizon);
     if (with_covariance) {
       Eigen::VectorXd g(n);

@@ -10,7 +10,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kWidest = 0.5;       // of the largest rate
+constexpr double kWidestZone = 0.5;   // of the largest rate
 constexpr double kFactor = 1.15;      // between widths that are independent tries
 constexpr double kShare = 0.1;        // of the significance: one question among all others
 constexpr double kWithoutOne = 12.0;  // twice the log-likelihood that all passages but any one have to gain
@@ -79,7 +79,7 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   for (const Samples& rate : rates)
     for (const double each : rate)
       if (std::isfinite(each)) most = std::max(most, std::abs(each));
-  std::vector<Slow> slow = slow_samples(errors, rates, kWidest * most);
+  std::vector<Slow> slow = slow_samples(errors, rates, kWidestZone * most);
   leave_out_noise(slow);
   std::sort(slow.begin(), slow.end(),
             [](const Slow& a, const Slow& b) { return std::abs(a.rate) < std::abs(b.rate); });
@@ -93,7 +93,7 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   zone.half_width = std::abs(slow[inside - 1].rate);
   zone.ratio = *best / white_variance;
   const double tries = independent_columns(static_cast<std::size_t>(
-      std::log(kWidest * most / std::max(std::abs(slow.front().rate), 1e-3 * most)) / std::log(kFactor)));
+      std::log(kWidestZone * most / std::max(std::abs(slow.front().rate), 1e-3 * most)) / std::log(kFactor)));
   // The width between its neighbours is a second parameter.
   zone.p_value = std::min(1.0, kProfiled * tail(zone.ratio, 2) * tries);
   if (zone.p_value > kShare * significance) return std::nullopt;

@@ -12,7 +12,7 @@ namespace {
 
 // Half widths of the play, of the channel's range: neighbours correlate above 0.9.
 constexpr std::array kShares = {0.05, 0.07, 0.1, 0.14, 0.19, 0.25, 0.33};
-constexpr double kCertain = 0.1;         // of the significance: nothing is corrected, so it has to be sure
+constexpr double kCertainLoop = 0.1;     // of the significance: nothing is corrected, so it has to be sure
 constexpr double kLoopParameters = 3.0;  // its size, its width, and the channel's linear effect
 
 bool may_have_a_loop(const BlockData& data, std::size_t channel) {
@@ -104,7 +104,7 @@ std::optional<Hysteresis> find_hysteresis(const BlockData& data, const std::vect
     beside.push_back(linear);
     auto [loop, with] = likeliest_loop(data, beside, c, noise.shape);
     loop.likelihood_ratio = 2.0 * (with.log_likelihood - noise.log_likelihood);
-    const bool certain = tail(loop.likelihood_ratio, 2) * tries <= kCertain * significance;
+    const bool certain = tail(loop.likelihood_ratio, 2) * tries <= kCertainLoop * significance;
     if (!certain && !(bends && loop.likelihood_ratio + each_parameter * saved > 0.0)) continue;
     if (!found || loop.likelihood_ratio > found->likelihood_ratio) found = loop;
   }

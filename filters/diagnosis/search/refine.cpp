@@ -15,9 +15,9 @@ namespace {
 
 // Half a per cent of a time constant: what the likelihood tells apart of even a strong effect.
 constexpr int kBits = 11;
-constexpr double kEdge = 0.05;       // of the range: nearer to its edge no middle of a transition
-constexpr double kWidest = 0.5;      // of the range
-constexpr double kNarrowest = 0.02;  // likewise
+constexpr double kEdge = 0.05;             // of the range: nearer to its edge no middle of a transition
+constexpr double kWidestTransition = 0.5;  // of the range
+constexpr double kNarrowest = 0.02;        // likewise
 
 // Brent's minimum of minus the log-likelihood of the columns that `with` makes of a value between low and high.
 template <class With>
@@ -51,7 +51,8 @@ void refine_transition(const BlockData& data, const NoiseShape& shape, std::vect
     // the law is the widest of these and not something else.
     const double centre = model[at].centre;
     best(&Candidate::half_width, std::max(kNarrowest * span, now.half_width / 2.0),
-         std::min({kWidest * span, now.half_width * 2.0, centre - channel.low, channel.high - centre}));
+         std::min(
+             {kWidestTransition * span, now.half_width * 2.0, centre - channel.low, channel.high - centre}));
   }
 }
 
