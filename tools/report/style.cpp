@@ -26,7 +26,7 @@ constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kDayligh
 
 }  // namespace
 
-std::string page_style() { return std::string(kReportStyle) + kChartStyle; }
+std::string page_style() { return std::string(kReportStyle).append(kChartStyle); }
 
 std::string page_script() { return kReportScript; }
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "drivers/capture/checks/row_checks.h"
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/csv_header.h"
 #include "drivers/capture/csv/csv_piece.h"
 #include "drivers/capture/csv/line_form.h"
