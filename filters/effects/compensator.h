@@ -71,7 +71,6 @@ class Compensator {
   // which must have had one.
   void begin(double since_power_up_s) noexcept;
   void step(const CompensatorInput& in, CompensatorOutput& out) noexcept;
-  void restart() noexcept;
 
   // After a reload: channels and the shapes that both models share continue where the previous compensator is,
   // so that a new model makes no transient of its own.

@@ -225,20 +225,6 @@ void Compensator::begin(double since_power_up_s) noexcept {
     for (Factor& factor : term.factors) factor.shape.begin(since_power_up_s);
 }
 
-void Compensator::restart() noexcept {
-  begun_ = false;
-  for (Held& held : held_) held = {};
-  for (DelayedReading& each : delayed_) each.restart();
-  for (Term& term : terms_) {
-    for (Factor& factor : term.factors) {
-      factor.shape.restart();
-      factor.readings = {};
-      factor.difference.reset();
-    }
-  }
-  for (Ramp& ramp : ramps_) ramp.tracker.restart();
-}
-
 void Compensator::take_over(const Compensator& previous) noexcept {
   begun_ = false;
   for (Ramp& ramp : ramps_) {

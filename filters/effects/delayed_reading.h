@@ -40,7 +40,6 @@ class DelayedReading {
   }
   // There is no new reading: it stands at the last one.
   double hold(double dt_s) noexcept { return step(latest_, dt_s); }
-  void restart() noexcept { count_ = 0; }
 
   // Continues another compensator's reading, which has the same delay.
   void take_over(const DelayedReading& previous) noexcept {

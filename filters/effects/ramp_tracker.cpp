@@ -175,8 +175,6 @@ double RampTracker::at(double cycles) const noexcept {
   return table[i] + (table[i + 1] - table[i]) * (position - static_cast<double>(i));
 }
 
-double RampTracker::phase() const noexcept { return wrapped(phase_ + (locked_ ? offset_ : 0.0)); }
-
 // Through time in which nothing was measured the angle is guessed from the mean rate, and no better than the
 // rate scatters.
 void RampTracker::pass_over(double missed_s) noexcept {
@@ -380,8 +378,6 @@ void RampTracker::recentre(std::size_t middle) noexcept {
   near_ = moved;
   first_near_ = (first_near_ + kSteps + middle * near_by_.stride - kNear / 2 * near_by_.stride) % kSteps;
 }
-
-void RampTracker::restart() noexcept { static_cast<RampState&>(*this) = RampState{}; }
 
 bool RampTracker::take_over(const RampTracker& previous) noexcept {
   if (settings_.cycles_per_rad != previous.settings_.cycles_per_rad ||

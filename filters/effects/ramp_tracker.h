@@ -86,9 +86,6 @@ class RampTracker : private RampState {
   // exception.
   double step(const RampSample& in) noexcept;
   [[nodiscard]] bool locked() const noexcept { return locked_; }
-  // Phase of the ramp, cycles in [0, 1); k times the angle turned since the start where it is not locked.
-  [[nodiscard]] double phase() const noexcept;
-  void restart() noexcept;
   // The same ramp of another tracker continues where that one is. False when it is not the same.
   bool take_over(const RampTracker& previous) noexcept;
 

@@ -23,10 +23,6 @@ Eigen::VectorXd CholeskyFactor::solve(const Eigen::VectorXd& b) const { return f
 
 Eigen::MatrixXd CholeskyFactor::solve(const Eigen::MatrixXd& b) const { return factor_.solve(b); }
 
-Eigen::MatrixXd CholeskyFactor::times(const Eigen::MatrixXd& columns) const {
-  return factor_.matrixL() * columns;
-}
-
 double CholeskyFactor::log_determinant() const { return factor_.matrixLLT().diagonal().array().log().sum(); }
 
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a) {

@@ -32,8 +32,6 @@ class CholeskyFactor {
   [[nodiscard]] bool exists() const;
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
-  // L times `columns`: of independent ones, such of covariance A.
-  [[nodiscard]] Eigen::MatrixXd times(const Eigen::MatrixXd& columns) const;
   // Log determinant of L, half of A's.
   [[nodiscard]] double log_determinant() const;
 

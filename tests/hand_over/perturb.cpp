@@ -108,7 +108,7 @@ IFOG_BEFORE(int, nanosleep, (const timespec* span, timespec* left), (span, left)
 IFOG_BEFORE(int, clock_nanosleep, (clockid_t clock, int flags, const timespec* span, timespec* left),
             (clock, flags, span, left))
 
-// Of the system calls that the program makes by number, the futex: before it sleeps and before it wakes.
+// The futex among the system calls that the program makes by number: before it sleeps and before it wakes.
 extern "C" long syscall(long number, ...) {
   static long (*function)(long, ...) = nullptr;
   if (function == nullptr) function = next<long (*)(long, ...)>("syscall");

@@ -187,10 +187,6 @@ NoiseLikelihood::Maximum NoiseLikelihood::maximise_with(Term held, double varian
   return climb(TermSet(allowed).reset(held), in_units(start), kFromNear);
 }
 
-double NoiseLikelihood::log_likelihood(const TermVariances& at) const {
-  return evaluate(in_units(at), TermSet()).log_likelihood;
-}
-
 Eigen::Matrix4d NoiseLikelihood::information(const TermVariances& at) const {
   Eigen::Matrix4d information = evaluate(in_units(at), TermSet().set()).information;
   for (std::size_t t = 0; t < kTerms; ++t)

@@ -37,7 +37,6 @@ class NoiseLikelihood {
   [[nodiscard]] Maximum maximise_with(Term held, double variance, TermSet allowed,
                                       const TermVariances& near) const;
 
-  [[nodiscard]] double log_likelihood(const TermVariances& at) const;
   // Fisher information of the variances, at these.
   [[nodiscard]] Eigen::Matrix4d information(const TermVariances& at) const;
 

@@ -101,12 +101,6 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
 
 double complexity(const Candidate& candidate) { return complexity_of_form(candidate) + candidate.of_channel; }
 
-double complexity(const std::vector<Candidate>& effects) {
-  double sum = 0.0;
-  for (const Candidate& each : effects) sum += complexity(each);
-  return sum;
-}
-
 Effect effect_of(const BlockData& data, const Candidate& candidate) {
   Effect effect;
   effect.form = name_of(candidate.form);

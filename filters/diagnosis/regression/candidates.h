@@ -94,7 +94,6 @@ Columns regressors(const BlockData& data, const Candidate& candidate);
 
 // Preference in units of twice the log-likelihood: of two that fit alike the plainer one is chosen.
 double complexity(const Candidate& candidate);
-double complexity(const std::vector<Candidate>& effects);  // of all of them
 
 // With names, references and units, coefficients still zero.
 Effect effect_of(const BlockData& data, const Candidate& candidate);

@@ -27,7 +27,7 @@ TEST(Confidence, ChiSquaredQuantilesAreTheTables) {
               std::pow(1.0 - 2.0 / 9e6 + std::sqrt(2.0 / 9e6), 3), 1e-8);
 }
 
-// Of two degrees of freedom the tail is exp(-x/2), far beyond what 1 - p can tell from 1.
+// With two degrees of freedom the tail is exp(-x/2), far below what 1 - p can distinguish from 1.
 TEST(Confidence, ChiSquaredTailsAreTheTables) {
   EXPECT_NEAR(ifog::chi_squared_above(3.84146, 1.0), 0.05, 1e-6);
   EXPECT_NEAR(ifog::chi_squared_exceeded(0.05, 10.0), 18.3070, 5e-5);

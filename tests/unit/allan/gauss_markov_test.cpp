@@ -17,7 +17,7 @@ namespace {
 TEST(GaussMarkov, ItsAllanVarianceIsTheStandardsIntegral) {
   const double correlation = 300.0;
   for (const double m : {0.1, 1.0, 30.0, 300.0, 567.0, 3000.0, 1e5}) {
-    // Of the spectrum q²/(ω² + 1/T²), one-sided, against 2 sin⁴(πfm)/(πfm)².
+    // The one-sided spectrum q²/(ω² + 1/T²), weighted by 2 sin⁴(πfm)/(πfm)².
     double sum = 0.0;
     const double step = 2e-4;
     for (double log_f = std::log(1e-9); log_f < std::log(40.0 / m + 1.0); log_f += step) {

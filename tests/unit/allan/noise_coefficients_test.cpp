@@ -92,7 +92,7 @@ TEST(NoiseCoefficients, WhiteNoiseAloneShowsNothingElse) {
 }
 
 // Angle noise alone, long enough that the fit of a hundred thousand samples takes part: once, the fits at
-// τ far apart were taken for independent, and white rate noise was claimed in its place.
+// τ far apart were treated as independent, and white rate noise was claimed in its place.
 TEST(NoiseCoefficients, QuantisationAloneIsNoOtherTerm) {
   constexpr int kRecords = 30;
   int found = 0, others = 0;

@@ -102,7 +102,7 @@ Eigen::Matrix4d information_of_all(std::size_t samples, const TermVariances& tru
 }
 
 // Two terms that cross at an eighth of the record: of what all samples say of the slower one, the other
-// unknown, the spectrum keeps 95 to 99 %, and 91 % of white noise beside quantisation.
+// unknown, the spectrum keeps 95 to 99 %, and 91 % of white noise besides quantisation.
 TEST(NoiseSpectrum, LittleOfWhatAllSamplesSayIsLost) {
   constexpr std::size_t kSamples = 512;
   const double m = kSamples / 8.0;

@@ -73,7 +73,7 @@ TEST(SampleClock, SamplesLostAtRandomAmongStampsThatScatterAreFound) {
       EXPECT_EQ(clock.gaps, gaps) << jitter << ' ' << lost;
       EXPECT_EQ(clock.missing, missing) << jitter << ' ' << lost;
       EXPECT_EQ(clock.first_gap, holes(time, clock).front().after);
-      // Without scatter to speak of a hole's length is left out as it is, with the jitter of its two stamps.
+      // Nearly without scatter, a hole's length is dropped as measured, with the jitter of its two stamps.
       EXPECT_NEAR(clock.period_s, 0.01, jitter < 0.1 ? 2e-6 : 2e-7) << jitter << ' ' << lost;
     }
   }
@@ -130,7 +130,7 @@ SampleClock clock_of_runs(unsigned seed, int runs, int samples, double apart_s) 
   return sample_clock(time);
 }
 
-// A device that begins anew behind a silence has another phase.
+// A device that restarts after a silence has another phase.
 TEST(SampleClock, BehindASilenceThePhaseIsAnother) {
   const SampleClock clock = clock_of_runs(5, 10, 2000, 31.4037);
   EXPECT_EQ(clock.gaps, 9U);

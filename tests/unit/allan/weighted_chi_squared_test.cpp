@@ -45,7 +45,7 @@ TEST(EstimateLaw, ASingleDifferenceHasOneDegree) {
   }
 }
 
-// A trace of quantisation beside a random walk changes nothing of what a few long averages do.
+// A trace of quantisation besides a random walk does not change how a few long averages scatter.
 TEST(EstimateLaw, ATraceOfQuantisationChangesNothing) {
   const std::vector<std::size_t> samples{4096};
   const std::size_t m = 512;

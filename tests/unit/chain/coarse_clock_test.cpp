@@ -12,7 +12,7 @@
 namespace ifog {
 namespace {
 
-// Of a tick that is a period or several: nothing is lost, and what has passed is what the clock's sum says.
+// The tick is one period or several: nothing is lost, and the time elapsed is what the clock's sum says.
 TEST(DevicesClock, ThatTicksHardlyMoreOftenThanItSamplesLosesNothing) {
   struct Coarse {
     double rate_hz, told_hz, tick_s;

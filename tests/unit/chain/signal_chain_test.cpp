@@ -43,7 +43,7 @@ TEST(SignalChain, DuringStartUpTheCompensatedRateIsPublishedAndSaidSo) {
     ASSERT_EQ((out.flags & kNoiseUnknown) != 0, i < 4096) << i;
     if (i < 4096) {
       ASSERT_EQ(out.estimate.denoised_radps[0], out.compensated_radps[0]);
-      // Of the first sample all that it says, then what neighbours differ by: once there are some, the noise.
+      // The first sample's own value, then the differences of neighbours; once there are some, the noise.
       ASSERT_GT(out.estimate.variance_rad2ps2[0], 0.0) << i;
       if (i <= 200) continue;
       ASSERT_NEAR(out.estimate.variance_rad2ps2[0], 1e-8, 0.3e-8) << i;
@@ -115,9 +115,9 @@ TEST(SignalChain, NewPartsGoOnWithTheAngle) {
   }
 }
 
-// An output filter makes neighbours alike: of three axes one has noise of colour 0.5. None is told what its
-// noise is like, and after four minutes each is denoised as by one that is: the bound is twice the steady
-// error of a Kalman filter told q and the noise's density at low frequency, sqrt(sqrt(q R)).
+// An output filter correlates neighbours: one of three axes has noise of colour 0.5. No noise is given, and
+// after four minutes each axis is denoised as with the true noise: the bound is twice the steady error of a
+// Kalman filter given q and the noise's density at low frequency, sqrt(sqrt(q R)).
 TEST(SignalChain, ColourOfOneAxisThatNobodyToldMakesNoAxisLouder) {
   ChainSettings unknown = settings(0.0, 0.0);
   unknown.facts.axes = 3;
@@ -184,7 +184,7 @@ double apart_after_a_turn(const ChainSettings& each, int at, unsigned seed) {
 // sensor is lags by seconds, T, behind which noise alone turns by sigma sqrt(T dt), 3e-4 degrees here: what
 // is lost is the mean of nine seeds.
 TEST(SignalChain, NewPartsInATurnKeepTheDenoisedAngle) {
-  for (const double q : {1e-10, 0.0})  // noise given, and learned anew from the first 0.3 s
+  for (const double q : {1e-10, 0.0})  // noise given, and learned again from the first 0.3 s
     for (const int at : {3'000, 3'002, 3'010, 3'100, 3'400, 3'900}) {
       if (test::kSanitized && at > 3'010) continue;
       ChainSettings each = settings(q);

@@ -36,7 +36,7 @@ ChainSettings unlike(bool known) {
   return out;
 }
 
-// Of each axis the mean of error^2 over the variance from sample `from` to `to`, over seeds.
+// Mean of error^2 over the variance of each axis from sample `from` to `to`, over seeds.
 Axes normalised(const ChainSettings& settings, int from, int to, unsigned seeds) {
   Axes sums{};
   for (unsigned seed = 1; seed <= seeds; ++seed) {
@@ -74,7 +74,7 @@ TEST(UnlikeAxesOfAChain, HaveTheirOwnVarianceUnderAModel) {
   }
 }
 
-// Before the noise was heard, too.
+// This holds before the noise has been measured, too.
 TEST(UnlikeAxesOfAChain, HaveTheirOwnVarianceFromTheFirstSamplesOn) {
   const Axes first = normalised(unlike(true), 5, 50, 60);
   for (std::size_t a = 0; a < 3; ++a) {

@@ -79,9 +79,9 @@ TEST(SignalChain, WhatIsLearnedAtRestIsTheSameWhetherSamplesAreLostOrInvalid) {
   EXPECT_LT(told_variance(true, false), 2.0 * whole);
 }
 
-// A correction by a channel that is alive makes every compensated value another. What repeats itself is told
-// of what the sensor sent: from the 101st on, without a model and with one, before the noise is known and
-// after; the flag ends with the first other value.
+// A correction by a live channel changes every compensated value. Repetition is judged by what the sensor
+// sent: from the 101st repeat on, with and without a model, before and after the noise is known. The flag ends
+// with the first different value.
 TEST(SignalChain, AStuckSensorIsFlaggedBehindACorrectionThatIsAlive) {
   ChainSettings plain = settings();
   plain.channels = {"accel_x_mps2"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What comes first: bias and scale factor beside a reference, noisy or of few points; rotation that stays in
+// What comes first: bias and scale factor against a reference, noisy or of few points; rotation that stays in
 // the rate; coefficients that no gyro has. The truth is what the captures are made of.
 #include <gtest/gtest.h>
 
@@ -124,7 +124,7 @@ Rows shaken(std::uint64_t seed, double size) {
   return rows;
 }
 
-// How it depends on the frequency is hardly told by noise whose slow and quick parts come and go together.
+// Noise whose slow and quick parts come and go together hardly shows how it depends on the frequency.
 TEST(Rectification, IsFoundWhereItsBandIsHardlyKnown) {
   for (const std::uint64_t seed : {1U, 2U, 3U}) {
     const Diagnosis found = diagnose({shaken(seed, 6e-7).record()}, {});

@@ -97,7 +97,7 @@ TEST(ChannelFaults, WhatOnlyLooksLikeOneIsLeftAlone) {
   untouched(Logged([](double t) { return std::round(20.0 + 15.0 * std::sin(t / 900.0)); }), "coil_degC");
 }
 
-// A value is judged by the one before it, however long ago that was: an empty cell beside a glitch hides
+// A value is judged by the one before it, however long ago that was: an empty cell next to a glitch hides
 // nothing, nor does a thermometer that is polled every ten seconds, or a record that begins or ends in one.
 TEST(ChannelFaults, EmptyCellsDoNotHideAGlitch) {
   for (const std::size_t at : {std::size_t{0}, std::size_t{2000}, kSamples - 10}) {
@@ -141,7 +141,7 @@ TEST(ChannelFaults, ASampleOfTheRateThatLeapsIsBetweenItsNeighbours) {
   EXPECT_TRUE(logged.without_leaps_of_rate().remarks.empty());
 }
 
-// Without rows for 300 s the channel goes on in a straight line: no step for a derivative to see.
+// Where rows are missing for 300 s the channel is a straight line: no step for a derivative to see.
 TEST(ChannelFaults, AHoleInTheRowsIsBridged) {
   std::vector<double> time, rate, channel;
   for (std::size_t i = 0; i < 4000; ++i) {

@@ -19,7 +19,7 @@ double deviate(std::uint32_t counter, std::uint32_t stream) {
   return gaussian_deviate(counter, stream, 91, 7);
 }
 
-// A machine that runs up and down beside a gyro whose bias follows its power, 20 Hz.
+// A machine that runs up and down next to a gyro whose bias follows its power, 20 Hz.
 struct Shaken {
   std::vector<double> time, rate, accel;
 
@@ -94,7 +94,7 @@ TEST(ConsistentReport, EveryFigureThatGrowsIsTold) {
   EXPECT_EQ(grown_in_words(diagnosis, 50000.0), "");
 }
 
-// A channel of which the judged half makes the opposite of the fitted one: what grows there is told, too.
+// In the judged half a channel acts opposite to the fitted half: the error that grows there is reported, too.
 TEST(ConsistentReport, WhatWasKeptBackMayDenyAndThenTheReportSaysSo) {
   std::vector<double> time, rate, channel;
   for (std::uint32_t i = 0; i < 20000; ++i) {

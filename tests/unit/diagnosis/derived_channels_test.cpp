@@ -129,9 +129,9 @@ TEST(DerivedChannels, WithoutAReferenceAnotherAxisIsRotationAndNoChannel) {
       << "a table that never turned";
 }
 
-// Three gyros on a table, each of which sees thousandths of the others' rotation: what one is told to see of
-// the others is of the true rates, which is how the daemon takes it away (compensator.h),
-// and not of what they measured, which differs by the square of the angles.
+// Three gyros on a table, each of which sees thousandths of the others' rotation. Cross-axis terms refer to the
+// true rates, as the daemon corrects them (compensator.h), and not to the measured ones, which differ by the
+// square of the angles.
 TEST(OtherAxes, ComeWithoutTheirOwnMisalignmentWhereTheirReferenceIsLogged) {
   constexpr std::size_t n = 20000;
   std::mt19937_64 random(1);

@@ -121,7 +121,7 @@ TEST(Diagnose, NamesALoopAndLeavesItAlone) {
   const double with_loop = predict_heading(d, s.record(), 150.0, {600.0}).sigma_rad[0];
   Diagnosis without = d;
   without.hysteresis.reset();
-  // Of the next capture nobody knows the rate yet: a placeholder will do.
+  // Nobody knows the next capture's rate yet: a placeholder will do.
   const std::vector<double> unknown(s.rate.size(), 0.0);
   Record next = s.record();
   next.rate_radps = unknown;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bias that swings as the temperature goes on: told as what it is, whatever its period, and not spelled by
-// polynomials, which go off outside.
+// A bias that is periodic in temperature is reported as such, whatever its period, and not approximated by
+// polynomials, which diverge outside the range.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -61,7 +61,7 @@ struct Sensor {
   }
 };
 
-// Without the bias beside a reference, which every sensor has.
+// The bias against a reference, which every sensor has, is not counted.
 Diagnosis diagnosed(const Record& record, const DiagnoseOptions& options = {}) {
   Diagnosis found = diagnose({record}, options);
   std::erase_if(found.effects, [](const FoundEffect& each) { return each.effect.form == "bias"; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several captures compared coefficient by coefficient, and what is said beside much that stays unexplained.
+// Several captures compared coefficient by coefficient, and what is reported when much stays unexplained.
 #include "filters/diagnosis/report/left_out.h"
 
 #include <gtest/gtest.h>

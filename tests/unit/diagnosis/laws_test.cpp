@@ -119,8 +119,8 @@ TEST(Laws, AWellKnownTurningPointIsFollowedBeyondItsRange) {
   EXPECT_LT(left_of(found, make(9, 0.0, 9.0, false, law)), 0.15) << "the second capture is warmer";
 }
 
-// No law of the surroundings is a cube: what one stands for within the range, as a supply below which a
-// regulator lets go, goes on by its tangent at most.
+// No law of the environment is a cube. A cubic that fits within the range, such as a supply below which a
+// regulator drops out, is extrapolated by its tangent at most.
 TEST(Laws, ACubeOfTheSurroundingsIsNotFollowedBeyondItsRange) {
   const auto law = [](double, double, double, double supply) { return 4e-5 * std::pow(supply - 12.0, 3); };
   const Diagnosis found = diagnose({make(10, kWhite, 0.0, false, law).record()}, {});

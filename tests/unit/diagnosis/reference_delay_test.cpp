@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reference that was logged late is told by how much, to a part of a sample, and is put right.
+// The delay of a reference that was logged late is estimated to a part of a sample and corrected.
 #include "filters/diagnosis/cleaning/reference_delay.h"
 
 #include <gtest/gtest.h>
@@ -68,7 +68,7 @@ TEST(ReferenceDelay, IsFoundToAPartOfASampleAndShifted) {
   }
 }
 
-// Errors of the delay over its standard error: of unit variance, also beside a scale factor error that
+// Errors of the delay over its standard error: of unit variance, also with a scale factor error that
 // depends on the temperature.
 TEST(ReferenceDelay, StandardErrorIsHonest) {
   double square = 0.0;

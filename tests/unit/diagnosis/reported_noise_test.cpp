@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise that a diagnosis reports beside the effects.
+// The noise that a diagnosis reports besides the effects.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -66,7 +66,7 @@ Unexplained of(const std::vector<double>& left, const std::vector<SpectralLine>&
   return describe_unexplained(left, left, 0.0, kPeriod, noise, grid, peaks, changes);
 }
 
-// Of a piece with a hole few differences are left, and they scatter more than all would.
+// A piece with a hole has few differences left, and they scatter more than all would.
 TEST(Unexplained, WhatIsLeftOfAPieceBesideAHoleIsNoBurst) {
   int bursts = 0;
   for (std::uint64_t seed = 1; seed <= 100; ++seed) {

@@ -27,7 +27,7 @@ double gaussian(std::uint32_t counter, std::uint32_t stream) {
   return gaussian_deviate(counter, stream, 7, 11);
 }
 
-// Of a harmonic's covariance at a distance of `apart` blocks what a block sees: itself, or its change.
+// What a block sees of a harmonic's covariance at a distance of `apart` blocks: itself, or its change.
 double seen_covariance(const DampedHarmonic& harmonic, double apart) {
   const auto at = [&](double k) {
     return harmonic.variance * std::exp(-std::abs(k) / harmonic.decay) *

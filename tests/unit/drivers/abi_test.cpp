@@ -94,7 +94,7 @@ constexpr Place kVersionSix[] = {
 
 #undef FIELD
 
-// Of a machine with pointers of eight bytes, x86-64 and AArch64 alike.
+// Sizes on a machine with pointers of eight bytes, x86-64 and AArch64 alike.
 TEST(DriverAbi, VersionSixIsWhatItWas) {
   static_assert(sizeof(void*) == 8);
   ASSERT_EQ(IFOG_DRIVER_ABI, 6U) << "another version: write its layout here";

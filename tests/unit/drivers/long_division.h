@@ -19,7 +19,7 @@ inline std::uint32_t long_division(std::span<const std::uint8_t> bytes) {
   return remainder;
 }
 
-// Of the bytes and as many zeros as make them a multiple of `block` bytes, which are not appended.
+// Checksum of the bytes and as many zeros as make them a multiple of `block` bytes, which are not appended.
 inline void append_crc32(std::vector<std::uint8_t>& bytes, std::size_t block = 1) {
   std::vector<std::uint8_t> covered = bytes;
   while (covered.size() % block != 0) covered.push_back(0);

@@ -97,7 +97,7 @@ TEST_P(Pulled, AgainAndAgainIsCountedWhole) {
   const int second = static_cast<int>(cable.rate_hz);
   gyro.send(second, false);
   for (int pull = 0; pull < 100; ++pull) {
-    // Of a third just so many that the counter shows none of them.
+    // A third of the losses are whole rollovers, which the counter does not show.
     const std::int64_t lost = gyro.between(second, 3 * second), round = cable.modulus;
     gyro.unheard(pull % 3 == 0 ? (lost / round + 1) * round - 1 : lost);
     gyro.send(second, true);

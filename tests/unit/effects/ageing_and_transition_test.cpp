@@ -32,7 +32,7 @@ CompensatorOutput step_of(Compensator& compensator, double dt_s, std::vector<dou
   return out;
 }
 
-// It counts from the first sample, goes on for as long again as it was fitted, is held then, and says so.
+// It counts from the first sample, is extrapolated for as long again as it was fitted, then held, with a flag.
 TEST(Ageing, ASlopeGoesOnForOneMoreSpan) {
   Compensator compensator(ageing(), {""});
   EXPECT_TRUE(compensator.channels().empty());
@@ -90,7 +90,7 @@ TEST(Transition, EndsAtItsLevelsWhereverTheChannelGoes) {
     const CompensatorOutput out = step_of(compensator, 0.1, {at});
     EXPECT_NEAR(out.correction_radps[0], 4e-7 * std::tanh((at - 31.0) / 3.0), 1e-20) << at;
     EXPECT_EQ((out.flags & kOutOfRange) != 0, at < 25.0 || at > 36.0) << at;
-    // Of its two levels the farther one was not seen: no more than that may be wrong.
+    // The farther of its two levels was not seen: no more than that may be wrong.
     EXPECT_LE(out.variance_rad2ps2[0], std::pow(8e-7, 2)) << at;
   }
 }

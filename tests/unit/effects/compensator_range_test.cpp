@@ -57,8 +57,8 @@ TEST(Compensator, WhatRepeatsWithAnAngleIsHeldAtTheNearerEndOfItsArc) {
   }
 }
 
-// A fringe of a temperature is a law, and no angle: beyond its range it goes on for as much again, is held
-// from there, and says so.
+// A fringe in temperature is a law, not an angle: beyond its range it is extrapolated by one more span, then
+// held, with a flag.
 TEST(Compensator, AFringeGoesOnForOneMoreSpan) {
   Model model = fitted_from_10_to_40("cosine", 1e-6, 0.0);
   model.effects[0].period = 7.0;
@@ -178,7 +178,7 @@ TEST(Compensator, TheDoubtOutsideARangeStaysAndGoesWithTheChannel) {
   for (int i = 0; i < 60; ++i) {
     const double degC = i / 10 % 2 == 0 ? 26.0 : 33.0;
     const CompensatorOutput out = step(compensator, 1e-3, {degC});
-    // Of a square its tangent at the edge is followed: behind it is left (33 - 30)^2.
+    // A square follows its tangent at the edge; beyond it, (33 - 30)^2 is left.
     const double left = degC > 30.0 ? 3e-6 * 9.0 : 0.0;
     for (const double variance : out.variance_rad2ps2) EXPECT_NEAR(variance, left * left, 1e-22) << i;
     EXPECT_EQ((out.flags & kOutOfRange) != 0, degC > 30.0) << i;

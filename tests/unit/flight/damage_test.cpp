@@ -23,7 +23,7 @@ Bytes recording(std::uint64_t entries, std::uint64_t a_block, bool closed) {
   return closed ? all_of(disk) : open;
 }
 
-// What came out is what went in, in order, with something left out only where a hole was told.
+// What came out is what went in, in order, with samples missing only where a hole was reported.
 void expect_true_but_for_holes(const ReadBack& read) {
   std::uint64_t before = 0;
   bool first = true;
@@ -157,7 +157,7 @@ TEST(FlightDamage, RecordingsBehindOneAnotherAreReadAsOne) {
   const ReadBack read = read_back(both);
   EXPECT_EQ(read.headers.size(), 3U);
   EXPECT_EQ(read.payloads.size(), 20U + 8U + 8U);  // a block of four is torn
-  // Of other runs: what is begun at the end of one does not go on in the next.
+  // Other runs: what is begun at the end of one does not continue in the next.
   EXPECT_EQ(read.holes, (std::vector<std::size_t>{20, 28}));
   EXPECT_EQ(read.counts.cut_off_runs, 1U);
   EXPECT_EQ(read.counts.open_files, 0U);

@@ -149,7 +149,7 @@ TEST(FlightArchive, AYearOfDiskPressure) {
   }
   EXPECT_EQ(holes, 0U);
   EXPECT_EQ(before, year.count - 1);
-  // Of the last five days and no more than a file's time older.
+  // The last five days, and no more than a file's time older.
   EXPECT_GE(year.when[first], HardYear::kLength - year.limits.age_ns - year.limits.file_ns - HardYear::kStep);
 }
 

@@ -120,7 +120,7 @@ TEST(Harmonic, TurnsByItsFrequencyAndGathersNoiseInTime) {
   }
 }
 
-// Blocks of the terms on the diagonal, nothing beside them, noise by each one's ratio, measurement the sum.
+// Blocks of the terms on the diagonal, nothing outside them, noise by each one's ratio, measurement the sum.
 TEST(Sum, IsBlockDiagonal) {
   const auto sum = ifog::make_state_model("integrated-random-walk + gauss-markov + harmonic",
                                           std::vector{0.5, 0.1, 3.3, 0.25}, kPeriod_s);

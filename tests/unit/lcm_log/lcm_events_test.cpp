@@ -99,7 +99,7 @@ TEST_F(DamagedLog, ALengthThatCannotBeCostsItsEvent) {
     }
 }
 
-// What stands before other bytes cannot be told from what ends too early, and goes with them.
+// An event followed by foreign bytes cannot be distinguished from a truncated one, and is dropped with them.
 TEST_F(DamagedLog, BytesThatCameBetweenAndBytesThatAreLost) {
   const std::string junk(100'000, 'j');
   Found found = with(7 * event_, junk, 0);

@@ -33,12 +33,9 @@ TEST(Symmetric, TellsWhatIsNotPositive) {
   EXPECT_FALSE(CholeskyFactor(saddle).exists());
 }
 
-TEST(Symmetric, CholeskyFactorMakesTheCovariance) {
+TEST(Symmetric, CholeskyFactorSolves) {
   const CholeskyFactor factor(two());
   ASSERT_TRUE(factor.exists());
-  const Eigen::MatrixXd l = factor.times(Eigen::MatrixXd::Identity(2, 2));
-  EXPECT_EQ(l(0, 1), 0.0);
-  EXPECT_LT((l * l.transpose() - two()).norm(), 1e-15);
   EXPECT_NEAR(factor.log_determinant(), 0.5 * std::log(3.0), 1e-15);
   EXPECT_LT((factor.solve(Eigen::VectorXd(Eigen::Vector2d(3, 0))) - Eigen::Vector2d(2, -1)).norm(), 1e-15);
   EXPECT_LT((factor.solve(two()) - Eigen::MatrixXd::Identity(2, 2)).norm(), 1e-15);

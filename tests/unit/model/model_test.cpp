@@ -335,7 +335,7 @@ TEST(ModelFile, WhatIsNoRegularFileIsRefusedAndNotWaitedFor) {
   std::remove(large.c_str());
 }
 
-// Of each axis the square over the mean of all; where one is without, nothing.
+// Each axis' square over the mean of all; nothing where one axis has none.
 TEST(ModelFile, SaysWhatEachAxisNoiseIsOfTheMean) {
   Model model;
   model.noise["x"] = {.N = 1e-6, .K = 3e-9};

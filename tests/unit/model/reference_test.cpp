@@ -25,7 +25,7 @@ std::string text_of(const std::string& file) {
   return text.str();
 }
 
-// "[filter] window" for every key of the text, figures by name left out.
+// "[filter] window" for every key of the text, without figures by name.
 std::set<std::string> keys_of(const std::string& text) {
   std::set<std::string> keys;
   std::string table, line;

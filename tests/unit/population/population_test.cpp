@@ -106,7 +106,7 @@ TypePrior prior_of(double mean, double spread) {
 TEST(Shrinkage, OneCoefficientIsWeightedByTheInverseVariances) {
   const Estimate own{4.0, 2.0};
   const TypePrior prior = prior_of(1.0, 1.0);
-  // (4/4 + 1/1) / (1/4 + 1/1), and 1 / (1/4 + 1/1) beside the mean's own error, of which 4/5 comes through.
+  // (4/4 + 1/1) / (1/4 + 1/1), and 1 / (1/4 + 1/1) besides the mean's own error, of which 4/5 comes through.
   const Estimate expected{1.6, std::sqrt(0.8 + 0.64 * 0.01)};
   EXPECT_NEAR(shrunk(prior, own).value, expected.value, 1e-12);
   EXPECT_NEAR(shrunk(prior, own).std_error, expected.std_error, 1e-12);

@@ -50,7 +50,7 @@ TEST(TypeEffects, FormsOfOneChannelStandForEachOther) {
   EXPECT_EQ(candidates[0].found_in, 9U);
   ASSERT_EQ(candidates[0].forms.size(), 2U);
   EXPECT_EQ(candidates[0].forms[0].form, "lagged");
-  // Of 100 120 140 160 180 200 the middle, by the logarithm.
+  // The middle of 100 120 140 160 180 200, by the logarithm.
   ASSERT_EQ(candidates[0].forms[0].parameters.size(), 2U);
   EXPECT_NEAR(candidates[0].forms[0].parameters[1].value, std::sqrt(140.0 * 160.0), 1e-9);
   EXPECT_EQ(candidates[0].forms[0].parameters[0].value, 0.0);

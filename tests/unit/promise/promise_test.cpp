@@ -130,7 +130,7 @@ RunningTrial running(const Made& data, double every_s) {
   return trial;
 }
 
-// Of means over `each` samples, least squares with a constant.
+// Least squares with a constant on means over `each` samples.
 double share_by_means(const Made& data, std::size_t each) {
   std::vector<double> d, e;
   for (std::size_t i = 0; i < data.before.size(); i += each) {

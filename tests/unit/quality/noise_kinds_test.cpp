@@ -28,7 +28,7 @@ void expect_distribution(const std::vector<double>& values, const std::vector<do
   }
 }
 
-// Of mean 0: E value^power, whose standard error needs the moment of twice the order.
+// E value^power at mean 0; its standard error needs the moment of twice the order.
 void expect_moment(const std::vector<double>& values, int power, double moment, double moment_of_twice) {
   double sum = 0.0;
   for (const double v : values) sum += std::pow(v, power);

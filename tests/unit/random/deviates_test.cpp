@@ -109,7 +109,7 @@ TEST(Deviates, DependOnSeedStreamRowAndIndexOnly) {
 }
 
 // A replay promises the same bits from every build on every machine, so they are written down. The decimals
-// beside them are -ln((bits + 1/2) 2^-32) by a second implementation, in integers and forty decimal digits.
+// next to them are -ln((bits + 1/2) 2^-32) by a second implementation, in integers and forty decimal digits.
 TEST(Deviates, AreTheSameBitsEverywhere) {
   DeviateStream stream(42, 7, DeviateStream::Law::kExponential);
   std::array<double, 6> row{};

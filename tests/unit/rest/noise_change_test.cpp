@@ -71,7 +71,7 @@ TEST(NoiseChange, AQuietStretchIsSaidToBeQuiet) {
   EXPECT_NEAR(found[0].to_s, 250.0, 10.0);
 }
 
-// Two stretches, each found beside the other.
+// Two stretches, each found next to the other.
 TEST(NoiseChange, TwoAreFound) {
   std::vector<double> rate = ifog::simulate::noise({.N = 1e-5}, kRate_hz, 180'000, 11);
   rate = made_louder(made_louder(rate, 300.0, 400.0, 3.0), 1200.0, 1300.0, 2.0);
@@ -100,7 +100,7 @@ TEST(NoiseChange, OnlyTheFrequenciesThatChangedAreNamed) {
   EXPECT_GT(found[0].times, 2.0);
 }
 
-// Of what lies between two parts nothing is known, and nothing is said to be quiet there.
+// Nothing is known between two parts, and nothing is called quiet there.
 TEST(NoiseChange, AHoleIsNone) {
   const std::vector<double> rate = ifog::simulate::noise({.N = 1e-5}, kRate_hz, 60'000, 19);
   const std::vector<ifog::Stretch> parts{{0, 20'000}, {45'000, 60'000}};
@@ -172,7 +172,7 @@ TEST(NoiseChange, AStuckHalfIsNoNoise) {
     EXPECT_NEAR(found[0].from_s, first ? 0.0 : 300.0, 0.011);
     EXPECT_NEAR(found[0].to_s, first ? 300.0 : 600.0, 0.011);
   }
-  // Inside of a record, for longer than the usual loudness is remembered.
+  // Inside a record, for longer than the usual noise level is remembered.
   std::vector<double> rate = white(600'000, 4, 7e-5, 1e-5);
   std::fill(rate.begin() + 200'000, rate.begin() + 300'000, rate[200'000]);
   EXPECT_EQ(changes_of(rate).size(), 1U) << ifog::in_words(changes_of(rate));

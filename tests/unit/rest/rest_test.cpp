@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Motion that was put into a record is found where it is, and noise of every kind is not taken for it.
+// Motion that was put into a record is found where it is, and noise of every kind is not mistaken for it.
 #include "filters/rest/rest.h"
 
 #include <gtest/gtest.h>

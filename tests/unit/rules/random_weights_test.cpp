@@ -38,7 +38,7 @@ struct Spread {
   double mean = 0.0, variance = 0.0;
 };
 
-// Of the estimated covariance over many independent windows of unit normal innovations.
+// Statistics of the estimated covariance over many independent windows of unit normal innovations.
 Spread spread(const char* rule_name, const char* weights, int draws, int window) {
   ifog::FilterSettings settings;
   settings.rule = rule_name;

@@ -66,7 +66,7 @@ TEST(Samples, LongOnesDoNotFillTheMemory) {
   for (std::size_t i = 0; i < kMany; i += 4099) ASSERT_EQ(samples[i], 1.0 + static_cast<double>(i));
 }
 
-// Of the program's address space.
+// Limit of the program's address space.
 std::size_t mapped_at_all() {
   std::size_t all = 0;
   std::FILE* const file = std::fopen("/proc/self/statm", "r");

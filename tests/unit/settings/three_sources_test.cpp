@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Every row of the table of filter settings, asked of the configuration, the model file and the command line
-// at and beside the ends of its range: what one of them takes the others take, as the same value.
+// at and next to the ends of its range: what one accepts the others accept, as the same value.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -175,7 +175,7 @@ std::vector<Asked> texts(const FilterSetting& setting) {
                    good ? std::optional<SettingValue>(text) : std::nullopt});
   };
   for (const char* const choice : setting.choices) ask(choice, true);
-  // Of a name that another room knows, what it is by default.
+  // The default of a name that another room knows.
   ask(std::get<std::string>(value_of(setting, FilterSettings{})), true);
   ask("", false);
   ask("no-such-name", false);

@@ -106,7 +106,7 @@ TEST(SerialTransport, LossesUpToTheHangUpAndTheStopAreCounted) {
   EXPECT_EQ(transport->counters().kernel_drops, 5U);
   EXPECT_EQ(transport->counters().error_frames, 2U);
   transport->close_books();  // of no open device
-  gyro.errors = {};          // the driver is loaded anew with the device
+  gyro.errors = {};          // the driver is loaded again with the device
   gyro.plug();
   while (transport->state() == TransportState::gone) transport->read(1ms);
   gyro.errors = {.lost = 1, .damaged = 1};

@@ -228,7 +228,7 @@ TEST(TcpTransport, AnAttemptWithoutAnAnswerHoldsNobodyUp) {
   }
   const std::int64_t tried = monotonic_ns();
   EXPECT_GE(tried - begin, 400'000'000);
-  EXPECT_TRUE(transport->read(20ms).empty());  // an attempt goes on meanwhile, and nobody waits for it
+  EXPECT_TRUE(transport->read(20ms).empty());  // an attempt continues meanwhile, and nobody waits for it
   EXPECT_TRUE(transport->read(20ms).empty());
   std::thread stopper([&] { transport->stop(); });
   while (!transport->stopped()) transport->read(kForever);

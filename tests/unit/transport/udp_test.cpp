@@ -95,7 +95,7 @@ TEST_P(Udp, WhatTheKernelDroppedIsCounted) {
   for (std::size_t i = 0; i < kSent; ++i) gyro.send_to(settings_.port, std::string(100, 'x'));
   std::size_t got = 0;
   while (!transport->read(0s).empty()) ++got;
-  gyro.send_to(settings_.port, "after");  // the kernel says how many were dropped beside the next
+  gyro.send_to(settings_.port, "after");  // the kernel says with the next one how many were dropped
   EXPECT_EQ(text_of(transport->read(kForever)), "after");
   EXPECT_LT(got, kSent);
   EXPECT_EQ(transport->counters().kernel_drops, kSent - got);

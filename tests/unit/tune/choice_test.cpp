@@ -83,7 +83,7 @@ TEST(TuneChoice, TheLikelihoodIsOverruledOnlyTowardsTheWalk) {
   std::vector<ifog::TunedModel> walk_first{walk, quiet};
   EXPECT_EQ(ifog::choose(walk_first, kPeriod, 1e4), 0U);
   EXPECT_EQ(walk_first[0].passed_over, "");
-  // Likelier than the walk, and not behind it in what it foretells: chosen, whatever a third one foretells.
+  // Likelier than the walk and predicts no worse: chosen, whatever a third one predicts.
   const auto likelier = model_of("random-walk + ar(1)", {0.5, 1.0}, {1.2, 0.45, 0.3});
   std::vector<ifog::TunedModel> colour_first{likelier, quiet, walk};
   EXPECT_EQ(ifog::choose(colour_first, kPeriod, 1e4), 0U);
@@ -146,7 +146,7 @@ TEST(TuneChoice, ARecordThatShowsNoWalkGetsTheOneItMightHide) {
   }
 }
 
-// Of white noise about a level that the filter knows: the mean of the next m samples misses it by R/m.
+// White noise about a level that the filter knows: the mean of the next m samples misses it by R/m.
 TEST(TuneChoice, WhatIsForetoldOfWhiteNoiseIsItsVarianceOverTheSamples) {
   const auto record = walk_under_white_noise(9, 200000, 0.0);
   ifog::FilterSettings settings;

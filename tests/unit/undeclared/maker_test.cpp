@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The maker and its oracle measure the diagnosis, so they are themselves measured: against dense linear
-// algebra, the closed form of the spectrum, and an estimator that is told the truth.
+// algebra, the closed form of the spectrum, and an estimator that is given the truth.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>

@@ -75,7 +75,7 @@ void expect_transparent(Compensated&& compensated, std::initializer_list<double>
   std::printf("gain within %.3f %%, phase within %.3f degrees\n", 100.0 * worst_gain, worst_phase / kDegree);
 }
 
-// Figures of a record straight from their definitions: the second method beside the project's own.
+// Figures of a record straight from their definitions: a second method next to the project's own.
 inline double deviation(const std::vector<double>& x) {
   double mean = 0.0;
   double square = 0.0;

@@ -32,7 +32,7 @@ struct Made {
 enum class Comb { kNone, kOfTheAngle, kFixed };
 
 // The sensor's noise is in its ramp as well, as that of a closed loop is: the loop follows what it measures.
-// walk: of the phase beside the angle, cycles/sqrt(s).
+// walk: random walk of the phase relative to the angle, cycles/sqrt(s).
 Made made(std::size_t samples, double rate, Comb comb, unsigned seed, double walk = 0.0) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
@@ -61,7 +61,7 @@ TEST(RebuiltRamp, KAndTheTableAreThoseOfTheSensor) {
   EXPECT_NEAR(parameter(effect, "cycles_per_rad") / kCycles, 1.0, 5e-6);
   EXPECT_NEAR(parameter(effect, "noise_density"), kNoise * std::sqrt(kStep_s),
               0.02 * kNoise * std::sqrt(kStep_s));
-  // Of the formula's table whatever its phase: the root mean square, and what is left of the ramp.
+  // RMS of the formula's table whatever its phase, and what is left of the ramp.
   EXPECT_NEAR(parameter(effect, "angle_rms"), std::sqrt(0.5 * (16.0 + 4.0 + 2.25)) * 1e-9, 0.05e-9);
   double phase = 0.3;
   double ramp_square = 0.0;
@@ -84,7 +84,7 @@ TEST(RebuiltRamp, KAndTheTableAreThoseOfTheSensor) {
   EXPECT_LT(left_square, 0.025 * ramp_square);
 }
 
-// Of the same lines at fixed frequencies nothing is claimed, and it is said what would tell.
+// For the same lines at fixed frequencies nothing is claimed, and the report says what would distinguish them.
 TEST(RebuiltRamp, AMachineNearbyIsNone) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const Made sensor = made(40000, 5.4e-5, Comb::kFixed, seed);
@@ -100,8 +100,8 @@ TEST(RebuiltRamp, ALineThatWandersIsNone) {
   constexpr double kSlowStep_s = 0.1, kSlowNoise = 2.5e-7, kLine = 2.9e-8, kLine_hz = 2.76, kDamping = 1e-5;
   const double kept = std::exp(-kDamping * 2.0 * M_PI * kLine_hz * kSlowStep_s);
   const double driven = kLine * std::sqrt(1.0 - kept * kept);
-  // Of the seeds 1 to 200 these three and 61 were claimed where combs were held against white noise alone; 61
-  // still is.
+  // When combs were compared with white noise alone, these three of the seeds 1 to 200 were claimed, and 61;
+  // 61 still is.
   for (const unsigned seed : {1U, 2U, 3U, 110U, 163U, 185U}) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
