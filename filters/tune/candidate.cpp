@@ -81,8 +81,7 @@ std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt
   std::vector<double> theta(static_cast<std::size_t>(size_)), shape(spectrum.bins());
   std::vector<double> low(theta.size()), high(theta.size());
   bounds(low, high);
-  for (std::size_t b = 0; b < shape.size(); ++b) shape[b] = 1.0 / (2.0 - 2.0 * spectrum.cosine[0][b]);
-  theta[0] = std::log(under(spectrum, shape)) + 4.0 * share();
+  theta[0] = std::log(under(spectrum, spectrum.walk)) + 4.0 * share();
   theta[1] = std::log(*std::min_element(spectrum.coarse.begin(), spectrum.coarse.end())) + share();
   std::size_t at = kLevel;
   for (const auto& term : terms_) {
@@ -103,10 +102,7 @@ std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt
 void ModelCandidate::density(std::span<const double> theta, const RecordSpectrum& spectrum,
                              std::span<double> out) const {
   const double q = std::exp(theta[0]), r = std::exp(theta[1]);
-  for (std::size_t b = 0; b < out.size(); ++b) {
-    const double half = std::sin(0.5 * spectrum.omega[b]);
-    out[b] = r + q / (4.0 * half * half);
-  }
+  for (std::size_t b = 0; b < out.size(); ++b) out[b] = r + q * spectrum.walk[b];
   std::size_t at = kLevel;
   for (const auto& term : terms_) {
     term->add_density(theta.subspan(at, static_cast<std::size_t>(term->size())), spectrum, out);

@@ -105,6 +105,7 @@ RecordSpectrum spectrum_of(std::span<const std::vector<double>> axes, std::size_
     s.ordinates.push_back(count * static_cast<double>(axes.size()));
     k = end;
   }
+  for (const double omega : s.omega) s.walk.push_back(0.25 / std::pow(std::sin(0.5 * omega), 2));
   for (std::size_t order = 0; order < RecordSpectrum::kOrders; ++order) {
     for (const double omega : s.omega) {
       s.cosine[order].push_back(std::cos(static_cast<double>(order + 1) * omega));

@@ -28,6 +28,7 @@ struct RecordSpectrum {
   std::vector<double> omega;      // rad a sample
   std::vector<double> density;    // mean square: white noise has its variance everywhere
   std::vector<double> ordinates;  // how many squares that is the mean of
+  std::vector<double> walk;       // density of a random walk with steps of unit variance
   // cos and sin of 1 … kOrders times omega.
   std::array<std::vector<double>, kOrders> cosine, sine;
   std::vector<double> coarse;    // the density averaged over neighbours until 16 squares are in it
