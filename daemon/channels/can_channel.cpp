@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <stdexcept>
 
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "drivers/dbc/codec.h"
 #include "drivers/ifog/quoted.h"
 

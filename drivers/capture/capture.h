@@ -30,7 +30,7 @@ struct Capture {
   std::vector<std::vector<double>> rate_radps;            // by axis
   std::vector<std::vector<double>> reference_rate_radps;  // by axis, an empty vector where there is none
   std::vector<CaptureColumn> channels;                    // every other column
-  std::vector<std::string> dead_axes;                     // of the sensor, left out: they never have a value
+  std::vector<std::string> dead_axes;                     // of the sensor, dropped: they never have a value
   std::vector<std::string> notices;                       // of the reading: what may be meant otherwise
   std::vector<std::string> faults;                        // cells read as missing, one line a column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known

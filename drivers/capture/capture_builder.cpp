@@ -141,6 +141,23 @@ std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::s
   return lines;
 }
 
+std::vector<std::string> CaptureBuilder::remarks() const {
+  std::vector<std::string> lines;
+  const auto say = [&](std::size_t count, const char* before, const char* behind) {
+    if (count != 0) lines.push_back(before + std::to_string(count) + behind);
+  };
+  say(counts().missing, "", " samples are missing by the device's counter or clock");
+  say(counts().restarts, "the device's counter or clock jumped back ", " times: was it switched off and on?");
+  say(counts().clock_sets, "the device's clock was set ",
+      " times while it measured on; there its times are by its counter or its rate");
+  say(counts().repeated, "", " samples came twice or after one that follows, and are dropped");
+  say(counts().mixed, "", " samples come from two devices, mixed, and are dropped: which of them is wanted?");
+  say(impossible_, "", " values of channels cannot be, in the unit of their name: dropped");
+  for (std::string& line : not_measured_in_words(at_full_scale_, implausible_, counts().untold))
+    lines.push_back(std::move(line));
+  return lines;
+}
+
 std::vector<std::string> CaptureBuilder::names() const {
   std::vector<std::string> out;
   for (const std::string& axis : capture_.axes)

@@ -45,14 +45,12 @@ class CaptureBuilder {
   [[nodiscard]] std::size_t waiting() const { return capture_.size(); }
   void next_rows(RowBlock& rows);
 
-  // Leaves out axes and channels that never had a value. Throws std::runtime_error if nothing is left.
+  // Drops axes and channels that never had a value. Throws std::runtime_error if nothing is left.
   Capture finish();
 
-  [[nodiscard]] std::size_t impossible() const { return impossible_; }  // values left out so
+  // What of the samples was missing, repeated, of two devices or invalid: one line for each count that is not 0.
+  [[nodiscard]] std::vector<std::string> remarks() const;
   [[nodiscard]] const SampleCounts& counts() const { return times_.counts(); }
-  // Samples with a rate treated as missing: at full scale; or beyond what the driver interface allows.
-  [[nodiscard]] std::size_t at_full_scale() const { return at_full_scale_; }
-  [[nodiscard]] std::size_t implausible() const { return implausible_; }
 
  private:
   double believable(std::size_t channel, double value);

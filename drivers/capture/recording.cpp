@@ -4,19 +4,20 @@
 #include <string.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/files/file_kind.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
+namespace {
 
 constexpr std::size_t kPiece = std::size_t{1} << 20U;  // bytes
-
-namespace {
 
 bool begins_as_hdf5(std::string_view head) {
   constexpr std::string_view kSignature = "\x89HDF\r\n\x1A\n";
@@ -60,6 +61,14 @@ bool is_text(std::string_view head) {
   });
 }
 
+// Two devices of one id would be taken for one.
+void expect_one_device(CandumpBuses& buses, const DriverInstance& driver, const ifog_can_frame& frame,
+                       std::string_view interface, const std::string& path) {
+  if (!wants(driver.description(), frame)) return;
+  if (const std::string_view other = buses.other(frame, interface); !other.empty())
+    throw std::runtime_error(two_interfaces(path, other, std::string(interface)));
+}
+
 // Endings that any text and any bytes may have.
 bool says_nothing(std::string_view path) {
   const std::string_view name = unpacked_name(path);
@@ -80,14 +89,23 @@ bool is_hdf5(const InputFile& file) {
 }
 
 FileKind file_kind(const std::string& path) {
+  using enum FileKind;
+  constexpr std::array<std::pair<std::string_view, FileKind>, 12> kEndings{{{".csv", capture},
+                                                                            {".h5", capture},
+                                                                            {".hdf5", capture},
+                                                                            {".log", candump},
+                                                                            {".candump", candump},
+                                                                            {".lcm", lcm_log},
+                                                                            {".ifr", flight},
+                                                                            {".bin", bytes},
+                                                                            {".kvh", bytes},
+                                                                            {".raw", bytes},
+                                                                            {".dat", bytes},
+                                                                            {".txt", bytes}}};
   const std::string_view name = unpacked_name(path);
-  if (has_ending(name, ".csv") || is_hdf5(path)) return FileKind::capture;
-  if (has_ending(name, ".log") || has_ending(name, ".candump")) return FileKind::candump;
-  if (has_ending(name, ".lcm")) return FileKind::lcm_log;
-  if (has_ending(name, ".ifr")) return FileKind::flight;
-  for (const std::string_view ending : {".bin", ".kvh", ".raw", ".dat", ".txt"})
-    if (has_ending(name, ending)) return FileKind::bytes;
-  return FileKind::unknown;
+  const auto* const found = std::find_if(kEndings.begin(), kEndings.end(),
+                                         [&](const auto& each) { return has_ending(name, each.first); });
+  return found == kEndings.end() ? unknown : found->second;
 }
 
 FileKind file_kind(const InputFile& file) {
@@ -98,18 +116,6 @@ FileKind file_kind(const InputFile& file) {
     by_name = FileKind::unknown;
   return by_name == FileKind::unknown && !is_text(file.head()) ? FileKind::bytes : by_name;
 }
-
-namespace {
-
-// Two devices of one id would be taken for one.
-void expect_one_device(CandumpBuses& buses, const DriverInstance& driver, const ifog_can_frame& frame,
-                       std::string_view interface, const std::string& path) {
-  if (!wants(driver.description(), frame)) return;
-  if (const std::string_view other = buses.other(frame, interface); !other.empty())
-    throw std::runtime_error(two_interfaces(path, other, std::string(interface)));
-}
-
-}  // namespace
 
 std::string two_interfaces(const std::string& path, std::string_view one, std::string_view other) {
   return path + ": frames of one id come on " + in_quotes(one) + " and on " + in_quotes(other) +

@@ -8,7 +8,7 @@
 #include "drivers/system/shell_word.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
-#include "tools/ifog/captures/lcm/named_log.h"
+#include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/command.h"

@@ -8,11 +8,10 @@
 
 #include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/files/output_file.h"
-#include "drivers/capture/files/text_file.h"
 #include "drivers/capture/recording.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
-#include "tools/ifog/captures/table/whole_table.h"
+#include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/command.h"
@@ -59,7 +58,7 @@ struct Simulate {
     if (file_kind(truth) == FileKind::capture)
       write_columns(long_table(simulate::truth_capture(made.truth, made.capture)), scenario, truth);
     else
-      write_text_file(truth, simulate::truth_json(made.truth));
+      write_file(truth, simulate::truth_json(made.truth));
     say("%s: the truth\n", truth.c_str());
   }
 };

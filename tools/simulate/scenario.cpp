@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/toml_file.h"

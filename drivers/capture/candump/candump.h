@@ -7,7 +7,7 @@
 //                    bits (-i), last first with "`" between them (-S), or as characters, too, at the end
 //                    (-a). CAN FD: the length has two digits, "[08]"
 // Extended ids have 8 digits. Remote frames ("123#R4", "remote request") and error frames (id with bit 29
-// set) are told apart from data.
+// set) are distinguished from data.
 #pragma once
 
 #include <array>
@@ -96,7 +96,7 @@ class CandumpBuses {
 struct CandumpLosses {
   std::size_t remote = 0, error = 0, xl = 0;  // frames not decoded
   std::uint64_t dropped = 0;                  // that the kernel lost before candump
-  bool cut_off = false;  // the last line has no end and is no whole frame: it was left out
+  bool cut_off = false;  // the last line has no end and is no whole frame: it was dropped
 };
 
 // A frame, and the interface on which it was received.

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "drivers/capture/candump/candump.h"
-#include "drivers/capture/files/text_pieces.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {

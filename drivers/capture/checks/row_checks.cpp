@@ -2,12 +2,104 @@
 #include "drivers/capture/checks/row_checks.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
+#include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/shell_word.h"
+#include "drivers/units/turn.h"
 
 namespace ifog {
+namespace {
+
+// Differences of an angle, by the time between: the mean rate since the row before; of the first row nothing
+// is known. An angle that stays within one turn begins again where it has turned that far, and steps by less
+// than half a turn, or behind a gap by nobody knows what.
+void differentiate(std::vector<double>& angle_rad, const std::vector<double>& time_s) {
+  const auto known = [](double value) { return !std::isnan(value); };
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  for (const double angle : angle_rad) {
+    if (!known(angle)) continue;
+    least = std::min(least, angle);
+    most = std::max(most, angle);
+  }
+  constexpr double kTurn = 2.0 * std::numbers::pi;
+  const bool wraps = most - least <= kTurn * (1.0 + 1e-9);
+  constexpr double kGap = 1.5;  // of the shortest step
+  double before = kMissing, since_s = 0.0, rate_before = 0.0,
+         shortest_s = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < angle_rad.size(); ++i) {
+    const double angle = angle_rad[i];
+    const double turned = wraps ? std::remainder(angle - before, kTurn) : angle - before;
+    const double step_s = time_s[i] - since_s;
+    if (known(before)) shortest_s = std::min(shortest_s, step_s);
+    const bool known_turn =
+        !wraps || step_s <= kGap * shortest_s || turn_is_known(rate_before, step_s, kTurn);
+    angle_rad[i] = known_turn ? turned / step_s : kMissing;
+    if (!known(angle)) continue;
+    rate_before = known(angle_rad[i]) ? angle_rad[i] : 0.0;
+    before = angle;
+    since_s = time_s[i];
+  }
+}
+
+// The correlation of neighbours is that of the differences of white values, -1/2, within a tenth: what an
+// angle turned is lost in what each value has for itself.
+bool undo_each_other(const std::vector<double>& rate) {
+  constexpr std::size_t kFew = 100;
+  double squares = 0.0, products = 0.0;
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < rate.size(); ++i) {
+    if (std::isnan(rate[i]) || std::isnan(rate[i - 1])) continue;
+    squares += rate[i] * rate[i];
+    products += rate[i] * rate[i - 1];
+    ++count;
+  }
+  return count >= kFew && products < -0.45 * squares;
+}
+
+// From the file's units to those of a capture, but for angles, which stay in rad and become rates by as_rates().
+void convert(RowBlock& rows, const CsvLayout& layout) {
+  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
+    const UnitConversion conversion = layout.columns[i].conversion();
+    if (conversion.scale == 1.0 && conversion.offset == 0.0) continue;
+    for (double& value : rows.columns[i]) value = value * conversion.scale + conversion.offset;
+  }
+}
+
+// Needs all rows, because only the whole says whether an angle stays within one turn.
+void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std::string& path) {
+  for (std::size_t i = 0; i < layout.columns.size(); ++i) {
+    const CsvColumn& column = layout.columns[i];
+    if (!column.angle_rad()) continue;
+    std::vector<double>& values = all.columns[i];
+    if (column.is_increment()) {
+      // In which the sensor collects an increment, whenever its rows came.
+      const double period_s = median_step_s(all.time_s);
+      for (double& value : values) value /= period_s;
+    } else {
+      differentiate(values, all.time_s);
+      if (undo_each_other(values))
+        notes.notices.push_back(
+            path + ": differences of " + printable(column.header) +
+            " undo each other, as those of increments do; if each value is the turn within a sample: " +
+            option_for(column, column.unit + "/sample"));
+    }
+    // A glitch of an angle is two leaps, and which cell was wrong the differences do not say.
+    for (std::size_t row = 0; row < values.size(); ++row)
+      if (std::abs(values[row]) > IFOG_MAX_RATE)
+        fail_at(path, notes.line_of_row(row),
+                printable(column.header) + " has turned at " + shortest(values[row]) +
+                    " rad/s since the row before, which no sensor measures");
+  }
+}
+
+}  // namespace
+
 std::string what_no_sensor_measures(const std::string& name, std::string_view cell, const Measurable& range) {
   return printable(name) + " is " + in_quotes(cell) + ", which no sensor measures, expected " +
          shortest(range.least) + " to " + shortest(range.most);

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "drivers/capture/checks/row_clock.h"
-#include "drivers/capture/columns/chosen_columns.h"
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/columns/measurable.h"
 #include "drivers/capture/times/row_sink.h"

@@ -13,6 +13,20 @@
 namespace ifog {
 namespace {
 
+constexpr double kLate_s = 2.0;  // a rollover comes within it
+constexpr double kYear_s = 365.0 * 86'400.0;
+
+struct Rollover {
+  double length_s;
+  const char* what;
+};
+constexpr double kTwo32 = 4294967296.0;
+constexpr std::array<Rollover, 5> kRollovers{{{604'800.0, "a GPS week"},
+                                              {86'400.0, "a day"},
+                                              {kTwo32 * 1e-6, "a count of µs in 32 bits"},
+                                              {kTwo32 * 1e-4, "a count of 100 µs in 32 bits"},
+                                              {kTwo32 * 1e-3, "a count of ms in 32 bits"}}};
+
 constexpr std::size_t kFewBursts = 8;
 constexpr double kHole = 1.5;  // times the usual step: a hole, not a longer step
 
@@ -54,31 +68,79 @@ bool same_values(const RowBlock& rows, std::size_t a, std::size_t b) {
   return any;
 }
 
-// use(of a, of b) for the times, the lines and every column that is there.
-template <typename Use>
-void for_each_column(RowBlock& a, RowBlock& b, Use use) {
-  b.columns.resize(a.columns.size());
-  for (std::size_t c = 0; c < a.columns.size(); ++c)
-    if (!a.columns[c].empty()) use(a.columns[c], b.columns[c]);
-  if (!a.lines.empty()) use(a.lines, b.lines);
-  use(a.time_s, b.time_s);
-}
-
-void put_before(RowBlock& held, RowBlock& rows) {
-  if (held.size() > 0)
-    for_each_column(rows, held,
-                    [](auto& to, const auto& from) { to.insert(to.begin(), from.begin(), from.end()); });
-}
-
-void hold_from(RowBlock& rows, std::size_t from, RowBlock& held) {
-  held.origin = rows.origin;
-  for_each_column(rows, held, [&](auto& column, auto& kept) {
-    kept.assign(column.begin() + static_cast<std::ptrdiff_t>(from), column.end());
-    column.resize(from);
-  });
-}
-
 }  // namespace
+
+RowOrder::RowOrder(const std::string& path, std::string time, RowNotes& notes)
+    : path_(path), time_(std::move(time)), notes_(notes) {}
+
+double RowOrder::rolled_over_s(double now_s, std::size_t line) {
+  const auto found = std::find_if(kRollovers.begin(), kRollovers.end(), [&](const Rollover& each) {
+    return now_s + each.length_s > last_s_ && now_s + each.length_s <= last_s_ + kLate_s;
+  });
+  if (found == kRollovers.end()) return 0.0;
+  notes_.notices.push_back(path_ + ":" + std::to_string(line) + ": " + printable(time_) + " rolls over, as " +
+                           found->what + " does: " + shortest(found->length_s) +
+                           " s are added from there on");
+  return found->length_s;
+}
+
+void RowOrder::look_for_set_clock() {
+  if (set_ || !(last_s_ - before_s_ >= kYear_s)) return;
+  set_ = true;
+  notes_.notices.push_back(path_ + ":" + std::to_string(line_) + ": its time continues " +
+                           std::to_string(std::llround(last_s_ - before_s_)) +
+                           " s later, as after a clock was set or where two recordings are joined: treated "
+                           "as a hole, behind which times are coarser");
+}
+
+void RowOrder::take(RowBlock& rows, std::size_t known) {
+  const auto line_of = [&](std::size_t row) { return rows.lines.empty() ? 0 : rows.lines[row]; };
+  std::size_t kept = known;
+  for (std::size_t i = known; i < rows.size(); ++i) {
+    double now_s = rows.time_s[i] + offset_s_;
+    const bool back = rows_++ > 0 && now_s < last_s_;
+    if (const double longer_s = back ? rolled_over_s(now_s, line_of(i)) : 0.0; longer_s > 0.0) {
+      offset_s_ += longer_s;
+      now_s += longer_s;
+    } else if (back) {
+      // Where the row continues those before the last one, the last one is the one that is wrong.
+      const bool last_is_late = now_s >= before_s_;
+      drop(rows, last_is_late ? kept - 1 : i, last_is_late);
+      if (!last_is_late) continue;
+      --kept;
+      last_s_ = before_s_;
+    } else {
+      look_for_set_clock();
+    }
+    before_s_ = rows_ > 1 ? last_s_ : before_s_;
+    last_s_ = now_s;
+    line_ = line_of(i);
+    rows.move_row(i, kept);
+    rows.time_s[kept++] = now_s;
+  }
+  rows.keep_first(kept);
+}
+
+void RowOrder::drop(const RowBlock& rows, std::size_t row, bool late) {
+  std::string what;
+  if (dropped_.count == 0) {
+    what = printable(time_) + " is ";
+    append_time(what, rows.origin, rows.time_s[row] - (late ? offset_s_ : 0.0));
+    what += late ? " s, expected less than in the next row" : " s, expected more than in the row before";
+  }
+  dropped_.add(rows.lines.empty() ? 0 : rows.lines[row], std::move(what));
+}
+
+void RowOrder::finish() {
+  look_for_set_clock();
+  const std::size_t count = dropped_.count;
+  if (count == 0) return;
+  if (rows_ < kRowsAFault * count)
+    fail_at(path_, dropped_.line,
+            dropped_.first + (count == 1 ? "" : "; so are " + std::to_string(count - 1) + " more rows") +
+                "; --sample-rate HZ reads all rows as even");
+  notes_.faults.push_back(dropped_.dropped(path_, "row"));
+}
 
 RowClock::RowClock(const std::string& path, std::string time, bool keep_repeats, RowNotes& notes, Next next)
     : path_(path),
@@ -89,8 +151,9 @@ RowClock::RowClock(const std::string& path, std::string time, bool keep_repeats,
       order_(path, std::move(time), notes) {}
 
 void RowClock::take(RowBlock& rows) {
-  const std::size_t known = held_.size();
-  put_before(held_, rows);
+  const std::size_t known = buffered_.size();
+  buffered_.append(rows);
+  std::swap(buffered_, rows);
   order_.take(rows, known);
   if (!std::exchange(begun_, true)) within_s_ = step_within_bursts(rows.time_s);
   if (!keep_repeats_) drop_repeats(rows);
@@ -102,7 +165,7 @@ void RowClock::take(RowBlock& rows) {
     spread(rows, begin, i, rows.time_s[i]);
     begin = i;
   }
-  hold_from(rows, begin, held_);
+  rows.split_off(begin, buffered_);
   if (rows.size() > 0) next_(rows);
 }
 
@@ -134,13 +197,13 @@ void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double
 
 void RowClock::finish() {
   order_.finish();
-  const std::size_t rows = held_.size();
+  const std::size_t rows = buffered_.size();
   if (rows > 1) {
     if (!(period_s_ > 0.0))
       fail_at(path_, 0, printable(time_) + " is the same in all rows, expected times, or --sample-rate HZ");
-    spread(held_, 0, rows, held_.time_s.front() + static_cast<double>(rows) * period_s_);
+    spread(buffered_, 0, rows, buffered_.time_s.front() + static_cast<double>(rows) * period_s_);
   }
-  if (rows > 0) next_(held_);
+  if (rows > 0) next_(buffered_);
   say();
 }
 
@@ -149,7 +212,7 @@ void RowClock::say() {
     notes_.notices.push_back(path_ + ": " + std::to_string(repeated_) +
                              (repeated_ == 1 ? " row repeats" : " rows repeat") + " the row before and " +
                              (repeated_ == 1 ? "is" : "are") +
-                             " left out; --repeats keep reads them as samples");
+                             " dropped; --repeats keep reads them as samples");
   if (spread_ == 0) return;
   const double rate_hz = static_cast<double>(burst_rows_) / bursts_s_;
   std::array<char, 32> rate{};

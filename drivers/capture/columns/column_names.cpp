@@ -53,7 +53,7 @@ void fail_at(const std::string& path, std::size_t line, const std::string& what)
 
 std::string unit_by_name(const std::string& header, const std::string& unit, const std::string& option) {
   return in_quotes(header) + " is in " + in_quotes(unit) +
-         " by its name, and no unit was told; to read it so: " + option;
+         " by its name, and no unit was given; to read it so: " + option;
 }
 
 }  // namespace ifog

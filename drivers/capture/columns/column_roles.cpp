@@ -41,7 +41,7 @@ bool excluded(const Words& words) {
                   "period",      "relative",     "sample",   "sampling",    "update",       "frame",
                   "odr",         "integral",     "accel",    "acc",         "acceleration", "accelerometer",
                   "mag",         "magnetometer", "denoised", "compensated", "innovation",   "command",
-                  "cmd",         "setpoint",     "desired",  "target"});
+                  "cmd",         "setpoint",     "desired",  "target",      "drift"});
 }
 
 bool is_reference(const Words& words) {
@@ -93,20 +93,26 @@ std::optional<RateCandidate> candidate_of(const Words& words, const std::string&
   return found;
 }
 
-std::string unit_of(const TableSample& table, std::size_t place) {
-  if (std::string given = table.stated_unit(place); !given.empty()) return given;
-  const std::string& text = Words(table.names[place]).text;  // gyro_rad[0]
-  if (const std::string unit = unit_in_name(table.names[place]); !unit.empty())
-    return unit == "G" && text.starts_with("mag") ? "gauss" : unit;  // a magnetometer's G is not gravity
-  const std::string last = text.substr(text.rfind('_') + 1);
-  return angle_unit(last, false, false) ? last : "";
+// In letters that can be typed: deg/s for a degree sign of another encoding than UTF-8.
+std::string typed(const std::string& unit) {
+  if (printable(unit, unit.size()) == unit) return unit;
+  for (const char* const known : {"deg/s", "deg", "deg/h", "deg/min", "degC", "us"}) {
+    const auto by = convert_unit(unit, known);
+    const auto angle = angle_unit(unit, false, false);
+    if ((by && by->scale == 1.0 && by->offset == 0.0) || (angle && angle == angle_unit(known, false, false)))
+      return known;
+  }
+  return unit;
 }
 
-// As the options name a column: by its number where others have its name, or it has none.
-std::string header_of(const TableSample& table, std::size_t place) {
-  const std::string& name = table.names[place];
-  const bool alone = !name.empty() && std::count(table.names.begin(), table.names.end(), name) == 1;
-  return alone ? name : "#" + std::to_string(place + 1);
+std::string unit_of(const TableSample& table, std::size_t place) {
+  if (const std::string given = table.stated_unit(place); !given.empty()) return typed(given);
+  const std::string& text = Words(table.names[place]).text;  // gyro_rad[0]
+  if (const std::string unit = unit_in_name(table.names[place]); !unit.empty())
+    return unit == "G" && text.starts_with("mag") ? "gauss"
+                                                  : typed(unit);  // a magnetometer's G is not gravity
+  const std::string last = text.substr(text.rfind('_') + 1);
+  return angle_unit(last, false, false) ? last : "";
 }
 
 // p, q and r together are body rates; x, y and z without another word are the axes of a file that holds one
@@ -138,6 +144,7 @@ Sensors sensors_of(const TableSample& table, bool references) {
     auto found = candidate_of(words, unit_of(table, i));
     if (!found || found->reference != references) continue;
     found->place = i;
+    if (words.has("minus")) found->scale = -1.0;
     sensors[words.stem].push_back(*found);
   }
   // Three namesakes, as of a header that spans three columns of a spreadsheet, are its axes.
@@ -168,7 +175,7 @@ std::vector<std::vector<RateCandidate>> choices_of(const Sensors& sensors) {
     for (const RateCandidate& column : columns) named_axes = named_axes || !column.axis.empty();
     together.insert(together.end(), columns.begin(), columns.end());
   }
-  // "norm of the rate" beside three axes is none of them.
+  // "norm of the rate" next to three axes is none of them.
   if (named_axes) std::erase_if(together, [](const RateCandidate& column) { return column.axis.empty(); });
   if (together.empty()) return {};
   std::sort(together.begin(), together.end(), [](const auto& a, const auto& b) { return a.place < b.place; });
@@ -203,7 +210,7 @@ std::string channel_name(const Words& words, const std::string& unit) {
 void add_others(const TableSample& table, const std::vector<RateCandidate>& rates,
                 std::vector<CsvColumn>& columns) {
   const auto add = [&](const std::string& name, std::size_t place, const std::string& unit) {
-    const std::string header = header_of(table, place);
+    const std::string header = table.header_of(place);
     const auto taken = [&](const CsvColumn& c) { return c.name == name || c.header == header; };
     if (!name.empty() && std::none_of(columns.begin(), columns.end(), taken))
       columns.push_back({name, header, unit});
@@ -240,7 +247,7 @@ TableReading reading_by(const TableSample& table, const CsvLayout& asked, const 
     return way;
   }
   for (const RateCandidate& rate : rates) {
-    way.layout.columns.push_back({capture_name(rate), header_of(table, rate.place), rate.unit, rate.scale});
+    way.layout.columns.push_back({capture_name(rate), table.header_of(rate.place), rate.unit, rate.scale});
   }
   const std::size_t rates_only = way.layout.columns.size();
   add_others(table, rates, way.layout.columns);
@@ -260,6 +267,12 @@ std::string instead_of(const std::vector<std::string>& units) {
 bool is_unit_unknown(const RateCandidate& rate) { return rate.unit.empty(); }
 
 }  // namespace
+
+std::string TableSample::header_of(std::size_t place) const {
+  const std::string& name = names[place];
+  const bool alone = !name.empty() && std::count(names.begin(), names.end(), name) == 1;
+  return alone && printable(name, name.size()) == name ? name : "#" + std::to_string(place + 1);
+}
 
 Readings readings_of(const TableSample& table, const CsvLayout& asked) {
   Readings out;
@@ -313,8 +326,9 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
     out.why = "the unit of the " + std::string(time_unit_known ? "rate" : "time") + " is not named";
   }
   if (counts)
-    out.why += "; whole numbers are often counts, which are read by their scale as in --column " +
-               shell_word("rate_x_radps=" + header_of(table, sensors[0][0].place) + ":0.005deg/s");
+    out.why += "; whole numbers are often counts, whose scale is in the sensor's manual: --column " +
+               shell_word("rate_x_radps=" + table.header_of(sensors[0].back().place) +
+                          (sensors[0].back().increment ? ":1e-9rad/sample" : ":0.005deg/s"));
   return out;
 }
 
@@ -325,7 +339,7 @@ std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayou
     const CsvColumn* sibling = nullptr;
     others.clear();
     for (const RateCandidate& rate : sensor) {
-      const std::string& header = table.names[rate.place];
+      const std::string header = table.header_of(rate.place);
       const auto same = std::find_if(chosen.columns.begin(), chosen.columns.end(), [&](const CsvColumn& c) {
         return c.is_rate() && (c.header == header || c.header == "#" + std::to_string(rate.place + 1));
       });
@@ -348,10 +362,9 @@ std::string in_words(const CsvLayout& layout) {
     text = "time " + in_quotes(layout.time->header) + " in " +
            (layout.time->unit.empty() ? "s" : printable(layout.time->unit));
   for (const CsvColumn& column : layout.columns) {
-    const std::size_t line = column.name.rfind('_');
-    text += (text.empty() ? "" : ", ") + column.name.substr(0, line) + " " + in_quotes(column.header) +
-            " in " + (column.scale == 1.0 ? "" : shortest(column.scale) + " ") +
-            printable(column.unit.empty() ? column.name.substr(line + 1) : column.unit);
+    text += (text.empty() ? "" : ", ") + column.name.substr(0, column.name.rfind('_')) + " " +
+            in_quotes(column.header) + " in " + (column.scale == 1.0 ? "" : shortest(column.scale) + " ") +
+            printable(column.unit.empty() ? column.own_unit() : column.unit);
   }
   return text;
 }

@@ -20,6 +20,8 @@ struct TableSample {
   std::vector<std::string> comments;  // lines above the header, which may state the sample rate
   bool named = true;
 
+  // A column as the options name it: by its number where others have its name, or it has none that can be typed.
+  [[nodiscard]] std::string header_of(std::size_t place) const;
   // What the row of units says of a column; "" for nothing.
   [[nodiscard]] std::string stated_unit(std::size_t place) const { return units.empty() ? "" : units[place]; }
 };

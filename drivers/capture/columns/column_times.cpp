@@ -10,6 +10,7 @@
 #include <iterator>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/column_words.h"
@@ -131,10 +132,10 @@ int rank_of(const std::string& name, const Words& words) {
     if (words.has(not_time)) return 0;
   // UTC_Day, UTC_Second: a part of a date that is in no column alone.
   if (words.first() == "utc" && (words.has("day") || words.has("second"))) return 0;
-  constexpr std::array<std::string_view, 18> kTimes{
-      "time",           "timestamp", "stamp",   "t",       "utc",    "datetime",
-      "date",           "zeit",      "seconds", "elapsed", "tow",    "sow",
-      "sampletimefine", "timeusec",  "secs",    "millis",  "micros", "gpst"};
+  constexpr std::array<std::string_view, 19> kTimes{
+      "time", "timestamp", "stamp",   "t",    "utc",  "datetime",       "date",
+      "zeit", "seconds",   "elapsed", "tow",  "sow",  "sampletimefine", "timeusec",
+      "secs", "millis",    "micros",  "gpst", "nanos"};
   const auto is_time = [&](const std::string& word) {
     return word.ends_with("time") || word.ends_with("stamp") ||
            std::find(kTimes.begin(), kTimes.end(), word) != kTimes.end();
@@ -154,9 +155,17 @@ std::string time_unit_by_name(const TableSample& table, std::size_t place, const
   if (const auto scale = stated(table.comments, {"tscale"})) return shortest(*scale) + "s";  // gcsv
   if (words.has("sample") && words.has("time") && words.has("fine"))
     return "100us";  // Xsens: a clock of 10 kHz
-  if (words.has("millis")) return "ms";
-  if (words.has("micros")) return "us";
-  if (words.has("sec") || words.has("secs") || words.has("seconds")) return "s";
+  constexpr std::array<std::pair<std::string_view, const char*>, 9> kWords{{{"millis", "ms"},
+                                                                            {"ms", "ms"},
+                                                                            {"micros", "us"},
+                                                                            {"us", "us"},
+                                                                            {"nanos", "ns"},
+                                                                            {"ns", "ns"},
+                                                                            {"sec", "s"},
+                                                                            {"secs", "s"},
+                                                                            {"seconds", "s"}}};
+  for (const auto& [word, unit] : kWords)
+    if (words.has(word)) return unit;
   return "";
 }
 
@@ -193,7 +202,7 @@ std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place,
     return std::nullopt;
   const std::vector<double> values = numbers_in(cells);
   if (is_fraction_of_second(table, place, values)) return std::nullopt;
-  CsvTime out{table.names[place], dated ? "s" : time_unit_by_name(table, place, words)};
+  CsvTime out{table.header_of(place), dated ? "s" : time_unit_by_name(table, place, words)};
   if (!dated && (values.size() != cells.size() || !goes_on(values) || (out.unit.empty() && counts(values))))
     return std::nullopt;
   if (out.unit.empty()) out.unit = unit_by_values(values);
@@ -235,7 +244,7 @@ bool names_a_second_and_its_part(const std::string& whole, const std::string& pa
 std::optional<CsvTime> joined(const TableSample& table, std::size_t first, std::size_t second) {
   const std::vector<std::string> a = filled(table.cells[first]), b = filled(table.cells[second]);
   if (a.empty() || b.empty()) return std::nullopt;
-  const CsvTime out{table.names[first] + "+" + table.names[second], "s"};
+  const CsvTime out{table.header_of(first) + "+" + table.header_of(second), "s"};
   const bool day = is_date(a[0]) && a[0].find(':') == std::string::npos;
   if (day && is_date(b[0]) && b[0].find(':') != std::string::npos && b[0].find(':') < 3) return out;
   const bool named = names_a_second_and_its_part(table.names[first], table.names[second]);
@@ -250,43 +259,42 @@ std::optional<CsvTime> joined(const TableSample& table, std::size_t first, std::
   return named || by_values ? std::optional(out) : std::nullopt;
 }
 
-// The number of rows whose time differs from the row before.
-std::size_t changes(const TableSample& table, const CsvTime& time) {
-  const auto at = std::find(table.names.begin(), table.names.end(), time.header) - table.names.begin();
-  const std::vector<std::string>& cells = table.cells[static_cast<std::size_t>(at)];
-  std::size_t count = 0;
-  for (std::size_t i = 1; i < cells.size(); ++i) count += cells[i] != cells[i - 1] ? 1 : 0;
-  return count;
+// The last digit that its cells write, s.
+double resolution_s(const std::vector<std::string>& cells, const CsvTime& time) {
+  std::size_t digits = 0;
+  for (const std::string& cell : cells)
+    if (const std::size_t point = cell.rfind('.'); point != std::string::npos)
+      digits = std::max(digits, cell.size() - point - 1);
+  return time.unit_s() * std::pow(10.0, -static_cast<double>(digits));
 }
 
 }  // namespace
 
 std::vector<CsvTime> times_of(const TableSample& table) {
   std::vector<CsvTime> best;
-  int rank = 1;
   for (std::size_t i = 0; i + 1 < table.names.size(); ++i)
     if (const auto two = joined(table, i, i + 1)) best.push_back(*two);
   if (!best.empty()) return best;
+  std::vector<std::size_t> places;  // of the best
+  int rank = 1;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
     const int here = table.named ? rank_of(table.names[i], words) : 1;
     if (here < rank) continue;
     const auto found = candidate_at(table, i, words);
     if (!found || (!table.named && !best.empty())) continue;
-    if (here > rank) best.clear();
+    if (here > rank) best.clear(), places.clear();
     rank = here;
-    // Twins say the same, as a time of day and the seconds since the start do.
-    const auto same = [&](const CsvTime& other) {
-      const auto at = std::find(table.names.begin(), table.names.end(), other.header) - table.names.begin();
-      const std::vector<std::string>& cells = table.cells[static_cast<std::size_t>(at)];
-      return cells == table.cells[i] ||
-             go_together(numbers_in(cells), other, numbers_in(table.cells[i]), *found);
-    };
-    const auto twin = std::find_if(best.begin(), best.end(), same);
-    if (twin == best.end())
-      best.push_back(*found);
-    else if (changes(table, *found) > changes(table, *twin))
-      *twin = *found;  // the finer clock
+    // Twins say the same, as a time of day and the seconds since the start do: the finer clock of them is taken.
+    std::size_t twin = 0;
+    while (
+        twin < best.size() && table.cells[places[twin]] != table.cells[i] &&
+        !go_together(numbers_in(table.cells[places[twin]]), best[twin], numbers_in(table.cells[i]), *found))
+      ++twin;
+    if (twin == best.size())
+      best.push_back(*found), places.push_back(i);
+    else if (resolution_s(table.cells[i], *found) < resolution_s(table.cells[places[twin]], best[twin]))
+      best[twin] = *found, places[twin] = i;
   }
   return best;
 }

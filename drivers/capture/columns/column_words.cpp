@@ -31,8 +31,9 @@ std::string without_unit(const std::string& header) {
   if (bracket != std::string::npos && bracket > 0 && (header.back() == ')' || header.back() == ']'))
     return header.substr(0, bracket);
   const std::string unit = unit_in_name(header);
-  return unit.empty() || header.size() <= unit.size() ? header
-                                                      : header.substr(0, header.size() - unit.size() - 1);
+  if (unit.empty() || header.size() <= unit.size()) return header;
+  const std::string stem = header.substr(0, header.size() - unit.size());
+  return stem.ends_with('_') || stem.ends_with(' ') ? stem.substr(0, stem.size() - 1) : stem;
 }
 
 // At what is no letter, where a digit follows a letter, and where a capital begins a word.

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/columns/csv_layout.h"
 
+#include <algorithm>
+#include <array>
 #include <cctype>
 #include <charconv>
 #include <cmath>
@@ -10,7 +12,6 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/columns/measurable.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"
@@ -20,6 +21,16 @@ namespace {
 
 constexpr std::string_view kRateUnit = "radps";
 constexpr std::string_view kPerSample = "/sample";
+
+// One letter is a unit only behind what is measured in it.
+constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOneLetter = {{{"K", "temp"},
+                                                                                      {"C", "temp"},
+                                                                                      {"F", "temp"},
+                                                                                      {"V", "supply"},
+                                                                                      {"V", "volt"},
+                                                                                      {"A", "supply"},
+                                                                                      {"A", "current"},
+                                                                                      {"g", "accel"}}};
 
 [[noreturn]] void refuse(const std::string& text, const std::string& expected) {
   throw std::runtime_error(in_quotes(text) + ", expected " + expected);
@@ -79,8 +90,10 @@ CsvColumn CsvColumn::parse(const std::string& text) {
                 (out.is_rate() ? ", or deg, rad of an angle, deg/sample, rad/sample of its increments" : ""));
 }
 
+std::string CsvColumn::own_unit() const { return unit_of_name(name); }
+
 bool CsvColumn::is_rate() const {
-  return unit_of_name(name) == kRateUnit &&
+  return own_unit() == kRateUnit &&
          (name.starts_with("rate_") || name.starts_with("reference_rate_") || is_other_rate(name));
 }
 
@@ -90,6 +103,16 @@ std::optional<double> CsvColumn::angle_rad() const {
   if (!is_rate() || angle_unit(unit, true, false)) return std::nullopt;
   return angle_unit(unit.substr(0, unit.size() - (unit.ends_with(kPerSample) ? kPerSample.size() : 0)), false,
                     false);
+}
+
+UnitConversion CsvColumn::conversion() const {
+  UnitConversion by;
+  if (const auto rad = angle_rad())
+    by = {*rad};
+  else if (!unit.empty())
+    by = convert_unit(unit, unit_of_name(name)).value_or(UnitConversion{});
+  by.scale *= scale;
+  return by;
 }
 
 std::string unit_in_name(const std::string& name) {
@@ -110,21 +133,29 @@ std::string unit_in_name(const std::string& name) {
     if (angle_unit(angle, false, false) && time_unit(last)) return angle + "/" + last;
   }
   if (last == "s" || last == "S") return "s";
-  const bool unit = angle_unit(last, true, false) || time_unit(last) || !units_beside(last).empty();
-  // A lone letter is an axis rather than coulombs.
-  return unit && (last.size() > 1 || !stated_unit(header).empty()) ? last : "";
+  // UncalGyroXRadPerSec
+  if (const std::size_t per = header.rfind("Per"); last.empty() && per != std::string::npos && per > 3)
+    if (const std::string rate = header.substr(per - 3); angle_unit(rate, true, false)) return rate;
+  if (last.size() == 1)
+    return std::any_of(kOneLetter.begin(), kOneLetter.end(),
+                       [&](const auto& each) {
+                         return each.first == last && header.find(each.second) != std::string::npos;
+                       })
+               ? last
+               : "";
+  return angle_unit(last, true, false) || time_unit(last) || !units_beside(last).empty() ? last : "";
 }
 
 std::string other_unit(const CsvColumn& column) {
   if (!column.unit.empty()) return "";
-  CsvColumn told = column;
-  told.unit = unit_in_name(column.header);
+  CsvColumn read = column;
+  read.unit = unit_in_name(column.header);
   // A rate that ends in an angle's unit is often one a second: here it is no guess but a question. "rads" is
   // both.
-  if (told.unit.empty() && column.is_rate() && unit_of_name(column.header) != "rads")
-    told.unit = unit_of_name(column.header);
-  if (told.unit.empty()) return "";
-  return told.angle_rad() || is_another(told.unit, unit_of_name(column.name)) ? told.unit : "";
+  if (read.unit.empty() && column.is_rate() && unit_of_name(column.header) != "rads")
+    read.unit = unit_of_name(column.header);
+  if (read.unit.empty()) return "";
+  return read.angle_rad() || is_another(read.unit, unit_of_name(column.name)) ? read.unit : "";
 }
 
 std::string other_unit(const CsvTime& time) {
@@ -136,8 +167,9 @@ std::string other_unit(const CsvTime& time) {
 CsvTime CsvTime::parse(const std::string& text) {
   CsvTime out;
   std::tie(out.header, out.unit) = header_and_unit(text);
-  if (out.header.empty() || (!out.unit.empty() && !seconds_in(out.unit)))
-    refuse(text, "HEADER:UNIT with a unit of time: s, ms, us, 100us, ns, min, h, d");
+  const bool order = out.unit == kDayFirst || out.unit == kMonthFirst;
+  if (out.header.empty() || (!out.unit.empty() && !order && !seconds_in(out.unit)))
+    refuse(text, "HEADER:UNIT with a unit of time: s, ms, us, 100us, ns, min, h, d; d/m/y or m/d/y of dates");
   return out;
 }
 

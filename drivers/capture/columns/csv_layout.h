@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/units/units.h"
+
 namespace ifog {
 
 struct CsvColumn {
@@ -21,20 +23,28 @@ struct CsvColumn {
   // is the scale of counts. Throws
   // std::runtime_error with one line: the text and what was expected.
   static CsvColumn parse(const std::string& text);
+  // That of `name`: "degC".
+  [[nodiscard]] std::string own_unit() const;
   [[nodiscard]] bool is_rate() const;
   [[nodiscard]] bool is_increment() const;
   // rad in one unit of an angle or an increment; nothing for what is neither.
   [[nodiscard]] std::optional<double> angle_rad() const;
+  // From its values to the capture's; of an angle to rad.
+  [[nodiscard]] UnitConversion conversion() const;
 };
 
 struct CsvTime {
   std::string header = "time_s";  // "sec+nsec" or "date+time": two columns that are one time
-  std::string unit;               // of its values, "ms" or "100us"; "": not given, which reads as seconds
+  // Of its values, "ms" or "100us"; of dates as 5/6/2026 their order, "d/m/y" or "m/d/y"; "": not given, which reads
+  // as seconds, and the month first.
+  std::string unit;
 
   // "t:ms", "t:100us", "t". Throws likewise.
   static CsvTime parse(const std::string& text);
   [[nodiscard]] double unit_s() const;
 };
+
+inline constexpr const char *kDayFirst = "d/m/y", *kMonthFirst = "m/d/y";
 
 struct CsvLayout {
   std::vector<CsvColumn> columns;        // empty: those that the file's names give
@@ -66,7 +76,8 @@ std::vector<std::string> parts_of_time(const std::string& header,
 std::string option_for(const CsvColumn& column, const std::string& unit);
 std::string option_for(const CsvTime& time);
 
-// The unit that a column's name ends in, "GyroX (deg/s)" or "gyro_x_dps"; "" where it names none.
+// The unit that a column's name ends in, "GyroX (deg/s)" or "gyro_x_dps"; "" where it names none. A counter `k`, a
+// `gps_t` or an `adc_c` is in no kelvin, tesla or degrees.
 std::string unit_in_name(const std::string& name);
 // Where no unit was given: the one that the header names, when it is not the capture's. "" for none.
 std::string other_unit(const CsvColumn& column);

@@ -6,9 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string_view>
-#include <utility>
 
-#include "drivers/capture/columns/chosen_columns.h"
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/units/units.h"
@@ -34,20 +32,6 @@ constexpr std::array<OfUnit, 6> kUnits = {{
     {"Pa", {-1e7, 1e9}},          // a difference of two; the deepest sea ten times
 }};
 
-// As this project spells them. A counter `k`, a `gps_t` or an `adc_c` is in no kelvin, tesla or degrees.
-constexpr std::array<std::string_view, 16> kSpelled = {"degC", "degF", "mps2", "mg", "ug", "mV",
-                                                       "mA",   "uA",   "mT",   "uT", "nT", "Pa",
-                                                       "hPa",  "kPa",  "mbar", "bar"};
-// One letter is a unit only behind what is measured in it.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOneLetter = {{{"K", "temp"},
-                                                                                      {"C", "temp"},
-                                                                                      {"F", "temp"},
-                                                                                      {"V", "supply"},
-                                                                                      {"V", "volt"},
-                                                                                      {"A", "supply"},
-                                                                                      {"A", "current"},
-                                                                                      {"g", "accel"}}};
-
 // The range in the file's unit: that of the capture's column before its conversion.
 Measurable before(const Measurable& range, const UnitConversion& conversion) {
   const double a = (range.least - conversion.offset) / conversion.scale;
@@ -57,20 +41,10 @@ Measurable before(const Measurable& range, const UnitConversion& conversion) {
 
 }  // namespace
 
-std::string_view stated_unit(std::string_view column) {
-  const std::size_t line = column.rfind('_');
-  if (line == std::string_view::npos) return {};
-  const std::string_view unit = column.substr(line + 1), stem = column.substr(0, line);
-  if (std::find(kSpelled.begin(), kSpelled.end(), unit) != kSpelled.end()) return unit;
-  for (const auto& [letter, what] : kOneLetter)
-    if (unit == letter && stem.find(what) != std::string_view::npos) return unit;
-  return {};
-}
-
 Measurable measurable(const std::string& column) {
   if (column == "time_s") return {-kMostTime_s, kMostTime_s};
   if (is_rate_column(column)) return {-IFOG_MAX_RATE, IFOG_MAX_RATE};
-  const std::string_view unit = stated_unit(column);
+  const std::string unit = unit_in_name(column);
   if (unit.empty()) return {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE};
   for (const OfUnit& known : kUnits) {
     const auto conversion = convert_unit(known.unit, unit);
@@ -84,7 +58,7 @@ Measurable measurable(const std::string& column) {
 Measurable measurable_in_file(const CsvColumn& column) {
   const Measurable range =
       column.angle_rad() ? Measurable{-kMostAngle_rad, kMostAngle_rad} : measurable(column.name);
-  return before(range, conversion_of(column));
+  return before(range, column.conversion());
 }
 
 Measurable measurable_in_file(const CsvTime& time) {

@@ -3,9 +3,9 @@
 // dominate a fit. Every command that reads a capture uses these ranges.
 #pragma once
 
+#include <cstddef>
 #include <limits>
 #include <string>
-#include <string_view>
 
 #include "drivers/capture/columns/csv_layout.h"
 
@@ -20,13 +20,12 @@ struct Measurable {
 
 // A column of a file, not the time.
 struct FileColumn {
-  std::string name;   // in the file
-  Measurable range;   // in the file's unit
-  bool rate = false;  // of the capture: a rate or its reference
+  std::string name;       // in the file
+  std::size_t place = 0;  // of its cell in a row
+  Measurable range;       // in the file's unit
+  bool rate = false;      // of the capture: a rate or its reference
+  bool kept = true;       // else it is checked only
 };
-
-// The unit that a column's name ends in; empty where it may be no unit at all.
-std::string_view stated_unit(std::string_view column);
 
 // In the unit of the column's name: rates by what the driver interface allows, channels by what their unit
 // can be (no temperature below absolute zero, no field above 100 T), others by the driver interface.

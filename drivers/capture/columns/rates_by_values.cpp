@@ -54,8 +54,10 @@ bool are_counts(const TableSample& table, const Rates& rates) {
 std::vector<std::string> units_of(const TableSample& table, const Rates& rates) {
   std::vector<std::string> units{"rad/s", "deg/s", "rad/sample", "deg/sample"};
   const auto is_summed = [&](const RateCandidate& rate) { return is_smooth(table.cells[rate.place]); };
-  if (rates.front().increment) std::rotate(units.begin(), units.begin() + 2, units.end());
-  if (std::any_of(rates.begin(), rates.end(), is_summed)) units.insert(units.begin(), {"rad", "deg"});
+  if (rates.front().increment)
+    std::rotate(units.begin(), units.begin() + 2, units.end());
+  else if (std::any_of(rates.begin(), rates.end(), is_summed))
+    units.insert(units.begin(), {"rad", "deg"});
   return units;
 }
 

@@ -74,8 +74,7 @@ class Chooser {
   }
 
   CsvHeader choose() {
-    header_.cells.resize(names_.size());
-    for (std::size_t i = 0; i < names_.size(); ++i) header_.cells[i].name = names_[i];
+    header_.cells = names_;
     choose_columns();
     if (!header_.layout.only_header.empty())
       header_.only_place = place(header_.layout.only_header);
@@ -170,7 +169,9 @@ class Chooser {
       if (column.unit.empty()) column.unit = stated_unit(column, at);
       if (const std::string unit = other_unit(column); !unit.empty())
         fail(unit_by_name(column.header, unit, option_for(column, unit)));
-      if (header_.cells[at].column != CsvCell::kPassedOver)
+      if (at == header_.time_place || at == header_.time_part ||
+          std::any_of(header_.columns.begin(), header_.columns.end(),
+                      [at](const FileColumn& chosen) { return chosen.place == at; }))
         fail("column " + in_quotes(column.header) + " is chosen twice");
       take(at, column);
     }
@@ -180,9 +181,7 @@ class Chooser {
   [[nodiscard]] std::string stated_unit(const CsvColumn& chosen, std::size_t at) const {
     CsvColumn column = chosen;
     column.unit = form_.sample.stated_unit(at);
-    return column.angle_rad() || convert_unit(column.unit, column.name.substr(column.name.rfind('_') + 1))
-               ? column.unit
-               : "";
+    return column.angle_rad() || convert_unit(column.unit, column.own_unit()) ? column.unit : "";
   }
 
   // What was not asked for, as the names have it.
@@ -212,42 +211,41 @@ class Chooser {
   }
 
   void take_time(CsvTime& time) {
-    const auto named =
-        static_cast<std::size_t>(std::find(names_.begin(), names_.end(), time.header) - names_.begin());
-    if (named < names_.size() && time.unit.empty() && time_unit(form_.sample.stated_unit(named)))
-      time.unit = form_.sample.stated_unit(named);
-    if (const std::string unit = other_unit(time); !unit.empty())
-      fail(unit_by_name(time.header, unit, option_for(CsvTime{time.header, unit})));
     const std::vector<std::string> parts = parts_of_time(time.header, [&](const std::string& name) {
       return is_number_of_column(name) || std::count(names_.begin(), names_.end(), name) > 0;
     });
     header_.time_place = place(parts.front());
+    if (const std::string stated = form_.sample.stated_unit(header_.time_place);
+        parts.size() == 1 && time.unit.empty() && time_unit(stated))
+      time.unit = stated;
+    if (const std::string unit = other_unit(time); !unit.empty())
+      fail(unit_by_name(time.header, unit, option_for(CsvTime{time.header, unit})));
     if (parts.size() > 1) {
       header_.time_part = place(parts.back());
       header_.part_digits =
           digits_of_second(names_[header_.time_part], form_.sample.cells[header_.time_part]);
-      header_.cells[header_.time_part].column = CsvCell::kTime;
     }
-    header_.cells[header_.time_place].column = CsvCell::kTime;
     if (const std::string notice = whole_times_notice(form_.sample, header_.time_place, time);
         parts.size() == 1 && !notice.empty())
       header_.notices.push_back(path_ + ": " + notice);
     const std::vector<std::string>& cells = form_.sample.cells[header_.time_place];
-    const std::optional<DateOrder> order = date_order(cells);
+    const std::optional<DateOrder> order = time.unit == kDayFirst     ? DateOrder::day_first
+                                           : time.unit == kMonthFirst ? DateOrder::month_first
+                                                                      : date_order(cells);
     header_.date_order = order.value_or(DateOrder::month_first);
     if (!order)
-      header_.notices.push_back(
-          path_ + ": " + printable(names_[header_.time_place]) + " is " + in_quotes(cells[0]) +
-          " at first and read with the month first; if that is the day, write the dates as year-month-day");
+      header_.notices.push_back(path_ + ": " + printable(names_[header_.time_place]) + " is " +
+                                in_quotes(cells[0]) +
+                                " at first and read with the month first; if that is the day: " +
+                                option_for(CsvTime{time.header, kDayFirst}));
   }
 
   void take(std::size_t at, const CsvColumn& column) {
     const bool rate = is_rate_column(column.name);
     if (rate && ++rates_ > kInputLimits.csv_rates)
       fail("more than " + std::to_string(kInputLimits.csv_rates) + " rates, expected at most that");
-    header_.cells[at].column = header_.names.size();
     header_.names.push_back(column.name);
-    header_.columns.push_back({names_[at], measurable_in_file(column), rate});
+    header_.columns.push_back({names_[at], at, measurable_in_file(column), rate});
   }
 
   TableForm form_;

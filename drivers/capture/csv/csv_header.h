@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each column of a table of text is to a capture: as the user chose, or as its names say.
+// Where in a text its table begins, and how it is written: lines of other text above, what stands between the cells,
+// the header or none, a row of units; and what each column is to a capture: as the user chose, or as its names say.
 #pragma once
 
 #include <cstddef>
@@ -9,27 +10,32 @@
 #include <string_view>
 #include <vector>
 
+#include "drivers/capture/columns/column_roles.h"
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/columns/measurable.h"
-#include "drivers/capture/csv/table_form.h"
 #include "drivers/capture/times/date_time.h"
 
 namespace ifog {
 
-// What the cells below one name of the header mean.
-struct CsvCell {
-  static constexpr std::size_t kPassedOver = std::numeric_limits<std::size_t>::max();
-  static constexpr std::size_t kTime = kPassedOver - 1;
-
-  std::string name;                  // in the file
-  std::size_t column = kPassedOver;  // of the capture, not counting the time
-  bool kept = true;                  // else it is checked only
+struct TableForm {
+  char separator = ',';
+  std::size_t header_line = 0;  // its number, from 1; 0 where there is none
+  std::size_t last_line = 0;    // the line above the first row: the header, or the row of units below it
+  TableSample sample;           // names, units, the first rows, what stands above
 };
+
+// text: the file's beginning, whole lines. Throws std::runtime_error with one line: PATH, what was looked
+// for. A header that begins with time_s is that of a capture, and the first such line is it; so is the first
+// line that has all the names which the layout asks for. Else the header is the line above the first rows of
+// as many cells, mostly numbers.
+// given: the names of the columns where the lines themselves have them; then there is no header.
+TableForm table_form(std::string_view text, const std::vector<std::string>& given, const std::string& path,
+                     const CsvLayout& layout);
 
 struct CsvHeader {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 
-  std::vector<CsvCell> cells;       // in the file's order
+  std::vector<std::string> cells;   // of a row: their names in the file
   std::vector<std::string> names;   // of the capture's columns without the time
   std::vector<FileColumn> columns;  // of each, where it is from
   CsvLayout layout;                 // that reads it

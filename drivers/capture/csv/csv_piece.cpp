@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/times/date_time.h"
 #include "drivers/ifog/decimal.h"
@@ -93,16 +94,16 @@ class Rows {
         unit_s_(header.layout.time.value_or(CsvTime{}).unit_s()) {
     piece_.rows.columns.resize(header.names.size());
     piece_.impossible.resize(header.names.size());
-    for (std::size_t i = 0; i < header.cells.size(); ++i) {
-      const CsvCell& cell = header.cells[i];
-      Place& to = to_.emplace_back();
-      if (cell.column == CsvCell::kTime) to.time = i == header.time_place ? &time_.whole : &time_.part;
-      if (cell.column >= header.names.size()) continue;
-      to.means = is_other_rate(header.names[cell.column]) ? Meaning::kOther : Meaning::kNumber;
-      to.range = header.columns[cell.column].range;
-      to.values = cell.kept ? &piece_.rows.columns[cell.column] : nullptr;
-      to.impossible = &piece_.impossible[cell.column];
+    to_.resize(header.cells.size());
+    for (std::size_t c = 0; c < header.columns.size(); ++c) {
+      Place& to = to_[header.columns[c].place];
+      to.means = is_other_rate(header.names[c]) ? Meaning::kOther : Meaning::kNumber;
+      to.range = header.columns[c].range;
+      to.values = header.columns[c].kept ? &piece_.rows.columns[c] : nullptr;
+      to.impossible = &piece_.impossible[c];
     }
+    if (header.time_place != CsvHeader::kNone) to_[header.time_place].time = &time_.whole;
+    if (header.time_part != CsvHeader::kNone) to_[header.time_part].time = &time_.part;
   }
 
   // Columns that were used before have their memory still.
@@ -122,7 +123,7 @@ class Rows {
       if (!ended && ends_within_exponent(line)) throw Unreadable{"ends within a number"};
       add_cells(line, number);
     } catch (const Unreadable& row) {
-      leave_out();
+      drop();
       (ended ? piece_.damaged : piece_.unended).add(number, row.what);
     }
   }
@@ -190,7 +191,7 @@ class Rows {
     else if (to.means == Meaning::kOther)
       keep_other(to, PointDigits(text, separator_ != ','));
     else
-      keep(place, number(header_.cells[place].name, text, PointDigits(text, separator_ != ',')), text, line);
+      keep(place, number(header_.cells[place], text, PointDigits(text, separator_ != ',')), text, line);
     return behind;
   }
 
@@ -198,13 +199,13 @@ class Rows {
   void of_another_sensor(std::string_view line) {
     for (std::size_t i = 0; i < to_.size(); ++i)
       if (to_[i].means == Meaning::kNumber && !cell_at(line, i, separator_).empty())
-        throw Unreadable{printable(header_.cells[header_.time_place].name) + " is missing, expected a time"};
-    leave_out();
+        throw Unreadable{printable(header_.cells[header_.time_place]) + " is missing, expected a time"};
+    drop();
     ++piece_.untimed;
   }
 
   // The row at hand.
-  void leave_out() {
+  void drop() {
     const std::size_t rows = piece_.rows.lines.size();
     piece_.rows.time_s.resize(rows);
     for (const Place& place : to_)
@@ -215,17 +216,18 @@ class Rows {
   bool take_time() {
     const std::optional<std::string_view> found = time_.text(header_.part_digits);
     if (!found)
-      throw Unreadable{printable(header_.cells[header_.time_part].name) + " is no whole number of at most " +
+      throw Unreadable{printable(header_.cells[header_.time_part]) + " is no whole number of at most " +
                        std::to_string(header_.part_digits.value_or(0)) +
                        " digits, expected the part of a second"};
     const std::string_view text = *found;
     if (text.empty()) return false;
-    const std::string& name = header_.cells[header_.time_place].name;
+    const std::string& name = header_.cells[header_.time_place];
     const TimeDigits digits(text, separator_ != ',', header_.date_order);
     if (header_.date_order != DateOrder::either && !digits.is_date() && is_date(text))
-      throw Unreadable{printable(name) + " is " + in_quotes(text) +
-                       ", expected day and month in the order of the rows above; write the dates as "
-                       "year-month-day"};
+      throw Unreadable{
+          printable(name) + " is " + in_quotes(text) +
+          ", expected day and month in the order of the rows above, or " +
+          option_for(CsvTime{name, header_.date_order == DateOrder::day_first ? kMonthFirst : kDayFirst})};
     if (digits.is_date() && unit_s_ != 1.0)
       throw Unreadable{printable(name) + " is " + in_quotes(text) +
                        ", a date, which says its own unit, expected no other one of --time"};

@@ -26,7 +26,7 @@ struct CsvPiece {
   std::size_t lines = 0;
   std::size_t row_bytes = 0;  // of the lines that are rows
   std::size_t untimed = 0;    // rows of another sensor, which have no time of this one
-  Fault damaged;              // lines that cannot be read as rows, left out
+  Fault damaged;              // lines that cannot be read as rows, dropped
   Fault unended;              // the last line, where it has no end and is damaged
   Fault too_long;             // a line that no text has, with its beginning
   std::size_t places = 0;     // rows and damaged lines: what even rows count
@@ -37,7 +37,7 @@ std::optional<TimeStamps> stamps_from(std::string_view text, const CsvHeader& he
 
 // text: whole lines. stamps: of the whole file's times. Where rows are even, times are the numbers of the rows.
 // used: a block whose memory is used again. Lines count from the piece's own first. A row that cannot be read is
-// left out and counted; a line that is too long is the last one looked at.
+// dropped and counted; a line that is too long is the last one looked at.
 CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const TimeStamps& stamps,
                          RowBlock used = {});
 

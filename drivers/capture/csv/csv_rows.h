@@ -8,7 +8,6 @@
 
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/files/input_file.h"
-#include "drivers/capture/files/text_pieces.h"
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/output_file.h"
 #include "drivers/capture/times/time_stamps.h"
 
 namespace ifog {
@@ -24,7 +24,7 @@ class CsvWriter {
   void finish() { file_.finish(); }
 
  private:
-  TextOutput file_;
+  OutputFile file_;
   std::string text_;
 };
 

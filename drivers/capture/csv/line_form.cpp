@@ -8,7 +8,8 @@
 #include <system_error>
 #include <utility>
 
-#include "drivers/capture/csv/table_form.h"
+#include "drivers/capture/columns/column_words.h"
+#include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/times/date_time.h"
 
 namespace ifog {
@@ -22,12 +23,59 @@ bool is_decimal(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 
 bool is_alphabetic(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 
 // "%RAWIMUSXA," of a line with a head and a check sum, as NovAtel's OEM7 manual has it; "" of any other.
-std::string_view log_before(std::string_view line) {
+std::string_view novatel_log(std::string_view line) {
   constexpr std::size_t kSum = 9;  // "*" and eight digits
   line = trimmed(line);
   const bool is_log = line.size() > kSum && (line[0] == '%' || line[0] == '#') &&
                       line[line.size() - kSum] == '*' && line.find(';') != std::string_view::npos;
   return is_log ? line.substr(0, line.find(',') + 1) : std::string_view();
+}
+
+// "UncalGyro," of a line that begins with a word; "" of any other.
+std::string_view word_before(std::string_view line) {
+  const std::string_view word = line.substr(0, line.find(','));
+  const auto in_words = [](char c) { return is_alphabetic(c) || is_decimal(c) || c == '_'; };
+  const bool is_word = word.size() < line.size() && !word.empty() && is_alphabetic(word[0]) &&
+                       std::all_of(word.begin(), word.end(), in_words);
+  return is_word ? line.substr(0, word.size() + 1) : std::string_view();
+}
+
+// What follows the head of NovAtel's logs of raw inertial data, whose axes stand in the order z, -y, x. Source:
+// OEM7 Commands and Logs, RAWIMU, RAWIMUS, RAWIMUX, RAWIMUSX.
+std::vector<std::string> novatel_names(std::string_view log, std::string_view line) {
+  if (!log.substr(1).starts_with("RAWIMU")) return {};
+  const bool extended = log.find('X') != std::string_view::npos,
+             is_short = log.find("IMUS") != std::string_view::npos;
+  std::vector<std::string> names{"log"};
+  if (is_short)
+    names.insert(names.end(), {"head_week", "head_tow_s"});
+  else
+    for (const char* const name : {"port", "sequence", "idle", "quality", "head_week", "head_tow_s",
+                                   "receiver", "reserved", "version"})
+      names.emplace_back(name);
+  if (extended) names.insert(names.end(), {"imu_info", "imu_type"});
+  names.insert(names.end(), {"gps_week", "tow_s", "imu_status", "accel_z", "accel_minus_y", "accel_x",
+                             "dtheta_z", "dtheta_minus_y", "dtheta_x"});
+  const auto ends = std::count_if(line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; });
+  return static_cast<std::size_t>(ends) + 1 == names.size() ? names : std::vector<std::string>();
+}
+
+// The names of a record's cells where a line states them: "# UncalGyro,utcTimeMillis,…" of GnssLogger, "FMT, 140,
+// 43, IMU, QBffffff, TimeUS,I,GyrX,…" of ArduPilot. Nothing where none does, or none of them is of a gyro.
+std::vector<std::string> names_of_record(std::string_view text, std::string_view record, std::size_t cells) {
+  Lines lines(text);
+  for (std::string_view line; lines.next(line);) {
+    if (line.starts_with(record)) continue;
+    std::vector<std::string> names = cells_of(without_mark(line), ',');
+    const auto word = std::find(names.begin(), names.end(), record.substr(0, record.size() - 1));
+    if (word == names.end() || std::distance(word, names.end()) < static_cast<std::ptrdiff_t>(cells))
+      continue;
+    names.erase(names.begin(), names.end() - static_cast<std::ptrdiff_t>(cells - 1));
+    names.insert(names.begin(), "record");
+    const auto of_gyro = [](const std::string& name) { return lower(name).find("gyr") != std::string::npos; };
+    if (std::any_of(names.begin(), names.end(), of_gyro)) return names;
+  }
+  return {};
 }
 
 // The terminal's time in front of a line, "10:00:00" or "10:00:00.123"; "" where there is none.
@@ -111,19 +159,38 @@ std::vector<std::string> names_by(const std::vector<std::string>& labels) {
 
 }  // namespace
 
+// Of the records that lines begin with the one that stands most often, of those with names of a gyro.
+void LineForm::find_record(std::string_view text) {
+  std::map<std::string_view, std::pair<std::size_t, std::string_view>>
+      records;  // how often, and a line of each
+  Lines lines(text);
+  for (std::string_view line; lines.next(line);) {
+    const std::string_view log = novatel_log(line), record = log.empty() ? word_before(line) : log;
+    if (!record.empty()) ++records[record].first, records[record].second = line;
+  }
+  std::size_t most = kAlike - 1;
+  for (const auto& [record, found] : records) {
+    const auto& [count, line] = found;
+    if (count <= most) continue;
+    const bool novatel = !novatel_log(line).empty();
+    std::vector<std::string> names =
+        novatel ? novatel_names(record, line) : names_of_record(text, record, cells_of(line, ',').size());
+    if (names.empty() && !novatel) continue;
+    record_ = record;
+    names_ = std::move(names);
+    most = count;
+  }
+}
+
 LineForm::LineForm(std::string_view beginning) {
+  find_record(beginning);
+  if (!record_.empty()) return;
   Lines lines(beginning);
   std::size_t before = 0, alone = 0, looked = 0, alike = 0;
   std::vector<std::string> labels;
-  std::map<std::string_view, std::size_t> logs;
-  std::size_t most = kAlike - 1;  // lines of one log
   for (std::string_view line; lines.next(line);) {
     if (trimmed(line).empty()) continue;
     ++looked;
-    if (const std::string_view log = log_before(line); !log.empty() && ++logs[log] > most) {
-      log_ = log;
-      most = logs[log];
-    }
     if (const std::string_view stamp = stamp_before(line); !stamp.empty()) {
       ++before;
       line.remove_prefix(stamp.size() + kArrow.size());
@@ -135,7 +202,6 @@ LineForm::LineForm(std::string_view beginning) {
     alike = values.labels == labels ? alike + 1 : 1;
     labels = std::move(values.labels);
   }
-  if (!log_.empty()) return;
   if (before >= kAlike && 2 * before >= looked) stamps_ = Stamps::before;
   // A file of times alone has no rows for them.
   if (alone >= 2 && 10 * alone < 9 * looked) stamps_ = Stamps::above;
@@ -157,11 +223,12 @@ void LineForm::append_row(std::string_view line, std::string& out) {
   if (trimmed(line).empty()) return;
   const auto append_other = [&] { out.append("# ").append(line); };
   std::string_view rest = line;
-  if (!log_.empty()) {
-    if (log_before(line) != log_) return append_other();
+  if (!record_.empty()) {
+    if (!line.starts_with(record_)) return append_other();
+    const bool novatel = !novatel_log(line).empty();
     const auto row = static_cast<std::ptrdiff_t>(out.size());
-    out += line.substr(1, line.rfind('*') - 1);
-    std::replace(out.begin() + row, out.end(), ';', ',');
+    out += novatel ? line.substr(1, line.rfind('*') - 1) : line;
+    if (novatel) std::replace(out.begin() + row, out.end(), ';', ',');
     return;
   }
   if (stamps_ == Stamps::before) {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/csv/table_form.h"
+#include "drivers/capture/csv/csv_header.h"
 
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <set>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/times/date_time.h"
-#include "drivers/ifog/decimal.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 
@@ -17,103 +18,6 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kMostAbove = 1000;  // lines before the first row
-constexpr std::size_t kSampleRows = 64;
-constexpr std::size_t kRunOfRows = 3;  // that make a table, where the text has as many lines
-
-struct Line {
-  std::string_view text;
-  std::size_t number = 0;
-};
-
-bool is_value(std::string_view cell, bool decimal_comma) {
-  if (is_date(cell)) return true;
-  const TimeDigits digits(cell, decimal_comma);
-  const std::string_view text = digits;
-  double value = 0.0;
-  const auto [end, error] = read_decimal(text.data(), text.data() + text.size(), value);
-  return error != std::errc::invalid_argument && end == text.data() + text.size();
-}
-
-// A comment's mark, as loggers write it: "#", "%", "//".
-std::string_view without_mark(std::string_view line) {
-  line = trimmed(line);
-  line.remove_prefix(line.starts_with("//") ? 2 : line.starts_with('#') || line.starts_with('%') ? 1 : 0);
-  return trimmed(line);
-}
-bool is_comment(std::string_view line) { return trimmed(line).starts_with('#'); }
-
-// How many of a line's cells are values, and of how many.
-struct Row {
-  std::size_t cells = 0, values = 0, empty = 0;
-  bool open = false;  // ends with a separator: of one cell more, which is empty, or as some writers end rows
-  [[nodiscard]] bool is_as_wide(std::size_t other) const {
-    return other == cells || (open && other == cells + 1);
-  }
-  // Half of what is not empty at least: a name of a frame or a mode may stand among numbers.
-  [[nodiscard]] bool is_row() const { return values > 0 && 2 * values >= cells - empty; }
-};
-Row row_of(std::string_view line, char separator) {
-  Row row;
-  row.open = separator != ' ' && trimmed(line).ends_with(separator);
-  for (const std::string& cell : cells_of(line, separator)) {
-    ++row.cells;
-    row.values += is_value(cell, separator != ',') ? 1 : 0;
-    row.empty += cell.empty() ? 1 : 0;
-  }
-  return row;
-}
-
-// The first line of the table: of rows of as many cells, of which some follow one another where there are as many;
-// of several such the one with most values, as a head of names and values may look like a table, too. Nothing where
-// there are no rows.
-std::optional<std::size_t> first_row(const std::vector<Line>& lines, char separator) {
-  struct Table {
-    Row first;
-    std::size_t begin = 0, run = 0, values = 0,
-                last = 0;  // last: its row before, of the lines that are no comments
-  };
-  std::vector<Table> tables;
-  std::size_t plain = 0;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (is_comment(lines[i].text)) continue;
-    ++plain;
-    const Row row = row_of(lines[i].text, separator);
-    if (!row.is_row()) continue;
-    auto of = std::find_if(tables.begin(), tables.end(), [&](const Table& table) {
-      return table.first.is_as_wide(row.cells) || row.is_as_wide(table.first.cells);
-    });
-    if (of == tables.end()) of = tables.insert(of, Table{row, i});
-    if (of->run < kRunOfRows && of->last + 1 != plain) *of = {row, i};
-    of->values += row.values, of->last = plain;
-    if (++of->run == kSampleRows) break;
-  }
-  const auto best = std::max_element(tables.begin(), tables.end(), [](const Table& a, const Table& b) {
-    return std::pair(std::min(a.run, kRunOfRows), a.values) <
-           std::pair(std::min(b.run, kRunOfRows), b.values);
-  });
-  return best == tables.end() ? std::nullopt : std::optional(best->begin);
-}
-
-// By which most of what stands in the rows is values; of several by which there are most cells.
-std::optional<char> separator_of(const std::vector<Line>& lines) {
-  std::optional<char> best;
-  double best_share = 0.0;
-  std::size_t best_cells = 1;
-  for (const char separator : {',', ';', '\t', '|', ' '}) {
-    const auto begin = first_row(lines, separator);
-    if (!begin) continue;
-    Row all;
-    for (std::size_t i = *begin; i < lines.size() && i < *begin + kSampleRows; ++i) {
-      const Row row = row_of(lines[i].text, separator);
-      all.cells += row.cells, all.values += row.values, all.empty += row.empty;
-    }
-    const std::size_t cells = row_of(lines[*begin].text, separator).cells;
-    const double share = static_cast<double>(all.values + all.empty) / static_cast<double>(all.cells);
-    if (cells < 2 || share < best_share || (share == best_share && cells <= best_cells)) continue;
-    best = separator, best_share = share, best_cells = cells;
-  }
-  return best;
-}
 
 // Column names that begin with a capture's time, whatever their separator.
 bool is_capture_header(std::string_view line) {
@@ -145,16 +49,11 @@ bool has_names(const std::vector<std::string>& cells, const std::vector<std::str
   });
 }
 
-// Which of the lines is the header; nothing where there is none.
-struct Header {
-  std::optional<std::size_t> at;
-  std::vector<std::string> names;
-};
-
 // The cells of a line above rows that are so wide. Some programs separate the names otherwise than the values:
 // "A_X [mg] A_Y [mg]" above tabs, where a unit belongs to the name before it.
 std::vector<std::string> names_in(std::string_view line, char separator, const Row& rows) {
-  const std::vector<std::string> names = cells_of(without_mark(line), separator);
+  std::vector<std::string> names = cells_of(without_mark(line), separator);
+  if (names.size() + 1 == rows.cells.size() && line.ends_with(separator)) names.emplace_back();
   if (rows.is_as_wide(names.size())) return names;
   for (const char other : {',', ';', '\t', ' '}) {
     std::vector<std::string> cells;
@@ -168,34 +67,9 @@ std::vector<std::string> names_in(std::string_view line, char separator, const R
   return names;
 }
 
-Header header_of(const std::vector<Line>& lines, char separator, const CsvLayout& layout) {
-  const std::vector<std::string> wanted = wanted_names(layout);
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    if (is_comment(lines[i].text)) continue;
-    std::vector<std::string> cells = cells_of(without_mark(lines[i].text), separator);
-    if (is_capture_header(lines[i].text) || (!wanted.empty() && has_names(cells, wanted)))
-      return {i, std::move(cells)};
-  }
-  const auto row = first_row(lines, separator);
-  if (!row) return {};
-  const Row first = row_of(lines[*row].text, separator);
-  // A row of units may stand between.
-  for (std::size_t back = 1; back <= 2 && back <= *row; ++back) {
-    std::vector<std::string> cells = names_in(lines[*row - back].text, separator, first);
-    const bool units = back == 1 && std::any_of(cells.begin(), cells.end(), is_unit) && *row >= 2 &&
-                       first.is_as_wide(cells_of(without_mark(lines[*row - 2].text), separator).size());
-    if (first.is_as_wide(cells.size()) && !units && !row_of(lines[*row - back].text, separator).is_row())
-      return {*row - back, std::move(cells)};
-    if (!units) break;
-  }
-  return {};
-}
-
-// The units that a row below the names says, where it is one: each cell a text, at least one of them a unit.
-std::vector<std::string> units_in(const Line& line, char separator, std::size_t names) {
-  std::vector<std::string> units = cells_of(without_mark(line.text), separator);
-  if (units.size() != names) return {};
-  const auto value = [&](const std::string& cell) { return cell != "1" && is_value(cell, separator != ','); };
+// The units that a row next to the names says, where it is one: each cell a text, at least one of them a unit.
+std::vector<std::string> units_in(std::vector<std::string> units, char separator) {
+  const auto value = [&](const std::string& cell) { return cell != "1" && is_value(cell, separator); };
   for (std::string& unit : units) unit = without_brackets(unit);
   if (std::any_of(units.begin(), units.end(), value) || std::none_of(units.begin(), units.end(), is_unit))
     return {};
@@ -204,36 +78,85 @@ std::vector<std::string> units_in(const Line& line, char separator, std::size_t 
   return units;
 }
 
+// Which of the lines is the header, what it says, and the line above the first row, which may be one of units.
+struct Header {
+  std::size_t at = 0, last = 0;
+  std::vector<std::string> names, units;
+};
+
+// The first line that is a capture's header, or has the names that the layout asks for.
+std::optional<Header> header_asked_for(const std::vector<Line>& lines, const Grid& grid,
+                                       const std::vector<std::string>& wanted) {
+  for (std::size_t i = 0; i < lines.size(); ++i) {
+    if (is_comment(lines[i].text)) continue;
+    Header header{i, i, cells_of(without_mark(lines[i].text), grid.separator()), {}};
+    if (!is_capture_header(lines[i].text) && (wanted.empty() || !has_names(header.names, wanted))) continue;
+    if (i + 1 == lines.size()) return header;
+    std::vector<std::string> below = cells_of(without_mark(lines[i + 1].text), grid.separator());
+    if (below.size() == header.names.size()) header.units = units_in(std::move(below), grid.separator());
+    header.last += header.units.empty() ? 0 : 1;
+    return header;
+  }
+  return std::nullopt;
+}
+
+// "Gyro x" of "x" below "Gyro", which may stand once for all columns that it is over.
+std::vector<std::string> joined(const std::vector<std::string>& above, std::vector<std::string> below) {
+  std::string over;
+  for (std::size_t i = 0; i < below.size(); ++i) {
+    if (i < above.size() && !above[i].empty()) over = above[i];
+    if (!over.empty() && over != below[i]) below[i] = over + (below[i].empty() ? "" : " " + below[i]);
+  }
+  return below;
+}
+
+// What the lines above the rows say, up to three: names, and a row of units below them. Names that stand twice are
+// distinguished by the line above, and where the names are of no gyro, that line may hold them.
+std::vector<Header> headers_above(const std::vector<Line>& lines, const Grid& grid) {
+  constexpr std::size_t kMostNameLines = 3;
+  const std::size_t first = *grid.first();
+  const Row& row = grid.rows()[first];
+  std::vector<std::vector<std::string>> above;  // upwards
+  for (std::size_t back = 1; back <= std::min(first, kMostNameLines); ++back) {
+    above.push_back(names_in(lines[first - back].text, grid.separator(), row));
+    if (row.is_as_wide(above.back().size()) && !grid.rows()[first - back].is_row()) continue;
+    above.pop_back();
+    break;
+  }
+  Header header{first, first - 1, {}, {}};
+  if (above.size() > 1) header.units = units_in(above[0], grid.separator());
+  if (!header.units.empty()) {
+    above.erase(above.begin());
+    --header.at;
+  }
+  std::vector<Header> found;
+  const auto add = [&](std::size_t up, std::vector<std::string> names) {
+    header.names = std::move(names);
+    found.push_back(header);
+    found.back().at -= up;
+  };
+  const auto are_names = [](const std::vector<std::string>& names) {
+    const std::set<std::string> each(names.begin(), names.end());
+    return each.size() == names.size() && !each.contains("");
+  };
+  if (above.size() > 1 && !are_names(above[0])) add(1, joined(above[1], above[0]));
+  if (!above.empty()) add(1, above[0]);
+  if (above.size() > 1 && are_names(above[1])) add(2, above[1]);
+  return found;
+}
+
 std::vector<Line> first_lines(std::string_view text, const std::string& path) {
   Lines lines(text);
   std::vector<Line> out;
   std::string_view line;
   std::size_t plain = 0;
-  while (plain < kMostAbove + kSampleRows && lines.next(line)) {
+  while (plain < kMostAbove + Grid::kSampleRows && lines.next(line)) {
     if (line.size() > kLongestLine) refuse_long_line(path, lines.number(), line);
     if (trimmed(line).empty()) continue;
     out.push_back({line, lines.number()});
     plain += is_comment(line) ? 0 : 1;
   }
   return out;
-}
-
-// Text of other programs that looks like rows here and there, with the program that makes a table of it.
-void refuse_what_is_no_table(const std::vector<Line>& lines, const std::vector<std::string>& given,
-                             const std::string& path) {
-  const auto separates = [](const Line& line) { return line.text == "---"; };
-  if (!lines.empty() && trimmed(lines[0].text).ends_with(':') &&
-      std::count_if(lines.begin(), lines.end(), separates) > 1)
-    fail_at(
-        path, 0,
-        "is YAML as rostopic echo prints it, expected a table; rostopic echo -p, or ros2 topic echo --csv, "
-        "writes one");
-  if (std::any_of(given.begin(), given.end(),
-                  [](const std::string& name) { return name.find('{') != std::string::npos; }))
-    fail_at(
-        path, 0,
-        "is JSON with objects inside of objects, expected a table; jq -r '[.t, .gyro.x, .gyro.y, .gyro.z] | "
-        "@csv', with the names of this file, makes one");
 }
 
 // A LabVIEW measurement file has two heads, and a last name, Comment, that most rows have no cell for.
@@ -262,79 +185,56 @@ std::vector<std::string> without_heads(std::vector<Line>& lines, std::vector<std
   return units;
 }
 
-void sample_rows(const std::vector<Line>& lines, std::size_t from, TableForm& form) {
-  TableSample& sample = form.sample;
-  sample.cells.resize(sample.names.size());
-  for (std::size_t i = from; i < lines.size() && sample.cells[0].size() < kSampleRows; ++i) {
-    if (is_comment(lines[i].text)) continue;
-    std::vector<std::string> cells = cells_of(lines[i].text, form.separator);
-    if (cells.size() + 1 == sample.names.size() && row_of(lines[i].text, form.separator).open)
-      cells.emplace_back();
-    if (cells.size() != sample.names.size()) continue;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      const TimeDigits digits(cells[c], form.separator != ',');
-      sample.cells[c].emplace_back(digits.is_date() ? std::string_view(cells[c]) : std::string_view(digits));
+// The first rows below, as cells by column.
+void sample_rows(const Grid& grid, std::size_t from, TableSample& sample) {
+  sample.cells.assign(sample.names.size(), {});
+  for (std::size_t i = from; i < grid.rows().size() && sample.cells[0].size() < Grid::kSampleRows; ++i) {
+    const Row& row = grid.rows()[i];
+    if (row.comment || !row.is_as_wide(sample.names.size())) continue;
+    for (std::size_t c = 0; c < sample.names.size(); ++c) {
+      const std::string cell = c < row.cells.size() ? row.cells[c] : "";
+      const TimeDigits digits(cell, grid.separator() != ',');
+      sample.cells[c].emplace_back(digits.is_date() ? std::string_view(cell) : std::string_view(digits));
     }
   }
 }
 
-}  // namespace
-
-std::string_view trimmed(std::string_view cell) {
-  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
-  while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r'))
-    cell.remove_suffix(1);
-  return cell;
-}
-
-std::string_view unquoted(std::string_view cell) {
-  cell = trimmed(cell);
-  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
-  return cell;
-}
-
-// "He said ""no"", and left": a quote inside is doubled.
-std::size_t cell_end(std::string_view row, char separator) {
-  std::size_t at = 0;
-  while (row.substr(at).starts_with('"')) {
-    const std::size_t closing = row.find('"', at + 1);
-    if (closing == std::string_view::npos) break;
-    at = closing + 1;
-  }
-  return std::min(row.find(separator, at), row.size());
-}
-
-std::vector<std::string> cells_of(std::string_view line, char separator) {
-  std::vector<std::string> cells;
-  if (separator == ' ') line = trimmed(line);
-  for (;;) {
-    const std::size_t end = cell_end(line, separator);
-    cells.emplace_back(unquoted(line.substr(0, end)));
-    if (end == line.size()) break;
-    line.remove_prefix(end + 1);
-    while (separator == ' ' && !line.empty() && line.front() == ' ') line.remove_prefix(1);
-  }
-  // As rows are that end with a separator.
-  if (cells.size() > 1 && cells.back().empty()) cells.pop_back();
-  return cells;
-}
-
-bool Lines::next(std::string_view& line) {
-  if (rest_.empty()) return false;
-  const std::size_t end = rest_.find('\n');
-  line = rest_.substr(0, end);
-  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
-  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
-  ++number_;
+// The header, and the sample with its names. Of several that the lines above the rows may be it is the first by
+// which the table can be read, or has what was asked for. False: the table has none.
+bool take_header(const std::vector<Line>& lines, const Grid& grid, const CsvLayout& layout, TableForm& form) {
+  TableSample& sample = form.sample;
+  const auto take = [&](const Header& header) {
+    form.header_line = lines[header.at].number;
+    form.last_line = lines[header.last].number;
+    sample.names = header.names;
+    sample.units = header.units;
+    sample_rows(grid, header.last + 1, sample);
+  };
+  const std::vector<std::string> wanted = wanted_names(layout);
+  const std::vector<Header> above = grid.first() ? headers_above(lines, grid) : std::vector<Header>();
+  auto chosen = above.end();
+  if (const auto header = header_asked_for(lines, grid, wanted))
+    return take(*header), true;
+  else if (!wanted.empty())
+    chosen =
+        std::find_if(above.begin(), above.end(), [&](const Header& h) { return has_names(h.names, wanted); });
+  else
+    chosen = std::find_if(above.begin(), above.end(), [&](const Header& h) {
+      take(h);
+      return above.size() == 1 || !readings_of(sample, layout).ways.empty();
+    });
+  if (above.empty()) return false;
+  take(chosen == above.end() ? above.front() : *chosen);
   return true;
 }
+
+}  // namespace
 
 TableForm table_form(std::string_view text, const std::vector<std::string>& given, const std::string& path,
                      const CsvLayout& layout) {
   std::vector<Line> lines = first_lines(text, path);
   TableForm form;
   TableSample& sample = form.sample;
-  refuse_what_is_no_table(lines, given, path);
   const std::vector<std::string> units = without_heads(lines, sample.comments);
   std::optional<char> separator;
   if (layout.separator != '\0') separator = layout.separator;
@@ -350,40 +250,34 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
   if (plain == lines.end()) fail_at(path, 0, "no header line, expected 'time_s,rate_radps,…'");
   if (!separator && is_capture_header(plain->text) && plain->text.find(',') != std::string_view::npos)
     separator = ',';
-  if (!separator) separator = separator_of(lines);
-  form.separator = separator.value_or(',');
-  for (const Line& line : lines)
-    if (!is_comment(line.text) && row_of(line.text, form.separator).cells > kInputLimits.csv_columns)
-      fail_at(path, line.number,
+  const Grid grid = separator ? Grid(lines, *separator) : Grid::of(lines);
+  form.separator = grid.separator();
+  for (std::size_t i = 0; i < lines.size(); ++i)
+    if (!grid.rows()[i].comment && grid.rows()[i].cells.size() > kInputLimits.csv_columns)
+      fail_at(path, lines[i].number,
               "more than " + std::to_string(kInputLimits.csv_columns) +
                   " columns, expected at most that (cut -d, -f1-9 takes some)");
-  const Header header = given.empty() ? header_of(lines, form.separator, layout) : Header();
-  std::size_t first = 0;  // row
-  if (header.at) {
-    sample.names = header.names;
-    form.header_line = form.last_line = lines[*header.at].number;
-    first = *header.at + 1;
-    if (first < lines.size()) sample.units = units_in(lines[first], form.separator, sample.names.size());
-    if (!sample.units.empty()) form.last_line = lines[first++].number;
+  const bool headed = given.empty() && take_header(lines, grid, layout, form);
+  if (headed) {
     if (units.size() == sample.names.size()) sample.units = units;
-  } else if (const auto row = first_row(lines, form.separator)) {
+  } else if (grid.first()) {
     sample.named = !given.empty();
     sample.names = given;
-    for (std::size_t i = 0; given.empty() && i < row_of(lines[*row].text, form.separator).cells; ++i)
+    for (std::size_t i = 0; given.empty() && i < grid.width(); ++i)
       sample.names.push_back("#" + std::to_string(i + 1));
-    first = *row;
-    form.last_line = lines[*row].number - 1;
+    form.last_line = lines[*grid.first()].number - 1;
+    sample_rows(grid, *grid.first(), sample);
   } else {
     fail_at(path, plain->number,
             "no table found, expected a header 'time_s,rate_radps,…' and rows of numbers below; the first "
             "line is " +
                 in_quotes(plain->text));
   }
-  for (std::size_t i = 0;
-       i < lines.size() && lines[i].number < (header.at ? form.header_line : form.last_line + 1); ++i)
-    sample.comments.emplace_back(is_comment(lines[i].text) ? trimmed(trimmed(lines[i].text).substr(1))
-                                                           : trimmed(lines[i].text));
-  sample_rows(lines, first, form);
+  for (const Line& line : lines) {
+    if (line.number > form.last_line || (headed && line.number == form.header_line)) break;
+    sample.comments.emplace_back(is_comment(line.text) ? trimmed(trimmed(line.text).substr(1))
+                                                       : trimmed(line.text));
+  }
   return form;
 }
 

@@ -36,7 +36,51 @@ constexpr std::array<Container, 15> kContainers{
      {"H Product:Blackbox", "is a log of Betaflight, expected CSV; 'blackbox_decode' makes it"},
      {"PAR1", "is a Parquet file, expected CSV; pandas.read_parquet(FILE).to_csv makes it"}}};
 
+// Objects of JSON that are no rows of one table: one within the other, of several kinds, or all in one line.
+std::string foreign_json(std::string_view head) {
+  const std::size_t first = head.find('{'), inner = head.find('{', first + 1), end = head.find('}');
+  if (inner < end)
+    return "is JSON with objects inside of objects, expected a table; jq -r '[.t, .gyro.x, .gyro.y, .gyro.z] "
+           "| "
+           "@csv', with the names of this file, makes one";
+  const bool one_line = head.find('\n', end) > inner;
+  bool kinds = false;
+  constexpr std::string_view kKind = "\"sensor\":";
+  std::string_view before;
+  for (std::size_t at = head.find(kKind); at != std::string_view::npos; at = head.find(kKind, at + 1)) {
+    const std::size_t behind = head.find_first_of(",}", at);
+    if (behind == std::string_view::npos) break;
+    const std::string_view kind = head.substr(at, behind - at);
+    kinds = kinds || (!before.empty() && kind != before);
+    before = kind;
+  }
+  if (!kinds && !one_line) return "";
+  return std::string("is JSON of ") + (kinds ? "several sensors" : "all rows in one line") +
+         ", expected a table; jq -r '.[] | " + (kinds ? "select(.sensor == \"Gyroscope\") | " : "") +
+         "[.time, .x, .y, .z] | @csv', with the names of this file, makes one";
+}
+
 }  // namespace
+
+std::string foreign_text(std::string_view head) {
+  const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
+  if (begins_as_utf16(head)) return "is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it";
+  if (!has("\n") && std::count(head.begin(), head.end(), '\r') > 1)
+    return "its lines end in a carriage return, expected a line feed; \"tr '\\r' '\\n'\" makes it";
+  std::string_view line = head.substr(0, head.find_first_of("\r\n"));
+  line = line.substr(0, line.find_last_not_of(' ') + 1);
+  if (line.ends_with(':') && has("\n---\n"))
+    return "is YAML as rostopic echo prints it, expected a table; rostopic echo -p, or ros2 topic echo "
+           "--csv, "
+           "writes one";
+  if (line.starts_with("TIMESERIES ") && line.find(", SLIST,") != std::string_view::npos)
+    return "is SLIST with several samples a line, expected one a line; the format TSPAIR of the same service "
+           "has "
+           "that";
+  const std::size_t begin = head.find_first_not_of(" \t\r\n");
+  return begin != std::string_view::npos && (head[begin] == '{' || head[begin] == '[') ? foreign_json(head)
+                                                                                       : "";
+}
 
 std::string foreign_can_log(std::string_view head) {
   const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };

@@ -25,6 +25,10 @@ constexpr std::string_view unpacked_name(std::string_view name) {
   return name;
 }
 
+// What makes a table of a text of another program: UTF-16, YAML, JSON in records, several samples a line; "" for what
+// may be a table.
+[[nodiscard]] std::string foreign_text(std::string_view head);
+
 // What Excel calls "Unicode text".
 constexpr bool begins_as_utf16(std::string_view head) {
   return head.starts_with("\xFF\xFE") || head.starts_with("\xFE\xFF");

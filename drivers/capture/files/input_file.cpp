@@ -173,14 +173,10 @@ std::size_t InputFile::unpack(char* to, std::size_t most) {
   return done;
 }
 
-void InputFile::refuse_early_end() const {
-  if (ends_early_)
-    throw std::runtime_error(path_ + ": cannot read: the gzip stream ends early (truncated file)");
-}
-
 std::size_t InputFile::read(char* to, std::size_t most) {
   const std::size_t n = read_what_is_there(to, most);
-  refuse_early_end();
+  if (ends_early_)
+    throw std::runtime_error(path_ + ": cannot read: the gzip stream ends early (truncated file)");
   return n;
 }
 
@@ -194,17 +190,14 @@ std::size_t InputFile::read_what_is_there(char* to, std::size_t most) {
 }
 
 std::string InputFile::bytes() {
-  std::string all = std::exchange(held_, {});
-  all.erase(0, std::exchange(taken_, 0));
   constexpr std::size_t kBlock = 1U << 20U;
+  std::string all;
   for (std::size_t n = kBlock; n == kBlock;) {
     const std::size_t before = all.size();
     all.resize(before + kBlock);
-    n = unpack(all.data() + before, kBlock);
+    n = read(all.data() + before, kBlock);
     all.resize(before + n);
   }
-  refuse_early_end();
-  if (heard_) heard_(all);
   return all;
 }
 
@@ -212,6 +205,35 @@ void InputFile::read_to_the_end() {
   std::vector<char> block(1U << 18U);
   while (read(block.data(), block.size()) > 0) {
   }
+}
+
+TextPieces::TextPieces(ReadBytes read, std::size_t piece)
+    : read_(std::move(read)), piece_(std::max<std::size_t>(1, piece)) {}
+
+bool TextPieces::next(std::string& to) {
+  // A string that is used again is overwritten by what is read, without zeros before that.
+  std::size_t before = tail_.size();
+  to.reserve(before + piece_ + piece_ / 16);
+  if (to.size() < before) to.resize(before);
+  std::copy(tail_.begin(), tail_.end(), to.begin());
+  tail_.clear();
+  while (!ended_) {
+    to.resize(before + piece_);
+    const std::size_t n = read_(to.data() + before, piece_);
+    to.resize(before + n);
+    ended_ = n < piece_;
+    const std::size_t last = to.rfind('\n');
+    if (last == std::string::npos || last < before) {
+      if (to.size() > kLongestLine) return true;
+      before = to.size();
+      continue;
+    }
+    tail_.assign(to, last + 1);
+    to.resize(last + 1);
+    return true;
+  }
+  to.resize(before);
+  return !to.empty();
 }
 
 }  // namespace ifog

@@ -75,7 +75,6 @@ class InputFile {
     void operator()(gzFile_s* file) const;
   };
   std::size_t unpack(char* to, std::size_t most);
-  void refuse_early_end() const;
   void unpack_from(int fd, const std::string& path);
   bool open_next();
   void begin();
@@ -90,6 +89,31 @@ class InputFile {
   Heard heard_;
   std::size_t total_ = 0, behind_ = 0;  // bytes of all files, and of those that were read to their end
   std::size_t unpacked_ = 0, rows_ = 0, most_ = 0;  // most_ 0: as much as comes
+};
+
+// All of a file's content; "-" is standard input.
+inline std::string read_whole_file(const std::string& path) { return InputFile(path).bytes(); }
+
+// Up to `most` further bytes, fewer only at the end, 0 there, as InputFile::read.
+using ReadBytes = std::function<std::size_t(char* to, std::size_t most)>;
+
+inline constexpr std::size_t kTextPiece = std::size_t{4} << 20U;  // bytes, some ten thousand rows
+
+// A text of any length in pieces of whole lines.
+class TextPieces {
+ public:
+  // piece: bytes, about so many at once.
+  explicit TextPieces(ReadBytes read, std::size_t piece = kTextPiece);
+
+  // Replaces `to` by the next whole lines. False at the end. Only the last line may have no end, and one longer
+  // than any may be, to be refused.
+  bool next(std::string& to);
+
+ private:
+  ReadBytes read_;
+  std::size_t piece_;
+  std::string tail_;
+  bool ended_ = false;
 };
 
 }  // namespace ifog

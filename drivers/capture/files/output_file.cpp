@@ -5,6 +5,7 @@
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cctype>
@@ -17,6 +18,8 @@
 #include <stdexcept>
 #include <system_error>
 #include <utility>
+
+#include "drivers/capture/files/file_kind.h"
 
 namespace ifog {
 namespace {
@@ -107,6 +110,13 @@ OutputFile::OutputFile(std::string path, int descriptor) : path_(std::move(path)
 
 // By way of the other, so that a failure in here runs the destructor.
 OutputFile::OutputFile(std::string path) : OutputFile(std::move(path), -1) {
+  open();
+  if (!is_packed_name(path_)) return;
+  packed_ = gzdopen(fcntl(fd_, F_DUPFD_CLOEXEC, 3), "wb");
+  if (packed_ == nullptr) throw std::runtime_error("zlib: cannot start compression");
+}
+
+void OutputFile::open() {
   std::error_code error;
   const Destination to = destination_of(path_, error);
   if (error) {
@@ -155,6 +165,7 @@ void OutputFile::open_beside() {
 }
 
 OutputFile::~OutputFile() {
+  if (packed_ != nullptr) gzclose(packed_);
   if (fd_ >= 0) ::close(fd_);
   if (!beside_.empty()) ::unlink(beside_.c_str());
 }
@@ -168,6 +179,13 @@ void OutputFile::fail(const char* what) const {
 }
 
 void OutputFile::write(std::string_view bytes) {
+  constexpr std::size_t kMostAtOnce = 1U << 30U;  // of zlib
+  while (packed_ != nullptr && !bytes.empty()) {
+    const std::string_view some = bytes.substr(0, kMostAtOnce);
+    errno = 0;
+    if (gzwrite(packed_, some.data(), static_cast<unsigned>(some.size())) <= 0) fail("cannot write");
+    bytes.remove_prefix(some.size());
+  }
   while (!bytes.empty()) {
     const ssize_t n = ::write(fd_, bytes.data(), bytes.size());
     if (n < 0 && errno == EINTR) continue;
@@ -197,6 +215,8 @@ void OutputFile::take_the_name() {
 }
 
 void OutputFile::finish() {
+  errno = 0;
+  if (packed_ != nullptr && gzclose(std::exchange(packed_, nullptr)) != Z_OK) fail("cannot write");
   if (!target_.empty()) {
     if (::fsync(fd_) != 0) fail("cannot sync");
     take_the_name();

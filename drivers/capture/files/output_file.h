@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // All output is written by this class. A regular file is never visible half-written: the bytes go into an unnamed
 // file, which is synced and gets the name at the end. Links are followed; devices, FIFOs and open descriptors
-// (/dev/stdout) are written directly and never replaced.
+// (/dev/stdout) are written directly and never replaced. What is called .gz is packed on its way.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
+
+struct gzFile_s;  // zlib's
 
 namespace ifog {
 
@@ -24,7 +26,7 @@ class OutputFile {
   OutputFile& operator=(const OutputFile&) = delete;
 
   // Both throw std::runtime_error with one line: disk full, pipe closed, … SIGPIPE is the program's to
-  // ignore.
+  // ignore. The bytes of a packed file are the same however they are cut.
   void write(std::string_view bytes);
   void finish();
 
@@ -32,6 +34,7 @@ class OutputFile {
 
  private:
   [[noreturn]] void fail(const char* what) const;
+  void open();
   void open_beside();
   void take_the_name();
 
@@ -39,6 +42,7 @@ class OutputFile {
   std::string target_;  // the regular file; empty: written in place
   std::string beside_;  // the name of the bytes until finish(), where a file without one cannot be had
   int fd_ = -1;
+  gzFile_s* packed_ = nullptr;  // null: the bytes go out as they are
 };
 
 // Identifies the regular file that a path leads to through links and open descriptors ("-" is standard output), or

@@ -10,7 +10,6 @@
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/csv_layout.h"
-#include "drivers/capture/hdf5/hdf5_attributes.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 

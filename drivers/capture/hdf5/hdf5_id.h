@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the HDF5 library counts for us (files, groups, datasets, types, …), given back at the end of a scope,
-// and what it says when it fails.
+// What the HDF5 library counts for us (files, groups, datasets, types, …), given back at the end of a scope; what it
+// says when it fails; and the texts that are attached to an object: the unit of a dataset, the comments of a capture.
 #pragma once
 
 #include <hdf5.h>
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "drivers/ifog/quoted.h"
 
@@ -52,5 +54,22 @@ inline void hdf5_demand(bool good, const std::string& what) {
 
 // The library prints nothing from here on, in this thread.
 inline void hdf5_silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
+
+inline constexpr const char* kHdf5Units = "units";  // on a dataset, as the CF conventions call it
+inline constexpr const char* kHdf5Time = "time_s";
+// Beside time_s where doubles of that size lose digits: the same times as integers, which the attribute says.
+inline constexpr const char* kHdf5ExactTime = "time_ns";
+inline constexpr const char* kHdf5Of = "of";
+inline constexpr const char* kHdf5Comments = "comments";  // on the group: the `#` lines, without the '#'
+
+// The texts of an attribute, at most so many of at most so many bytes each; empty
+// where there is none, or it is no text.
+std::vector<std::string> hdf5_texts(hid_t object, const char* name, std::size_t most, std::size_t longest);
+// The unit that a dataset says, "" for none.
+std::string hdf5_unit(hid_t dataset);
+
+// Throws std::runtime_error with one line.
+void set_hdf5_texts(hid_t object, const char* name, const std::vector<std::string>& texts);
+void set_hdf5_text(hid_t object, const char* name, const std::string& text);
 
 }  // namespace ifog

@@ -19,6 +19,7 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <ratio>
 #include <stdexcept>
 #include <string_view>
@@ -27,18 +28,18 @@
 
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/csv/csv_rows.h"
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/hdf5/hdf5_columns.h"
 #include "drivers/capture/times/date_time.h"
 
 namespace ifog {
 
+namespace {
+
 // What the reading process says besides the text.
-struct Hdf5Text::Said {
+struct Said {
   std::atomic<std::uint64_t> rows_done{0}, rows{0};
   std::array<char, 4096> refusal{}, notices{};  // texts that end with a zero; notices: each with a line's end
 };
-
-namespace {
 
 constexpr rlim_t kMostMemory = 2ULL << 30U;  // bytes, besides the program's own and a copy of the file
 // Processor time from one block to the next, and how slowly a chunk may be unpacked besides.
@@ -184,34 +185,74 @@ std::string kept(const std::array<char, 4096>& text) {
   return {text.begin(), std::find(text.begin(), text.end(), '\0')};
 }
 
-}  // namespace
-
-Hdf5Text::Hdf5Text(InputFile& file, Hdf5Wanted wanted) : file_(file) {
-  struct stat info {};
-  if (file.reopens() && stat(file.path().c_str(), &info) == 0) {
-    wanted.file_bytes = static_cast<std::uint64_t>(info.st_size);
-  } else {
-    image_ = file.bytes();
-    wanted.file_bytes = image_.size();
+// A file's text, from a process of its own that ends with this.
+class Hdf5Text {
+ public:
+  // The file stays where it is while this is used. Throws std::runtime_error with one line.
+  Hdf5Text(InputFile& file, Hdf5Wanted wanted) : file_(file) {
+    struct stat info {};
+    if (file.reopens() && stat(file.path().c_str(), &info) == 0) {
+      wanted.file_bytes = static_cast<std::uint64_t>(info.st_size);
+    } else {
+      image_ = file.bytes();
+      wanted.file_bytes = image_.size();
+    }
+    void* const shared =
+        mmap(nullptr, sizeof(Said), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED) throw std::runtime_error(file.path() + ": no memory: " + reason());
+    said_.reset(new (shared) Said);
+    int ends[2];
+    if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(file.path() + ": no pipe: " + reason());
+    pipe_ = ends[0];
+    reader_ = fork();
+    if (reader_ == 0) print({file.path(), image_}, wanted, ends[1]);
+    ::close(ends[1]);
+    if (reader_ > 0) return;
+    ::close(pipe_);
+    throw std::runtime_error(file.path() + ": no process to read it: " + reason());
   }
-  try {
-    begin({file.path(), image_}, wanted);
-  } catch (...) {
-    end();
-    throw;
+  ~Hdf5Text() {
+    ::close(pipe_);
+    if (reader_ <= 0) return;
+    ::kill(reader_, SIGKILL);
+    while (waitpid(reader_, nullptr, 0) < 0 && errno == EINTR) continue;
   }
-}
+  Hdf5Text(const Hdf5Text&) = delete;
+  Hdf5Text& operator=(const Hdf5Text&) = delete;
 
-void Hdf5Text::begin(const Hdf5Source& source, const Hdf5Wanted& wanted) {
-  void* const shared = mmap(nullptr, sizeof(Said), PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
-  int ends[2];
-  if (shared == MAP_FAILED) throw std::runtime_error(file_.path() + ": no memory: " + reason());
-  said_ = new (shared) Said;
-  if (pipe2(ends, O_CLOEXEC) != 0) throw std::runtime_error(file_.path() + ": no pipe: " + reason());
-  pipe_ = ends[0];
-  reader_ = fork();
-  if (reader_ == 0) {
-    // Never returns: nothing of the parent is ended here, no buffer of it written a second time.
+  // As InputFile::read. Throws std::runtime_error with one line: what is not as a capture needs it, a damaged
+  // file.
+  std::size_t read(char* to, std::size_t most) {
+    std::size_t done = 0;
+    while (done < most && reader_ > 0) {
+      const ssize_t n = ::read(pipe_, to + done, most - done);
+      if (n < 0 && errno == EINTR) continue;
+      if (n <= 0) break;
+      done += static_cast<std::size_t>(n);
+    }
+    file_.told(said_->rows_done, said_->rows);
+    if (done == most || reader_ <= 0) return done;
+    int status = 0;
+    while (waitpid(reader_, &status, 0) < 0 && errno == EINTR) continue;
+    reader_ = -1;
+    if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return done;
+    if (WIFEXITED(status) && said_->refusal[0] != '\0')
+      throw std::runtime_error(file_.path() + ": " + printable(kept(said_->refusal), said_->refusal.size()));
+    const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF;
+    throw std::runtime_error(file_.path() + ": is damaged: the HDF5 library " +
+                             (slow ? "comes to no end with it" : "breaks down over it"));
+  }
+  // What is not read; known at the end.
+  [[nodiscard]] std::vector<std::string> notices() const { return lines_of(kept(said_->notices)); }
+
+ private:
+  struct Unmap {
+    void operator()(Said* said) const { munmap(said, sizeof(Said)); }
+  };
+
+  // In the process of its own. Never returns: nothing of the parent is ended here, no buffer of it written a
+  // second time.
+  [[noreturn]] void print(const Hdf5Source& source, const Hdf5Wanted& wanted, int to) {
     shut_in(source.image.size());
     allow_seconds();
     try {
@@ -220,7 +261,7 @@ void Hdf5Text::begin(const Hdf5Source& source, const Hdf5Wanted& wanted) {
       std::string notices;
       for (const std::string& notice : columns.notices()) notices += one_line(notice) + '\n';
       keep(notices, said_->notices);
-      Pipe out(ends[1]);
+      Pipe out(to);
       print_head(columns, out);
       print_rows(columns, out, said_->rows_done);
       out.flush();
@@ -230,54 +271,15 @@ void Hdf5Text::begin(const Hdf5Source& source, const Hdf5Wanted& wanted) {
     }
     _exit(0);
   }
-  ::close(ends[1]);
-  if (reader_ < 0) throw std::runtime_error(file_.path() + ": no process to read it: " + reason());
-}
 
-std::size_t Hdf5Text::read(char* to, std::size_t most) {
-  std::size_t done = 0;
-  while (done < most && reader_ > 0) {
-    const ssize_t n = ::read(pipe_, to + done, most - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n <= 0) break;
-    done += static_cast<std::size_t>(n);
-  }
-  file_.told(said_->rows_done, said_->rows);
-  if (done == most || reader_ <= 0) return done;
-  int status = 0;
-  while (waitpid(reader_, &status, 0) < 0 && errno == EINTR) continue;
-  reader_ = -1;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return done;
-  if (WIFEXITED(status) && said_->refusal[0] != '\0')
-    throw std::runtime_error(file_.path() + ": " + printable(kept(said_->refusal), said_->refusal.size()));
-  const bool slow = WIFSIGNALED(status) && WTERMSIG(status) == SIGPROF;
-  throw std::runtime_error(file_.path() + ": is damaged: the HDF5 library " +
-                           (slow ? "comes to no end with it" : "breaks down over it"));
-}
+  InputFile& file_;
+  std::string image_;                  // a file that cannot be opened by its name
+  std::unique_ptr<Said, Unmap> said_;  // in memory of both processes
+  int pipe_ = -1;
+  pid_t reader_ = -1;
+};
 
-std::vector<std::string> Hdf5Text::notices() const {
-  std::vector<std::string> out;
-  for (std::string rest = kept(said_->notices); !rest.empty();) {
-    const std::size_t end = std::min(rest.find('\n'), rest.size());
-    out.push_back(printable(rest.substr(0, end), rest.size()));
-    rest.erase(0, end + 1);
-  }
-  return out;
-}
-
-void Hdf5Text::end() {
-  if (pipe_ >= 0) ::close(pipe_);
-  pipe_ = -1;
-  if (reader_ > 0) {
-    ::kill(reader_, SIGKILL);
-    while (waitpid(reader_, nullptr, 0) < 0 && errno == EINTR) continue;
-  }
-  reader_ = -1;
-  if (said_ != nullptr) munmap(said_, sizeof(Said));
-  said_ = nullptr;
-}
-
-Hdf5Text::~Hdf5Text() { end(); }
+}  // namespace
 
 RowNotes read_hdf5_rows(InputFile& file, const std::string& group, const CsvLayout& layout, RowSink& sink) {
   Hdf5Wanted wanted{group, {}, true, 0};
@@ -294,7 +296,8 @@ RowNotes read_hdf5_rows(InputFile& file, const std::string& group, const CsvLayo
   Hdf5Text text(file, wanted);
   RowNotes notes = read_csv_rows([&](char* to, std::size_t most) { return text.read(to, most); }, file.path(),
                                  layout, sink, kTextPiece, RowsAre::numbered);
-  for (const std::string& notice : text.notices()) notes.notices.push_back(file.path() + ": " + notice);
+  for (const std::string& notice : text.notices())
+    notes.notices.push_back(file.path() + ": " + printable(notice, notice.size()));
   return notes;
 }
 

@@ -8,15 +8,10 @@
 // other. When it dies the file is refused with one line.
 #pragma once
 
-#include <sys/types.h>
-
-#include <cstddef>
 #include <string>
-#include <vector>
 
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/files/input_file.h"
-#include "drivers/capture/hdf5/hdf5_columns.h"
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
@@ -28,32 +23,5 @@ namespace ifog {
 // contradicts its name is refused. What is refused or treated as missing is the same as in a CSV file, and rows
 // count from 1. Throws std::runtime_error with one line, possibly after rows were handed on.
 RowNotes read_hdf5_rows(InputFile& file, const std::string& group, const CsvLayout& layout, RowSink& sink);
-
-class Hdf5Text {
- public:
-  // wanted.file_bytes is set here. The file stays where it is while this is used. Throws std::runtime_error
-  // with one line.
-  Hdf5Text(InputFile& file, Hdf5Wanted wanted);
-  ~Hdf5Text();
-  Hdf5Text(const Hdf5Text&) = delete;
-  Hdf5Text& operator=(const Hdf5Text&) = delete;
-
-  // As InputFile::read. Throws std::runtime_error with one line: what is not as a capture needs it, a damaged
-  // file.
-  std::size_t read(char* to, std::size_t most);
-  // What is not read; known at the end.
-  [[nodiscard]] std::vector<std::string> notices() const;
-
- private:
-  struct Said;
-  void begin(const Hdf5Source& source, const Hdf5Wanted& wanted);
-  void end();
-
-  InputFile& file_;
-  std::string image_;     // a file that cannot be opened by its name
-  Said* said_ = nullptr;  // in memory of both processes
-  int pipe_ = -1;
-  pid_t reader_ = -1;
-};
 
 }  // namespace ifog

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include "drivers/capture/hdf5/hdf5_attributes.h"
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/output_file.h"
 #include "drivers/capture/hdf5/hdf5_id.h"
 #include "drivers/capture/times/time_stamps.h"
 
@@ -41,7 +41,7 @@ class Hdf5Writer {
 
   std::string path_;
   std::vector<std::string> names_;
-  TextOutput out_;
+  OutputFile out_;
   Hdf5Id file_;
   std::vector<Hdf5Id> datasets_;           // none before the first rows are written
   std::vector<std::vector<double>> held_;  // by column: rows that fill no chunk

@@ -31,10 +31,10 @@ struct Moment {
 bool time_of_day(TextCursor& rest, bool seconds_needed, Moment& moment) {
   int hours = 0, minutes = 0, seconds = 0;
   if (!rest.number(1, 2, hours) || !rest.one_of(":_") || !rest.number(2, 2, minutes)) return false;
-  const bool told = rest.one_of(":_");
-  if (told ? !rest.number(2, 2, seconds) : seconds_needed) return false;
+  const bool seconds_given = rest.one_of(":_");
+  if (seconds_given ? !rest.number(2, 2, seconds) : seconds_needed) return false;
   if (hours > 23 || minutes > 59 || seconds > 60) return false;
-  if (told && rest.one_of(".,")) {
+  if (seconds_given && rest.one_of(".,")) {
     moment.fraction = rest.digits();
     if (moment.fraction.empty()) return false;
   }

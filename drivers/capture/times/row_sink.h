@@ -39,11 +39,11 @@ struct Fault {
     if (count == 0) line = lines + piece.line, first = piece.first;
     count += piece.count;
   }
-  // "PATH:LINE: FIRST; 3 such rows are left out"; kind: "row".
-  [[nodiscard]] std::string left_out(const std::string& path, const std::string& kind) const {
+  // "PATH:LINE: FIRST; 3 such rows are dropped"; kind: "row".
+  [[nodiscard]] std::string dropped(const std::string& path, const std::string& kind) const {
     return path + ":" + std::to_string(line) + ": " + first + "; " +
            (count == 1 ? "this " + kind + " is" : std::to_string(count) + " such " + kind + "s are") +
-           " left out";
+           " dropped";
   }
 };
 
@@ -62,6 +62,8 @@ struct RowBlock {
   void move_row(std::size_t from, std::size_t to);
   // Leaves so many.
   void keep_first(std::size_t rows);
+  // Moves the rows from there on into `to`, in place of what it holds.
+  void split_off(std::size_t from, RowBlock& to);
 };
 
 class RowSink {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "drivers/capture/csv/csv_writer.h"
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/output_file.h"
 #include "tests/bench/undeclared/sensor.h"
 
 // Of one axis, as all that is made here.
@@ -67,7 +67,7 @@ int main(int argc, char** argv) {
     for (const auto& effect : next.effects)
       for (std::size_t k = 0; k < hidden.size(); ++k) hidden.rate_radps[0][k] += effect[k];
     write(hidden, truth + "/next_effect.csv");
-    ifog::write_text_file(truth + "/truth.json", truth_text(sensor));
+    ifog::write_file(truth + "/truth.json", truth_text(sensor));
     return 0;
   }
   std::cerr << "make_undeclared: --kind is '" << kind_name << "', expected a kind of the table\n";

@@ -12,7 +12,7 @@
 #include <fstream>
 
 #include "drivers/capture/csv/csv_writer.h"
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "tests/unit/capture/refusal.h"
 
 namespace {

@@ -6,9 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdint>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -29,15 +27,7 @@ CsvLayout layout(const std::vector<std::string>& columns, const std::string& tim
   return out;
 }
 
-template <typename Read>
-std::string refusal(Read&& read) {
-  try {
-    read();
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "accepted";
-}
+using test::refusal;
 
 TEST(CsvLayout, ReadsTheColumnsThatWereChosenInTheirUnits) {
   const Capture c = parse_capture(
@@ -126,7 +116,8 @@ TEST(CsvLayout, SaysWhatIsWrongWithAnOption) {
             "'rate_radps=w:m/s', expected a unit that becomes radps: rad/s, deg/s, ");
   EXPECT_EQ(column("time_s=t"), "'time_s=t', expected another name; --time says which column is the time");
   EXPECT_EQ(refusal([] { CsvTime::parse("t:m"); }),
-            "'t:m', expected HEADER:UNIT with a unit of time: s, ms, us, 100us, ns, min, h, d");
+            "'t:m', expected HEADER:UNIT with a unit of time: s, ms, us, 100us, ns, min, h, d; d/m/y or "
+            "m/d/y of dates");
   EXPECT_EQ(refusal([] { CsvLayout::parse_separator("::"); }),
             "'::', expected one character that stands between cells, ';', or the word tab");
   EXPECT_EQ(CsvLayout::parse_separator("tab"), '\t');
@@ -224,7 +215,7 @@ TEST(CsvLayout, AHeaderOfAnotherUnitIsNotTakenForTheTargets) {
   };
   const auto said = [](const std::string& header, const std::string& unit, const std::string& option) {
     return "a.csv:1: '" + header + "' is in '" + unit +
-           "' by its name, and no unit was told; to read it so: " + option;
+           "' by its name, and no unit was given; to read it so: " + option;
   };
   EXPECT_EQ(refusal([&] { parse_capture(text, "a.csv", layout({"rate_radps=rate_dps"})); }),
             said("rate_dps", "dps", "--column rate_radps=rate_dps:dps"));
@@ -253,140 +244,6 @@ TEST(CsvLayout, MillisecondsTakenForSecondsAreSaid) {
   EXPECT_TRUE(parse_capture(seconds, "a.csv").notices.empty());
   EXPECT_TRUE(parse_capture(dwells, "a.csv").notices.empty());
   EXPECT_TRUE(parse_capture(milliseconds, "a.csv", layout({}, "time_s:ms")).notices.empty());
-}
-
-// A row for each of `rows`: what stands before, between and behind the rates, {i} being the row's number and
-// {x}, {y}, {z} white noise of 0.001.
-std::string rows_of(const std::string& head, const std::string& form, int rows = 40) {
-  std::string text = head;
-  std::uint32_t dice = 1;
-  for (int i = 0; i < rows; ++i) {
-    std::string row = form;
-    const auto put = [&row](const std::string& name, const std::string& value) {
-      for (std::size_t at; (at = row.find(name)) != std::string::npos;) row.replace(at, name.size(), value);
-    };
-    for (const char* axis : {"{x}", "{y}", "{z}"}) {
-      dice = dice * 1664525U + 1013904223U;
-      put(axis, std::to_string(1e-3 * (static_cast<double>(dice >> 16U) / 32768.0 - 1.0)));
-    }
-    put("{count}", std::to_string(static_cast<int>(dice >> 20U) - 2048));
-    put("{angle}", std::to_string(3.0 + 1e-3 * i));
-    put("{digit}", std::to_string(7 * i % 10));
-    put("{i}", std::to_string(100 + i));
-    text += row + "\n";
-  }
-  return text;
-}
-
-TEST(CsvLayout, FilesOfOtherProgramsAreReadOrOfferedRight) {
-  struct Case {
-    std::string text;
-    std::vector<std::string> said;
-  };
-  const std::vector<Case> cases = {
-      // KAIST Complex Urban data set, fog.csv: a FOG's increments in rad.
-      {rows_of("", "15445907980{i}0000000,{x},{y},{z}"),
-       {"--time '#1:ns' --column 'rate_x_radps=#2:rad/s'",
-        "; in the place of rad/s: deg/s, rad/sample, deg/sample"}},
-      // NCLT data set, kvh.csv: the heading of a FOG.
-      {rows_of("", "13578472480{i}0000,{angle}"),
-       {"--column 'rate_radps=#2:rad'", "in the place of rad: deg, rad/s"}},
-      // VectorNav, user manual, $VNIMU: magnetic field, acceleration, rates, temperature, pressure.
-      {rows_of(
-           "",
-           "$VNIMU,-00.0350,+00.4222,-00.6643,-00.015,+00.019,+09.80{digit},{x},{y},{z},+20.7,+084.322*00"),
-       {"to read it: --sample-rate HZ --column 'rate_x_radps=#8:rad/s' --column 'rate_y_radps=#9:rad/s' "
-        "--column "
-        "'rate_z_radps=#10:rad/s'; in"}},
-      // OxIOD data set, imu.csv: roll, pitch, yaw, rates, gravity.
-      {rows_of("", "1505306516.{i},0.01,0.02,{angle},{x},{y},{z},0.1,0.2,0.97"),
-       {"--column 'rate_x_radps=#5:rad/s' --column 'rate_y_radps=#6:rad/s' --column 'rate_z_radps=#7:rad/s'; "
-        "in"}},
-      // Analog Devices, ADIS16495 data logger: registers.
-      {rows_of("Timestamp,X_GYRO_OUT\n", "0.{i},{count}"),
-       {"whole numbers are often counts", "--column rate_x_radps=X_GYRO_OUT:0.005deg/s"}},
-      // Laser gyro test stands write the arcsecond's sign.
-      {rows_of("Time [s]; Rate X [\"/s]\n", "0.{i}; {x}"), {"rate_x 'Rate X [\"/s]' in \"/s"}},
-      // MATLAB datenum and Excel serial dates: days.
-      {rows_of("time,gyro_x_dps\n", "738856.500{i}57858,{x}"), {"read as: time 'time' in d"}},
-      {rows_of("time_days,gyro_x_dps\n", "0.00000{i},{x}"), {"read as: time 'time_days' in d"}},
-      // Movella DOT data exporter: the stated rate tells that its clock is of us.
-      {rows_of("sep=,\nDeviceTag:,DOT1\nOutputRate:,100Hz\nPacketCounter,SampleTimeFine,Gyr_X\n",
-               "{i},3{i}0000,{x}"),
-       {"--time SampleTimeFine:us"}},
-      // TEX-CUP data set: week, second, fraction of the second.
-      {rows_of("", "2051 240000 0.{i} {x} -0.0475 9.808 {x} {y} {z}"),
-       {"--sample-rate HZ --column 'rate_x_radps=#7:"}},
-      // Malaga data set, MRPT: the header begins with %.
-      {rows_of("%  Time  IMU_YAW_VEL  IMU_PITCH_VEL  IMU_ROLL_VEL\n", " 1261228426.{i} {z} {y} {x}"),
-       {"--time Time:s --column rate_z_radps=IMU_YAW_VEL:rad/s"}},
-      // NovAtel OEM7, abbreviated ASCII log RAWIMUSXA among others.
-      {rows_of("#BESTPOSA,COM1,0,72.0;SOL_COMPUTED,SINGLE,51.11*3c6da5d7\n",
-               "%RAWIMUSXA,2075,507495.{i};00,13,2075,507495.165000000,00000000,32068,-1612,-1320,{count},-{"
-               "i},1{i}*3c6da5d7"),
-       {"rate_x_radps=#12:", "rate_z_radps=#14:"}},
-      // NI LabVIEW measurement file: two heads, a decimal comma, a name without cells.
-      {rows_of("LabVIEW Measurement\t\nSeparator\tTab\n***End_of_Header***\t\n\nChannels\t1\nSamples\t40\n"
-               "Y_Unit_Label\tdeg/s\nDelta_X\t0,010000\n***End_of_Header***\t\nX_Value\tGyro X\tComment\n",
-               "0,{i}000\t0,{i}"),
-       {"to read it: --sample-rate 100 --column 'rate_x_radps=Gyro X:deg/s'"}},
-      // Spreadsheets: one name over three columns.
-      {rows_of("time (s),gyro,gyro,gyro\n", "0.{i},{x},{y},{z}"),
-       {"--column 'rate_x_radps=#2:rad/s' --column 'rate_y_radps=#3:rad/s' --column "
-        "'rate_z_radps=#4:rad/s'"}},
-      // GoPro telemetry extractor: the axis stands in brackets, and z first.
-      {rows_of("t [s],Gyroscope (z) [rad/s],Gyroscope (x) [rad/s]\n", "0.{i},{z},{x}"),
-       {"rate_z 'Gyroscope (z) [rad/s]' in rad/s, rate_x 'Gyroscope (x) [rad/s]' in rad/s"}},
-      // x-IMU GUI, CalInertialAndMag.csv: G is gauss.
-      {rows_of("Packet number,Gyroscope X (deg/s),Magnetometer X (G)\n", "{i},{x},0.21"),
-       {"--column 'magnetometer_x_uT=Magnetometer X (G):gauss'"}},
-      // A PX4 module that logs its gyro and a FOG.
-      {rows_of("Timestamp,Gyro_X,FOG_X\n", "1{i}0000,{x},{y}"),
-       {"rate_x_radps=Gyro_X", "rate_x_radps=FOG_X"}},
-      // rostopic echo, and loggers that write objects in objects.
-      {"header: \n  seq: 0\n---\nheader: \n  seq: 1\n---\n", {"rostopic echo -p"}},
-      {rows_of("", R"({"ts": 17.{i}, "gyro": {"x": {x}, "y": {y}, "z": {z}}})"), {"jq -r"}},
-      // Gyroflow, gcsv 1.3, whose head looks like a table, and Epson's logger: the scale of counts stands above.
-      {rows_of(
-           "GYROFLOW IMU LOG\nid,custom\nvendor,cam\nversion,1.3\ntscale,0.001\ngscale,0.00122\nt,gx,gy,gz\n",
-           "{i},{count},{count},{count}"),
-       {"read as: time 't' in 0.001s, rate_x 'gx' in 0.00122 rad/s, rate_y 'gy' in 0.00122 rad/s"}},
-      {rows_of("Gyro_SF=0.0151515 Accel_SF=0.4\nSample No,time,Gx,Gy\n", "{i},1.{i},{count},{count}"),
-       {"rate_x 'Gx' in 0.0151515 deg/s"}},
-      // Sensor Logger, a list of objects.
-      {rows_of(
-           "",
-           R"({"sensor": "Gyroscope", "time": "17676204673{i}0000000", "x": "{x}", "y": "{y}", "z": "{z}"},)"),
-       {"--time time:ns --column rate_x_radps=x:rad/s --column rate_y_radps=y:rad/s"}},
-      // Spreadsheets of both orders.
-      {rows_of("time,gyro_x_dps\n", "05/06/2023 12:00:00.{i},{x}"), {"read with the month first"}},
-  };
-  for (const Case& each : cases) {
-    std::string all;
-    try {
-      for (const std::string& notice : parse_capture(each.text, "a.csv").notices) all += notice + "\n";
-    } catch (const std::runtime_error& error) {
-      all = error.what();
-    }
-    for (const std::string& part : each.said)
-      EXPECT_NE(all.find(part), std::string::npos) << part << "\nnot in\n"
-                                                   << all << "\nof\n"
-                                                   << each.text.substr(0, 300);
-  }
-}
-
-// A day above 12 says the order of all rows; one that contradicts it later is no row.
-TEST(CsvLayout, RowsDecideWhatIsTheDay) {
-  const auto read = [](const std::string& day, const std::string& next) {
-    return parse_capture(
-        rows_of("t,gyro_x_dps\n", day + " 23:59:59.{i},{x}", 400) + next + " 00:00:00.1,0.1\n", "a.csv");
-  };
-  EXPECT_EQ(read("13/06/2023", "14/06/2023").origin.s, 1686700799);
-  EXPECT_EQ(read("13/06/2023", "14/06/2023").faults.size() + read("2023-06-12", "2023-06-13").faults.size(),
-            0U);
-  EXPECT_EQ(read("12/06/2023", "13/06/2023").faults.at(0),
-            "a.csv:402: t is '13/06/2023 00:00:00.1', expected day and month in the order of the rows above; "
-            "write the dates as year-month-day; this line is left out");
 }
 
 TEST(CsvLayout, TheOptionThatIsPrintedKeepsTheScale) {

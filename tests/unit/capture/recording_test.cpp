@@ -186,8 +186,8 @@ TEST_F(Recording, ARateAtFullScaleIsMissing) {
   EXPECT_EQ(encoder.rows_at_full_scale(), 10U);
   ifog::CaptureBuilder builder(in.description());
   in.decode_bytes(bytes, 0, [&](const ifog_sample& sample) { builder.add(sample); });
-  EXPECT_EQ(builder.at_full_scale(), 10U);
-  EXPECT_EQ(builder.implausible(), 0U);
+  EXPECT_EQ(builder.remarks(),
+            std::vector<std::string>{"10 samples at or beyond the sensor's full scale, treated as missing"});
   const Capture back = builder.finish();
   ASSERT_EQ(back.size(), fast.size());
   for (std::size_t i = 0; i < back.size(); ++i) {
@@ -339,7 +339,8 @@ TEST_F(Recording, AChannelsValueThatCannotBeIsMissingAndCounted) {
     sample.environment[0] = value;
     builder.add(sample, std::vector{value - 5.0});
   }
-  EXPECT_EQ(builder.impossible(), 3U);
+  EXPECT_EQ(builder.remarks(),
+            std::vector<std::string>{"3 values of channels cannot be, in the unit of their name: dropped"});
   const Capture made = builder.finish();
   EXPECT_EQ(made.channels.at(0).values[0], 20.0);
   EXPECT_TRUE(std::isnan(made.channels.at(0).values[1]));

@@ -8,10 +8,14 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "drivers/capture/capture.h"
 #include "drivers/capture/csv/csv_rows.h"
+#include "drivers/capture/times/date_time.h"
+#include "tests/unit/capture/refusal.h"
 
 namespace {
 
@@ -123,19 +127,9 @@ std::string stamp(std::int64_t ns, std::int64_t of_second) {
   return text + "." + behind;
 }
 
-struct Stamped final : ifog::RowSink {
-  TimeOrigin origin;
-  std::vector<double> time_s, rate;
-  void begin(const std::vector<std::string>&) override {}
-  void take(ifog::RowBlock& rows) override {
-    origin = rows.origin;
-    time_s.insert(time_s.end(), rows.time_s.begin(), rows.time_s.end());
-    rate.insert(rate.end(), rows.columns[0].begin(), rows.columns[0].end());
-  }
-};
-
 // An angle, whose cells are the same whatever the times.
-Stamped turned(std::int64_t start_ns, std::int64_t of_second, const std::string& unit, std::size_t piece) {
+ifog::Table turned(std::int64_t start_ns, std::int64_t of_second, const std::string& unit,
+                   std::size_t piece) {
   constexpr int kRows = 400;
   std::string text = "t,angle\n";
   for (int i = 0; i < kRows; ++i)
@@ -144,21 +138,19 @@ Stamped turned(std::int64_t start_ns, std::int64_t of_second, const std::string&
   layout.time = ifog::CsvTime::parse("t:" + unit);
   layout.columns = {ifog::CsvColumn::parse("rate_radps=angle:rad")};
   std::size_t at = 0;
-  Stamped out;
-  ifog::read_csv_rows(
-      [&](char* to, std::size_t most) {
-        const std::size_t n = std::min(most, text.size() - at);
-        std::memcpy(to, text.data() + at, n);
-        at += n;
-        return n;
-      },
-      "a.csv", layout, out, piece);
-  return out;
+  const auto read = [&](char* to, std::size_t most) {
+    const std::size_t n = std::min(most, text.size() - at);
+    std::memcpy(to, text.data() + at, n);
+    at += n;
+    return n;
+  };
+  return ifog::table_of(
+      [&](ifog::RowSink& sink) { return ifog::read_csv_rows(read, "a.csv", layout, sink, piece); });
 }
 
 TEST(TimeStamps, OfAnyStartAndUnitMakeTheSameRates) {
-  const Stamped from_0 = turned(0, 1, "s", 1U << 20U);
-  ASSERT_EQ(from_0.rate.size(), 400U);
+  const ifog::Table from_0 = turned(0, 1, "s", 1U << 20U);
+  ASSERT_EQ(from_0.time_s.size(), 400U);
   EXPECT_EQ(from_0.time_s[3], 0.03);
   struct Unit {
     const char* name;
@@ -169,10 +161,11 @@ TEST(TimeStamps, OfAnyStartAndUnitMakeTheSameRates) {
     for (const Unit unit : {Unit{"s", 1}, {"ms", 1000}, {"us", 1'000'000}, {"ns", 1'000'000'000}})
       // The second reads it in forty pieces, each by itself.
       for (const std::size_t piece : {1U << 20U, 256U}) {
-        const Stamped got = turned(start_ns, unit.of_second, unit.name, piece);
-        ASSERT_EQ(got.rate.size(), from_0.rate.size());
-        for (std::size_t i = 1; i < got.rate.size(); ++i) {
-          ASSERT_NEAR(got.rate[i], from_0.rate[i], 1e-12) << start_ns << " " << unit.name << " row " << i;
+        const ifog::Table got = turned(start_ns, unit.of_second, unit.name, piece);
+        ASSERT_EQ(got.time_s.size(), from_0.time_s.size());
+        for (std::size_t i = 1; i < got.time_s.size(); ++i) {
+          ASSERT_NEAR(got.columns[0].values[i], from_0.columns[0].values[i], 1e-12)
+              << start_ns << " " << unit.name << " row " << i;
           const std::int64_t ns = start_ns + static_cast<std::int64_t>(i) * 10'000'000;
           ASSERT_EQ(got.time_s[i],
                     static_cast<double>(ns - got.origin.s * 1'000'000'000 - got.origin.ns) / 1e9)
@@ -181,6 +174,77 @@ TEST(TimeStamps, OfAnyStartAndUnitMakeTheSameRates) {
           ASSERT_EQ(got.time_s[i], from_0.time_s[i]) << unit.name << " row " << i;
         }
       }
+}
+
+std::string seconds(const std::string& text) {
+  std::array<char, ifog::kLongestDate> to{};
+  return std::string(ifog::date_in_digits(text, to));
+}
+
+// Oracle: `date -u -d … +%s`.
+TEST(DateTime, SecondsSince1970WithEveryDigit) {
+  EXPECT_EQ(seconds("2026-05-01T12:00:00Z"), "1777636800");
+  EXPECT_EQ(seconds("2026-05-01 12:00:00"), "1777636800");
+  EXPECT_EQ(seconds("2026/05/01 12:00"), "1777636800");
+  EXPECT_EQ(seconds("2026_05_01_12_00_00.25"), "1777636800.25");
+  EXPECT_EQ(seconds("2026-05-01"), "1777593600");
+  EXPECT_EQ(seconds("2026-05-01T12:00:00.123456789012Z"), "1777636800.123456789012");
+  EXPECT_EQ(seconds("2026-05-01t12:00:00,5z"), "1777636800.5");
+  EXPECT_EQ(seconds("2026-05-01T12:00:00.250+02:00"), "1777629600.250");
+  EXPECT_EQ(seconds("2026-05-01T12:00:00-0530"), "1777656600");
+  EXPECT_EQ(seconds("2026-05-01T12:00:00+02"), "1777629600");
+  EXPECT_EQ(seconds("2026-05-01 12:00:00 UTC"), "1777636800");
+  EXPECT_EQ(seconds("2024-02-29T00:00:00Z"), "1709164800");
+  EXPECT_EQ(seconds("1969-12-31T23:59:59Z"), "-1");
+  EXPECT_EQ(seconds("2016-12-31T23:59:60Z"), "1483228800");  // the leap second
+  EXPECT_EQ(seconds("23:59:59.5"), "86399.5");
+}
+
+TEST(DateTime, IsNothingElse) {
+  EXPECT_EQ(seconds(""), "");
+  std::istringstream texts(
+      "1777636800;12.5;-1e5;2026-13-01;2026-02-30;2026-05-01T24:00:00;2026-05-01T12;2026-05-01T12:60:00;"
+      "2026-05-01T12:00:61;2026-05-01T12:00:00.;2026-05-01T12:00:00.1.2;2026-05-01T12:00:00 CET;"
+      "2026-05-01T12:00:00+2;2026-05-01X12:00:00;2026-05/"
+      "01;26-05-01;12:30;25:00:00;2026-;1969-12-31T23:59:59.5Z;"
+      "2026-05-01T12:00:00+24:00;2026-05-01T12:00:00.00000000000000000000000000000000000000000000000001Z");
+  for (std::string text; std::getline(texts, text, ';');) EXPECT_EQ(seconds(text), "") << text;
+}
+
+TEST(DateTime, ACaptureMayHaveThemForItsTime) {
+  const std::string rows =
+      "2026-05-01T23:59:59.990000Z,0.5\n2026-05-02T00:00:00.000000Z,0.25\n2026-05-02T00:00:00.010000Z,0\n";
+  const ifog::Capture numbers = ifog::parse_capture(
+      "time_s,rate_radps\n1777679999.990000,0.5\n1777680000.000000,0.25\n1777680000.010000,0\n", "a.csv");
+  const ifog::Capture dates = ifog::parse_capture("time_s,rate_radps\n" + rows, "a.csv");
+  EXPECT_EQ(dates.time_s, numbers.time_s);
+  EXPECT_EQ(dates.rate_radps, numbers.rate_radps);
+  EXPECT_TRUE(dates.notices.empty());
+
+  ifog::CsvLayout by;
+  by.time = ifog::CsvTime::parse("Zeit");
+  by.separator = ';';
+  const ifog::Capture german = ifog::parse_capture(
+      "Zeit;rate_radps\n2026-05-02 01:59:59,99+02:00;0,5\n2026-05-02 02:00:00,00+02:00;0,25\n"
+      "2026-05-02 02:00:00,01+02:00;0\n",
+      "a.csv", by);
+  EXPECT_EQ(german.time_s, numbers.time_s);
+  EXPECT_EQ(german.rate_radps, numbers.rate_radps);
+}
+
+TEST(DateTime, WhatIsWrongIsSaidByLine) {
+  const std::string rows = "2026-05-01T12:00:00Z,1\n2026-05-01T12:00:01Z,2\n";
+  EXPECT_EQ(ifog::refusal_of("Timestamp,GyroX (deg/s)\n" + rows), "accepted");
+  ifog::CsvLayout ms;
+  ms.time = ifog::CsvTime::parse("t:ms");
+  EXPECT_EQ(ifog::refusal_of("t,rate_radps\n" + rows, ms),
+            "a.csv:2: t is '2026-05-01T12:00:00Z', a date, which says its own unit, expected no other one of "
+            "--time");
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n" + rows + "2026-05-01T11:59:59Z,1\n"),
+            "a.csv:4: time_s is 1777636799 s, expected more than in the row before; --sample-rate HZ reads "
+            "all rows as even");
+  EXPECT_EQ(ifog::refusal_of("time_s,rate_radps\n" + rows + "2026-05-01T25:00:00Z,1\n"),
+            "a.csv:4: time_s is '2026-05-01T25:00:00Z', expected a number, 'nan' or nothing");
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include <filesystem>
 
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "tests/unit/refusal.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"

@@ -16,7 +16,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/capture.h"
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/output_file.h"
 #include "tests/unit/refusal.h"
 
 namespace ifog::tools {
@@ -334,7 +334,7 @@ TEST_F(LcmLog, ReadsAPackedLogAndATextAtHand) {
   InputFile at_hand("-", text);
   EXPECT_EQ(read(at_hand, "").time_s, read("").time_s);
   const std::string packed = path_ + ".gz";
-  write_text_file(packed, text);
+  write_file(packed, text);
   InputFile file(packed);
   EXPECT_EQ(read(file, "").rate_radps, read("").rate_radps);
   fs::remove(packed);

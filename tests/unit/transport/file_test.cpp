@@ -16,7 +16,7 @@
 #include <functional>
 #include <thread>
 
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/output_file.h"
 #include "drivers/transport/file/byte_file.h"
 #include "drivers/transport/sole_reader.h"
 #include "tests/unit/transport/forever.h"
@@ -102,7 +102,7 @@ TEST_F(FileTransport, DeliversEveryByteOfAFileLongerThanItsBuffer) {
 TEST_F(FileTransport, ReadsGzipAndSaysWhenItIsCutOff) {
   settings_.path += ".gz";
   const std::string text = pattern(200'000);
-  ifog::write_text_file(settings_.path, text);
+  ifog::write_file(settings_.path, text);
   EXPECT_EQ(all_bytes(*opened()), text);
   fs::resize_file(settings_.path, fs::file_size(settings_.path) / 2);
   const auto transport = opened();

@@ -14,14 +14,10 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/sha256.h"
-#include "tools/ifog/captures/flight/driver_of_run.h"
 #include "tools/ifog/captures/flight/flight_input.h"
-#include "tools/ifog/captures/flight/sample_remarks.h"
+#include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
-#include "tools/ifog/captures/lcm/logged_bytes.h"
-#include "tools/ifog/captures/lcm/named_log.h"
 #include "tools/ifog/captures/reading_progress.h"
-#include "tools/ifog/captures/table/rate_rows.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/wrong_usage.h"
@@ -191,8 +187,8 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
     const std::string line = error.what();
     throw std::runtime_error(line.starts_with(path) ? line : path + ": " + line);
   }
-  for (const std::string& loss : losses(counts)) warn("%s: %s\n", path.c_str(), loss.c_str());
-  say_of_samples(builder, path);
+  for (const auto& lines : {losses(counts), builder.remarks()})
+    for (const std::string& line : lines) warn("%s: %s\n", path.c_str(), line.c_str());
 }
 
 FileKind CaptureInput::readable(const InputFile& file) const {
@@ -234,7 +230,7 @@ LongTable CaptureInput::read_long_columns(InputFile& file, const LongTableSink::
 
 void CaptureInput::keep_rates(LongTable& table, const std::string& path) {
   const std::size_t told = table.notices.size();
-  keep_rate_rows(table, path);
+  table.keep_rate_rows(path);
   tell({table.notices.begin() + static_cast<std::ptrdiff_t>(told), table.notices.end()}, {});
 }
 
@@ -273,7 +269,7 @@ LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& 
   LongTableSink sink(table, wanted);
   static_cast<RowNotes&>(table) = read_rows(file, sink);
   // A driver says what its device may send, not what it sent.
-  if (!whole) table.leave_out_unknown(file.path());
+  if (!whole) table.drop_unknown(file.path());
   if (found == FileKind::capture) keep_rates(table, file.path());
   return table;
 }

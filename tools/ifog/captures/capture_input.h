@@ -60,7 +60,7 @@ struct CaptureInput {
            sample_rate_hz > 0.0;
   }
   // A file of columns (FileKind::capture) by them, CSV or HDF5, also beside a driver that is there to write
-  // with; what may be meant otherwise is told on standard error.
+  // with; what may be meant otherwise is printed on standard error.
   [[nodiscard]] Capture read_columns(InputFile& file) const;
 
   // This capture and what is read to understand it, into the table of the run's files (command_files.h).

@@ -12,7 +12,7 @@
 
 #include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture_encoder.h"
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/output_file.h"
 #include "filters/series/series_view.h"
 #include "tools/ifog/captures/table/column_writer.h"
 #include "tools/ifog/console/command_files.h"
@@ -43,7 +43,7 @@ void to_bytes(CaptureEncoder& encoder, Pieces& pieces, std::size_t rows, const s
   std::vector<std::uint8_t> bytes;
   std::size_t count = 0;
   Progress progress("encoding", rows);
-  TextOutput file(to);
+  OutputFile file(to);
   do {
     while (encoder.next(bytes)) {
     }
@@ -65,7 +65,7 @@ void to_candump(CaptureEncoder& encoder, Pieces& pieces, std::size_t rows, const
   std::vector<ifog_can_frame> frames;
   std::array<char, kCandumpLineMax> line{};
   Progress progress("encoding", rows);
-  TextOutput file(to);
+  OutputFile file(to);
   do {
     while (encoder.next(frames)) {
       for (const ifog_can_frame& frame : frames)

@@ -20,7 +20,7 @@ void expect_capture_name(const std::string& option, const std::string& path, con
 void write_columns(const LongTable& table, const std::string& name, const std::string& to);
 
 // `to` ends in .log for a CAN driver, in .bin or .kvh for one that speaks bytes. What the format has no place
-// for is told on standard error. Throws likewise, or WrongUsage (usage) when driver and ending do
+// for is printed on standard error. Throws likewise, or WrongUsage (usage) when driver and ending do
 // not fit.
 void write_recording(const LongTable& table, const std::string& name, const std::string& to,
                      const CaptureInput& encoding, const std::string& axis);

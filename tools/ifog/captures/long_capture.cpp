@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
-#include "tools/ifog/captures/compensated_rates.h"
+#include "tools/ifog/captures/model_axes.h"
 
 namespace ifog::tools {
 CaptureView::CaptureView(const Capture& capture)

@@ -20,11 +20,11 @@ struct TimePart {
     std::string text;  // as it was given; "": it was not
   };
   Bound from{{-std::numeric_limits<double>::infinity(), 0.0}, ""};
-  Bound to{{std::numeric_limits<double>::infinity(), 0.0}, ""};  // from this time on left out
+  Bound to{{std::numeric_limits<double>::infinity(), 0.0}, ""};  // from this time on dropped
 
   // Adds the two options to a command, which this must outlive.
-  void add_to(const Command& command, const std::string& of_from = "Leave out what is before this time, s",
-              const std::string& of_to = "Leave out what is from this time on, s");
+  void add_to(const Command& command, const std::string& of_from = "Drop what is before this time, s",
+              const std::string& of_to = "Drop what is from this time on, s");
 
   struct Rows {
     std::size_t begin, end;

@@ -148,8 +148,7 @@ void keep_usable_axes(LongTable& table, const std::string& name) {
       alive += column.known ? 1 : 0;
     }
   if (rates > 0 && alive == 0) refuse_without_rates(name, table.size());
-  for (const std::string& dead : table.leave_out_dead_axes())
-    tell_left_out(name, rate_of(dead), table.size());
+  for (const std::string& dead : table.drop_dead_axes()) tell_left_out(name, rate_of(dead), table.size());
 }
 
 }  // namespace ifog::tools

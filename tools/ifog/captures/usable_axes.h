@@ -26,7 +26,7 @@ std::string expected_axes(const std::vector<std::string>& axes);
 
 // The axes that never have a value, or repeat one while another axis does not: in one of several captures, as
 // all are fitted together. Of the rates as the sensor sent them, as a correction that is alive would hide it.
-// Tells on standard error, in these words, of each of them and what is missing of the others. Throws
+// Prints on standard error, in these words, of each of them and what is missing of the others. Throws
 // std::runtime_error with one line where no axis is left.
 std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
                                        const std::vector<std::string>& names);

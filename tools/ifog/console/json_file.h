@@ -5,14 +5,14 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/output_file.h"
 
 namespace ifog::tools {
 
 // Names from files may hold bytes that are no UTF-8, which JSON cannot: they become U+FFFD.
 template <typename Json>
 void write_json(const std::string& path, const Json& json, int indent = 2) {
-  write_text_file(path, json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file(path, json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n");
 }
 
 }  // namespace ifog::tools

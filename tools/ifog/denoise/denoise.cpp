@@ -26,7 +26,7 @@
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
 #include "tools/ifog/captures/flight/flight_input.h"
-#include "tools/ifog/captures/lcm/named_log.h"
+#include "tools/ifog/captures/lcm/lcm_events.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/captures/time_part.h"

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "drivers/capture/files/output_file.h"
-#include "drivers/capture/files/text_file.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/model_axes.h"
@@ -98,8 +97,8 @@ void run(const Arguments& arguments) {
   }
   if (arguments.quiet) forget_what_is_written();
   if (!arguments.report.empty())
-    write_text_file(arguments.report, diagnosis_report(captures, found, arguments.captures, hashes,
-                                                       arguments.write_model, arguments.input.as_typed()));
+    write_file(arguments.report, diagnosis_report(captures, found, arguments.captures, hashes,
+                                                  arguments.write_model, arguments.input.as_typed()));
 }
 
 }  // namespace

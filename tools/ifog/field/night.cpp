@@ -21,7 +21,7 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
 #include "filters/model_file/sha256.h"
-#include "tools/ifog/captures/compensated_rates.h"
+#include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"

@@ -14,8 +14,8 @@
 #include <string_view>
 
 #include "drivers/capture/files/input_file.h"
-#include "tools/ifog/captures/compensated_rates.h"
 #include "tools/ifog/captures/flight/flight_input.h"
+#include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/reading_progress.h"
 
 namespace ifog::tools {

@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "drivers/capture/files/output_file.h"
-#include "drivers/capture/files/text_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
 #include "filters/units/field_units.h"
@@ -232,7 +231,7 @@ class FleetRun {
     page.population = &population_;
     page.made = utc_now() + " by ifog " IFOG_VERSION;
     page.command = typed_command();
-    write_text_file(results_.path("fleet.html"), report::fleet_page(page));
+    write_file(results_.path("fleet.html"), report::fleet_page(page));
   }
 
   void tell_failures() {

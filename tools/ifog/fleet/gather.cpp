@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "tools/ifog/field/state_json.h"
 #include "tools/ifog/fleet/gyro_work.h"
 

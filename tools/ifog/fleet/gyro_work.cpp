@@ -9,8 +9,8 @@
 #include <optional>
 #include <stdexcept>
 
+#include "drivers/capture/files/input_file.h"
 #include "drivers/capture/files/output_file.h"
-#include "drivers/capture/files/text_file.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/json_file.h"
@@ -48,9 +48,9 @@ void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSet
   results.forget_done(gyro);  // until all of the files are of this diagnosis
   write_json(results.path(gyro, "diagnosis.json"), diagnosis_json(found));
   write_file(model_path, model_text(model));
-  write_text_file(results.path(gyro, "report.html"),
-                  diagnosis_report(opened.captures, found, gyro.captures, opened.hashes, model_path,
-                                   settings.input.as_typed()));
+  write_file(results.path(gyro, "report.html"),
+             diagnosis_report(opened.captures, found, gyro.captures, opened.hashes, model_path,
+                              settings.input.as_typed()));
 }
 
 EffectsToMeasure effects_of_axis(const TypeToMeasure& type, const Model& model, const std::string& axis,

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <system_error>
 
-#include "drivers/capture/files/text_file.h"
+#include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/console/json_file.h"

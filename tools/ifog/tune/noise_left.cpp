@@ -14,7 +14,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/allan/stretches.h"
 #include "filters/tune/tune.h"
-#include "tools/ifog/captures/compensated_rates.h"
+#include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/tune/rest_columns.h"
 
 namespace ifog::tools {

@@ -16,8 +16,7 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture_builder.h"
 #include "filters/model_file/kept_noise.h"
-#include "tools/ifog/captures/flight/driver_of_run.h"
-#include "tools/ifog/captures/flight/sample_remarks.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -62,6 +61,16 @@ void add(const ifog_driver_counters& from, ifog_driver_counters& to) {
 }
 
 }  // namespace
+
+DriverInstance driver_of_run(const std::string& name, const DriverSettings& settings,
+                             const std::vector<std::string>& folders) {
+  std::shared_ptr<const Plugin> plugin = find_plugin(name, plugin_folders(folders));
+  for (const std::string& key : file_settings(plugin->table(), settings))
+    will_read("option " + key + " of driver " + name, settings.at(key));
+  DriverInstance made(std::move(plugin), settings);
+  for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
+  return made;
+}
 
 template <typename Work>
 auto FlightInput::with_name(Work&& work) const {
@@ -198,8 +207,8 @@ std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder&
                                [&] { builder.discontinuity(); },
                                {},
                                [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
-  for (const std::string& loss : losses(counts)) warn("%s: %s\n", file_.path().c_str(), loss.c_str());
-  say_of_samples(builder, file_.path());
+  for (const auto& lines : {losses(counts), builder.remarks()})
+    for (const std::string& line : lines) warn("%s: %s\n", file_.path().c_str(), line.c_str());
   // By the first file's header; files of several power-ups behind one another show in the times.
   const auto powered_ns = header().powered_ns;
   if (!powered_ns || first_ns < *powered_ns) return std::nullopt;

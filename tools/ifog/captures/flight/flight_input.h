@@ -20,6 +20,12 @@
 
 namespace ifog::tools {
 
+// A driver as the commands make it: its warnings are printed, and the files that its settings name are read: no output of the run is one of them
+// (command_files.h). folders: that plugins are looked for in; empty: the standard places. Throws as
+// DriverInstance does.
+[[nodiscard]] DriverInstance driver_of_run(const std::string& name, const DriverSettings& settings,
+                                           const std::vector<std::string>& folders = {});
+
 class FlightInput {
  public:
   // Reads the header; the file must outlive this. Throws std::runtime_error with one line.
@@ -45,7 +51,7 @@ class FlightInput {
   // The noise that the daemon's filter began with; nothing where it learned it in this recording.
   [[nodiscard]] std::optional<LearnedNoise> noise(const SensorConfig& sensor) const;
 
-  // All samples; what is missing is told on standard error. Throws as above, also when there is no sample.
+  // All samples; what is missing is printed on standard error. Throws as above, also when there is no sample.
   RecordingCounts for_each_sample(DriverInstance& driver, const RecordedSamples& sink);
   // As columns, channels from elsewhere, too.
   Capture capture(DriverInstance& driver);

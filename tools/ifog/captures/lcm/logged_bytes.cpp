@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/lcm/logged_bytes.h"
+#include "tools/ifog/captures/lcm/lcm_log.h"
 
 #include <ifog/decode.h>
 
@@ -9,7 +9,6 @@
 
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/captures/lcm/lcm_events.h"
-#include "tools/ifog/captures/lcm/named_log.h"
 
 namespace ifog::tools {
 namespace {

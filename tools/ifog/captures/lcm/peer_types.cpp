@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/lcm/peer_types.h"
+#include "tools/ifog/captures/lcm/peer_reader.h"
 
 #include <ifog/decode.h>
 

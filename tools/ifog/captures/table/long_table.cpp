@@ -5,6 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "filters/threads/share_out.h"
@@ -20,12 +21,12 @@ std::vector<std::string> LongTable::names() const {
   return out;
 }
 
-void LongTable::leave_out_unknown(const std::string& path) {
+void LongTable::drop_unknown(const std::string& path) {
   const bool any = std::any_of(columns.begin(), columns.end(), [](const LongColumn& column) {
     return column.known && column.name.starts_with("rate");
   });
   if (!any) throw std::runtime_error(path + ": the device marks every value of every axis invalid");
-  leave_out_dead_axes();
+  drop_dead_axes();
   std::erase_if(header, [&](const std::string& name) {
     return std::any_of(columns.begin(), columns.end(),
                        [&](const LongColumn& column) { return column.name == name && !column.known; });
@@ -50,7 +51,7 @@ void LongTable::clean_and_tell(Rule rule, const std::string& path) {
       warn("%s\n", faults.emplace_back(path + ": " + column.name + ": " + repeat.text).c_str());
 }
 
-std::vector<std::string> LongTable::leave_out_dead_axes() {
+std::vector<std::string> LongTable::drop_dead_axes() {
   std::vector<std::string> dead;
   std::string axis;
   const auto of_dead_axis = [&](const std::string& name) {
@@ -144,6 +145,32 @@ void LongRows::as_capture(Capture& piece) const {
                       : place.kind == Kind::reference ? piece.reference_rate_radps[place.at]
                                                       : piece.channels[place.at].values);
   }
+}
+
+LongTable long_table(Capture capture) {
+  LongTable table;
+  std::vector<std::string> names;
+  RowBlock rows;
+  rows.origin = capture.origin;
+  rows.time_s = std::move(capture.time_s);
+  const auto add = [&](const std::string& what, const std::string& axis, std::vector<double>& values) {
+    if (values.empty()) return;
+    names.push_back(what + (axis.empty() ? "" : "_" + axis) + "_radps");
+    rows.columns.push_back(std::move(values));
+  };
+  for (std::size_t i = 0; i < capture.axes.size(); ++i) {
+    add("rate", capture.axes[i], capture.rate_radps[i]);
+    add("reference_rate", capture.axes[i], capture.reference_rate_radps[i]);
+  }
+  for (CaptureColumn& channel : capture.channels) {
+    names.push_back(channel.name);
+    rows.columns.push_back(std::move(channel.values));
+  }
+  LongTableSink sink(table);
+  sink.begin(names);
+  if (rows.size() > 0) sink.take(rows);
+  for (const std::string& comment : capture.comments) table.comments += comment + '\n';
+  return table;
 }
 
 }  // namespace ifog::tools

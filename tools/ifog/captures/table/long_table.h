@@ -28,7 +28,7 @@ struct LongTable : RowNotes {
   LongSeries time_s;
   std::vector<std::string> header;     // all that the file has but time_s, but for dead_axes
   std::vector<LongColumn> columns;     // of those that are wanted, in the same order
-  std::vector<std::string> dead_axes;  // of the sensor, whose columns were left out: they never have a value
+  std::vector<std::string> dead_axes;  // of the sensor, whose columns were dropped: they never have a value
   bool outlined = false;               // set before reading: unwanted columns are kept as outlines
   std::vector<ChannelOutline> outlines;
 
@@ -36,15 +36,23 @@ struct LongTable : RowNotes {
   [[nodiscard]] std::vector<std::string> names() const;
   // Drops axes and channels of a recording that never had a value. Throws std::runtime_error where nothing is
   // left.
-  void leave_out_unknown(const std::string& path);
+  void drop_unknown(const std::string& path);
   // What the rule (filters/rest/cleaned_rate.h) finds in the rates is missing from here on.
   using Rule = void(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
   void clean(Rule rule);
-  // The same, told on standard error; path: of the capture.
+  // The same, printed on standard error; path: of the capture.
   void clean_and_tell(Rule rule, const std::string& path);
+  // Of a table that was merged from sensors of different rates (a gyro in every fourth row, empty cells between) only
+  // the rows with a rate are kept, each with the channels' latest values since the one before: a rate's clock is of
+  // its own samples. Nothing where rates stand in neighbouring rows, be there holes. Adds a notice. path: of the
+  // capture.
+  void keep_rate_rows(const std::string& path);
   // The axes of rates that never had one, whose columns are gone from here on, with their references.
-  std::vector<std::string> leave_out_dead_axes();
+  std::vector<std::string> drop_dead_axes();
 };
+
+// A capture that is there as a whole.
+LongTable long_table(Capture capture);
 
 // Puts rows into a table: the columns that `wanted` says yes to, all where it is empty.
 class LongTableSink final : public RowSink {

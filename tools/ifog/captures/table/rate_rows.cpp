@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/captures/table/rate_rows.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -10,6 +8,7 @@
 
 #include "drivers/capture/columns/column_names.h"
 #include "filters/series/series_view.h"
+#include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {
 namespace {
@@ -60,22 +59,21 @@ LongSeries kept_of(const SeriesView& values, const std::vector<bool>& with, bool
 
 }  // namespace
 
-void keep_rate_rows(LongTable& table, const std::string& name) {
-  if (std::none_of(table.columns.begin(), table.columns.end(),
+void LongTable::keep_rate_rows(const std::string& path) {
+  if (std::none_of(columns.begin(), columns.end(),
                    [](const LongColumn& column) { return is_rate(column.name); }))
     return;
-  const std::vector<bool> with = rows_with_rate(table);
+  const std::vector<bool> with = rows_with_rate(*this);
   if (!stand_apart(with)) return;
-  for (LongColumn& column : table.columns)
-    column.values = kept_of(column.values, with, !is_rate(column.name));
-  const std::size_t before = table.size();
-  table.time_s = kept_of(table.time_s, with, false);
-  table.outlines.clear();  // of the rows as they came
+  const std::size_t before = size();
+  for (LongColumn& column : columns) column.values = kept_of(column.values, with, !is_rate(column.name));
+  time_s = kept_of(time_s, with, false);
+  outlines.clear();  // of the rows as they came
   // Lines are known by the row as it came.
-  table.header_line = 0;
-  table.lines.clear();
-  table.notices.push_back(name + ": " + std::to_string(table.size()) + " of " + std::to_string(before) +
-                          " rows have a rate, and only they are read: the others are of a faster sensor");
+  header_line = 0;
+  lines.clear();
+  notices.push_back(path + ": " + std::to_string(size()) + " of " + std::to_string(before) +
+                    " rows have a rate, and only they are read: the others are of a faster sensor");
 }
 
 }  // namespace ifog::tools

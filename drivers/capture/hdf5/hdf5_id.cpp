@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/hdf5/hdf5_attributes.h"
+#include "drivers/capture/hdf5/hdf5_id.h"
 
 #include <cstring>
 #include <string_view>

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/csv/text_cells.h"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+
+#include "drivers/capture/times/date_time.h"
+#include "drivers/ifog/decimal.h"
+
+namespace ifog {
+namespace {
+
+constexpr std::size_t kRunOfRows = 3;  // that make a table, where the text has as many lines
+
+Row row_of(std::string_view line, char separator) {
+  Row row;
+  row.comment = is_comment(line);
+  row.cells = cells_of(line, separator);
+  row.open = separator != ' ' && trimmed(line).ends_with(separator);
+  for (const std::string& cell : row.cells) {
+    row.values += is_value(cell, separator) ? 1 : 0;
+    row.empty += cell.empty() ? 1 : 0;
+  }
+  return row;
+}
+
+}  // namespace
+
+std::string_view trimmed(std::string_view cell) {
+  while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);
+  while (!cell.empty() && (cell.back() == ' ' || cell.back() == '\t' || cell.back() == '\r'))
+    cell.remove_suffix(1);
+  return cell;
+}
+
+std::string_view unquoted(std::string_view cell) {
+  cell = trimmed(cell);
+  if (cell.size() >= 2 && cell.front() == '"' && cell.back() == '"') cell = cell.substr(1, cell.size() - 2);
+  return cell;
+}
+
+// "He said ""no"", and left": a quote inside is doubled.
+std::size_t cell_end(std::string_view row, char separator) {
+  std::size_t at = 0;
+  while (row.substr(at).starts_with('"')) {
+    const std::size_t closing = row.find('"', at + 1);
+    if (closing == std::string_view::npos) break;
+    at = closing + 1;
+  }
+  return std::min(row.find(separator, at), row.size());
+}
+
+std::vector<std::string> cells_of(std::string_view line, char separator) {
+  std::vector<std::string> cells;
+  if (separator == ' ') line = trimmed(line);
+  for (;;) {
+    const std::size_t end = cell_end(line, separator);
+    cells.emplace_back(unquoted(line.substr(0, end)));
+    if (end == line.size()) break;
+    line.remove_prefix(end + 1);
+    while (separator == ' ' && !line.empty() && line.front() == ' ') line.remove_prefix(1);
+  }
+  // As rows are that end with a separator.
+  if (cells.size() > 1 && cells.back().empty()) cells.pop_back();
+  return cells;
+}
+
+bool Lines::next(std::string_view& line) {
+  if (rest_.empty()) return false;
+  const std::size_t end = rest_.find('\n');
+  line = rest_.substr(0, end);
+  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  ++number_;
+  return true;
+}
+
+std::string_view without_mark(std::string_view line) {
+  line = trimmed(line);
+  line.remove_prefix(line.starts_with("//") ? 2 : line.starts_with('#') || line.starts_with('%') ? 1 : 0);
+  return trimmed(line);
+}
+
+bool is_value(std::string_view cell, char separator) {
+  if (is_date(cell)) return true;
+  const TimeDigits digits(cell, separator != ',');
+  const std::string_view text = digits;
+  double value = 0.0;
+  const auto [end, error] = read_decimal(text.data(), text.data() + text.size(), value);
+  return error != std::errc::invalid_argument && end == text.data() + text.size();
+}
+
+Grid::Grid(const std::vector<Line>& lines, char separator) : separator_(separator) {
+  for (const Line& line : lines) rows_.push_back(row_of(line.text, separator));
+  find_first();
+}
+
+Grid Grid::of(const std::vector<Line>& lines) {
+  std::optional<Grid> best;
+  for (const char separator : {',', ';', '\t', '|', ' '}) {
+    Grid grid(lines, separator);
+    if (grid.width() < 2) continue;
+    if (!best || std::pair(grid.share(), grid.width()) > std::pair(best->share(), best->width()))
+      best = std::move(grid);
+  }
+  return best ? std::move(*best) : Grid(lines, ',');
+}
+
+// The table is of rows of as many cells, of which some follow one another where there are as many; of several
+// such the one with most values, as a head of names and values may look like a table, too.
+void Grid::find_first() {
+  struct Table {
+    std::size_t begin = 0, run = 0, values = 0;
+    std::size_t last = 0;  // its row before, of the lines that are no comments
+  };
+  std::vector<Table> tables;
+  std::size_t plain = 0;
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    const Row& row = rows_[i];
+    plain += row.comment ? 0 : 1;
+    if (!row.is_row()) continue;
+    auto of = std::find_if(tables.begin(), tables.end(), [&](const Table& table) {
+      const Row& first = rows_[table.begin];
+      return first.is_as_wide(row.cells.size()) || row.is_as_wide(first.cells.size());
+    });
+    if (of == tables.end()) of = tables.insert(of, Table{i});
+    if (of->run < kRunOfRows && of->last + 1 != plain) *of = {i};
+    of->values += row.values, of->last = plain;
+    if (++of->run == kSampleRows) break;
+  }
+  const auto best = std::max_element(tables.begin(), tables.end(), [](const Table& a, const Table& b) {
+    return std::pair(std::min(a.run, kRunOfRows), a.values) <
+           std::pair(std::min(b.run, kRunOfRows), b.values);
+  });
+  if (best != tables.end()) first_ = best->begin;
+}
+
+// Of what stands in the rows, the part that is values.
+double Grid::share() const {
+  std::size_t cells = 0, values = 0;
+  for (std::size_t i = *first_; i < rows_.size() && i < *first_ + kSampleRows; ++i) {
+    cells += rows_[i].cells.size();
+    values += rows_[i].values + rows_[i].empty;
+  }
+  return static_cast<double>(values) / static_cast<double>(cells);
+}
+
+}  // namespace ifog
