@@ -255,6 +255,16 @@ class Checks:
             for line in text.splitlines():
                 assert len(line) <= 100 or line.startswith("  ifog "), f"{command}: {line}"
 
+    def check_the_demo_refuses_before_it_builds(self):
+        """A file of no use, or none: one line in the first second, and nothing is installed or built."""
+        still = self.folder / "still.csv"
+        still.write_text("time_s,rate_radps\n1,0\n1,0\n")
+        for words, code, says in ((["--help"], 0, "tools/demo CAPTURE"), (["--fast"], 2, "'--fast'"), ([self.folder / "none.csv"], 2, "none.csv: no such file"),
+                                  ([still], 2, "sample rate"), ([self.one, still], 2, "expected one capture")):
+            result = subprocess.run([SOURCE / "tools/demo", *words], stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=10, check=False)
+            told = result.stderr if code else result.stdout
+            assert result.returncode == code and says in told and (code == 0 or told.count("\n") == 1), (words, result)
+
 
 if __name__ == "__main__":
     sys.exit(main_of(Checks))
