@@ -187,7 +187,7 @@ def check_nothing_of_an_earlier_run_stays_when_none_is_diagnosed(folder):
 
 
 def check_another_option_is_another_diagnosis(folder):
-    """The group of an HDF5 file, and what a bus description of the same name says."""
+    """How the columns of a file are read, and what a bus description of the same name says."""
     bus = (SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc").read_text()
     (folder / "bus.dbc").write_text(bus)
     options = ["--dbc", "bus.dbc", "--option", "signal=Rate_x", "--option", "counter=Counter", "--option", "rate_hz=10"]
@@ -199,7 +199,9 @@ def check_another_option_is_another_diagnosis(folder):
     assert "--one 0" in missing()
     one_gyro(folder, "bus.toml", "bus.toml", "--engine", "local", *options, captures=("bus.log",))
     assert missing() == ""
-    assert "--one 0" in missing("--group", "/imu")
+    for other in (("--group", "/imu"), ("--sample-rate", "5"), ("--only", "id=0"), ("--repeats", "keep"), ("--axis", "x"), ("--from", "1"),
+                  ("--significance", "0.02"), ("--earth",), ("--latitude", "48")):
+        assert "--one 0" in missing(*other), other
     (folder / "bus.dbc").write_text(bus + "\n")
     assert "--one 0" in missing()
     (folder / "bus.dbc").write_text(bus)

@@ -2,9 +2,7 @@
 #include "tools/ifog/fleet/gyro_work.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 #include <stdexcept>
@@ -111,50 +109,23 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
   return measured;
 }
 
-void add(std::string& text, const char* key, const std::string& value) {
-  text += std::string(key) + "=" + std::to_string(value.size()) + ":" + value + ";";
-}
-
-void add(std::string& text, const char* key, double value) {
-  std::array<char, 40> digits{};
-  std::snprintf(digits.data(), digits.size(), "%.17g", value);
-  add(text, key, std::string(digits.data()));
-}
-
 // By its content what a driver's option names a file of: the same name may be another bus description now.
-void add_files(std::string& text, const DriverSettings& settings) {
-  for (const auto& [key, value] : settings) {
-    std::error_code none;
-    if (std::filesystem::is_regular_file(value, none))
-      add(text, "file", key + " " + sha256_hex(read_whole_file(value)));
-  }
-}
-
-void add(std::string& text, const char* key, const std::vector<std::string>& values) {
-  for (const std::string& value : values) add(text, key, value);
+std::string files_of(const DriverSettings& settings) {
+  std::string text;
+  for (const auto& [key, value] : settings)
+    if (std::error_code none; std::filesystem::is_regular_file(value, none))
+      text += " " + key + "=" + sha256_hex(read_whole_file(value));
+  return text;
 }
 
 }  // namespace
 
 std::string FleetSettings::text() const {
-  std::string text;
-  add(text, "ifog", std::string(IFOG_VERSION));  // another one may find something else
-  add(text, "driver", input.driver);
-  add(text, "option", input.options);
-  add(text, "dbc", input.dbc);
-  add_files(text, input.settings());
-  add(text, "channel", input.channel);
-  add(text, "column", input.columns);
-  add(text, "time", input.time);
-  add(text, "separator", input.separator);
-  add(text, "group", input.group);
-  add(text, "axis", wanted.axes);
-  add(text, "from", part.from.text);
-  add(text, "to", part.to.text);
-  add(text, "significance", wanted.significance);
-  add(text, "earth", wanted.earth ? "yes" : "no");
-  if (wanted.latitude_rad) add(text, "latitude", *wanted.latitude_rad);
-  return text;
+  const nlohmann::json of_diagnosis = {wanted.axes,  part.from.text,
+                                       part.to.text, wanted.significance,
+                                       wanted.earth, wanted.latitude_rad.value_or(NAN)};
+  // Another version may find something else.
+  return "ifog " IFOG_VERSION + input.as_typed() + files_of(input.settings()) + of_diagnosis.dump();
 }
 
 bool is_diagnosed(const Results& results, const FleetGyro& gyro, const std::string& options) {
