@@ -168,7 +168,7 @@ class LcmChannel {
 struct CanGroup {
   std::vector<std::pair<Entrance, CanChannel>> channels;
   std::unique_ptr<Transport> transport;
-  std::uint64_t drops = 0;  // of the kernel, told to the sensors so far
+  std::uint64_t drops = 0;  // of the kernel, reported to the sensors so far
 
   void listen() {
     while (!transport->stopped()) {

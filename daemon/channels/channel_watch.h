@@ -36,7 +36,7 @@ class ChannelWatch {
   [[nodiscard]] bool is_configured(const std::string& name) const;
 
   std::vector<ChannelConfig> configured_, outside_;
-  std::vector<bool> absent_;  // of the outside ones, told by absent()
+  std::vector<bool> absent_;  // of the outside ones, reported by absent()
   std::vector<Seen> seen_;
 };
 

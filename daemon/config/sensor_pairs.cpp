@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/config/reading_context.h"
 
-#include <netinet/in.h>
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <cstring>
 #include <filesystem>
-#include <optional>
 #include <set>
 #include <system_error>
 
@@ -44,47 +41,21 @@ bool same_device(std::string a, std::string b) {
   if (a == b) return true;
   struct stat of_a {
   }, of_b{};
-  if (stat(a.c_str(), &of_a) == 0 && stat(b.c_str(), &of_b) == 0) {
-    if (S_ISCHR(of_a.st_mode) && S_ISCHR(of_b.st_mode)) return of_a.st_rdev == of_b.st_rdev;
+  if (stat(a.c_str(), &of_a) == 0 && stat(b.c_str(), &of_b) == 0)
     return of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
-  }
   // Not there now: as far as the names say.
-  std::error_code failed_a, failed_b;
-  const auto place_a = std::filesystem::weakly_canonical(a, failed_a);
-  const auto place_b = std::filesystem::weakly_canonical(b, failed_b);
-  return !failed_a && !failed_b && place_a == place_b;
+  std::error_code failed;
+  const auto place = std::filesystem::weakly_canonical(a, failed);
+  return !failed && place == std::filesystem::weakly_canonical(b, failed) && !failed;
 }
 
-// In one way of writing. Nothing: no numeric address.
-std::optional<std::string> plain(const std::string& address) {
-  const auto parsed = IpAddress::parse(address);
-  socklen_t size = 0;
-  // Without its interface, which need not be there now.
-  const auto bare = IpAddress::parse(address.substr(0, address.find('%')));
-  const auto place = bare ? bare->at_port(1, "", size) : std::nullopt;
-  if (!parsed || !place) return std::nullopt;
-  return std::string(reinterpret_cast<const char*>(&*place), size) + parsed->interface();
-}
-
+// However they are written; with the same interface, which need not be there now.
 bool same_address(const std::string& a, const std::string& b) {
-  return a == b || (plain(a) && plain(a) == plain(b));
-}
-
-// The host that a connection goes to: an IPv4 address may be written as one of IPv6, and "any" is this host.
-std::string reached(const std::string& host) {
-  const auto parsed = IpAddress::parse(host);
+  const std::size_t end_a = std::min(a.find('%'), a.size()), end_b = std::min(b.find('%'), b.size());
+  const auto first = IpAddress::parse(a.substr(0, end_a)), second = IpAddress::parse(b.substr(0, end_b));
   socklen_t size = 0;
-  const auto place = parsed && parsed->interface().empty() ? parsed->at_port(1, "", size) : std::nullopt;
-  if (!place) return host;
-  if (same_address(host, "0.0.0.0")) return "127.0.0.1";
-  if (!parsed->is_v6()) return host;
-  sockaddr_in6 v6{};
-  std::memcpy(&v6, &*place, sizeof v6);
-  if (!IN6_IS_ADDR_V4MAPPED(&v6.sin6_addr)) return same_address(host, "::") ? "::1" : host;
-  std::string v4;
-  for (int byte = 12; byte < 16; ++byte)
-    v4 += (byte > 12 ? "." : "") + std::to_string(v6.sin6_addr.s6_addr[byte]);
-  return reached(v4);
+  const auto place = second ? second->at_port(1, "", size) : std::nullopt;
+  return a == b || (first && place && first->is_host_of(*place) && a.substr(end_a) == b.substr(end_b));
 }
 
 bool is_v6(const UdpSettings& udp) {
@@ -116,8 +87,7 @@ Shared shared(const TransportConfig& first, const TransportConfig& second) {
   if (first.kind == Kind::udp && second.kind == Kind::udp && same_port(first.udp, second.udp))
     return {"transport.port", std::to_string(second.udp.port)};
   if (first.kind == Kind::tcp && second.kind == Kind::tcp && first.tcp.port == second.tcp.port &&
-      first.tcp.port != 0 && !first.tcp.host.empty() &&
-      same_address(reached(first.tcp.host), reached(second.tcp.host)))
+      first.tcp.port != 0 && !first.tcp.host.empty() && same_address(first.tcp.host, second.tcp.host))
     return {"transport.port", host_and_port(second.tcp.host, second.tcp.port)};
   if (const std::string device = device_of(second); same_device(device_of(first), device))
     return {second.kind == Kind::serial ? "transport.device" : "transport.path", in_quotes(device)};

@@ -49,8 +49,8 @@ std::string imbalance(const ReaderBooks& reader, const FilterBooks& filter) {
         "the books do not balance: {} CAN frames read, {} decoded + {} refused + {} none of the sensor's",
         reader.frames_read, reader.frames_good, reader.frames_refused, reader.frames_other);
   if (reader.decoded != reader.samples + reader.repeated)
-    return fmt::format("the books do not balance: {} samples decoded, {} taken + {} repeated", reader.decoded,
-                       reader.samples, reader.repeated);
+    return fmt::format("the books do not balance: {} samples decoded, {} accepted + {} repeated",
+                       reader.decoded, reader.samples, reader.repeated);
   if (filter.samples != filter.sent + filter.failed + filter.merged || filter.samples > reader.samples)
     return fmt::format(
         "the books do not balance: {} samples, {} of them filtered: {} sent + {} failed + {} merged",

@@ -28,7 +28,7 @@ struct ReaderBooks {
 
 // One moment of the filter, between two increments.
 struct FilterBooks {
-  std::uint64_t samples = 0;                       // of the device, in all increments taken from the queue
+  std::uint64_t samples = 0;                       // of the device, in all increments from the queue
   std::uint64_t sent = 0, failed = 0, merged = 0;  // messages; merged: samples beyond a message's first
 };
 

@@ -5,21 +5,22 @@
 //
 // The state is one Gauss-Markov process a decade of time, from one block to 10 000, of equal variance, whose
 // sum has a spectrum of 1/f between (M. S. Keshner, Proc. IEEE 70, 1982), and a walk, whose start is
-// anybody's guess. A Kalman filter for each pair of a table of ratios to the white noise (level_filters.h);
+// anybody's guess. A Kalman filter for each pair of a table of ratios to the white noise (level_filter.h);
 // the likelihood chooses, for as long as the sensor rests: what is learned in an hour is a guess compared with what
 // days show.
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
-#include "daemon/health/level_filters.h"
+#include "daemon/health/level_filter.h"
 
 namespace ifog {
 
 class LevelNoise {
  public:
-  static constexpr std::size_t kStates = LevelFilters::kStates;
-  using Vector = LevelFilters::Vector;
+  static constexpr std::size_t kStates = LevelFilter::kStates;
+  using Vector = LevelFilter::Vector;
   struct Innovation {
     bool known = false;
     double value = 0.0;   // of variance 1
@@ -38,13 +39,13 @@ class LevelNoise {
   [[nodiscard]] double blocks() const noexcept { return count_; }
   // In units of the white noise of a block's mean: variance of a decade of the bias instability; variance of
   // the walk's step from block to block.
-  [[nodiscard]] double instability() const noexcept { return filters_.ratios(chosen_).instability; }
-  [[nodiscard]] double walk() const noexcept { return filters_.ratios(chosen_).walk; }
+  [[nodiscard]] double instability() const noexcept { return filters_[chosen_].ratios().instability; }
+  [[nodiscard]] double walk() const noexcept { return filters_[chosen_].ratios().walk; }
 
  private:
   void innovate(double squares) noexcept;
   void choose() noexcept;
-  LevelFilters filters_;
+  std::vector<LevelFilter> filters_;
   Innovation innovation_;
   std::size_t chosen_ = 0;
   double count_ = 0.0, chosen_at_ = 0.0;

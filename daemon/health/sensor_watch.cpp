@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
 
 namespace ifog {
@@ -161,29 +161,23 @@ double SensorWatch::nearest_step() const {
 std::string SensorWatch::words(std::int32_t only) const {
   const std::int32_t now = noticed() & only;
   std::string out;
-  const auto add = [&](const char* text) { out += (out.empty() ? "" : "; ") + std::string(text); };
-  char text[200];
+  const auto add = [&](const std::string& text) { out += (out.empty() ? "" : "; ") + text; };
   if ((now & kNoticedNoise) != 0) {
     double most = 0.0;
     for (const Axis& axis : axes_)
       if (axis.loud.alarmed()) most = std::max(most, axis.louder);
-    std::snprintf(
-        text, sizeof text,
+    add(formatted(
         "noise at rest %.1f times what it was (standard deviation): look at mounting, supply and cable, "
         "then compare recordings with `ifog allan`",
-        std::sqrt(most));
-    add(text);
+        std::sqrt(most)));
   }
   if ((now & kNoticedColour) != 0)
     add("innovations are no longer white: something acts on the sensor that its model does not know, run "
         "`ifog night`");
-  if ((now & kNoticedBias) != 0) {
-    std::snprintf(
-        text, sizeof text,
+  if ((now & kNoticedBias) != 0)
+    add(formatted(
         "rate at rest has stepped by %+.3g °/h: align again, and run `ifog night` if it was not turned",
-        step_radps_ / kDegreePerHour);
-    add(text);
-  }
+        step_radps_ / kDegreePerHour));
   if ((now & kNoticedRange) != 0)
     add("a channel is outside the range of the model for over ten minutes: run `ifog night`, which fits it "
         "there");

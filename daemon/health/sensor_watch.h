@@ -77,7 +77,7 @@ class SensorWatch {
     LevelNoise level;
     double skipped = 0.0;   // blocks since the last that was tested
     double turned = 0.0;    // rad/s times samples away from the level, not at rest
-    double bias_for = 0.0;  // blocks that a step is still told of
+    double bias_for = 0.0;  // blocks that a step is still reported for
   };
   void take_block(Axis& axis, const RestSums::Axis& sums);
   // True: a loud block.

@@ -12,7 +12,7 @@ namespace {
 double density(double x) { return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi); }
 double distribution(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-// The variance of sums is taken for that of white innovations until so many independent sums say otherwise.
+// The variance of sums counts as that of white innovations until so many independent sums say otherwise.
 constexpr double kBelieved = 100.0;
 // Sums weigh by their number, the newest most, as what filter is in use changes while it learns: of n,
 // weights 1 … n, the mean is known as by three quarters of them.

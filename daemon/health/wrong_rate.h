@@ -3,10 +3,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <string>
+
+#include "drivers/system/text.h"
 
 namespace ifog {
 
@@ -20,12 +20,10 @@ inline std::string wrong_rate_in_words(double nominal_hz, double interval_error,
   if (interval_error >= 1.0 - kHeld && counted_hz > 0.0) rate_hz = std::min(fitted_hz, counted_hz);
   // The intervals in use are 1/nominal, the true ones 1/rate.
   const double off = rate_hz / nominal_hz - 1.0;
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(),
-                "samples come at %.4g Hz by their arrival, expected %.4g Hz: intervals, and angles made of a "
-                "rate, are %.3g %% too %s",
-                rate_hz, nominal_hz, 100.0 * std::abs(off), off < 0.0 ? "small" : "large");
-  return text.data();
+  return formatted(
+      "samples come at %.4g Hz by their arrival, expected %.4g Hz: intervals, and angles made of a "
+      "rate, are %.3g %% too %s",
+      rate_hz, nominal_hz, 100.0 * std::abs(off), off < 0.0 ? "small" : "large");
 }
 
 }  // namespace ifog

@@ -61,7 +61,7 @@ class Housekeeping {
     ChainChoice choice{};
     std::unique_ptr<ChainParts> parts{};  // null: the choice is the one in use
     std::string noise{};                  // that the parts begin with, as it is kept
-    std::vector<std::string> remarks{};   // on the model's axes beside the sensor's
+    std::vector<std::string> remarks{};   // on axes of the model that the sensor does not have
   };
 
   void mark_as_running();

@@ -20,7 +20,7 @@ namespace {
 
 constexpr const char* kDaemon = "ifogd";  // name of the log that belongs to no sensor
 
-// Of spdlog's levels, from trace to critical.
+// By spdlog's levels, from trace to critical.
 constexpr std::array<int, 6> kPriorities{LOG_DEBUG, LOG_DEBUG, LOG_INFO, LOG_WARNING, LOG_ERR, LOG_CRIT};
 
 // spdlog's own systemd sink carries no fields besides its own; `journalctl IFOG_SENSOR=x` needs one.

@@ -23,9 +23,9 @@ constexpr int kInVain = 5;           // seconds of input without a frame that ar
 double silence_s(double rate_hz) { return std::max(2.0, 3.0 / rate_hz); }
 constexpr const char* kFrozen =
     "the device sends the same frame again and again: its counter or clock stands still, nothing of it is "
-    "taken";
+    "used";
 constexpr const char* kMixed =
-    "the sequence runs to and fro: two devices send on one line, and nothing of either is taken";
+    "the sequence runs to and fro: two devices send on one line, and nothing of either is used";
 
 std::int64_t as_signed(std::uint64_t count) { return static_cast<std::int64_t>(count); }
 

@@ -65,7 +65,7 @@ class StatusReport {
     bool news = false;                           // there were new ones
     int seconds = 0;                             // updates that found new ones
     std::int64_t last_ns = 0;                    // monotonic: when the last update that found new ones was
-    bool mixed = false;                          // frames of two devices come, and none is taken
+    bool mixed = false;                          // frames of two devices arrive, and none is used
     bool frozen = false, frozen_before = false;  // samples come, and they are all those that came before
   } samples_;
   std::vector<std::string> axes_;

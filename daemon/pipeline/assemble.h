@@ -24,7 +24,7 @@ struct AssembledSensor {
   NoiseMemory noise;
   ChainChoice choice;                 // in use, or offered to the filter
   std::vector<std::string> left_out;  // effects of the model that are not corrected, in words
-  std::vector<std::string> remarks;   // on the model's axes beside the sensor's
+  std::vector<std::string> remarks;   // on axes of the model that the sensor does not have
 };
 
 // By processors that readers may run on, each named once and in order; none named: all that there are.

@@ -168,7 +168,7 @@ bool FilterStage::answer() noexcept {
                        .sent = counters_.published.value(),
                        .failed = counters_.lcm_failures.value(),
                        .merged = counters_.merged.value()};
-  // After the filter's own: whatever that has taken is in the reader's.
+  // After the filter's own: whatever that has received is in the reader's.
   for (int tries = 0; !reader_books_.try_read(answer_.now.reader); relax())
     if (++tries == kTries) return false;
   answer_.now.allan_period_s = intervals_.count > 0 ? intervals_.mean_s : 1.0 / facts_.nominal_rate_hz;

@@ -15,7 +15,6 @@
 #include <vector>
 
 #include "daemon/health/books.h"
-#include "daemon/health/latency.h"
 #include "daemon/health/rest_sums.h"
 #include "daemon/pipeline/event_queue.h"
 #include "daemon/pipeline/increment_queue.h"
@@ -24,6 +23,7 @@
 #include "daemon/publish/inertial_encoder.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/publish/rate_encoder.h"
+#include "drivers/system/nanoseconds.h"
 #include "drivers/transport/counter.h"
 #include "filters/allan/streaming.h"
 #include "filters/chain/signal_chain.h"
@@ -41,7 +41,7 @@ struct FilterSnapshot {
   RestSums rest;
   bool has_health = false;              // false during start-up
   std::optional<LearnedNoise> learned;  // ChainParts::learned()
-  LatencyHistogram latency;             // since the snapshot before
+  DurationHistogram latency;            // since the snapshot before
   std::array<double, kMaxChannels> channel;
   std::array<float, kMaxChannels> channel_age_s;
   std::array<char, 64> model{};

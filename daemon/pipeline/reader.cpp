@@ -44,7 +44,7 @@ void Reader::take(const ifog_sample& sample) noexcept {
   const bool taken = incrementer_.next(reading_, increment);
   now_.samples = incrementer_.counts().samples;
   now_.repeated = incrementer_.counts().repeated;
-  // Before the filter can have it: what that has taken must be in these books.
+  // Before the filter can have it: what that has received must be in these books.
   links_.books.write(now_);
   if (!taken) return;
   report(increment, before);

@@ -18,7 +18,7 @@ namespace ifog {
 class InertialEncoder {
  public:
   virtual ~InertialEncoder() = default;
-  // Of this increment; empty: the type cannot say it, and nothing is to be sent. Valid until the next call.
+  // The message for this increment; empty: the type cannot say it, and nothing is to be sent. Valid until the next call.
   virtual std::span<const std::uint8_t> encode(const Increment& in, const ChainOutput& out) noexcept = 0;
   // What became of the message. Of ours that are not sent the next one has the increments, too: who
   // integrates them has every increment once.

@@ -7,12 +7,12 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <cstdio>
 #include <cstring>
 #include <iterator>
 #include <utility>
 
 #include "daemon/realtime/realtime.h"
+#include "drivers/system/text.h"
 #include "drivers/transport/clock.h"
 
 namespace ifog {
@@ -28,9 +28,8 @@ constexpr std::int64_t kQuiet_ns = 10'000'000'000;
 
 std::string losses_in_words(std::uint64_t deliveries, std::int64_t within_ns) {
   if (deliveries == 0) return "nothing is lost";
-  std::array<char, 32> seconds{};
-  std::snprintf(seconds.data(), seconds.size(), "%.1f", static_cast<double>(within_ns) * 1e-9);
-  return std::to_string(deliveries) + " deliveries are lost, all within " + seconds.data() + " s";
+  return formatted("%llu deliveries are lost, all within %.1f s", static_cast<unsigned long long>(deliveries),
+                   static_cast<double>(within_ns) * 1e-9);
 }
 
 }  // namespace
@@ -169,7 +168,7 @@ void Recorder::say(std::string message, bool good) {
 void Recorder::judge(std::int64_t now_ns) {
   const std::uint64_t gone = archive_.taken_away().deliveries;
   if (const std::uint64_t before = std::exchange(trouble_.gone_seen, gone); before != gone)
-    say("recorder: " + archive_.path() + ": the recording in work has been taken away, " +
+    say("recorder: " + archive_.path() + ": the recording in work has been removed, " +
             std::to_string(gone - before) + " deliveries with it",
         false);
   const std::uint64_t lost = tape_.counters().lost_deliveries.value();

@@ -75,7 +75,7 @@ class Recorder {
   } trouble_;
   std::uint32_t settings_due_ = 0;  // their file begins once all before them is written
 
-  std::mutex mutex_;  // never taken by a real-time thread
+  std::mutex mutex_;  // never locked by a real-time thread
   std::condition_variable stops_;
   std::map<std::uint32_t, FlightHeader> next_headers_;  // by the number of their settings
   struct Message {

@@ -31,7 +31,7 @@ void attach(const std::string& path, bool of_state, std::size_t& room, FlightHea
 } catch (const std::runtime_error&) {
 }
 
-// Of a log that can be looked into before it is read: a FIFO cannot.
+// For a log that can be looked into before it is read: a FIFO cannot.
 std::string interface_of(const TransportConfig& transport, const DriverInstance& driver) {
   std::error_code error;
   if (!transport.interface.empty() || !std::filesystem::is_regular_file(transport.path, error))

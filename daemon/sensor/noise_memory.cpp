@@ -2,13 +2,12 @@
 #include "daemon/sensor/noise_memory.h"
 
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/utc_now.h"
+#include "drivers/system/text.h"
 
 namespace ifog {
 namespace {
@@ -18,12 +17,11 @@ constexpr std::int64_t kEvery_ns = 600'000'000'000;
 constexpr double kSameRate = 0.01;
 
 std::string in_words(const KeptNoise& kept) {
-  char text[200];
-  std::snprintf(text, sizeof text,
-                "process_noise = %.4g (rad/s)^2/s, measurement_noise = %.4g (rad/s)^2, from %.0f s at rest",
-                kept.noise.process_noise, kept.noise.measurement_noise,
-                kept.noise.samples / kept.sample_rate_hz);
-  return "noise as learned until " + printable(kept.learned) + ": " + text;
+  return "noise as learned until " + printable(kept.learned) + ": " +
+         formatted(
+             "process_noise = %.4g (rad/s)^2/s, measurement_noise = %.4g (rad/s)^2, from %.0f s at rest",
+             kept.noise.process_noise, kept.noise.measurement_noise,
+             kept.noise.samples / kept.sample_rate_hz);
 }
 
 }  // namespace

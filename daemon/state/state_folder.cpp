@@ -10,13 +10,13 @@
 #include <array>
 #include <cerrno>
 #include <cstdint>
-#include <cstdio>
 #include <cstdlib>
 #include <filesystem>
 #include <stdexcept>
 #include <system_error>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/text.h"
 
 namespace ifog {
 
@@ -93,9 +93,7 @@ std::string unforeseen_name(const std::string& name) {
   std::uint64_t number = 0;
   if (::getrandom(&number, sizeof number, 0) != static_cast<ssize_t>(sizeof number))
     throw std::runtime_error("no random numbers: " + reason());
-  std::array<char, 20> digits{};
-  std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(number));
-  return "." + name.substr(0, 200) + "." + digits.data();
+  return "." + name.substr(0, 200) + "." + formatted("%016llx", static_cast<unsigned long long>(number));
 }
 
 void write_all(int fd, const std::string& path, std::string_view bytes) {

@@ -30,7 +30,7 @@ std::string note_of(const FoundPlugin& found) {
   return found.hidden ? "  (not used: a folder before this one has a driver of this name)" : "";
 }
 
-void print(const FoundPlugin& found) {
+void print_driver(const FoundPlugin& found) {
   const ifog_driver& table = found.plugin->table();
   say("%s %s: %s\n  takes %s; interface version %u\n  %s%s\n", table.name, table.version, table.summary,
       transports(table).c_str(), table.abi, found.path.c_str(), note_of(found).c_str());
@@ -48,7 +48,7 @@ void print(const FoundPlugin& found) {
   say("\n");
 }
 
-nlohmann::ordered_json as_json(const FoundPlugin& found) {
+nlohmann::ordered_json driver_json(const FoundPlugin& found) {
   const ifog_driver& table = found.plugin->table();
   auto options = nlohmann::ordered_json::array();
   for (const ifog_option* option = table.options; option->key != nullptr; ++option) {
@@ -74,7 +74,7 @@ void write(const std::string& path, const std::vector<FoundPlugin>& all,
   auto drivers = nlohmann::ordered_json::array(), refused = nlohmann::ordered_json::array();
   for (const FoundPlugin& found : all)
     if (found.plugin)
-      drivers.push_back(as_json(found));
+      drivers.push_back(driver_json(found));
     else
       refused.push_back({{"path", found.path}, {"reason", found.refusal}});
   write_json(
@@ -83,7 +83,7 @@ void write(const std::string& path, const std::vector<FoundPlugin>& all,
           {"schema", "ifog.drivers/1"}, {"drivers", drivers}, {"refused", refused}, {"folders", folders}});
 }
 
-void run(const std::string& name, const std::string& json) {
+void run_drivers(const std::string& name, const std::string& json) {
   will_write("--json", json, kJsonEndings);
   const std::vector<std::string> folders = plugin_folders();
   std::vector<FoundPlugin> all;
@@ -95,14 +95,14 @@ void run(const std::string& name, const std::string& json) {
   }
   if (!json.empty()) write(json, all, folders);
   if (!name.empty()) {
-    print(all.front());
+    print_driver(all.front());
     return;
   }
   std::size_t usable = 0;
   for (const FoundPlugin& found : all) {
     if (!found.plugin) continue;
     ++usable;
-    print(found);
+    print_driver(found);
   }
   for (const FoundPlugin& found : all)
     if (!found.plugin) say("refused: %s\n", found.refusal.c_str());
@@ -119,7 +119,7 @@ void add_drivers(const Command& program) {
       program.add_subcommand("drivers", "List the protocol drivers found, their options, and refused ones");
   command.add_option("NAME", *name, "Only this driver");
   command.add_option("--json", *json, "Write the list here").type_name("FILE");
-  command.callback([name, json] { run(*name, *json); });
+  command.callback([name, json] { run_drivers(*name, *json); });
 }
 
 }  // namespace ifog::tools

@@ -28,12 +28,12 @@
 namespace ifog::tools {
 namespace {
 
-struct Arguments {
+struct PictureArguments {
   std::string log, channel, axis, picture;
   TimePart part;
 };
 
-void run(const Arguments& a) {
+void run_picture(const PictureArguments& a) {
   will_read("log", a.log);
   will_write("--output", a.picture);
   InputFile log(a.log);
@@ -85,7 +85,7 @@ void run(const Arguments& a) {
 }  // namespace
 
 void add_picture(const Command& program) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<PictureArguments>();
   const Command command = program.add_subcommand(
       "picture", "What the daemon published: raw against denoised, and both Allan curves");
   command.add_option("log", a->log, "Log of lcm-logger").required();
@@ -96,7 +96,7 @@ void add_picture(const Command& program) {
       .required()
       .check(report::wrong_picture_name)
       .type_name("FILE");
-  command.callback([a] { run(*a); });
+  command.callback([a] { run_picture(*a); });
 }
 
 }  // namespace ifog::tools

@@ -12,7 +12,7 @@ reference model; states, faults, formats from the maps of the folders. pages/*.m
   @drivers                 every driver with its options
   @reference FILE          the keys of a commented TOML file
   @section FILE HEADING    what stands under that heading in a Markdown file
-  @page FILE               a whole Markdown file, its title left out
+  @page FILE               a whole Markdown file without its title
 A new command needs nothing here: its page is made of its options, its examples, its row in README.md and its part of
 tools/README.md, where it has them.
 """

@@ -13,7 +13,7 @@ import roff
 VALUE = r'("(?:[^"\\]|\\.)*"|\[[^\]]*\]|[^\s#]+)'
 KEY = re.compile(r"^(\s*)([A-Za-z_]\w*) = " + VALUE + r"\s*(?:#\s?(.*))?$")
 ALTERNATIVE = re.compile(r"^\s*#\s+(?:(\w+):\s+)?(\w+) = " + VALUE + r"\s*(.*)$")
-COMMENT_COLUMN = 20  # from here on a comment goes on with the one of the line before
+COMMENT_COLUMN = 20  # from here on a comment continues that of the line before
 
 
 def strip_brackets(text):

@@ -125,7 +125,7 @@ class Page:
                 self.add([".PP", *sentences(" ".join(lines))])
 
     def text(self):
-        """With the paragraph breaks gone that stand beside another break, and before or behind nothing."""
+        """Without paragraph breaks that stand next to another break, or before or behind nothing."""
         out = []
         for line in self.lines:
             if line == ".PP" and out and (out[-1] == ".PP" or out[-1].startswith((".SH", ".SS"))):

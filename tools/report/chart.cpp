@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "drivers/system/text.h"
 #include "tools/report/plot_data.h"
 #include "tools/report/text.h"
 
@@ -37,11 +37,7 @@ const char* css_class(Role role) {
   return "";
 }
 
-std::string fixed(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.1f", value);
-  return text;
-}
+std::string fixed(double value) { return formatted("%.1f", value); }
 
 // One for every so many pixels, so that low panels are not crowded.
 int y_ticks(double pixels) { return std::clamp(static_cast<int>(pixels / 48.0), 2, 6); }
@@ -145,7 +141,7 @@ Chart::Chart(std::string title, std::string description, ChartAxis x, ChartAxis 
     : title_(std::move(title)), description_(std::move(description)), x_(std::move(x)), y_(std::move(y)) {}
 
 void Chart::line(Role role, const std::string& label, std::vector<double> x, std::vector<double> y) {
-  series_.push_back({Kind::line, role, label, std::move(x), std::move(y), {}, {}});
+  series_.push_back({Kind::line, role, label, std::move(x), std::move(y), {}});
 }
 
 void Chart::line_in_time(Role role, const std::string& label, std::vector<double> time,
@@ -155,15 +151,15 @@ void Chart::line_in_time(Role role, const std::string& label, std::vector<double
 }
 
 void Chart::points(Role role, const std::string& label, std::vector<double> x, std::vector<double> y) {
-  series_.push_back({Kind::points, role, label, std::move(x), std::move(y), {}, {}});
+  series_.push_back({Kind::points, role, label, std::move(x), std::move(y), {}});
 }
 
 void Chart::band(Role role, std::vector<double> x, std::vector<double> low, std::vector<double> high) {
-  series_.push_back({Kind::band, role, "", std::move(x), std::move(low), std::move(high), {}});
+  series_.push_back({Kind::band, role, "", std::move(x), std::move(low), std::move(high)});
 }
 
-void Chart::guide(Role role, std::vector<double> x, std::vector<double> y, Word word) {
-  series_.push_back({Kind::guide, role, "", std::move(x), std::move(y), {}, std::move(word)});
+void Chart::guide(Role role, std::vector<double> x, std::vector<double> y) {
+  series_.push_back({Kind::guide, role, "", std::move(x), std::move(y), {}});
 }
 
 void Chart::mark_x(double x, const std::string& label) { marks_.emplace_back(x, label); }
@@ -254,24 +250,20 @@ std::string Chart::curves(const Frame& f, const Scale& sx, const Scale& sy) cons
   std::string out = "<svg class=\"curves\" x=\"" + fixed(f.left) + "\" y=\"" + fixed(f.top) + "\" width=\"" +
                     fixed(f.right - f.left) + "\" height=\"" + fixed(f.bottom - f.top) + "\" viewBox=\"" +
                     box + "\">";
-  std::string named;  // over every curve
   for (const Series& s : series_) {
     const std::string name = css_class(s.role);
-    const bool is_band = s.kind == Kind::band, is_dots = s.kind == Kind::points,
-               is_guide = s.kind == Kind::guide;
+    const bool is_band = s.kind == Kind::band, is_dots = s.kind == Kind::points;
     const std::string d = is_band   ? outline(s.x, s.y, s.high, sx, sy)
                           : is_dots ? dots(s.x, s.y, sx, sy)
                                     : path(s.x, s.y, sx, sy);
     out += std::string("<path class=\"") +
-           (is_band    ? "band "
-            : is_dots  ? "dots "
-            : is_guide ? "guide "
-                       : "line ") +
+           (is_band                 ? "band "
+            : is_dots               ? "dots "
+            : s.kind == Kind::guide ? "guide "
+                                    : "line ") +
            name + "\" d=\"" + d + "\"/>\n";
-    if (is_guide && !s.word.text.empty() && sx.drawable(s.word.x) && sy.drawable(s.word.y))
-      named += words(("word " + name).c_str(), sx(s.word.x), sy(s.word.y), s.word.anchor, s.word.text);
   }
-  return out + named + "</svg>\n";
+  return out + "</svg>\n";
 }
 
 double Chart::left_margin(double height) const {

@@ -14,7 +14,7 @@ namespace ifog::report {
 // What a curve is; the style gives each a colour, and a stroke by which it is known without colour.
 enum class Role { kBefore, kAfter, kFit, kSecond, kRaw, kThird, kFourth };
 
-// Of one of several curves of a kind, in their order.
+// The role of one of several curves of a kind, by its place.
 Role role_of(std::size_t index);
 
 class Chart {
@@ -24,18 +24,12 @@ class Chart {
 
   // x ascending. Where there are more points than pixels the stroke covers the extremes of each pixel column.
   void line(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
-  // Of samples in time: open where there is a hole, and nothing was measured.
+  // For samples in time: open where there is a hole, and nothing was measured.
   void line_in_time(Role role, const std::string& label, std::vector<double> time, std::vector<double> y);
   void points(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
   void band(Role role, std::vector<double> x, std::vector<double> low, std::vector<double> high);
-  // A thin pale curve, never dashed as some of the data is, that is no data and does not widen the axes, with a word of its colour at a place of
-  // its own, or without one.
-  struct Word {
-    std::string text;
-    double x = 0.0, y = 0.0;        // in data
-    const char* anchor = "middle";  // start, middle, end
-  };
-  void guide(Role role, std::vector<double> x, std::vector<double> y, Word word);
+  // A thin pale curve, never dashed as some of the data is, that is no data and does not widen the axes.
+  void guide(Role role, std::vector<double> x, std::vector<double> y);
   void mark_x(double x, const std::string& label);  // a vertical rule
 
   [[nodiscard]] bool empty() const;  // nothing finite to draw
@@ -56,7 +50,6 @@ class Chart {
     std::string label;
     std::vector<double> x, y;
     std::vector<double> high;  // of a band
-    Word word;                 // of a guide
   };
   struct Frame {
     double left, right, top, bottom;

@@ -2,11 +2,10 @@
 #include "tools/report/coefficients.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 
+#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
 
 namespace ifog::report {
@@ -27,9 +26,7 @@ std::string value_and_error(double value, double error) {
           ? std::clamp(static_cast<int>(std::floor(std::log10(value)) - std::floor(std::log10(error))) + 2, 2,
                        8)
           : 3;
-  std::array<char, 96> line{};
-  std::snprintf(line.data(), line.size(), "%.*g ± %.2g", digits, value, error);
-  return line.data();
+  return formatted("%.*g ± %.2g", digits, value, error);
 }
 
 }  // namespace
@@ -46,35 +43,28 @@ const std::vector<NamedCoefficient>& named_coefficients() {
 }
 
 std::string bound_text(double upper) {
-  std::array<char, 32> text{};
   // The digits by the library's own rounding, then one more in the last place if that fell short.
-  std::snprintf(text.data(), text.size(), "%.2g", upper);
-  if (upper > 0.0 && std::strtod(text.data(), nullptr) < upper) {
-    const double last = std::pow(10.0, std::floor(std::log10(upper)) - 1.0);
-    std::snprintf(text.data(), text.size(), "%.2g", std::strtod(text.data(), nullptr) + last);
-  }
-  return text.data();
+  const std::string text = formatted("%.2g", upper);
+  const double shown = std::strtod(text.c_str(), nullptr);
+  if (!(upper > 0.0) || shown >= upper) return text;
+  return formatted("%.2g", shown + std::pow(10.0, std::floor(std::log10(upper)) - 1.0));
 }
 
 std::string coefficient_lines(const NoiseCoefficients& found) {
   std::string lines;
-  std::array<char, 256> line{};
   for (const NamedCoefficient& named : named_coefficients()) {
     const NoiseCoefficient& c = found.*named.member;
     const std::string meaning = padded(named.meaning, 18);
-    std::array<char, 80> from{};
-    if (c.from_s > 0.0)
-      std::snprintf(from.data(), from.size(), "  from %.3g s on; below, a filter holds the curve down",
-                    c.from_s);
-    if (c.present)
-      std::snprintf(line.data(), line.size(), "  %s  %s %s %s  (%.4g ± %.2g %s)%s\n", named.letter,
-                    meaning.c_str(),
-                    padded(value_and_error(c.value * named.factor, c.std_error * named.factor), 24).c_str(),
-                    padded(named.unit, 7).c_str(), c.value, c.std_error, named.si_unit, from.data());
-    else
-      std::snprintf(line.data(), line.size(), "  %s  %s not seen; below %s %s\n", named.letter,
-                    meaning.c_str(), bound_text(c.upper * named.factor).c_str(), named.unit);
-    lines += line.data();
+    const std::string from =
+        c.from_s > 0.0 ? formatted("  from %.3g s on; below, a filter holds the curve down", c.from_s) : "";
+    lines +=
+        c.present
+            ? formatted(
+                  "  %s  %s %s %s  (%.4g ± %.2g %s)%s\n", named.letter, meaning.c_str(),
+                  padded(value_and_error(c.value * named.factor, c.std_error * named.factor), 24).c_str(),
+                  padded(named.unit, 7).c_str(), c.value, c.std_error, named.si_unit, from.c_str())
+            : formatted("  %s  %s not seen; below %s %s\n", named.letter, meaning.c_str(),
+                        bound_text(c.upper * named.factor).c_str(), named.unit);
   }
   return lines;
 }

@@ -11,7 +11,7 @@ namespace ifog::report {
 
 struct ChartAxis {
   std::string label;
-  bool log = false;  // values that are not positive are left out
+  bool log = false;  // values that are not positive are not drawn
   std::optional<double> low, high;
   bool numbered = true;              // false: a neighbour that shares the axis has the numbers
   std::vector<std::string> names{};  // of 1, 2, 3, ... in place of numbers

@@ -3,20 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <limits>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/text.h"
 
 namespace ifog::report {
 namespace {
 
-std::string printed(const char* format, int digits, double value) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, digits, value);
-  return text;
-}
+std::string printed(const char* format, int digits, double value) { return formatted(format, digits, value); }
 
 // A true minus sign, and powers of ten as people write them.
 std::string typeset(const std::string& plain) {

@@ -13,7 +13,7 @@ namespace ifog::report {
 
 class TimeAxis {
  public:
-  // Of a picture from the one time to the other.
+  // For a picture from the one time to the other.
   TimeAxis(double first_s, double last_s);
 
   // At the axis, of a time in s.

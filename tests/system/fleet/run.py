@@ -265,13 +265,13 @@ def check_bad_manifests(folder):
     (folder / "link.csv").symlink_to("a.csv")
     (folder / "x").mkdir()
     good = '[[gyro]]\nserial = "A"\ncaptures = ["a.csv"]\n'
-    for text, said in ((good, "type is missing"), ('type = "T"\n', "gyro is missing"), ('type = "T"\n' + good + "day = 1\n", "bad.toml:5: key 'day' is unknown"),
+    for text, said in ((good, "type: missing"), ('type = "T"\n', "gyro: missing"), ('type = "T"\n' + good + "day = 1\n", "bad.toml:5: gyro.day: unknown key"),
                        ('type = "T"\n' + good.replace('"A"', '"$(touch pwned)"'), "expected up to 64 letters"),
                        ('type = "T"\n' + good.replace('"A"', '"../A"'), "expected up to 64 letters"),
                        ('type = "T"\n' + good + good.replace('"A"', '"a"'), "stands twice"), ('type = "T"\n' + good.replace('["a.csv"]', "[]"), "expected a list of paths"),
-                       ('type = "T"\n' + good.replace('["a.csv"]', "[7]"), "expected a list of paths"),
-                       ('type = "T"\n' + good + good.replace('"A"', '"B"').replace("a.csv", "./x/../a.csv"), "bad.toml:7: captures holds './x/../a.csv', which is a capture of 'A' already"),
-                       ('type = "T"\n' + good.replace('["a.csv"]', '[\n  "a.csv",\n  "link.csv"]'), "bad.toml:6: captures holds 'link.csv', which is a capture of 'A' already")):
+                       ('type = "T"\n' + good.replace('["a.csv"]', "[7]"), "expected a list of texts"),
+                       ('type = "T"\n' + good + good.replace('"A"', '"B"').replace("a.csv", "./x/../a.csv"), "bad.toml:7: gyro.captures holds './x/../a.csv', which is a capture of 'A' already"),
+                       ('type = "T"\n' + good.replace('["a.csv"]', '[\n  "a.csv",\n  "link.csv"]'), "bad.toml:5: gyro.captures holds 'link.csv', which is a capture of 'A' already")):
         (folder / "bad.toml").write_text(text)
         result = subprocess.run([IFOG, "fleet", "bad.toml"], cwd=folder, capture_output=True, text=True, timeout=60, check=False)
         assert result.returncode == 1 and said in result.stderr and result.stderr.count("\n") == 1, (text, result)

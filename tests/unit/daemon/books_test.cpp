@@ -58,7 +58,7 @@ TEST(Books, AnImbalanceIsSaidWithItsNumbers) {
             "the books do not balance: 9 CAN frames read, 5 decoded + 1 refused + 2 none of the sensor's");
   wrong = reader;
   wrong.repeated = 0;
-  EXPECT_EQ(imbalance(wrong, filter), "the books do not balance: 3 samples decoded, 2 taken + 0 repeated");
+  EXPECT_EQ(imbalance(wrong, filter), "the books do not balance: 3 samples decoded, 2 accepted + 0 repeated");
   wrong = reader;
   wrong.decoded = 2;
   wrong.samples = 1;

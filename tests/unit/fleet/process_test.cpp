@@ -24,13 +24,11 @@ TEST(RunToEnd, GivesWhatTheProgramSaidAndHowItEnded) {
 TEST(RunToEnd, OneThatDoesNotAnswerIsNotWaitedForForEver) {
   const Ran silent = run_to_end({"sh"}, "echo begun; exec sleep 100000", 500ms);
   EXPECT_EQ(silent.ended, "no answer within 0.5 s");
-  const Ran endless = run_to_end({"yes"}, "", 100ms);
-  EXPECT_EQ(endless.ended, "no answer within 0.1 s");
 }
 
 // Its end is its own, not that of what it leaves behind with its output.
-TEST(RunToEnd, OneThatLeavesItsOutputOpenIsNotWaitedForForEver) {
-  EXPECT_EQ(run_to_end({"sh"}, "sleep 20 & exit 0", 500ms).ended, "no answer within 0.5 s");
+TEST(RunToEnd, OneThatLeavesItsOutputOpenIsNotWaitedFor) {
+  EXPECT_EQ(run_to_end({"sh"}, "sleep 20 & exit 0", 10s).ended, "");
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST(Outlet, AFullCanQueueIsWaitedForAndTheFrameGoesOnce) {
 TEST(Outlet, AFrameOfWhichAPartWentIsAFailure) {
   ToldOutlet outlet({5});
   EXPECT_EQ(test::refusal([&] { outlet.send_datagram("frame-1", 7); }),
-            "can0: cannot send: 5 of 7 bytes of a frame were taken");
+            "can0: cannot send: 5 of 7 bytes of a frame were accepted");
 }
 
 TEST(Outlet, ShortWritesOfBytesGoOnWhereTheyEnded) {

@@ -20,14 +20,14 @@
 namespace ifog::tools {
 namespace {
 
-struct Arguments {
+struct AllanArguments {
   CaptureInput input;
   std::vector<std::string> captures;
   AllanOptions options;
   std::string estimator = "overlapping", gaps = "part", moving = "leave-out", json, picture;
 };
 
-void run(Arguments& a) {
+void run_allan(AllanArguments& a) {
   for (const std::string& capture : a.captures) a.input.will_read("capture", capture);
   will_write("--json", a.json, kJsonEndings);
   will_write("--plot", a.picture);
@@ -57,7 +57,7 @@ void run(Arguments& a) {
 }  // namespace
 
 void add_allan(const Command& program) {
-  auto a = std::make_shared<Arguments>();
+  auto a = std::make_shared<AllanArguments>();
   a->input.other_rates = a->input.outlined = true;
   const Command command = program.add_subcommand(
       "allan",
@@ -97,7 +97,7 @@ void add_allan(const Command& program) {
   command.add_option("--plot", a->picture, "Write a picture here (.svg or .png)")
       .check(report::wrong_picture_name)
       .type_name("FILE");
-  command.callback([a] { run(*a); });
+  command.callback([a] { run_allan(*a); });
 }
 
 }  // namespace ifog::tools

@@ -14,18 +14,25 @@
 #include "filters/rest/rest.h"
 #include "filters/threads/share_out.h"
 #include "filters/units/told_time.h"
-#include "tools/ifog/allan/filter_start.h"
 #include "tools/ifog/allan/logged_rate.h"
-#include "tools/ifog/allan/rate_signal.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
 
-// Rates worked on at a time, were there fewer processors: of three on two, the third would have one idle
-// beside it.
+// Rates worked on at a time, were there fewer processors: with three on two processors in turn, one would be idle.
 constexpr unsigned kTogether = 3;
+
+// "rate_x_radps" → signal "rate", axis "x"; likewise those of a denoised file. False for another column.
+bool signal_of(const std::string& column, std::string& signal, std::string& axis) {
+  for (const char* const prefix : {"rate", "raw", "compensated", "denoised"})
+    if (axis_of(column, prefix, axis)) {
+      signal = prefix;
+      return true;
+    }
+  return false;
+}
 
 // No value at all in a column's rows.
 bool is_dead(const SeriesView& values) {
@@ -101,15 +108,28 @@ LongSeries less_reference(const std::string& name, const LongTable& table, const
   return error;
 }
 
+// How many rows from the first on are the same bits in both, none in either counted as the same.
+std::size_t same_rows(const SeriesView& a, const SeriesView& b) {
+  std::vector<double> room, other_room;
+  for (std::size_t at = 0; at < a.size(); at += kSeriesPiece) {
+    const std::size_t count = std::min(kSeriesPiece, a.size() - at);
+    const auto left = a.piece(at, count, room), right = b.piece(at, count, other_room);
+    for (std::size_t i = 0; i < count; ++i)
+      if (left[i] != right[i] && !(std::isnan(left[i]) && std::isnan(right[i]))) return at + i;
+  }
+  return a.size();
+}
+
 // Rows of the table, from its first on, in which a denoised rate is the compensated one; 0 for other signals
-// and where it never is another.
+// and where it never is another. Until the filter has learned the noise it publishes the compensated rate as it is: in
+// the filter's output that would be leaps, and noise, that the filter does not have.
 std::size_t start_of_filter(const LongTable& table, const LongColumn& column, const std::string& signal,
                             const std::string& axis) {
   if (signal != "denoised") return 0;
   const std::string wanted = "compensated" + (axis.empty() ? "" : "_" + axis) + "_radps";
   for (const LongColumn& other : table.columns) {
     if (other.name != wanted) continue;
-    const std::size_t same = rows_before_the_filter(column.values, other.values);
+    const std::size_t same = same_rows(column.values, other.values);
     return same < table.size() ? same : 0;
   }
   return 0;

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <string_view>
 
+#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/allan/allan_record.h"
+#include "tools/ifog/console/listed_fields.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -15,27 +16,16 @@ namespace {
 
 using nlohmann::ordered_json;
 
-const char* name_of(Term term) {
+const char* term_name(Term term) {
   constexpr std::array<const char*, kTerms> kNames{"white phase", "white rate", "flicker rate",
                                                    "random walk"};
   return kNames[term];
 }
 
-const char* name_of(Deviation kind) {
+const char* estimator_name(Deviation kind) {
   return kind == Deviation::kModified   ? "modified"
          : kind == Deviation::kHadamard ? "hadamard"
                                         : "overlapping";
-}
-
-// JSON has no NaN.
-ordered_json finite(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
-std::string text(const char* format, double a, double b = 0.0) {
-  std::array<char, 96> line{};
-  std::snprintf(line.data(), line.size(), format, a, b);
-  return line.data();
 }
 
 ordered_json theo1_json(const std::vector<LongPoint>& points) {
@@ -44,9 +34,9 @@ ordered_json theo1_json(const std::vector<LongPoint>& points) {
     out[key] = ordered_json::array();
   for (const LongPoint& point : points) {
     out["tau_s"].push_back(point.tau);
-    out["adev_radps"].push_back(finite(std::sqrt(point.variance)));
-    out["lower_radps"].push_back(finite(point.interval.lower_radps));
-    out["upper_radps"].push_back(finite(point.interval.upper_radps));
+    out["adev_radps"].push_back(as_json(std::sqrt(point.variance)));
+    out["lower_radps"].push_back(as_json(point.interval.lower_radps));
+    out["upper_radps"].push_back(as_json(point.interval.upper_radps));
     out["degrees_of_freedom"].push_back(point.interval.degrees);
     out["bias"].push_back(point.bias);
   }
@@ -56,7 +46,7 @@ ordered_json theo1_json(const std::vector<LongPoint>& points) {
 void print_point(double tau_s, double variance, const AllanInterval& interval, const char* remark) {
   say("  %12.6g  %12.5g  %12.5g … %-10.5g  %9.4g  %s%s\n", tau_s, std::sqrt(variance) / kDegreePerHour,
       interval.lower_radps / kDegreePerHour, interval.upper_radps / kDegreePerHour, interval.degrees,
-      variance > 0.0 ? name_of(interval.strongest) : "none", remark);
+      variance > 0.0 ? term_name(interval.strongest) : "none", remark);
 }
 
 }  // namespace
@@ -65,7 +55,7 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
   ordered_json out;
   out["schema"] = "ifog.allan/1";
   out["sample_rate_hz"] = records.front().sample_rate_hz;
-  out["estimator"] = name_of(options.kind);
+  out["estimator"] = estimator_name(options.kind);
   out["confidence"] = options.confidence;
   out["axes"] = ordered_json::array();
   for (const AllanRecord& record : records) {
@@ -85,11 +75,11 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
       axis[key] = ordered_json::array();
     for (std::size_t i = 0; i < record.points.size(); ++i) {
       const AllanInterval& interval = record.intervals[i];
-      axis["adev_radps"].push_back(finite(std::sqrt(record.points[i].variance)));
-      axis["lower_radps"].push_back(finite(interval.lower_radps));
-      axis["upper_radps"].push_back(finite(interval.upper_radps));
+      axis["adev_radps"].push_back(as_json(std::sqrt(record.points[i].variance)));
+      axis["lower_radps"].push_back(as_json(interval.lower_radps));
+      axis["upper_radps"].push_back(as_json(interval.upper_radps));
       axis["degrees_of_freedom"].push_back(interval.degrees);
-      axis["noise_type"].push_back(name_of(interval.strongest));
+      axis["noise_type"].push_back(term_name(interval.strongest));
       axis["terms"].push_back(record.points[i].terms);
     }
     if (!record.longer.empty()) axis["theo1"] = theo1_json(record.longer);
@@ -98,7 +88,7 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
     axis["coefficients"] = report::coefficients_json(record.fit ? *record.fit : NoiseCoefficients{});
     if (!record.fit)
       for (auto& term : axis["coefficients"]) term["std_error"] = term["upper"] = nullptr;
-    axis["misfit"] = record.fit ? finite(record.fit->misfit) : ordered_json(nullptr);
+    axis["misfit"] = record.fit ? as_json(record.fit->misfit) : ordered_json(nullptr);
     axis["gauss_markov"] = record.fit ? report::markov_json(record.fit->markov) : ordered_json(nullptr);
     axis["noise_changes"] = report::noise_changes_json(record.noise_changes);
     axis["findings"] = ordered_json::array();
@@ -118,7 +108,7 @@ void print_allan(const AllanRecord& record, const AllanOptions& options) {
       static_cast<double>(record.samples) / record.sample_rate_hz, record.mean_radps / kDegreePerHour);
   for (const std::string& note : record.notes) say("  note: %s\n", note.c_str());
   say("  %12s  %12s  %25s  %9s  %s\n", "tau s", "sigma deg/h",
-      text("%.3g %% interval", 100.0 * options.confidence).c_str(), "degrees", "noise here");
+      formatted("%.3g %% interval", 100.0 * options.confidence).c_str(), "degrees", "noise here");
   // On a screen three points a decade say enough; what was asked for is always shown.
   double next = 0.0;
   for (std::size_t i = 0; i < record.points.size(); ++i) {
@@ -131,7 +121,7 @@ void print_allan(const AllanRecord& record, const AllanOptions& options) {
                     : "");
   }
   for (const LongPoint& point : record.longer)
-    print_point(point.tau, point.variance, point.interval, "  (Theo1, bias taken out)");
+    print_point(point.tau, point.variance, point.interval, "  (Theo1, corrected for its bias)");
   if (record.trusted_tau_s > 0.0)
     say("  Accurate to 25 %% for τ up to %.4g s; a longer record shows more.\n", record.trusted_tau_s);
   if (record.fit) say("%s", report::coefficient_lines(*record.fit).c_str());

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Several records side by side: one line each, in the field's units.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 
+#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/console/say.h"
@@ -13,18 +12,16 @@
 namespace ifog::tools {
 namespace {
 
-std::string name_of(const AllanRecord& record) {
+std::string record_name(const AllanRecord& record) {
   const std::string file = std::filesystem::path(record.capture).filename().string();
   return record.label().empty() ? file : file + " " + record.label();
 }
 
-std::string cell(const AllanRecord& record, const NamedCoefficient& named) {
+std::string coefficient_cell(const AllanRecord& record, const NamedCoefficient& named) {
   if (!record.fit) return "unknown";
   const NoiseCoefficient& c = (*record.fit).*named.member;
   if (!c.present) return "< " + report::bound_text(c.upper * named.factor);
-  std::array<char, 48> text{};
-  std::snprintf(text.data(), text.size(), "%.4g ± %.2g", c.value * named.factor, c.std_error * named.factor);
-  return text.data();
+  return formatted("%.4g ± %.2g", c.value * named.factor, c.std_error * named.factor);
 }
 
 // Wide enough for the longest; ± takes two bytes.
@@ -38,15 +35,16 @@ void print_padded(const std::string& text, int width) {
 
 void print_comparison(const std::vector<AllanRecord>& records) {
   std::size_t longest = 0;
-  for (const AllanRecord& record : records) longest = std::max(longest, name_of(record).size());
+  for (const AllanRecord& record : records) longest = std::max(longest, record_name(record).size());
   const int width = static_cast<int>(longest) + 2;
   say("\n%-*s", width, "");
   for (const NamedCoefficient& named : named_coefficients())
     print_padded(std::string(named.letter) + " " + named.unit, 20);
   say("lowest deviation °/h\n");
   for (const AllanRecord& record : records) {
-    say("%-*s", width, name_of(record).c_str());
-    for (const NamedCoefficient& named : named_coefficients()) print_padded(cell(record, named), 20);
+    say("%-*s", width, record_name(record).c_str());
+    for (const NamedCoefficient& named : named_coefficients())
+      print_padded(coefficient_cell(record, named), 20);
     std::size_t lowest = 0;
     for (std::size_t i = 1; i < record.points.size(); ++i)
       if (record.points[i].variance < record.points[lowest].variance) lowest = i;

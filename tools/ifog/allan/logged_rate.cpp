@@ -2,12 +2,12 @@
 #include "tools/ifog/allan/logged_rate.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <optional>
 #include <span>
 #include <stdexcept>
 
+#include "drivers/system/text.h"
 #include "filters/allan/noise/curve_miss.h"
 #include "filters/allan/row_times.h"
 #include "filters/rest/cleaned_rate.h"
@@ -54,11 +54,7 @@ double trusted_tau(const AngleSum& sum, const TermVariances& noise, Deviation ki
   return trusted;
 }
 
-std::string two_digits(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.2g", value);
-  return text.data();
-}
+std::string two_digits(double value) { return formatted("%.2g", value); }
 
 std::string in_words(const std::vector<FrequencyRange>& ranges) {
   constexpr std::size_t kShown = 6;
@@ -126,7 +122,7 @@ void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
   if (clock.worst_jitter_s > 0.1 * clock.period_s)
     record.notes.push_back(logged.capture + ": time is uneven by up to " +
                            six_digits(clock.worst_jitter_s * 1e3) +
-                           " ms; taken as jitter of the stamps of an even clock of " +
+                           " ms; treated as jitter of the stamps of an even clock of " +
                            six_digits(record.sample_rate_hz) + " Hz");
 }
 
@@ -160,18 +156,14 @@ void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& 
   for (std::size_t i = 0; i < options.tau_s.size(); ++i)
     if (std::abs(record.tau_s[i] / options.tau_s[i] - 1.0) > 1e-6)
       record.notes.push_back(name + ": --tau " + six_digits(options.tau_s[i]) +
-                             " s is no multiple of the sample time, taken at " + six_digits(record.tau_s[i]) +
+                             " s is no multiple of the sample time; used: " + six_digits(record.tau_s[i]) +
                              " s");
   record.trusted_tau_s = trusted_tau(sum, noise, options.kind, period);
 }
 
 }  // namespace
 
-std::string six_digits(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
+std::string six_digits(double value) { return formatted("%.6g", value); }
 
 AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const std::string& axis,
                     const Rest& rest, const AllanOptions& options) {

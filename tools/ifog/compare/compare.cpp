@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog compare: every adaptation rule on one capture, with the same settings.
 #include "filters/compare/compare.h"
+#include "drivers/system/text.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -30,6 +30,7 @@
 #include "tools/ifog/compare/verdict.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/listed_fields.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/filter_options.h"
 #include "tools/ifog/console/progress.h"
@@ -41,7 +42,7 @@ namespace {
 
 using nlohmann::json;
 
-struct Options {
+struct CompareArguments {
   CaptureInput input;
   TimePart part;
   std::string capture, model, json_file, plot_file;
@@ -117,15 +118,7 @@ void fill_noise(FilterSettings& settings, const CaptureView& capture, const std:
   if (settings.process_noise <= 0.0) settings.process_noise = ratio * settings.measurement_noise / period_s;
 }
 
-json number(const std::optional<double>& value) {
-  return value && std::isfinite(*value) ? json(*value) : json(nullptr);
-}
-
-std::string tau_name(double tau) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%g", tau);
-  return text;
-}
+std::string tau_name(double tau) { return formatted("%g", tau); }
 
 json settings_json(const FilterSettings& s) {
   return {{"state", s.state},
@@ -144,13 +137,13 @@ json settings_json(const FilterSettings& s) {
 json row_json(const ComparisonRow& row, const std::string& axis, const FilterSettings& settings) {
   json adev = json::object();
   for (std::size_t i = 0; i < kComparedTaus.size(); ++i)
-    adev[tau_name(kComparedTaus[i])] = number(row.adev_radps[i]);
+    adev[tau_name(kComparedTaus[i])] = as_json(row.adev_radps[i]);
   json out{{"rule", row.rule},
            {"axis", axis},
            {"settings", settings_json(settings)},
-           {"rmse_radps", number(row.rmse_radps)},
-           {"bias_radps", number(row.bias_radps)},
-           {"lag_s", number(row.lag_s)},
+           {"rmse_radps", as_json(row.rmse_radps)},
+           {"bias_radps", as_json(row.bias_radps)},
+           {"lag_s", as_json(row.lag_s)},
            {"std_radps", row.std_radps},
            {"adev_radps", adev}};
   if (row.rule == "raw") {
@@ -159,22 +152,20 @@ json row_json(const ComparisonRow& row, const std::string& axis, const FilterSet
   }
   out["heading_end_rad"] = row.heading_end_rad;
   out["heading_max_rad"] = row.heading_max_rad;
-  out["whiteness"] = {{"lag1", number(row.whiteness_lag1)}, {"excess", number(row.whiteness_excess)}};
-  out["nis_mean"] = number(row.nis_mean);
-  out["nis_typical"] = number(row.nis_typical);
+  out["whiteness"] = {{"lag1", as_json(row.whiteness_lag1)}, {"excess", as_json(row.whiteness_excess)}};
+  out["nis_mean"] = as_json(row.nis_mean);
+  out["nis_typical"] = as_json(row.nis_typical);
   out["share_at_rest"] = row.share_at_rest;
   json steps = json::array();
   for (const StepResponse& step : row.step)
-    steps.push_back({{"size_sigma", step.size_sigma}, {"samples_to_90_percent", number(step.samples)}});
+    steps.push_back({{"size_sigma", step.size_sigma}, {"samples_to_90_percent", as_json(step.samples)}});
   out["step_response"] = steps;
   return out;
 }
 
-std::string cell(const std::optional<double>& value, double scale, const char* format) {
+std::string figure_cell(const std::optional<double>& value, double scale, const char* format) {
   if (!value || !std::isfinite(*value)) return "-";
-  char text[32];
-  std::snprintf(text, sizeof text, format, *value * scale);
-  return text;
+  return formatted(format, *value * scale);
 }
 
 void print_axis(const Comparison& result, int axis, bool reference, const Verdict& verdict) {
@@ -188,20 +179,23 @@ void print_axis(const Comparison& result, int axis, bool reference, const Verdic
     if (row.axis != axis) continue;
     const bool is_rule = row.rule != "raw";
     say("%-10s %7s %10s", row.rule.c_str(),
-        is_rule ? cell(verdict.above[rule++], 100.0, "%.2g %%").c_str() : "",
-        cell(row.std_radps, 1.0 / kDegreePerHour, "%.4g").c_str());
-    for (const auto& value : row.adev_radps) say(" %9s", cell(value, 1.0 / kDegreePerHour, "%.4g").c_str());
+        is_rule ? figure_cell(verdict.above[rule++], 100.0, "%.2g %%").c_str() : "",
+        figure_cell(row.std_radps, 1.0 / kDegreePerHour, "%.4g").c_str());
+    for (const auto& value : row.adev_radps)
+      say(" %9s", figure_cell(value, 1.0 / kDegreePerHour, "%.4g").c_str());
     if (reference)
-      say(" %10s %10s %8s", cell(row.rmse_radps, 1.0 / kDegreePerHour, "%.4g").c_str(),
-          cell(row.bias_radps, 1.0 / kDegreePerHour, "%.3g").c_str(), cell(row.lag_s, 1.0, "%.4f").c_str());
+      say(" %10s %10s %8s", figure_cell(row.rmse_radps, 1.0 / kDegreePerHour, "%.4g").c_str(),
+          figure_cell(row.bias_radps, 1.0 / kDegreePerHour, "%.3g").c_str(),
+          figure_cell(row.lag_s, 1.0, "%.4f").c_str());
     if (!is_rule) {
       say("\n");
       continue;
     }
     say(" %11.2e %8.1e %7.3f %7s %6s %7s %7s\n", row.heading_end_rad / kDegree, row.heading_max_rad / kDegree,
-        row.share_at_rest, cell(row.whiteness_lag1, 1.0, "%.3f").c_str(),
-        cell(row.nis_typical, 1.0, "%.2f").c_str(), cell(row.step[0].samples, 1.0, "%.0f").c_str(),
-        cell(row.step[1].samples, 1.0, "%.0f").c_str());
+        row.share_at_rest, figure_cell(row.whiteness_lag1, 1.0, "%.3f").c_str(),
+        figure_cell(row.nis_typical, 1.0, "%.2f").c_str(),
+        figure_cell(row.step[0].samples, 1.0, "%.0f").c_str(),
+        figure_cell(row.step[1].samples, 1.0, "%.0f").c_str());
   }
 }
 
@@ -216,7 +210,7 @@ std::vector<Verdict> print_axes(const CaptureView& capture, const Comparison& re
   return verdicts;
 }
 
-void write_comparison(const Options& options, const CaptureView& capture, double period_s,
+void write_comparison(const CompareArguments& options, const CaptureView& capture, double period_s,
                       const Motion& motion, const Comparison& result, const FilterSettings& settings,
                       const std::vector<Verdict>& verdicts) {
   json rows = json::array(), raw = json::array(), told = json::array();
@@ -244,7 +238,7 @@ void write_comparison(const Options& options, const CaptureView& capture, double
                                      {"rows", rows}});
 }
 
-void run(const Options& options) {
+void run_compare(const CompareArguments& options) {
   options.input.will_read("capture", options.capture);
   will_read("--model", options.model);
   will_write("--json", options.json_file, kJsonEndings);
@@ -307,7 +301,7 @@ void run(const Options& options) {
 void add_compare(const Command& program) {
   const Command command =
       program.add_subcommand("compare", "Every adaptation rule on one capture, with the same settings");
-  auto options = std::make_shared<Options>();
+  auto options = std::make_shared<CompareArguments>();
   options->input.other_rates = true;
   command.add_option("capture", options->capture, "a capture").required();
   command.add_option("--model", options->model, "model file whose [filter] gives the settings");
@@ -318,7 +312,7 @@ void add_compare(const Command& program) {
   options->input.add_to(command);
   options->part.add_to(command);
   add_filter_options(command, options->choice, false);
-  command.callback([options] { run(*options); });
+  command.callback([options] { run_compare(*options); });
 }
 
 }  // namespace ifog::tools

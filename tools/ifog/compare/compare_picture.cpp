@@ -71,7 +71,7 @@ ChartAxis axis_of(const report::Bounds& bounds) {
   return axis;
 }
 
-// Of the curve over another's, at the averaging times of both.
+// The curve over another's, at the averaging times of both.
 AllanCurve over(const AllanCurve& curve, const AllanCurve& other) {
   AllanCurve out;
   for (std::size_t i = 0, j = 0; i < curve.tau_s.size(); ++i) {

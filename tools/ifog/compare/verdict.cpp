@@ -3,34 +3,28 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <optional>
 
+#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
 
 namespace ifog::tools {
 namespace {
 
-struct Figure {
+struct VerdictFigure {
   const char *key, *words;
   std::optional<double> (*of)(const ComparisonRow&);
 };
 // The first that every row has.
-constexpr std::array kFigures{Figure{"rmse_radps", "error against the reference",
-                                     [](const ComparisonRow& row) { return row.rmse_radps; }},
-                              Figure{"adev_radps 1", "Allan deviation at 1 s",
-                                     [](const ComparisonRow& row) { return row.adev_radps[1]; }},
-                              Figure{"adev_radps 0.1", "Allan deviation at 0.1 s",
-                                     [](const ComparisonRow& row) { return row.adev_radps[0]; }},
-                              Figure{"std_radps", "standard deviation",
-                                     [](const ComparisonRow& row) { return std::optional(row.std_radps); }}};
-
-template <typename... Values>
-std::string words(const char* format, Values... values) {
-  std::array<char, 200> text{};
-  std::snprintf(text.data(), text.size(), format, values...);
-  return text.data();
-}
+constexpr std::array kVerdictFigures{
+    VerdictFigure{"rmse_radps", "error against the reference",
+                  [](const ComparisonRow& row) { return row.rmse_radps; }},
+    VerdictFigure{"adev_radps 1", "Allan deviation at 1 s",
+                  [](const ComparisonRow& row) { return row.adev_radps[1]; }},
+    VerdictFigure{"adev_radps 0.1", "Allan deviation at 0.1 s",
+                  [](const ComparisonRow& row) { return row.adev_radps[0]; }},
+    VerdictFigure{"std_radps", "standard deviation",
+                  [](const ComparisonRow& row) { return std::optional(row.std_radps); }}};
 
 }  // namespace
 
@@ -39,10 +33,11 @@ Verdict verdict_of(const Comparison& result, int axis) {
   std::vector<const ComparisonRow*> rows;  // raw first
   for (const ComparisonRow& row : result.rows)
     if (row.axis == axis) rows.push_back(&row);
-  const Figure& figure = *std::find_if(kFigures.begin(), kFigures.end() - 1, [&](const Figure& each) {
-    return std::all_of(rows.begin(), rows.end(),
-                       [&](const ComparisonRow* row) { return each.of(*row).has_value(); });
-  });
+  const VerdictFigure& figure =
+      *std::find_if(kVerdictFigures.begin(), kVerdictFigures.end() - 1, [&](const VerdictFigure& each) {
+        return std::all_of(rows.begin(), rows.end(),
+                           [&](const ComparisonRow* row) { return each.of(*row).has_value(); });
+      });
   Verdict out{figure.key, 0, *figure.of(*rows.at(1)), *figure.of(*rows[0]), {}, {}};
   for (std::size_t r = 1; r < rows.size(); ++r)
     if (const double value = *figure.of(*rows[r]); value < out.best_radps) {
@@ -59,15 +54,15 @@ Verdict verdict_of(const Comparison& result, int axis) {
     if (above > kAlike) ++others;
     if (above <= kAlike && r - 1 != out.best) alike += (alike.empty() ? "" : ", ") + rows[r]->rule;
   }
-  out.text = words("%s: %s %.4g °/h, raw %.4g", rows[out.best + 1]->rule.c_str(), figure.words,
-                   out.best_radps / kDegreePerHour, out.raw_radps / kDegreePerHour);
+  out.text = formatted("%s: %s %.4g °/h, raw %.4g", rows[out.best + 1]->rule.c_str(), figure.words,
+                       out.best_radps / kDegreePerHour, out.raw_radps / kDegreePerHour);
   out.text =
       (out.best_radps < out.raw_radps ? "best is " : "none is better than raw, the best rule is ") + out.text;
   if (others == 0)
-    out.text += words("; all rules within %.2g %% of it", 100.0 * most);
+    out.text += formatted("; all rules within %.2g %% of it", 100.0 * most);
   else
     out.text += (alike.empty() ? "" : "; within 1 % of it " + alike) +
-                words("; others up to %.3g %% above", 100.0 * most);
+                formatted("; others up to %.3g %% above", 100.0 * most);
   return out;
 }
 

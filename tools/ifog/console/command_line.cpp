@@ -19,7 +19,6 @@
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/describe.h"
 #include "tools/ifog/console/options/help_text.h"
-#include "tools/ifog/console/options/plain_words.h"
 #include "tools/ifog/console/options/usage_error.h"
 #include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/say.h"
@@ -79,7 +78,6 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
       },
       "Print every command with its options as JSON and exit");
   for (const AddCommand add : commands) add(Command(app));
-  in_plain_words(app);
 
   const std::vector<std::string> asked = with_help_as_option(app, argc, argv);
   std::vector<const char*> arguments;

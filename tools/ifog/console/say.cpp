@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/text.h"
 #include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/progress.h"
 
@@ -40,16 +41,6 @@ std::string printable_lines(const std::string& text) {
   return out;
 }
 
-std::string formatted(const char* format, std::va_list arguments) {
-  std::va_list again;
-  va_copy(again, arguments);
-  const int length = std::vsnprintf(nullptr, 0, format, arguments);
-  std::vector<char> text(static_cast<std::size_t>(length > 0 ? length : 0) + 1);
-  std::vsnprintf(text.data(), text.size(), format, again);
-  va_end(again);
-  return printable_lines(text.data());
-}
-
 void put(const std::string& text, std::FILE* where) {
   clear_progress();
   if (std::fwrite(text.data(), 1, text.size(), where) != text.size() && where == stdout && failure == 0)
@@ -61,14 +52,14 @@ void put(const std::string& text, std::FILE* where) {
 void say(const char* format, ...) {
   std::va_list arguments;
   va_start(arguments, format);
-  put(formatted(format, arguments), people);
+  put(printable_lines(formatted_list(format, arguments)), people);
   va_end(arguments);
 }
 
 void warn(const char* format, ...) {
   std::va_list arguments;
   va_start(arguments, format);
-  put(formatted(format, arguments), stderr);
+  put(printable_lines(formatted_list(format, arguments)), stderr);
   va_end(arguments);
 }
 

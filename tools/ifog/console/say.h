@@ -11,7 +11,7 @@
 
 namespace ifog::tools {
 
-// To standard output, or to standard error once data has taken that. The text may have several lines; every
+// To standard output, or to standard error once data goes there. The text may have several lines; every
 // other control character in it is shown as \xNN. A name that could hold a line end goes through printable().
 [[gnu::format(printf, 1, 2)]] void say(const char* format, ...);
 

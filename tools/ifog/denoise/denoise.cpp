@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog denoise: the daemon's signal chain over a capture or a recording.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -18,6 +16,7 @@
 #include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/text.h"
 #include "filters/series/samples.h"
 #include "filters/series/series_view.h"
 #include "filters/smoother/smoother.h"
@@ -142,12 +141,8 @@ std::string gaps_in_words(const OfflineResult& result) {
   if (counts.gaps > 0)
     out = std::to_string(counts.missing) + " more lost in " + std::to_string(counts.gaps) +
           (counts.gaps == 1 ? " gap" : " gaps");
-  if (!one_run) {
-    std::array<char, 80> pauses{};
-    std::snprintf(pauses.data(), pauses.size(), ", %.6g s between %zu runs not recorded",
-                  result.between_runs_s, result.runs);
-    out += pauses.data();
-  }
+  if (!one_run)
+    out += formatted(", %.6g s between %zu runs not recorded", result.between_runs_s, result.runs);
   return out;
 }
 
@@ -219,7 +214,7 @@ void smooth(DenoisedColumns& columns, const OfflineResult& result) {
   }
 }
 
-// Steps of the time column that are no multiple of what --rate says are taken for gaps or jitter.
+// Steps of the time column that are no multiple of what --rate says count as gaps or jitter.
 void tell_other_rate(const DenoiseOptions& options, double rate_hz, const LongTable& table) {
   constexpr double kAlike = 0.2;
   if (!(rate_hz > 0.0) || table.size() < 2) return;
@@ -243,7 +238,7 @@ void name_files(DenoiseOptions& options) {
   will_write("--plot", options.picture);
 }
 
-void run(DenoiseOptions options) {
+void run_denoise(DenoiseOptions options) {
   name_files(options);
   InputFile capture(options.capture);
   const FileKind kind = options.input.kind(capture);
@@ -363,7 +358,7 @@ void add_denoise(const Command& program) {
   command.add_option("--plot", options->picture, "Picture, .svg or .png")
       .check(report::wrong_picture_name)
       .type_name("FILE");
-  command.callback([options] { run(*options); });
+  command.callback([options] { run_denoise(*options); });
 }
 
 }  // namespace ifog::tools

@@ -13,20 +13,6 @@ namespace ifog::tools {
 
 constexpr std::size_t kTogether = std::size_t{1} << 14U;  // rows written at once
 
-void Moments::add(double value) {
-  if (!std::isfinite(value)) return;
-  n_ += 1.0;
-  const double difference = value - mean_;
-  mean_ += difference / n_;
-  square_ += difference * (value - mean_);
-}
-
-double Moments::mean() const { return n_ > 0.0 ? mean_ : kMissing; }
-
-double Moments::deviation() const {
-  return n_ > 1.0 ? std::sqrt(square_ / (n_ - 1.0)) : n_ > 0.0 ? 0.0 : kMissing;
-}
-
 DenoisedRows::DenoisedRows(std::string output, TimePart part, bool keep, bool smooth)
     : output_(std::move(output)), part_(std::move(part)), keep_(keep || smooth), smooth_(smooth) {}
 

@@ -14,19 +14,9 @@
 #include "filters/series/samples.h"
 #include "tools/ifog/captures/table/column_writer.h"
 #include "tools/ifog/captures/time_part.h"
+#include "tools/ifog/denoise/moments.h"
 
 namespace ifog::tools {
-
-// Mean and standard deviation of what is a number; NaN where nothing was.
-class Moments {
- public:
-  void add(double value);
-  [[nodiscard]] double mean() const;
-  [[nodiscard]] double deviation() const;
-
- private:
-  double n_ = 0.0, mean_ = 0.0, square_ = 0.0;
-};
 
 struct DenoisedAxis {
   Samples raw, compensated, denoised, variance;

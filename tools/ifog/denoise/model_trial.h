@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whether what a model corrects is there in the capture that it is used on. One capture cannot tell a
-// channel's effect from a hidden cause that ran along with it; the next one mostly does, and whoever corrects
-// it is told.
+// channel's effect from a hidden cause that ran along with it; the next one mostly can, and a warning says so.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

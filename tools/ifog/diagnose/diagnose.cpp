@@ -28,7 +28,7 @@
 namespace ifog::tools {
 namespace {
 
-struct Arguments {
+struct DiagnoseArguments {
   CaptureInput input;
   TimePart part;
   std::vector<std::string> captures;
@@ -45,7 +45,7 @@ std::size_t longest_of(const std::vector<CaptureView>& captures) {
   return static_cast<std::size_t>(longest - captures.begin());
 }
 
-void run(const Arguments& arguments) {
+void run_diagnose(const DiagnoseArguments& arguments) {
   for (const std::string& path : arguments.captures) arguments.input.will_read("capture", path);
   will_read("--model", arguments.model);
   will_write("--json", arguments.json, kJsonEndings);
@@ -104,7 +104,7 @@ void run(const Arguments& arguments) {
 }  // namespace
 
 void add_diagnose(const Command& program) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<DiagnoseArguments>();
   const Command command =
       program.add_subcommand("diagnose", "Trace the error to its effects, with the model that corrects them");
   command.add_option("capture", arguments->captures, "captures of one sensor, fitted together").required();
@@ -146,7 +146,7 @@ void add_diagnose(const Command& program) {
   command.add_flag("--allow-proxies", arguments->wanted.allow_proxies,
                    "correct by coefficients beyond what makers specify, too");
   command.add_flag("--quiet", arguments->quiet, "no report on the console");
-  command.callback([arguments] { run(*arguments); });
+  command.callback([arguments] { run_diagnose(*arguments); });
 }
 
 }  // namespace ifog::tools

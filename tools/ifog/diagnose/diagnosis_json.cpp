@@ -4,14 +4,13 @@
 #include <cmath>
 
 #include "filters/effects/form.h"
+#include "tools/ifog/console/listed_fields.h"
 #include "tools/report/coefficients.h"
 
 namespace ifog::tools {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
 Json name_json(const Effect& effect) {
   Json json;
@@ -27,10 +26,10 @@ Json name_json(const Effect& effect) {
   return json;
 }
 
-Json noise_json(const NoiseTerms& noise) {
+Json noise_terms_json(const NoiseTerms& noise) {
   Json json = Json::object();
   const auto add = [&](const char* name, const std::optional<double>& value) {
-    if (value) json[name] = number(*value);
+    if (value) json[name] = as_json(*value);
   };
   add("Q_rad", noise.Q);
   add("N_radps_rthz", noise.N);
@@ -46,8 +45,8 @@ Json effect_json(const FoundEffect& found) {
   if (found.effect.shown_only) json["subtracted"] = false;
   Json parameters = Json::object();
   for (const ModelParameter& parameter : found.effect.parameters) {
-    parameters[parameter.name] = {{"value", number(parameter.value)},
-                                  {"std_error", number(parameter.std_error)},
+    parameters[parameter.name] = {{"value", as_json(parameter.value)},
+                                  {"std_error", as_json(parameter.std_error)},
                                   {"unit", parameter.unit}};
   }
   json["parameters"] = parameters;
@@ -62,9 +61,9 @@ Json effect_json(const FoundEffect& found) {
                      {"period", found.effect.period},
                      {"kind", found.effect.angle ? "angle_rad" : "rate_radps"}};
   }
-  json["p_value"] = number(found.p_value);
-  json["variance_explained"] = number(found.variance_explained);
-  json["likelihood_ratio"] = number(found.likelihood_ratio);
+  json["p_value"] = as_json(found.p_value);
+  json["variance_explained"] = as_json(found.variance_explained);
+  json["likelihood_ratio"] = as_json(found.likelihood_ratio);
   return json;
 }
 
@@ -72,29 +71,29 @@ Json alternative_json(const Indistinguishable& each) {
   Json json;
   json["effects"] = Json::array();
   for (const Effect& effect : each.effects) json["effects"].push_back(name_json(effect));
-  json["correlation"] = number(each.correlation);
+  json["correlation"] = as_json(each.correlation);
   json["separate_by"] = each.separate_by;
   return json;
 }
 
 Json figures_json(const std::map<std::string, double>& figures) {
   Json json = Json::object();
-  for (const auto& [name, value] : figures) json[name] = number(value);
+  for (const auto& [name, value] : figures) json[name] = as_json(value);
   return json;
 }
 
 Json unexplained_json(const Diagnosis& diagnosis) {
   const Unexplained& unexplained = diagnosis.unexplained;
-  Json json = {{"fraction", number(unexplained.fraction)},
-               {"means_s", number(unexplained.means_s)},
+  Json json = {{"fraction", as_json(unexplained.fraction)},
+               {"means_s", as_json(unexplained.means_s)},
                {"kind", unexplained.kind},
                {"hint", unexplained.hint}};
   if (unexplained.frequency_hz > 0.0) json["frequency_hz"] = unexplained.frequency_hz;
   if (!unexplained.times_s.empty()) json["times_s"] = unexplained.times_s;
   if (diagnosis.hysteresis) {
     json["channel"] = diagnosis.hysteresis->channel;
-    json["half_width"] = number(diagnosis.hysteresis->half_width);
-    json["coefficient"] = number(diagnosis.hysteresis->coefficient);
+    json["half_width"] = as_json(diagnosis.hysteresis->half_width);
+    json["coefficient"] = as_json(diagnosis.hysteresis->coefficient);
   }
   return json;
 }
@@ -107,8 +106,8 @@ Json delays_json(const std::vector<ReferenceDelay>& delays) {
   Json json = Json::array();
   for (const ReferenceDelay& each : delays) {
     json.push_back({{"capture", each.record},
-                    {"delay_s", number(each.delay_s)},
-                    {"std_error_s", number(each.std_error_s)}});
+                    {"delay_s", as_json(each.delay_s)},
+                    {"std_error_s", as_json(each.std_error_s)}});
   }
   return json;
 }
@@ -117,8 +116,8 @@ Json delays_json(const std::vector<ChannelDelay>& delays) {
   Json json = Json::array();
   for (const ChannelDelay& each : delays)
     json.push_back({{"channel", each.channel},
-                    {"delay_s", number(each.delay_s)},
-                    {"std_error_s", number(each.std_error_s)}});
+                    {"delay_s", as_json(each.delay_s)},
+                    {"std_error_s", as_json(each.std_error_s)}});
   return json;
 }
 
@@ -140,8 +139,8 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
     for (const AxisDiagnosis& each : axes) json[key][each.axis] = make(each.diagnosis);
   };
   put("noise", [](const Diagnosis& d) {
-    Json noise = noise_json(d.noise);
-    noise["std_error"] = noise_json(d.noise_error);
+    Json noise = noise_terms_json(d.noise);
+    noise["std_error"] = noise_terms_json(d.noise_error);
     noise["gauss_markov"] = report::markov_json(d.markov);
     return noise;
   });
@@ -162,8 +161,8 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
     }
   }
   put("bias", [](const Diagnosis& d) {
-    return d.bias ? Json{{"value", number(d.bias->value)},
-                         {"std_error", number(d.bias->std_error)},
+    return d.bias ? Json{{"value", as_json(d.bias->value)},
+                         {"std_error", as_json(d.bias->std_error)},
                          {"unit", "rad/s"}}
                   : Json(nullptr);
   });

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/diagnose/diagnosis_text.h"
 #include <array>
-#include <cstdio>
 
+#include "drivers/system/text.h"
 #include "filters/effects/form.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -12,13 +12,6 @@
 namespace ifog::tools {
 namespace {
 
-template <class... Values>
-std::string text(const char* format, Values... values) {
-  std::array<char, 600> line{};
-  std::snprintf(line.data(), line.size(), format, values...);
-  return line.data();
-}
-
 std::string named(const Effect& effect) {
   std::string name = effect.form;
   if (!effect.channel.empty()) name += " of " + effect.channel;
@@ -26,34 +19,36 @@ std::string named(const Effect& effect) {
   return name;
 }
 
-std::string percent(double share) { return share >= 0.001 ? text("%.3g %%", 100.0 * share) : "under 0.1 %"; }
+std::string percent(double share) {
+  return share >= 0.001 ? formatted("%.3g %%", 100.0 * share) : "under 0.1 %";
+}
 
-std::string chance(double p) { return p < 1e-6 ? "under one in a million" : text("%.2g", p); }
+std::string chance(double p) { return p < 1e-6 ? "under one in a million" : formatted("%.2g", p); }
 
 // In the field's units, as on the report's page; when something happened as a time of the capture.
 std::string value_of(const ModelParameter& parameter) {
   if (parameter.name == kTimeRange) return told_time(parameter.value) + " s";
   const report::FieldUnit field = report::field_unit(parameter.unit);
-  return text("%.4g ± %.2g %s", parameter.value * field.scale, parameter.std_error * field.scale,
-              field.unit.c_str());
+  return formatted("%.4g ± %.2g %s", parameter.value * field.scale, parameter.std_error * field.scale,
+                   field.unit.c_str());
 }
 
 std::string effect_lines(const FoundEffect& found, std::size_t number, bool overlap) {
   const Effect& effect = found.effect;
-  std::string lines = text("  %zu. %s%s\n     %s\n", number, named(effect).c_str(),
-                           effect.shown_only ? " (shown, not subtracted)" : "", effect.meaning.c_str());
+  std::string lines = formatted("  %zu. %s%s\n     %s\n", number, named(effect).c_str(),
+                                effect.shown_only ? " (shown, not subtracted)" : "", effect.meaning.c_str());
   for (const ModelParameter& parameter : report::shown_parameters(found)) {
     std::string name = parameter.name;
     for (char& c : name) c = c == '_' ? ' ' : c;
     if (name.ends_with(" s")) name.resize(name.size() - 2);
     if (name.ends_with(" hz")) name.resize(name.size() - 3);
-    lines += text("     %-18s %s\n", name.c_str(), value_of(parameter).c_str());
+    lines += formatted("     %-18s %s\n", name.c_str(), value_of(parameter).c_str());
   }
-  if (!effect.table_x.empty()) lines += text("     a table of %zu knots\n", effect.table_x.size());
-  lines += text("     %s %s of the %s variance; by chance: %s\n",
-                overlap ? "alone, overlapping with other parts," : "explains",
-                percent(found.variance_explained).c_str(), effect.shown_only ? "rate's" : "error's",
-                chance(found.p_value).c_str());
+  if (!effect.table_x.empty()) lines += formatted("     a table of %zu knots\n", effect.table_x.size());
+  lines += formatted("     %s %s of the %s variance; by chance: %s\n",
+                     overlap ? "alone, overlapping with other parts," : "explains",
+                     percent(found.variance_explained).c_str(), effect.shown_only ? "rate's" : "error's",
+                     chance(found.p_value).c_str());
   return lines;
 }
 
@@ -64,7 +59,7 @@ struct FigureName {
   double scale;
 };
 
-constexpr std::array<FigureName, 12> kFigures = {{
+constexpr std::array<FigureName, 12> kShownFigures = {{
     {"bias_radps", "bias, mean", "°/h", 1.0 / kDegreePerHour},
     {"residual_rms_radps", "single samples, RMS", "°/h", 1.0 / kDegreePerHour},
     {"rms_0.1s_radps", "0.1 s means, RMS", "°/h", 1.0 / kDegreePerHour},
@@ -80,13 +75,13 @@ constexpr std::array<FigureName, 12> kFigures = {{
 }};
 
 std::string figure_lines(const Diagnosis& diagnosis) {
-  std::string lines = text("  %-28s %12s %12s\n", "", "before", "after");
-  for (const FigureName& figure : kFigures) {
+  std::string lines = formatted("  %-28s %12s %12s\n", "", "before", "after");
+  for (const FigureName& figure : kShownFigures) {
     const auto before = diagnosis.before.find(figure.key);
     const auto after = diagnosis.after.find(figure.key);
     if (before == diagnosis.before.end() || after == diagnosis.after.end()) continue;
-    lines += text("  %-28s %12.4g %12.4g %s\n", figure.words, before->second * figure.scale,
-                  after->second * figure.scale, figure.unit);
+    lines += formatted("  %-28s %12.4g %12.4g %s\n", figure.words, before->second * figure.scale,
+                       after->second * figure.scale, figure.unit);
   }
   return lines;
 }
@@ -97,8 +92,8 @@ std::string noise_line(const NoiseTerms& noise, const NoiseTerms& error) {
                        const std::optional<double>& sigma, double unit_si, const char* unit) {
     if (!value) return;
     line += line.back() == ':' ? " " : ", ";
-    line += std::string(name) + text(" %.3g", *value / unit_si);
-    if (sigma) line += text(" ± %.2g", *sigma / unit_si);
+    line += std::string(name) + formatted(" %.3g", *value / unit_si);
+    if (sigma) line += formatted(" ± %.2g", *sigma / unit_si);
     line += std::string(" ") + unit;
   };
   add("quantisation", noise.Q, error.Q, kArcsecond, "arcsec");
@@ -117,7 +112,7 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
   const Diagnosis& diagnosis = axis.diagnosis;
   std::string report;
   if (!axis.axis.empty()) report += "Axis " + axis.axis + "\n";
-  report += text("%zu samples at %.4g Hz\n", diagnosis.samples, diagnosis.sample_rate_hz);
+  report += formatted("%zu samples at %.4g Hz\n", diagnosis.samples, diagnosis.sample_rate_hz);
   report += noise_line(diagnosis.noise, diagnosis.noise_error);
   if (diagnosis.effects.empty() && diagnosis.hysteresis) {
     report += "\nFound: nothing that a correction could take away; see what stays unexplained.\n";
@@ -129,27 +124,28 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
       report += effect_lines(diagnosis.effects[i], i + 1, report::parts_overlap(diagnosis));
   }
   if (diagnosis.bias)
-    report += text("\nBias against the reference: %.4g ± %.2g °/h, corrected by the model\n",
-                   diagnosis.bias->value / kDegreePerHour, diagnosis.bias->std_error / kDegreePerHour);
+    report += formatted("\nBias against the reference: %.4g ± %.2g °/h, corrected by the model\n",
+                        diagnosis.bias->value / kDegreePerHour, diagnosis.bias->std_error / kDegreePerHour);
   report += "\nError, the worse of full-data and held-out error:\n" + figure_lines(diagnosis);
   if (!diagnosis.indistinguishable.empty()) report += "\nCannot be distinguished on this data:\n";
   for (const Indistinguishable& pair : diagnosis.indistinguishable) {
     for (std::size_t i = 0; i < pair.effects.size(); ++i)
       report += (i ? "  or  " : "  ") + named(pair.effects[i]);
-    report += text("\n     correlation %.3f; would tell: %s\n", pair.correlation, pair.separate_by.c_str());
+    report +=
+        formatted("\n     correlation %.3f; would tell: %s\n", pair.correlation, pair.separate_by.c_str());
   }
   if (diagnosis.unexplained.kind == "nothing")
     report += "\nRest is white noise.\n";
   else
-    report += text("\nUnexplained: %s of the variance of %.3g s means",
-                   percent(diagnosis.unexplained.fraction).c_str(), diagnosis.unexplained.means_s) +
+    report += formatted("\nUnexplained: %s of the variance of %.3g s means",
+                        percent(diagnosis.unexplained.fraction).c_str(), diagnosis.unexplained.means_s) +
               " (" + diagnosis.unexplained.kind + ")\n  " + diagnosis.unexplained.hint + "\n";
   if (!diagnosis.heading.after_s.empty()) {
-    report += text("\nNext capture, bias taken over %.3g s at rest: heading error (1 sigma)",
-                   diagnosis.heading.aligned_s);
+    report += formatted("\nNext capture, bias averaged over %.3g s at rest: heading error (1 sigma)",
+                        diagnosis.heading.aligned_s);
     for (std::size_t i = 0; i < diagnosis.heading.after_s.size(); ++i) {
-      report += text("%s %.3g° after %.4g s", i ? "," : "", diagnosis.heading.sigma_rad[i] / kDegree,
-                     diagnosis.heading.after_s[i]);
+      report += formatted("%s %.3g° after %.4g s", i ? "," : "", diagnosis.heading.sigma_rad[i] / kDegree,
+                          diagnosis.heading.after_s[i]);
     }
     report += "\n";
   }

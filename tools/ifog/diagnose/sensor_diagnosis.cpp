@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <cstdio>
 #include <exception>
 #include <filesystem>
 #include <limits>
@@ -15,7 +14,7 @@
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/utc_now.h"
+#include "drivers/system/text.h"
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/diagnosis/cleaning/steps.h"
 #include "filters/effects/form.h"
@@ -142,12 +141,10 @@ std::string vertical_rate(const CaptureView& capture, unsigned threads) {
   constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
   const double up = (rate[0] * force[0] + rate[1] * force[1] + rate[2] * force[2]) / g;
   if (std::abs(up) > kEarth) return "";
-  std::array<char, 240> text{};
-  std::snprintf(text.data(), text.size(),
-                "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
-                "Earth's rate at latitude %.2f°",
-                up / kDegreePerHour, std::asin(up / kEarth) / kDegree);
-  return text.data();
+  return formatted(
+      "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
+      "Earth's rate at latitude %.2f°",
+      up / kDegreePerHour, std::asin(up / kEarth) / kDegree);
 }
 
 }  // namespace

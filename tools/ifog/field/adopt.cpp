@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/utc_now.h"
+#include "drivers/system/text.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/interrupt.h"
@@ -63,15 +63,16 @@ std::optional<std::uint64_t> last_recording(const SensorConfig& sensor) {
   }
 }
 
-nlohmann::ordered_json as_json(const Proposal& proposal, const Watched& watched, const std::string& text) {
+nlohmann::ordered_json adoption_json(const Proposal& proposal, const Watched& watched,
+                                     const std::string& text) {
   constexpr std::array kNames{"kept", "in_part", "broken", "open"};
   return {{"schema", "ifog.adoption/1"},
           {"sensor", proposal.sensor},
           {"model", proposal.model.identity},
           {"replaced", proposal.against.identity},
-          {"promised", gain_json(proposal.gain)},
+          {"promised", as_json(proposal.gain)},
           {"watched_s", watched.seconds},
-          {"found", gain_json(watched.gain)},
+          {"found", as_json(watched.gain)},
           {"verdict", kNames[static_cast<std::size_t>(verdict_of(watched.gain))]},
           {"nis_mean", watched.nis},
           {"whiteness", watched.whiteness},
@@ -136,14 +137,14 @@ void adopt(const AdoptArguments& arguments) {
   say("%s: model %s in place of %s: %s\n", sensor.name.c_str(), proposal.model.identity.c_str(),
       or_none(now.before.name.identity), printable(proposal.why, kLongestMessage).c_str());
   const auto unwatched = [&](const std::string& why) {
-    if (!arguments.json.empty()) write_json(arguments.json, as_json(proposal, {}, why));
+    if (!arguments.json.empty()) write_json(arguments.json, adoption_json(proposal, {}, why));
   };
   if (!now.exchange->daemon_runs()) {
     const std::string why = "the daemon does not run: it begins with this model, and nothing was watched";
     say("  %s\n", why.c_str());
     return unwatched(why);
   }
-  say("  the daemon has taken it; promised: %s\n", gain_text(proposal.gain).c_str());
+  say("  the daemon uses it; promised: %s\n", gain_text(proposal.gain).c_str());
   if (arguments.watch_s <= 0.0) return unwatched("nothing was watched");
   catch_interrupts();
   const Watched watched = watch(now.exchange->live(), field, sensor, now.before.model.value_or(Model{}),
@@ -153,7 +154,7 @@ void adopt(const AdoptArguments& arguments) {
   if (!watched.whole)
     text += " (watched for " + std::to_string(static_cast<int>(watched.seconds)) + " s only)";
   say("  %s\n", text.c_str());
-  if (!arguments.json.empty()) write_json(arguments.json, as_json(proposal, watched, text));
+  if (!arguments.json.empty()) write_json(arguments.json, adoption_json(proposal, watched, text));
   try {
     keep_outcome(field, sensor.name, proposal.model, text);
   } catch (const std::exception& error) {
@@ -178,7 +179,7 @@ void revert(const AdoptArguments& arguments) {
   const ModelChange* const in_force = history.in_force();
   if (in_force == nullptr)
     throw std::runtime_error("nothing was adopted for sensor " + in_quotes(sensor.name) +
-                             " that could be taken back");
+                             " that could be reverted");
   if (now.name != in_force->model)
     throw std::runtime_error("sensor " + in_quotes(sensor.name) + " uses model " +
                              or_none(now.name.identity) + ", last adopted was " +

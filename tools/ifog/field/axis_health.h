@@ -2,12 +2,11 @@
 // Innovations of a sensor's axes in words.
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdio>
 #include <string>
 #include <vector>
 
+#include "drivers/system/text.h"
 #include "msgs/axis_name.h"
 
 namespace ifog::tools {
@@ -17,13 +16,9 @@ namespace ifog::tools {
 inline std::string axis_health(const std::vector<double>& nis, const std::vector<double>& whiteness) {
   std::string out;
   for (std::size_t a = 0; a < nis.size(); ++a) {
-    std::array<char, 60> figures{"no value"};
-    if (nis[a] != 0.0)
-      std::snprintf(figures.data(), figures.size(), "NIS %.3f, whiteness %+.3f", nis[a], whiteness[a]);
     out += a == 0 ? "" : "; ";
     out += axis_name(a, nis.size());
-    out += ' ';
-    out += figures.data();
+    out += nis[a] == 0.0 ? " no value" : formatted(" NIS %.3f, whiteness %+.3f", nis[a], whiteness[a]);
   }
   return out;
 }

@@ -15,26 +15,35 @@ std::string path_of(const std::string& state, const std::string& sensor) {
   return (std::filesystem::path(state) / (sensor + ".night.json")).string();
 }
 
+struct NightFile {
+  std::string sensor;
+  const Bookmark& bookmark;
+};
+
+template <typename Io, Is<NightFile> T>
+void fields(Io& io, T& of) {
+  io("sensor", of.sensor);
+  fields(io, of.bookmark);
+}
+
 }  // namespace
+
+template <typename Io, Is<Bookmark> T>
+void fields(Io& io, T& of) {
+  io("until", of.until);
+  io("when", of.when);
+  io("said", of.said);
+}
 
 std::optional<Bookmark> read_bookmark(const std::string& state, const std::string& sensor) {
   const std::string path = path_of(state, sensor);
   const std::optional<nlohmann::json> file = read_state_json(path, kNightSchema);
   if (!file) return std::nullopt;
-  return with_keys(path, [&]() -> std::optional<Bookmark> {
-    return Bookmark{file->at("until").get<std::uint64_t>(), file->at("when").get<std::string>(),
-                    file->at("said").get<std::string>()};
-  });
+  return with_keys(path, [&]() -> std::optional<Bookmark> { return from_json<Bookmark>(*file); });
 }
 
 void write_bookmark(const std::string& state, const std::string& sensor, const Bookmark& bookmark) {
-  const nlohmann::ordered_json file{{"schema", kNightSchema},
-                                    {"sensor", sensor},
-                                    {"until", bookmark.until},
-                                    {"when", bookmark.when},
-                                    {"said", bookmark.said}};
-  write_state_file(path_of(state, sensor),
-                   file.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + "\n");
+  write_state_json(path_of(state, sensor), kNightSchema, NightFile{sensor, bookmark});
 }
 
 }  // namespace ifog::tools

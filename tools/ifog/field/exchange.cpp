@@ -22,7 +22,7 @@ std::string process(pid_t id) { return "the daemon (process " + std::to_string(i
 
 std::string not_running(const status_t& status) {
   return "sensor " + in_quotes(status.sensor) + " is in state \"" + state_name(status.state) +
-         "\", expected it to run: a model is taken with the next sample";
+         "\", expected it to run: a model is used from the next sample on";
 }
 
 std::string in_words(const std::string& identity) { return identity.empty() ? "none" : identity; }
@@ -49,7 +49,7 @@ ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, con
   live_ = std::make_unique<LiveStatus>(field.state(), *daemon_);
   if (!live_->ask(kToldWithin, [&](const Statuses& all) { return all.contains(sensor_); }))
     throw std::runtime_error(process(*daemon_) + " has no sensor " + in_quotes(sensor_) +
-                             ", expected it: nobody would see whether it takes a model");
+                             ", expected it: nobody would see whether it uses a model");
   const status_t& status = *live_->of(sensor_);
   if (status.state != status_t::STATE_RUNNING) throw std::runtime_error(not_running(status));
   if (status.model != in_use.identity)
@@ -95,7 +95,7 @@ void ModelExchange::exchange(const std::optional<Model>& model, const std::optio
   try {
     ask_for_reload();
     if (taken(model ? model->identity() : "")) return;
-    why = process(*daemon_) + " did not take model " + in_words(model ? model->identity() : "") + " within " +
+    why = process(*daemon_) + " does not use model " + in_words(model ? model->identity() : "") + " within " +
           std::to_string(std::chrono::seconds(kTakenWithin).count()) + " s, " + why_not_taken();
   } catch (const std::exception& error) {
     why = error.what();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts a sensor's model in place of another, and sees that the daemon takes it: all of it or nothing.
+// Puts a sensor's model in place of another, and sees that the daemon uses it: all of it or nothing.
 #pragma once
 
 #include <sys/types.h>
@@ -22,7 +22,7 @@ class ModelExchange {
  public:
   // Looks, changes nothing. `in_use`: what the file in place holds. Throws std::runtime_error with one line:
   // the daemon runs and cannot be asked, or uses another model; the sensor gives
-  // no samples, so that nobody would see whether it takes one.
+  // no samples, so that nobody would see whether it uses one.
   ModelExchange(const Field& field, const SensorConfig& sensor, const ModelName& in_use);
 
   [[nodiscard]] bool daemon_runs() const { return daemon_.has_value(); }

@@ -12,28 +12,42 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-using nlohmann::ordered_json;
 
 constexpr const char* kHistorySchema = "ifog.history/1";
 constexpr const char* kAdopt = "adopt";
 
+struct HistoryFile {
+  std::string sensor;
+  std::vector<ModelChange> changes;
+};
+
+template <typename Io, Is<HistoryFile> T>
+void fields(Io& io, T& of) {
+  io("sensor", of.sensor);
+  io("changes", of.changes);
+}
+
 }  // namespace
+
+template <typename Io, Is<ModelChange> T>
+void fields(Io& io, T& of) {
+  io("what", of.what);
+  io("when", of.when);
+  io("model", of.model);
+  io("replaced", of.replaced);
+  io("why", of.why);
+  io("gain", of.gain);
+  io("outcome", of.outcome);
+  io.if_there("recorded", of.recorded);
+}
 
 History::History(const std::string& state, const std::string& sensor) : state_(state), sensor_(sensor) {
   const std::optional<json> file = read_state_json(path(), kHistorySchema);
   if (!file) return;
-  with_keys(path(), [&] {
-    for (const json& each : file->at("changes")) {
-      changes_.push_back({each.at("what").get<std::string>(), each.at("when").get<std::string>(),
-                          name_from(each.at("model")), name_from(each.at("replaced")),
-                          each.at("why").get<std::string>(), gain_of(each.at("gain")),
-                          each.at("outcome").get<std::string>(), std::nullopt});
-      if (each.contains("recorded")) changes_.back().recorded = each.at("recorded").get<std::uint64_t>();
-    }
-  });
+  with_keys(path(), [&] { changes_ = from_json<std::vector<ModelChange>>(file->at("changes")); });
 }
 
-// A revert takes back the latest adoption that was not taken back before, as brackets close.
+// A revert undoes the latest adoption that was not reverted before, as brackets close.
 const ModelChange* History::in_force() const {
   std::size_t reverts = 0;
   for (auto change = changes_.rbegin(); change != changes_.rend(); ++change) {
@@ -78,21 +92,7 @@ std::optional<Model> History::kept(const ModelName& name) const {
   return model;
 }
 
-void History::write() const {
-  ordered_json changes = ordered_json::array();
-  for (const ModelChange& each : changes_) {
-    changes.push_back({{"what", each.what},
-                       {"when", each.when},
-                       {"model", as_json(each.model)},
-                       {"replaced", as_json(each.replaced)},
-                       {"why", each.why},
-                       {"gain", gain_json(each.gain)},
-                       {"outcome", each.outcome}});
-    if (each.recorded) changes.back()["recorded"] = *each.recorded;
-  }
-  const ordered_json file = {{"schema", kHistorySchema}, {"sensor", sensor_}, {"changes", changes}};
-  write_state_file(path(), file.dump(2, ' ', false, json::error_handler_t::replace) + "\n");
-}
+void History::write() const { write_state_json(path(), kHistorySchema, HistoryFile{sensor_, changes_}); }
 
 std::string History::path() const { return (fs::path(state_) / (sensor_ + ".history.json")).string(); }
 

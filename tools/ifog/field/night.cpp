@@ -2,10 +2,8 @@
 // ifog night: what the flight recorder kept since the last time is diagnosed, and where that would pay, a new
 // model is proposed. Nothing is put into use, no device is touched, and the daemon is not asked for anything.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <ctime>
 #include <deque>
 #include <exception>
@@ -19,7 +17,7 @@
 
 #include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/utc_now.h"
+#include "drivers/system/text.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/usable_axes.h"
@@ -77,12 +75,7 @@ bool pays(const AxisGain& gain) {
 }
 
 std::string in_hours(double seconds) {
-  std::array<char, 40> text{};
-  if (seconds < 7200.0)
-    std::snprintf(text.data(), text.size(), "%.0f min", seconds / 60.0);
-  else
-    std::snprintf(text.data(), text.size(), "%.1f h", seconds / 3600.0);
-  return text.data();
+  return seconds < 7200.0 ? formatted("%.0f min", seconds / 60.0) : formatted("%.1f h", seconds / 3600.0);
 }
 
 std::string effects_text(const std::vector<AxisDiagnosis>& found) {
@@ -185,7 +178,7 @@ std::string Night::judge(const std::vector<RecordedFile>& all) {
 }
 
 // In a recording that does not say when the sensor was switched on, the daemon's correction of a warm-up
-// cannot be made again: the drift that is left would be taken for another cause, and corrected twice.
+// cannot be made again: the drift that is left would be traced to another cause, and corrected twice.
 std::string Night::not_to_be_judged(const ModelInUse& in_use, const Recorded& recorded) const {
   if (!corrects_warm_up(in_use) || recorded.capture.since_power_up_s) return "";
   return "the model in use corrects a warm-up by the time since power-up, which these recordings do not say: "
@@ -229,23 +222,17 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
   }
 }
 
-// Of the newest that is being written when it will be closed; "" without one.
+// When the newest recording, which is being written, will be closed; "" where none is.
 std::string Night::closing(const std::vector<RecordedFile>& files) const {
   if (files.empty() || !files.back().open) return "";
   const RecordedFile& last = files.back();
   std::tm opened{};
-  std::array<char, 200> text{};
   if (strptime(last.opened.c_str(), "%Y-%m-%dT%H:%M:%SZ", &opened) == nullptr) return "";
   const std::time_t at = timegm(&opened) + static_cast<std::time_t>(sensor_.record.file_s);
-  std::tm closed{};
-  gmtime_r(&at, &closed);
-  std::array<char, 32> when{};
-  std::strftime(when.data(), when.size(), "%Y-%m-%dT%H:%M:%SZ", &closed);
-  std::snprintf(text.data(), text.size(),
-                "; the one that is being written, %.1f MB, closes at %.1f MB or at %s",
-                static_cast<double>(last.bytes) * 1e-6, static_cast<double>(sensor_.record.file_bytes) * 1e-6,
-                when.data());
-  return text.data() + std::string(at < std::time(nullptr) ? ", which is over: does ifogd run?" : "");
+  return formatted("; the one that is being written, %.1f MB, closes at %.1f MB or at %s",
+                   static_cast<double>(last.bytes) * 1e-6,
+                   static_cast<double>(sensor_.record.file_bytes) * 1e-6, utc_text(at).c_str()) +
+         (at < std::time(nullptr) ? std::string(", which is over: does ifogd run?") : "");
 }
 
 std::string Night::recordings_name(const std::vector<RecordedFile>& files) const {
@@ -263,7 +250,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   leave_out(unusable_axes({CaptureView(recorded.capture)}, {sensor_.name}), corrected);
   AxesToDiagnose wanted;
   wanted.fit_to = kFitTo;
-  wanted.threads = 1;  // the daemon is at work beside it
+  wanted.threads = 1;  // the daemon runs on the same processors
   const std::string name = recordings_name(files);
   std::vector<AxisDiagnosis> found = diagnose_axes({corrected}, {name}, wanted);
   std::erase_if(found, [](const AxisDiagnosis& axis) { return axis.diagnosis.effects.empty(); });
@@ -289,7 +276,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
     return "found " + traced + ", without a gain on held-out data" +
            (tried.empty() ? "" : ": " + gain_text(tried));
   Model model = with();
-  // A daemon whose model has no filter learns its noise, and goes on doing so.
+  // A daemon whose model has no filter learns its noise, and continues to.
   const std::string fitted =
       model.filter ? fit_noise_left(model, model_with({}, found, {name}, hashes), corrected, name) : "";
   if (!fitted.empty()) say("%s: %s\n", sensor_.name.c_str(), fitted.c_str());
@@ -321,7 +308,7 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
   write_proposal(field_.state(), proposal, model, report);
 }
 
-void run(const NightArguments& arguments) {
+void run_nights(const NightArguments& arguments) {
   will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
@@ -380,7 +367,7 @@ void add_night(const Command& program) {
       .within(1e5, 1e12)
       .shows_default();
   command.add_option("--json", arguments->json, "write what the night says, schema ifog.night_report/1");
-  command.callback([arguments] { run(*arguments); });
+  command.callback([arguments] { run_nights(*arguments); });
 }
 
 }  // namespace ifog::tools

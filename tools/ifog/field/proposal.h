@@ -7,13 +7,13 @@
 //   NAME.proposal-IDENTITY.html    the report page
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "filters/model_file/model.h"
 #include "filters/promise/promise.h"
+#include "tools/ifog/console/listed_fields.h"
 #include "tools/ifog/field/field.h"
 
 namespace ifog::tools {
@@ -24,8 +24,6 @@ struct ModelName {
   bool operator==(const ModelName&) const = default;
 };
 [[nodiscard]] ModelName name_of(const Model& model);
-[[nodiscard]] nlohmann::ordered_json as_json(const ModelName& name);
-[[nodiscard]] ModelName name_from(const nlohmann::json& from);
 // A sensor's model, whose file need not be there.
 struct ModelInUse {
   std::optional<Model> model;
@@ -47,11 +45,29 @@ struct Proposal {
   std::vector<AxisGain> gain;           // on held-out data; axes that it changes
 };
 
-[[nodiscard]] nlohmann::ordered_json gain_json(const std::vector<AxisGain>& gain);
-// Throws nlohmann::json::exception.
-[[nodiscard]] std::vector<AxisGain> gain_of(const nlohmann::json& json);
 // "10 s means 0.0312 -> 0.0081 °/h": of the averaging time that gains most.
 [[nodiscard]] std::string gain_text(const std::vector<AxisGain>& gain);
+
+template <typename Io, Is<ModelName> T>
+void fields(Io& io, T& of) {
+  io("identity", of.identity);
+  io("sha256", of.sha256);
+}
+template <typename Io, Is<ErrorOfMeans> T>
+void fields(Io& io, T& of) {
+  io("averaging_s", of.averaging_s);
+  io("means", of.means);
+  io("before_radps", of.before_radps);
+  io("after_radps", of.after_radps);
+}
+template <typename Io, Is<AxisGain> T>
+void fields(Io& io, T& of) {
+  io("axis", of.axis);
+  io("seconds", of.kept.seconds);
+  io("share", of.kept.share);
+  io.or_unbounded("share_std_error", of.kept.share_error);
+  io("errors", of.kept.errors);
+}
 
 // Replaces the waiting one, if any. All files are whole or none counts. Throws std::runtime_error with
 // one line.

@@ -32,7 +32,7 @@ std::string why_stale(const Field& field, const Proposal& proposal) {
   return "; " + field.config_path() + " has no such sensor";
 }
 
-void run(const ProposalsArguments& arguments) {
+void list_proposals(const ProposalsArguments& arguments) {
   will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
@@ -57,7 +57,7 @@ void run(const ProposalsArguments& arguments) {
                      {"model", found->model.identity},
                      {"stale", !why_not.empty()},
                      {"report", report},
-                     {"gain", gain_json(found->gain)}});
+                     {"gain", as_json(found->gain)}});
     } catch (const std::exception& error) {
       warn("%s\n", error.what());
       damaged = true;
@@ -77,7 +77,7 @@ void add_proposals(const Command& program) {
       program.add_subcommand("proposals", "List the models that the nights have proposed");
   arguments->field.add_to(command);
   command.add_option("--json", arguments->json, "write them as JSON, schema ifog.proposals/1");
-  command.callback([arguments] { run(*arguments); });
+  command.callback([arguments] { list_proposals(*arguments); });
 }
 
 }  // namespace ifog::tools

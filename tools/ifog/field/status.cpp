@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog status: all sensors of this computer's daemon on one screen.
-#include <array>
 #include <chrono>
 #include <cstdint>
 #include <cstdio>
-#include <ctime>
 #include <exception>
 #include <memory>
 #include <optional>
@@ -14,6 +12,7 @@
 
 #include "daemon/state/running_mark.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/text.h"
 #include "msgs/counters.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
@@ -40,14 +39,7 @@ struct StatusArguments {
   double wait_s = 2.5;  // a status comes every second
 };
 
-std::string utc(std::int64_t utime) {
-  const std::time_t seconds = utime / 1'000'000;
-  std::tm parts{};
-  gmtime_r(&seconds, &parts);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return text.data();
-}
+std::string utc(std::int64_t utime) { return utc_text(utime / 1'000'000); }
 
 // What the state folder knows of a sensor.
 struct Kept {
@@ -152,7 +144,7 @@ void say_sensor(const std::string& name, const status_t* live, const Kept& kept,
   if (!kept.damaged.empty()) say("  %s\n", kept.damaged.c_str());
 }
 
-ordered_json as_json(const std::string& name, const status_t* live, const Kept& kept) {
+ordered_json sensor_json(const std::string& name, const status_t* live, const Kept& kept) {
   ordered_json out{{"sensor", name}, {"heard", live != nullptr}};
   if (live != nullptr) {
     ordered_json losses;
@@ -269,7 +261,7 @@ Running running(const Field& field, double wait_s) {
   return out;
 }
 
-void run(const StatusArguments& arguments) {
+void show_status(const StatusArguments& arguments) {
   will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
@@ -286,7 +278,7 @@ void run(const StatusArguments& arguments) {
     const Kept kept = kept_of(field, name);
     const auto found = now.statuses.find(name);
     const status_t* const live = found == now.statuses.end() ? nullptr : &found->second;
-    sensors.push_back(as_json(name, live, kept));
+    sensors.push_back(sensor_json(name, live, kept));
     if (arguments.csv)
       say("%s\n", csv_line(&sensors.back()).c_str());
     else
@@ -315,7 +307,7 @@ void add_status(const Command& program) {
   command.add_flag("-c,--csv", arguments->csv,
                    "a line a sensor as CSV, for scripts, with the names of its columns first");
   command.add_option("--json", arguments->json, "write it as JSON, schema ifog.status/1");
-  command.callback([arguments] { run(*arguments); });
+  command.callback([arguments] { show_status(*arguments); });
 }
 
 }  // namespace ifog::tools

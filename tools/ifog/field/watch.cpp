@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/system/text.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
@@ -111,15 +111,11 @@ std::string outcome(const Watched& watched) {
   if (watched.gain.empty()) return "whether the promise came true cannot be judged: " + watched.not_weighed;
   std::string figures;
   for (const AxisGain& axis : watched.gain) {
-    char text[160];
-    if (std::isfinite(axis.kept.share_error))
-      std::snprintf(text, sizeof text, "%s%s%s%.0f ± %.0f %% of the predicted improvement was achieved",
-                    figures.empty() ? "" : ", ", axis.axis.c_str(), axis.axis.empty() ? "" : ": ",
-                    100.0 * axis.kept.share, 100.0 * axis.kept.share_error);
-    else
-      std::snprintf(text, sizeof text, "%s%s%sthe new model's correction did not move",
-                    figures.empty() ? "" : ", ", axis.axis.c_str(), axis.axis.empty() ? "" : ": ");
-    figures += text;
+    figures += (figures.empty() ? "" : ", ") + (axis.axis.empty() ? "" : axis.axis + ": ") +
+               (std::isfinite(axis.kept.share_error)
+                    ? formatted("%.0f ± %.0f %% of the predicted improvement was achieved",
+                                100.0 * axis.kept.share, 100.0 * axis.kept.share_error)
+                    : "the new model's correction did not move");
   }
   if (const std::string errors = gain_text(watched.gain); !errors.empty()) figures += "; " + errors;
   switch (verdict_of(watched.gain)) {

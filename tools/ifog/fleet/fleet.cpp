@@ -14,7 +14,7 @@
 
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/utc_now.h"
+#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_line.h"
@@ -36,9 +36,9 @@ namespace ifog::tools {
 namespace {
 
 constexpr std::size_t kAttempts = 3;  // at a gyro whose process ended without a word in the results
-constexpr std::size_t kFormsFor = 2;  // measurements: from then on effects are only left out, so that it ends
+constexpr std::size_t kFormsFor = 2;  // measurements: from then on effects are only dropped, so that it ends
 
-struct Arguments {
+struct FleetArguments {
   std::string manifest, results, engine = "auto";
   std::size_t jobs = 0;
   std::optional<std::size_t> one;
@@ -47,14 +47,14 @@ struct Arguments {
   FleetSettings settings;
 };
 
-std::unique_ptr<Engine> engine_named(const Arguments& arguments, const Results& results) {
+std::unique_ptr<Engine> engine_named(const FleetArguments& arguments, const Results& results) {
   const bool slurm = arguments.engine == "slurm" || (arguments.engine == "auto" && is_there("sbatch"));
   return slurm ? slurm_engine(results, arguments.jobs) : local_engine(results, arguments.jobs);
 }
 
 class FleetRun {
  public:
-  FleetRun(const Arguments& arguments, const Manifest& manifest, const Results& results)
+  FleetRun(const FleetArguments& arguments, const Manifest& manifest, const Results& results)
       : manifest_(manifest),
         results_(results),
         options_(arguments.settings.text()),
@@ -272,7 +272,7 @@ void end_with_the_terminal() {
   if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &interrupt, nullptr);
 }
 
-void run(Arguments& arguments) {
+void run_fleet(FleetArguments& arguments) {
   if (arguments.latitude_deg) arguments.settings.wanted.latitude_rad = *arguments.latitude_deg * kDegree;
   const Manifest manifest = read_manifest(arguments.manifest);
   if (arguments.one && *arguments.one >= manifest.gyros.size())
@@ -300,7 +300,7 @@ void run(Arguments& arguments) {
 }  // namespace
 
 void add_fleet(const Command& program) {
-  auto arguments = std::make_shared<Arguments>();
+  auto arguments = std::make_shared<FleetArguments>();
   const Command command = program.add_subcommand(
       "fleet", "Diagnose every gyro of a type, then the type: its effects, its spread, who stands out");
   command.add_option("manifest", arguments->manifest, "type, and of each gyro serial and captures (.toml)")
@@ -336,7 +336,7 @@ void add_fleet(const Command& program) {
                   "of the captures, degrees: bounds what can be the Earth's rate")
       .within(-90.0, 90.0);
   command.footer("Example:\n  ifog fleet lot7.toml --jobs 8");
-  command.callback([arguments] { run(*arguments); });
+  command.callback([arguments] { run_fleet(*arguments); });
 }
 
 }  // namespace ifog::tools

@@ -1,51 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/fleet/fleet_json.h"
 
-#include <cmath>
-
+#include "tools/ifog/console/listed_fields.h"
 #include "tools/ifog/fleet/results.h"
 
 namespace ifog::tools {
+
+template <typename Io, Is<Estimate> T>
+void fields(Io& io, T& of) {
+  io("value", of.value);
+  io("std_error", of.std_error);
+}
+template <typename Io, Is<RandomEffects> T>
+void fields(Io& io, T& of) {
+  io("gyros", of.count);
+  io("mean", of.mean);
+  io("mean_std_error", of.mean_std_error);
+  io("spread", of.spread);
+  io("q", of.q);
+  io("i_squared", of.i_squared);
+}
+template <typename Io, Is<TypePrior> T>
+void fields(Io& io, T& of) {
+  io("share", of.share);
+  io("mean", of.mean);
+  io("mean_std_error", of.mean_std_error);
+  io("spread", of.spread);
+  io("likeliest_spread", of.likeliest_spread);
+  io("likelihood_ratio", of.likelihood_ratio);
+}
+
 namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
-
-Json estimate_json(const std::optional<Estimate>& estimate) {
-  if (!estimate) return nullptr;
-  return {{"value", number(estimate->value)}, {"std_error", number(estimate->std_error)}};
-}
-
 Json spread_json(const RandomEffects& spread) {
-  return {{"method", "DerSimonian-Laird"},        {"gyros", spread.count},
-          {"mean", number(spread.mean)},          {"mean_std_error", number(spread.mean_std_error)},
-          {"spread", number(spread.spread)},      {"q", number(spread.q)},
-          {"i_squared", number(spread.i_squared)}};
+  Json json{{"method", "DerSimonian-Laird"}};
+  json.update(as_json(spread));
+  return json;
 }
 
 Json gyro_json(const Population& population, const EffectInGyro& each) {
   return {{"serial", population.serials[each.gyro]},
-          {"own", estimate_json(each.own)},
+          {"own", as_json(each.own)},
           {"not_measured", each.not_measured.empty() ? Json(nullptr) : Json(each.not_measured)},
-          {"likelihood_ratio", number(each.likelihood_ratio)},
+          {"likelihood_ratio", as_json(each.likelihood_ratio)},
           {"found_alone", each.found_alone},
-          {"probability", number(each.probability)},
-          {"chance", number(each.chance)},
+          {"probability", as_json(each.probability)},
+          {"chance", as_json(each.chance)},
           {"found", each.found},
-          {"with_prior", estimate_json(each.with_prior)}};
+          {"with_prior", as_json(each.with_prior)}};
 }
 
 Json type_effect_json(const Population& population, const TypeEffect& effect) {
-  Json json = effect_json(effect.effect);
+  Json json = as_json(effect.effect);
   json["found_alone"] = effect.found_alone;
   json["found"] = effect.found;
-  json["prior"] = {{"share", number(effect.prior.share)},
-                   {"mean", number(effect.prior.mean)},
-                   {"mean_std_error", number(effect.prior.mean_std_error)},
-                   {"spread", number(effect.prior.spread)},
-                   {"likeliest_spread", number(effect.prior.likeliest_spread)},
-                   {"likelihood_ratio", number(effect.prior.likelihood_ratio)}};
+  json["prior"] = as_json(effect.prior);
   json["set_aside"] = effect.set_aside;
   json["all"] = spread_json(effect.all);
   json["gyros"] = Json::array();
@@ -58,15 +69,15 @@ Json parameter_json(const Population& population, const PopulationParameter& par
                {"axis", parameter.axis},
                {"unit", parameter.unit},
                {"of_logarithm", parameter.logarithmic},
-               {"median", number(parameter.robust.median)},
-               {"robust_sigma", number(parameter.robust.sigma)},
+               {"median", as_json(parameter.robust.median)},
+               {"robust_sigma", as_json(parameter.robust.sigma)},
                {"spread", parameter.spread ? spread_json(*parameter.spread) : Json(nullptr)},
                {"gyros", Json::array()}};
   for (std::size_t i = 0; i < parameter.gyros.size(); ++i)
     json["gyros"].push_back({{"serial", population.serials[parameter.gyros[i]]},
-                             {"value", number(parameter.values[i].value)},
-                             {"std_error", number(parameter.values[i].std_error)},
-                             {"robust_z", number(parameter.z[i])}});
+                             {"value", as_json(parameter.values[i].value)},
+                             {"std_error", as_json(parameter.values[i].std_error)},
+                             {"robust_z", as_json(parameter.z[i])}});
   return json;
 }
 
@@ -94,10 +105,10 @@ Json fleet_json(const Population& population) {
     json["standing_out"].push_back({{"serial", population.serials[each.gyro]},
                                     {"parameter", parameter.name},
                                     {"axis", parameter.axis},
-                                    {"robust_z", number(each.z)}});
+                                    {"robust_z", as_json(each.z)}});
   }
   for (const FoundInGyro& each : population.own) {
-    Json effect = effect_json(each.effect);
+    Json effect = as_json(each.effect);
     effect["serial"] = population.serials[each.gyro];
     json["own_effects"].push_back(std::move(effect));
   }

@@ -16,19 +16,19 @@ namespace {
 // Twice the log-likelihood, of all gyros together, that another form has to explain more.
 constexpr double kBetterForm = 6.0;
 
-struct Term {
+struct NoiseKey {
   const char *name, *key, *unit;
 };
-constexpr std::array<Term, 5> kTerms{{{"Q", "Q_rad", "rad"},
-                                      {"N", "N_radps_rthz", "rad/s/rtHz"},
-                                      {"B", "B_radps", "rad/s"},
-                                      {"K", "K_radps2_rthz", "rad/s2/rtHz"},
-                                      {"R", "R_radps2", "rad/s2"}}};
+constexpr std::array<NoiseKey, 5> kNoiseKeys{{{"Q", "Q_rad", "rad"},
+                                              {"N", "N_radps_rthz", "rad/s/rtHz"},
+                                              {"B", "B_radps", "rad/s"},
+                                              {"K", "K_radps2_rthz", "rad/s2/rtHz"},
+                                              {"R", "R_radps2", "rad/s2"}}};
 
 // "noise" of a diagnosis is that of its axis, or an object by axis.
 void add_noise(const nlohmann::json& noise, const std::string& axis, std::size_t gyro,
                std::map<std::pair<std::string, std::string>, PopulationParameter>& found) {
-  for (const Term& term : kTerms) {
+  for (const NoiseKey& term : kNoiseKeys) {
     const auto value = noise.find(term.key);
     if (value == noise.end() || !value->is_number() || !(value->get<double>() > 0.0)) continue;
     PopulationParameter& parameter = found[{axis, term.name}];
@@ -59,8 +59,8 @@ std::map<std::string, nlohmann::json> noise_by_axis(const std::string& path, con
 
 const MeasuredEffect* measured_of(const GyroMeasured& gyro, std::size_t of_type) {
   for (const AxisMeasured& axis : gyro.axes)
-    for (std::size_t i = 0; i < axis.of_type.size(); ++i)
-      if (axis.of_type[i] == of_type) return &axis.together[i];
+    for (const EffectOfType& each : axis.together)
+      if (each.of_type == of_type) return &each;
   return nullptr;
 }
 

@@ -52,13 +52,13 @@ void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSet
 }
 
 EffectsToMeasure effects_of_axis(const TypeToMeasure& type, const Model& model, const std::string& axis,
-                                 std::vector<std::size_t>& of_type) {
+                                 std::vector<std::size_t>& numbers) {
   EffectsToMeasure wanted;
   wanted.ranges = model.ranges;
   for (std::size_t i = 0; i < type.effects.size(); ++i) {
     const std::vector<Effect>& forms = type.effects[i].forms;
     if (forms.empty() || forms.front().axis != axis) continue;
-    of_type.push_back(i);
+    numbers.push_back(i);
     wanted.together.push_back(forms.front());
     wanted.instead.emplace_back(forms.begin() + 1, forms.end());
   }
@@ -90,7 +90,8 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
   for (std::size_t a = 0; a < axes.size(); ++a) {
     AxisMeasured axis;
     axis.axis = axes[a];
-    const EffectsToMeasure wanted = effects_of_axis(type, model, axes[a], axis.of_type);
+    std::vector<std::size_t> numbers;
+    const EffectsToMeasure wanted = effects_of_axis(type, model, axes[a], numbers);
     if (wanted.together.empty()) continue;
     MeasuredEffects found;
     try {
@@ -99,7 +100,8 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
     } catch (const std::invalid_argument& error) {
       throw std::runtime_error(gyro.captures.front() + ": " + error.what());
     }
-    axis.together = std::move(found.together);
+    for (std::size_t i = 0; i < numbers.size(); ++i)
+      axis.together.push_back({std::move(found.together[i]), numbers[i]});
     axis.beside = std::move(found.beside);
     axis.covariance = std::move(found.covariance);
     axis.ranges = std::move(found.ranges);

@@ -2,150 +2,87 @@
 #include "tools/ifog/fleet/process.h"
 
 #include <fcntl.h>
-#include <poll.h>
-#include <spawn.h>
+#include <glib.h>
+#include <sys/mman.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <array>
 #include <cerrno>
-#include <climits>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
-#include <sstream>
+#include <memory>
 #include <stdexcept>
+#include <system_error>
+#include <thread>
+
+#include "drivers/system/text.h"
 
 namespace ifog::tools {
 namespace {
 
-class FileActions {
+constexpr std::chrono::milliseconds kBetweenLooks{5};
+
+[[noreturn]] void refuse(const std::string& what, int error) {
+  throw std::runtime_error(what + ": " + std::generic_category().message(error));
+}
+
+// A descriptor that is closed with it.
+class OpenFile {
  public:
-  FileActions() { posix_spawn_file_actions_init(&actions_); }
-  ~FileActions() { posix_spawn_file_actions_destroy(&actions_); }
-  FileActions(const FileActions&) = delete;
-  FileActions& operator=(const FileActions&) = delete;
-  void copy(int from, int to) { posix_spawn_file_actions_adddup2(&actions_, from, to); }
-  [[nodiscard]] const posix_spawn_file_actions_t* get() const { return &actions_; }
+  OpenFile(int fd, const std::string& name) : fd_(fd) {
+    if (fd_ < 0) refuse(name + ": cannot be opened", errno);
+  }
+  ~OpenFile() { ::close(fd_); }
+  OpenFile(const OpenFile&) = delete;
+  OpenFile& operator=(const OpenFile&) = delete;
+  operator int() const { return fd_; }
 
  private:
-  posix_spawn_file_actions_t actions_{};
+  int fd_;
 };
 
-std::vector<char*> arguments_of(const std::vector<std::string>& words) {
+struct Parent {
+  pid_t process;
+  bool ignores_hangup;  // as by nohup; glib makes it the default again
+};
+
+// In the child, behind what glib does there.
+void tie_to_parent(void* data) {
+  const auto& parent = *static_cast<const Parent*>(data);
+  if (parent.ignores_hangup) std::signal(SIGHUP, SIG_IGN);
+  // It may have died before it could be asked for.
+  if (prctl(PR_SET_PDEATHSIG, SIGTERM) != 0 || getppid() != parent.process) _exit(1);
+}
+
+pid_t spawn(const std::vector<std::string>& words, int in, int out) {
   std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  return arguments;
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  Parent parent{getpid(), hangup.sa_handler == SIG_IGN};
+  GPid child = 0;
+  GError* error = nullptr;
+  if (g_spawn_async_with_fds(nullptr, arguments.data(), nullptr,
+                             static_cast<GSpawnFlags>(G_SPAWN_DO_NOT_REAP_CHILD | G_SPAWN_SEARCH_PATH),
+                             &tie_to_parent, &parent, &child, in, out, out, &error) != 0)
+    return child;
+  const std::unique_ptr<GError, decltype(&g_error_free)> owned(error, &g_error_free);
+  throw std::runtime_error(words.front() + ": cannot be started: " + owned->message);
 }
 
-[[noreturn]] void refuse(const std::vector<std::string>& words, int error) {
-  throw std::runtime_error(words.front() + ": cannot be started: " + std::strerror(error));
-}
-
-pid_t spawn(const std::vector<std::string>& words, const FileActions& actions) {
-  const std::vector<char*> arguments = arguments_of(words);
-  pid_t child = 0;
-  const int error =
-      posix_spawnp(&child, words.front().c_str(), actions.get(), nullptr, arguments.data(), environ);
-  if (error != 0) refuse(words, error);
-  return child;
-}
-
-struct Pipe {
-  Pipe() {
-    if (pipe2(ends.data(), O_CLOEXEC) != 0)
-      throw std::runtime_error(std::string("no pipe: ") + std::strerror(errno));
-  }
-  ~Pipe() {
-    close_end(0);
-    close_end(1);
-  }
-  Pipe(const Pipe&) = delete;
-  Pipe& operator=(const Pipe&) = delete;
-  void close_end(std::size_t end) {
-    if (ends[end] >= 0) close(ends[end]);
-    ends[end] = -1;
-  }
-  std::array<int, 2> ends{-1, -1};
-};
-
-std::string read_all(int from) {
-  std::string text;
-  std::array<char, 4096> part{};
-  for (;;) {
-    const ssize_t got = read(from, part.data(), part.size());
-    if (got > 0)
-      text.append(part.data(), static_cast<std::size_t>(got));
-    else if (got == 0 || errno != EINTR)
-      return text;
-  }
-}
-
-// All that comes; false where its end has not come by then.
-bool read_until(int from, std::chrono::steady_clock::time_point until, std::string& text) {
-  std::array<char, 4096> part{};
-  for (;;) {
-    const auto left =
-        std::chrono::ceil<std::chrono::milliseconds>(until - std::chrono::steady_clock::now()).count();
-    if (left <= 0) return false;
-    pollfd ready{from, POLLIN, 0};
-    const int came = poll(&ready, 1, static_cast<int>(std::min<std::int64_t>(left, INT_MAX)));
-    if (came <= 0) continue;
-    const ssize_t got = read(from, part.data(), part.size());
-    if (got > 0)
-      text.append(part.data(), static_cast<std::size_t>(got));
-    else if (got == 0 || errno != EINTR)
-      return true;
-  }
-}
-
-bool open_as(int descriptor, const char* path, int flags) {
-  const int opened = open(path, flags, 0666);
-  if (opened < 0 || opened == descriptor) return opened >= 0;
-  const bool copied = dup2(opened, descriptor) >= 0;
-  close(opened);
-  return copied;
-}
-
-// In the child, where only what is safe in a signal's handler is. posix_spawn() cannot ask for the signal.
-[[noreturn]] void become(const std::vector<char*>& arguments, const char* said_path, pid_t parent,
-                         int error) {
-  std::signal(SIGTERM, SIG_DFL);  // until then the parent's handler would swallow it
-  const bool tied = prctl(PR_SET_PDEATHSIG, SIGTERM) == 0;
-  if (getppid() != parent) _exit(1);  // it died before it could be asked for
-  if (tied && open_as(STDIN_FILENO, "/dev/null", O_RDONLY) &&
-      open_as(STDOUT_FILENO, said_path, O_WRONLY | O_CREAT | O_APPEND) &&
-      dup2(STDOUT_FILENO, STDERR_FILENO) >= 0)
-    execve(arguments.front(), arguments.data(), environ);
-  const int number = errno;
-  if (write(error, &number, sizeof(number)) < 0) _exit(2);
-  _exit(1);
-}
+OpenFile memory(const char* name) { return {memfd_create(name, MFD_CLOEXEC), name}; }
 
 }  // namespace
 
 std::string own_path() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
 
 pid_t start(const std::vector<std::string>& words, const std::string& said_path) {
-  const std::vector<char*> arguments = arguments_of(words);
-  Pipe error;  // closed by the program that takes over, or told why none does
-  const pid_t parent = getpid();
-  const pid_t child = fork();
-  if (child < 0) refuse(words, errno);
-  if (child == 0) become(arguments, said_path.c_str(), parent, error.ends[1]);
-  error.close_end(1);
-  const std::string why = read_all(error.ends[0]);
-  if (why.empty()) return child;
-  while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
-  }
-  int number = 0;
-  std::memcpy(&number, why.data(), std::min(why.size(), sizeof(number)));
-  refuse(words, number);
+  const OpenFile said(::open(said_path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666), said_path);
+  return spawn(words, -1, said);
 }
 
 std::string ending(int status) {
@@ -155,42 +92,33 @@ std::string ending(int status) {
 
 Ran run_to_end(const std::vector<std::string>& words, const std::string& input,
                std::chrono::milliseconds patience) {
-  Pipe in, out;
-  FileActions actions;
-  actions.copy(in.ends[0], STDIN_FILENO);
-  actions.copy(out.ends[1], STDOUT_FILENO);
-  actions.copy(out.ends[1], STDERR_FILENO);
-  const pid_t child = spawn(words, actions);
-  in.close_end(0);
-  out.close_end(1);
-  // All of it fits into the pipe, so that nobody waits for anybody; SIGPIPE is ignored from the start.
-  for (std::size_t at = 0; at < input.size();) {
-    const ssize_t sent = write(in.ends[1], input.data() + at, input.size() - at);
-    if (sent < 0 && errno != EINTR) break;  // it did not want it; its end says why
-    if (sent > 0) at += static_cast<std::size_t>(sent);
-  }
-  in.close_end(1);
-  Ran ran;
-  const bool answered = read_until(out.ends[0], std::chrono::steady_clock::now() + patience, ran.said);
-  if (!answered) kill(child, SIGKILL);
+  const OpenFile in = memory("input"), out = memory("output");
+  if (::write(in, input.data(), input.size()) != static_cast<ssize_t>(input.size()) ||
+      ::lseek(in, 0, SEEK_SET) != 0)
+    refuse(words.front() + ": no room for its input", errno);
+  const pid_t child = spawn(words, in, out);
+  const auto until = std::chrono::steady_clock::now() + patience;
   int status = 0;
-  while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  ran.ended = ending(status);
+  bool answered = false;
+  while (!(answered = waitpid(child, &status, WNOHANG) == child) && std::chrono::steady_clock::now() < until)
+    std::this_thread::sleep_for(kBetweenLooks);
   if (!answered) {
-    std::ostringstream words_for_it;
-    words_for_it << "no answer within " << std::chrono::duration<double>(patience).count() << " s";
-    ran.ended = words_for_it.str();
+    kill(child, SIGKILL);
+    while (waitpid(child, &status, 0) < 0 && errno == EINTR) {
+    }
   }
+  Ran ran;
+  ran.ended = answered ? ending(status)
+                       : formatted("no answer within %g s", std::chrono::duration<double>(patience).count());
+  std::array<char, 4096> part{};
+  for (ssize_t got = 0, at = 0; (got = ::pread(out, part.data(), part.size(), at)) > 0; at += got)
+    ran.said.append(part.data(), static_cast<std::size_t>(got));
   return ran;
 }
 
 bool is_there(const std::string& program) {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');)
-    if (!folder.empty() && access((folder + "/" + program).c_str(), X_OK) == 0) return true;
-  return false;
+  const std::unique_ptr<char, decltype(&g_free)> found(g_find_program_in_path(program.c_str()), &g_free);
+  return found != nullptr;
 }
 
 }  // namespace ifog::tools

@@ -21,8 +21,7 @@ pid_t start(const std::vector<std::string>& words, const std::string& said_path)
 // "" for a good end, else in words: "exit 1", "killed by signal 9". status: of waitpid().
 std::string ending(int status);
 
-// Runs a program found by PATH to its end with `input`, of at most some 60 kB, on its standard input. One
-// that has not closed its output after `patience` is killed.
+// Runs a program found by PATH to its end with `input` on its standard input; kills it after `patience`.
 struct Ran {
   std::string ended;  // as ending(), or "no answer within 120 s"
   std::string said;   // standard output and error

@@ -40,26 +40,18 @@ void make_folder(const fs::path& path) {
 }
 
 // What was written, or nothing: missing, cut short by an old disk, of another program.
-template <typename Read>
-auto read_marker(const std::string& path, const std::string& schema, Read&& read)
-    -> std::optional<decltype(read(nlohmann::json{}))> {
+template <typename T>
+std::optional<T> read_marker(const std::string& path, const std::string& schema) {
   std::error_code none;
   if (!fs::is_regular_file(path, none)) return std::nullopt;
   try {
     const nlohmann::json json = parse_json(read_whole_file(path), path);
     if (json.at("schema") != schema) return std::nullopt;
-    return read(json);
+    return from_json<T>(json);
   } catch (const std::exception&) {
     return std::nullopt;
   }
 }
-
-std::optional<std::string> words_or_null(const nlohmann::json& json) {
-  if (json.is_null()) return std::nullopt;
-  return json.get<std::string>();
-}
-
-Json words_or_null(const std::optional<std::string>& words) { return words ? Json(*words) : Json(nullptr); }
 
 std::string stamp(const fs::path& path) {
   std::error_code error;
@@ -69,42 +61,79 @@ std::string stamp(const fs::path& path) {
          (error ? "" : std::to_string(time.time_since_epoch().count())) + "\n";
 }
 
-AxisMeasured axis_of(const nlohmann::json& json) {
-  AxisMeasured axis;
-  axis.axis = json.at("axis").get<std::string>();
-  axis.covariance = json.at("covariance").get<std::vector<double>>();
-  for (const nlohmann::json& each : json.at("together")) {
-    axis.of_type.push_back(each.at("of_type").get<std::size_t>());
-    axis.together.push_back({effect_of(each.at("effect")), each.at("likelihood_ratio").get<double>(),
-                             each.at("not_measured").get<std::string>(),
-                             each.at("instead").get<std::vector<double>>()});
-  }
-  for (const nlohmann::json& each : json.at("beside")) axis.beside.push_back(effect_of(each));
-  for (const nlohmann::json& each : json.at("ranges"))
-    axis.ranges.push_back(
-        {each.at("channel").get<std::string>(), each.at("low").get<double>(), each.at("high").get<double>()});
-  return axis;
+// What stands in the files behind their schema.
+struct TypeFile {
+  std::string id, type;
+  std::vector<TypeCandidate> effects;
+};
+struct GyroFile {
+  std::string serial;
+  std::vector<std::string> captures;
+  GyroDone done;
+};
+struct MeasuredFile {
+  std::string serial, type;
+  GyroMeasured measured;
+};
+
+template <typename Io, Is<TypeFile> T>
+void fields(Io& io, T& of) {
+  io("id", of.id);
+  io("type", of.type);
+  io("effects", of.effects);
+}
+template <typename Io, Is<GyroFile> T>
+void fields(Io& io, T& of) {
+  io("serial", of.serial);
+  io("captures", of.captures);
+  io("inputs", of.done.inputs);
+  io("failed", of.done.failed);
+}
+template <typename Io, Is<MeasuredFile> T>
+void fields(Io& io, T& of) {
+  io("serial", of.serial);
+  io("type", of.type);
+  io("inputs", of.measured.inputs);
+  io("failed", of.measured.failed);
+  io("axes", of.measured.axes);
 }
 
-Json axis_json(const AxisMeasured& axis) {
-  Json json = {{"axis", axis.axis}, {"together", Json::array()}, {"beside", Json::array()}};
-  for (std::size_t i = 0; i < axis.together.size(); ++i) {
-    const MeasuredEffect& each = axis.together[i];
-    json["together"].push_back({{"of_type", axis.of_type[i]},
-                                {"effect", effect_json(each.effect)},
-                                {"likelihood_ratio", each.likelihood_ratio},
-                                {"not_measured", each.not_measured},
-                                {"instead", each.instead}});
-  }
-  for (const Effect& each : axis.beside) json["beside"].push_back(effect_json(each));
-  json["covariance"] = axis.covariance;
-  json["ranges"] = Json::array();
-  for (const ChannelRange& each : axis.ranges)
-    json["ranges"].push_back({{"channel", each.channel}, {"low", each.low}, {"high", each.high}});
-  return json;
+template <typename T>
+void write_marker(const std::string& path, const char* schema, const T& what) {
+  Json json{{"schema", schema}};
+  json.update(as_json(what));
+  write_json(path, json);
 }
 
 }  // namespace
+
+template <typename Io, Is<TypeCandidate> T>
+void fields(Io& io, T& of) {
+  io("found_in", of.found_in);
+  io("forms", of.forms);
+}
+template <typename Io, Is<ChannelRange> T>
+void fields(Io& io, T& of) {
+  io("channel", of.channel);
+  io("low", of.low);
+  io("high", of.high);
+}
+template <typename Io, Is<EffectOfType> T>
+void fields(Io& io, T& of) {
+  io("of_type", of.of_type);
+  io("effect", of.effect);
+  io("likelihood_ratio", of.likelihood_ratio);
+  io("not_measured", of.not_measured);
+  io("instead", of.instead);
+}
+template <typename Io, Is<AxisMeasured> T>
+void fields(Io& io, T& of) {
+  io("axis", of.axis);
+  io("together", of.together);
+  io("beside", of.beside);
+  io("covariance", of.covariance);
+  io("ranges", of.ranges);
+}
 
 Results::Results(std::string folder) : folder_(std::move(folder)) { make_folder(fs::path(folder_) / "log"); }
 
@@ -131,32 +160,18 @@ std::string Results::path(const FleetGyro& gyro, const std::string& file) const 
 void Results::make_folder_of(const FleetGyro& gyro) const { make_folder(path(gyro, "")); }
 
 std::optional<TypeToMeasure> Results::type() const {
-  return read_marker(path("type.json"), "ifog.type/1", [](const nlohmann::json& json) {
-    TypeToMeasure type;
-    type.id = json.at("id").get<std::string>();
-    if (type.id.size() != kShort || type.id.find_first_not_of("0123456789abcdef") != std::string::npos)
-      throw std::runtime_error("an id that is none");  // it becomes part of a file's name
-    for (const nlohmann::json& each : json.at("effects")) {
-      TypeCandidate candidate;
-      candidate.found_in = each.at("found_in").get<std::size_t>();
-      for (const nlohmann::json& form : each.at("forms")) candidate.forms.push_back(effect_of(form));
-      type.effects.push_back(std::move(candidate));
-    }
-    return type;
-  });
+  const auto file = read_marker<TypeFile>(path("type.json"), "ifog.type/1");
+  // The id becomes part of a file's name.
+  if (!file || file->id.size() != kShort ||
+      file->id.find_first_not_of("0123456789abcdef") != std::string::npos)
+    return std::nullopt;
+  return TypeToMeasure{file->effects, file->id};
 }
 
 void Results::write_type(const std::string& type, TypeToMeasure& effects) const {
-  Json json = {{"schema", "ifog.type/1"}, {"id", ""}, {"type", type}, {"effects", Json::array()}};
-  for (const TypeCandidate& each : effects.effects) {
-    Json forms = Json::array();
-    for (const Effect& form : each.forms) forms.push_back(effect_json(form));
-    json["effects"].push_back({{"found_in", each.found_in}, {"forms", std::move(forms)}});
-  }
-  effects.id =
-      sha256_hex(json["effects"].dump(-1, ' ', true, Json::error_handler_t::replace)).substr(0, kShort);
-  json["id"] = effects.id;
-  write_json(path("type.json"), json);
+  effects.id = sha256_hex(as_json(effects.effects).dump(-1, ' ', true, Json::error_handler_t::replace))
+                   .substr(0, kShort);
+  write_marker(path("type.json"), "ifog.type/1", TypeFile{effects.id, type, effects.effects});
 }
 
 void Results::forget_type() const { forget(path("type.json")); }
@@ -175,38 +190,23 @@ void Results::forget_population() const {
 }
 
 std::optional<GyroDone> Results::done(const FleetGyro& gyro) const {
-  return read_marker(path(gyro, "gyro.json"), "ifog.gyro/1", [](const nlohmann::json& json) {
-    return GyroDone{json.at("inputs").get<std::string>(), words_or_null(json.at("failed"))};
-  });
+  const auto file = read_marker<GyroFile>(path(gyro, "gyro.json"), "ifog.gyro/1");
+  return file ? std::optional(file->done) : std::nullopt;
 }
 
 void Results::write_done(const FleetGyro& gyro, const GyroDone& done) const {
-  write_json(path(gyro, "gyro.json"), Json{{"schema", "ifog.gyro/1"},
-                                           {"serial", gyro.serial},
-                                           {"captures", gyro.captures},
-                                           {"inputs", done.inputs},
-                                           {"failed", words_or_null(done.failed)}});
+  write_marker(path(gyro, "gyro.json"), "ifog.gyro/1", GyroFile{gyro.serial, gyro.captures, done});
 }
 
 std::optional<GyroMeasured> Results::measured(const FleetGyro& gyro, const std::string& type_id) const {
-  const std::string file = path(gyro, "measured-" + type_id + ".json");
-  return read_marker(file, "ifog.measured/1", [](const nlohmann::json& json) {
-    GyroMeasured measured{json.at("inputs").get<std::string>(), words_or_null(json.at("failed")), {}};
-    for (const nlohmann::json& each : json.at("axes")) measured.axes.push_back(axis_of(each));
-    return measured;
-  });
+  const auto file = read_marker<MeasuredFile>(path(gyro, "measured-" + type_id + ".json"), "ifog.measured/1");
+  return file ? std::optional(file->measured) : std::nullopt;
 }
 
 void Results::write_measured(const FleetGyro& gyro, const std::string& type_id,
                              const GyroMeasured& measured) const {
-  Json json = {{"schema", "ifog.measured/1"},
-               {"serial", gyro.serial},
-               {"type", type_id},
-               {"inputs", measured.inputs},
-               {"failed", words_or_null(measured.failed)},
-               {"axes", Json::array()}};
-  for (const AxisMeasured& each : measured.axes) json["axes"].push_back(axis_json(each));
-  write_json(path(gyro, "measured-" + type_id + ".json"), json);
+  write_marker(path(gyro, "measured-" + type_id + ".json"), "ifog.measured/1",
+               MeasuredFile{gyro.serial, type_id, measured});
 }
 
 std::string identity_of(const FleetGyro& gyro, const std::string& options) {

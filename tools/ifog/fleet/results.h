@@ -11,7 +11,6 @@
 //   log/INDEX.txt                     what the processes of a gyro said
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "filters/diagnosis/measure.h"
 #include "filters/model_file/model.h"
 #include "filters/population/type_effects.h"
+#include "tools/ifog/console/listed_fields.h"
 #include "tools/ifog/fleet/manifest.h"
 
 namespace ifog::tools {
@@ -35,11 +35,15 @@ struct GyroDone {
   std::optional<std::string> failed;  // why there is none
 };
 
+// An effect of the type: its number there.
+struct EffectOfType : MeasuredEffect {
+  std::size_t of_type = 0;
+};
+
 // On one axis; see MeasuredEffects.
 struct AxisMeasured {
   std::string axis;
-  std::vector<std::size_t> of_type;      // by effect of the type that is of this axis: its number there
-  std::vector<MeasuredEffect> together;  // of those
+  std::vector<EffectOfType> together;  // those of this axis
   std::vector<Effect> beside;
   std::vector<double> covariance;
   std::vector<ChannelRange> ranges;
@@ -90,8 +94,26 @@ class Results {
 // content, which is days of data.
 std::string identity_of(const FleetGyro& gyro, const std::string& options);
 
-// form, channels, period, references and parameters.
-nlohmann::ordered_json effect_json(const Effect& effect);
-Effect effect_of(const nlohmann::json& json);  // throws nlohmann::json::exception
+template <typename Io, Is<ModelParameter> T>
+void fields(Io& io, T& of) {
+  io("name", of.name);
+  io("value", of.value);
+  io("std_error", of.std_error);
+  io("unit", of.unit);
+}
+// What tells it from others, without the table of a "lookup", which is no type's.
+template <typename Io, Is<Effect> T>
+void fields(Io& io, T& of) {
+  io("axis", of.axis);
+  io("form", of.form);
+  io("channel", of.channel);
+  io("with_form", of.with_form);
+  io("with_channel", of.with_channel);
+  io("reference", of.reference);
+  io("with_reference", of.with_reference);
+  io("period", of.period);
+  io("meaning", of.meaning);
+  io("parameters", of.parameters);
+}
 
 }  // namespace ifog::tools

@@ -32,7 +32,7 @@ Fitted fit_with_prior(const AxisMeasured& axis, std::size_t gyro, std::vector<Ty
   std::vector<EffectInGyro*> of_type;
   for (std::size_t i = 0; i < axis.together.size(); ++i) {
     if (!axis.together[i].not_measured.empty()) continue;
-    EffectInGyro* const here = gyro_of(type[axis.of_type[i]], gyro);
+    EffectInGyro* const here = gyro_of(type[axis.together[i].of_type], gyro);
     const bool found = here != nullptr && here->found;
     known.push_back({static_cast<Eigen::Index>(all.size()), found, here ? here->others : TypePrior{}});
     of_type.push_back(found ? here : nullptr);
@@ -69,12 +69,13 @@ bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effec
   };
   if (std::any_of(axis.beside.begin(), axis.beside.end(), alike)) return true;
   for (std::size_t i = 0; i < axis.together.size(); ++i)
-    if (axis.together[i].not_measured.empty() && is_of(type.effects[axis.of_type[i]], effect)) return true;
+    if (axis.together[i].not_measured.empty() && is_of(type.effects[axis.together[i].of_type], effect))
+      return true;
   return false;
 }
 
-// Of all parameters of a model whose first effects are these: of coefficients fitted together as given, of
-// the others their own.
+// Covariance of all parameters of a model whose first effects are these: as given for coefficients that were fitted
+// together, their own for the others.
 std::vector<double> covariance_of(const std::vector<Fitted>& axes, const std::vector<Effect>& effects) {
   std::vector<double> all = of_all_parameters({}, effects);
   std::vector<std::size_t> first;  // parameter of each effect

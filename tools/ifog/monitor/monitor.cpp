@@ -196,8 +196,7 @@ bool Monitor::run() {
     say_what_is_waited_for();
     if (options_.seconds > 0.0 && seconds_since(start_) >= options_.seconds) break;
     if (!screen_ || (!pressed && ready >= 0 && seconds_since(drawn) < 0.25)) continue;
-    for (Screen::Key key = screen_->key(); on && key != Screen::Key::none; key = screen_->key())
-      on = obey(key);
+    for (int key = screen_->key(); on && key != 0; key = screen_->key()) on = obey(key);
     // A terminal that hung up is for ever ready to be read.
     if ((wanted[2].revents & (POLLHUP | POLLERR)) != 0) break;
     draw();

@@ -51,7 +51,7 @@ class Monitor {
   [[nodiscard]] bool reader_gone() const;
   void end_interval(double seconds);
   void say_what_is_waited_for();
-  bool obey(Screen::Key key);  // false: quit
+  bool obey(int key);  // false: quit
   void draw();
   [[nodiscard]] std::vector<ShownLine> lines(const LineStyle& style) const;
   [[nodiscard]] std::vector<std::string> waiting() const;

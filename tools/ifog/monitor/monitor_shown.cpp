@@ -39,25 +39,20 @@ std::vector<ShownLine> Monitor::lines(const LineStyle& style) const {
     out.push_back({std::to_string(crowded_) + " messages of more sensors than " +
                        std::to_string(kMostSensors) + ", which are shown",
                    Tone::warning});
-  if (screen_ && !look_.paused && (sensors_.empty() || seconds_since(last_heard_) > kSilent_s)) {
-    std::vector<std::string> wait = wrapped(waiting(), " ", style.width);
-    std::vector<ShownLine> all;
-    all.reserve(wait.size() + out.size());
-    for (std::string& line : wait) all.push_back({std::move(line), Tone::bad});
-    std::move(out.begin(), out.end(), std::back_inserter(all));
-    out = std::move(all);
-    if (const std::string others = who_publishes(); sensors_.empty() && !others.empty()) {
-      for (std::string& line : wrapped({"These publish:", others}, " ", style.width))
-        out.push_back({std::move(line)});
-    } else if (sensors_.empty()) {
-      for (std::string& line :
-           wrapped({"Is ifogd running, with this lcm_url? Is there a route for its multicast:",
-                    "ip route add 224.0.0.0/4 dev lo"},
-                   " ", style.width))
-        out.push_back({std::move(line)});
-    }
-  }
-  return out;
+  if (!screen_ || look_.paused || (!sensors_.empty() && seconds_since(last_heard_) <= kSilent_s)) return out;
+  std::vector<ShownLine> all;
+  const auto add = [&](const std::vector<std::string>& parts, Tone tone) {
+    for (std::string& line : wrapped(parts, " ", style.width)) all.push_back({std::move(line), tone});
+  };
+  add(waiting(), Tone::bad);
+  std::move(out.begin(), out.end(), std::back_inserter(all));
+  if (const std::string others = who_publishes(); sensors_.empty() && !others.empty())
+    add({"These publish:", others}, Tone::plain);
+  else if (sensors_.empty())
+    add({"Is ifogd running, with this lcm_url? Is there a route for its multicast:",
+         "ip route add 224.0.0.0/4 dev lo"},
+        Tone::plain);
+  return all;
 }
 
 std::string Monitor::foot() const {
@@ -69,63 +64,51 @@ void Monitor::draw() {
   look_.style.width = screen_->width();
   screen_->draw(
       look_.help
-          ? std::vector<ShownLine>{{"ifog monitor"},
-                                   {""},
-                                   {"  q, escape   quit"},
-                                   {"  space, p    pause: the figures stand still, nothing is lost"},
-                                   {"  d           details: latency, books, channels, NIS"},
-                                   {"  u           unit: as it suits, °/h, °/s, rad/s"},
-                                   {"  s, tab      one sensor after the other, then all"},
-                                   {"  r           count losses from now on"},
-                                   {"  ↑ ↓ j k     scroll, page up and down"},
-                                   {""},
-                                   {"  noise is the standard deviation within a second; the line at the"},
-                                   {"  right is the denoised rate, a second a column, and span its height."},
-                                   {"  Flags are counted in messages of the last second. Any key goes back."}}
+          ? std::vector<
+                ShownLine>{{"ifog monitor"},
+                           {""},
+                           {"  q, escape   quit"},
+                           {"  space, p    pause: the figures stand still, nothing is lost"},
+                           {"  d           details: latency, books, channels, NIS"},
+                           {"  u           unit: as it suits, °/h, °/s, rad/s"},
+                           {"  s, tab      one sensor after the other, then all"},
+                           {"  r           count losses from now on"},
+                           {"  ↑ ↓ j k     scroll, page up and down"},
+                           {""},
+                           {"  noise is the standard deviation within a second; the line at the"},
+                           {"  right is the denoised rate, a second a column, and span its height."},
+                           {"  Flags are counted in messages of the last second. Any other key goes back."}}
           : lines(look_.style),
       foot());
 }
 
-bool Monitor::obey(Screen::Key key) {
-  if (std::exchange(look_.help, key == Screen::Key::help && !look_.help) && key != Screen::Key::quit)
-    return true;
+bool Monitor::obey(int key) {
+  constexpr int kEscape = 27;
+  if (key == 'q' || key == 'Q' || key == kEscape) return false;
+  if (std::exchange(look_.help, false)) return true;
   switch (key) {
-    case Screen::Key::quit:
-      return false;
-    case Screen::Key::pause:
+    case ' ':
+    case 'p':
       look_.paused = look_.paused ? std::nullopt : std::optional(sensors_);
       break;
-    case Screen::Key::details:
+    case 'd':
       look_.style.details = !look_.style.details;
       break;
-    case Screen::Key::unit:
+    case 'u':
       look_.style.unit = static_cast<RateUnit>((static_cast<int>(look_.style.unit) + 1) % 4);
       break;
-    case Screen::Key::sensor: {
+    case 's':
+    case '\t': {
       const auto next = look_.only.empty() ? sensors_.begin() : sensors_.upper_bound(look_.only);
       look_.only = next == sensors_.end() ? "" : next->first;
       break;
     }
-    case Screen::Key::forget:
+    case 'r':
       for (auto& [name, sensor] : sensors_) sensor.forget_losses();
       refused_ = 0;
       break;
-    case Screen::Key::up:
-      screen_->scroll(-1);
-      break;
-    case Screen::Key::down:
-      screen_->scroll(1);
-      break;
-    case Screen::Key::page_up:
-      screen_->scroll(-20);
-      break;
-    case Screen::Key::page_down:
-      screen_->scroll(20);
-      break;
-    case Screen::Key::none:
-    case Screen::Key::help:
-    case Screen::Key::resized:
-      break;
+    default:
+      look_.help = true;
   }
   return true;
 }

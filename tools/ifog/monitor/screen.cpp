@@ -72,43 +72,31 @@ Screen::~Screen() {
 
 std::size_t Screen::width() const { return static_cast<std::size_t>(std::max(1, getmaxx(stdscr))); }
 
-Screen::Key Screen::key() {
-  switch (getch()) {
-    case 'q':
-    case 'Q':
-    case 27:  // escape
-      return Key::quit;
-    case ' ':
-    case 'p':
-      return Key::pause;
-    case 'd':
-      return Key::details;
-    case 'u':
-      return Key::unit;
-    case 's':
-    case '\t':
-      return Key::sensor;
-    case 'r':
-      return Key::forget;
-    case '?':
-    case 'h':
-      return Key::help;
-    case KEY_UP:
-    case 'k':
-      return Key::up;
-    case KEY_DOWN:
-    case 'j':
-      return Key::down;
-    case KEY_PPAGE:
-      return Key::page_up;
-    case KEY_NPAGE:
-      return Key::page_down;
-    case KEY_RESIZE:
-      return Key::resized;
-    case ERR:
-      return Key::none;
-    default:
-      return Key::help;
+int Screen::key() {
+  constexpr int kPage = 20;
+  for (;;) {
+    switch (const int key = getch()) {
+      case ERR:
+        return 0;
+      case KEY_UP:
+      case 'k':
+        scroll(-1);
+        break;
+      case KEY_DOWN:
+      case 'j':
+        scroll(1);
+        break;
+      case KEY_PPAGE:
+        scroll(-kPage);
+        break;
+      case KEY_NPAGE:
+        scroll(kPage);
+        break;
+      case KEY_RESIZE:
+        break;
+      default:
+        return key;
+    }
   }
 }
 

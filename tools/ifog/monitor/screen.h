@@ -19,30 +19,16 @@ class Screen {
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  enum class Key {
-    none,
-    quit,
-    pause,
-    details,
-    unit,
-    sensor,
-    forget,
-    help,
-    up,
-    down,
-    page_up,
-    page_down,
-    resized
-  };
-  // The next key that was pressed; none: none is waiting.
-  Key key();
+  // The next key that was pressed and does not scroll, a character; 0: none is waiting.
+  int key();
 
   [[nodiscard]] std::size_t width() const;
   // Draws what fits, from the line that was scrolled to.
   void draw(const std::vector<ShownLine>& lines, const std::string& foot);
-  void scroll(int by);
 
  private:
+  void scroll(int by);
+
   std::size_t first_ = 0, lines_ = 0;
   void* screen_ = nullptr;
 };

@@ -10,18 +10,8 @@
 namespace ifog::tools {
 namespace {
 
-// Welford's recurrence: NaNs are ignored.
-void add(double value, std::int64_t& count, double& mean, double& square) {
-  if (!std::isfinite(value)) return;
-  ++count;
-  const double difference = value - mean;
-  mean += difference / static_cast<double>(count);
-  square += difference * (value - mean);
-}
-
-double deviation(std::int64_t count, double square) {
-  return count < 2 ? std::numeric_limits<double>::quiet_NaN()
-                   : std::sqrt(square / static_cast<double>(count - 1));
+double deviation(const Moments& of) {
+  return of.count() < 2.0 ? std::numeric_limits<double>::quiet_NaN() : of.deviation();
 }
 
 }  // namespace
@@ -38,8 +28,8 @@ void SensorView::take(const rate_t& message) {
   history_.resize(sums_.size());
   for (std::size_t a = 0; a < sums_.size(); ++a) {
     Sums& sums = sums_[a];
-    add(message.denoised[a], sums.count, sums.mean, sums.square);
-    add(message.raw[a], sums.raw_count, sums.raw_mean, sums.raw_square);
+    sums.denoised.add(message.denoised[a]);
+    sums.raw.add(message.raw[a]);
     sums.raw_low = std::fmin(sums.raw_low, message.raw[a]);  // a NaN is ignored
     sums.raw_high = std::fmax(sums.raw_high, message.raw[a]);
     sums.angle = message.angle[a];
@@ -62,10 +52,9 @@ void SensorView::end_interval(double seconds) {
   axes_.clear();
   for (std::size_t a = 0; a < sums_.size(); ++a) {
     const Sums sums = std::exchange(sums_[a], {});
-    const double rate_radps = sums.count > 0 ? sums.mean : std::numeric_limits<double>::quiet_NaN();
+    const double rate_radps = sums.denoised.mean();
     if (in_interval_ > 0)
-      axes_.push_back({rate_radps, deviation(sums.count, sums.square),
-                       deviation(sums.raw_count, sums.raw_square), sums.angle});
+      axes_.push_back({rate_radps, deviation(sums.denoised), deviation(sums.raw), sums.angle});
     history_[a].push_back({sums.raw_low, sums.raw_high, rate_radps});
     if (history_[a].size() > kRemembered) history_[a].pop_front();
   }

@@ -14,6 +14,7 @@
 
 #include "msgs/flag_names.h"
 #include "tools/ifog/captures/lcm/lcm_loss.h"
+#include "tools/ifog/denoise/moments.h"
 
 namespace ifog::tools {
 
@@ -70,8 +71,8 @@ class SensorView {
 
  private:
   struct Sums {
-    std::int64_t count = 0, raw_count = 0;
-    double mean = 0.0, square = 0.0, raw_mean = 0.0, raw_square = 0.0, angle = 0.0;
+    Moments denoised, raw;
+    double angle = 0.0;
     double raw_low = std::numeric_limits<double>::quiet_NaN(), raw_high = raw_low;
   };
   [[nodiscard]] std::vector<Count> all_losses() const;

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
 #include "msgs/axis_name.h"
 #include "msgs/state_name.h"
@@ -19,13 +19,6 @@ namespace ifog::tools {
 namespace {
 
 constexpr std::size_t kLeastWidth = 40;
-
-template <typename... Values>
-std::string text(const char* format, Values... values) {
-  std::array<char, 160> out{};
-  std::snprintf(out.data(), out.size(), format, values...);
-  return out.data();
-}
 
 std::string n(std::int64_t count) { return std::to_string(count); }
 
@@ -52,7 +45,7 @@ Unit unit_for(double rate_radps, RateUnit wanted) {
 
 // Beyond a tenth no crystal is off: a recording is played faster or slower than it was made.
 std::string clock_text(double offset_ppm) {
-  return std::abs(offset_ppm) > 1e5 ? "not in real time" : text("%+.0f ppm", offset_ppm);
+  return std::abs(offset_ppm) > 1e5 ? "not in real time" : formatted("%+.0f ppm", offset_ppm);
 }
 
 std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& style) {
@@ -61,15 +54,13 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
   const auto number = [&](const char* sign, double radps) -> std::string {
     if (!std::isfinite(radps)) return "-";
     const std::string format = std::string("%") + sign + "." + std::to_string(unit.decimals) + "f";
-    std::array<char, 48> out{};
-    std::snprintf(out.data(), out.size(), format.c_str(), radps / unit.radps);
-    return std::string(out.data());
+    return formatted(format.c_str(), radps / unit.radps);
   };
   const std::string rate = "  " + std::string(axis_name(a, sensor.axes().size())) + "  " +
                            number("+", axis.rate_radps) + " " + unit.name,
                     noise = "  noise " + number("", axis.noise_radps),
                     raw = " (raw " + number("", axis.raw_noise_radps) + ")",
-                    angle = text("  angle %+.6f°", axis.angle_rad / kDegree);
+                    angle = formatted("  angle %+.6f°", axis.angle_rad / kDegree);
   if (!std::isfinite(axis.rate_radps) && axis.angle_rad == 0.0)
     return "  " + std::string(axis_name(a, sensor.axes().size())) + "  not measured";
   // What there is no room for goes, the least needed first.
@@ -104,13 +95,13 @@ std::string model_text(const std::string& identity, const KnownSensor* known) {
 std::string head_line(std::string_view name, const SensorView& sensor, const KnownSensor* known) {
   std::string out = printable(name);
   if (sensor.silent())
-    out += text("  no message for %.0f s: has ifogd ended?", sensor.silent_s());
+    out += formatted("  no message for %.0f s: has ifogd ended?", sensor.silent_s());
   else if (sensor.live_status() != nullptr)
     out += std::string("  ") + state_name(sensor.live_status()->state);
   else if (sensor.status_age_s() > SensorView::kStale_s)
-    out += text("  no status for %.0f s", sensor.status_age_s());
+    out += formatted("  no status for %.0f s", sensor.status_age_s());
   if (sensor.judged()) out += "  " + in_hertz(sensor.message_rate_hz());
-  out += text("  %lld messages", static_cast<long long>(sensor.messages()));
+  out += formatted("  %lld messages", static_cast<long long>(sensor.messages()));
   return out + (sensor.silent() ? "" : model_text(sensor.model(), known));
 }
 
@@ -122,8 +113,8 @@ std::vector<std::string> channels(const status_t& status, const KnownSensor* kno
     const double age_s = status.channel_age_s[i];
     if (!std::isfinite(age_s) && (known == nullptr || !known->channels.contains(status.channel_name[i])))
       continue;
-    std::string value = !std::isfinite(age_s) ? "not heard of" : text("%.6g", status.channel_value[i]);
-    if (std::isfinite(age_s) && age_s > kFresh_s) value += text(" (%.0f s old)", age_s);
+    std::string value = !std::isfinite(age_s) ? "not heard of" : formatted("%.6g", status.channel_value[i]);
+    if (std::isfinite(age_s) && age_s > kFresh_s) value += formatted(" (%.0f s old)", age_s);
     out.push_back(printable(status.channel_name[i]) + " " + value);
   }
   return out;
@@ -133,14 +124,14 @@ std::vector<std::string> health(const status_t& status) {
   std::vector<std::string> out;
   // A file's samples arrive at no time, and an axis that has had no value has no mean square.
   if (status.latency_max_us > 0.0)
-    out.push_back(text("latency p50 %.0f p99 %.0f max %.0f us", status.latency_p50_us, status.latency_p99_us,
-                       status.latency_max_us));
+    out.push_back(formatted("latency p50 %.0f p99 %.0f max %.0f us", status.latency_p50_us,
+                            status.latency_p99_us, status.latency_max_us));
   out.push_back("clock " + clock_text(status.clock_offset_ppm));
   const std::size_t axes = std::min(status.nis_mean.size(), status.whiteness.size());
   for (std::size_t a = 0; a < axes; ++a)
     if (status.nis_mean[a] != 0.0)
       out.push_back(std::string(axis_name(a, axes)) +
-                    text(" NIS %.2f whiteness %+.2f", status.nis_mean[a], status.whiteness[a]));
+                    formatted(" NIS %.2f whiteness %+.2f", status.nis_mean[a], status.whiteness[a]));
   return out;
 }
 

@@ -38,7 +38,7 @@ bool Outlet::send(const void* bytes, std::size_t n, bool whole) {
     // A datagram of which a part went is another one: nothing a second write could mend.
     if (whole && taken > 0 && static_cast<std::size_t>(taken) != n)
       throw std::runtime_error(name_ + ": cannot send: " + std::to_string(taken) + " of " +
-                               std::to_string(n) + " bytes of a frame were taken");
+                               std::to_string(n) + " bytes of a frame were accepted");
     if (taken > 0) {
       at += taken;
       n -= static_cast<std::size_t>(taken);

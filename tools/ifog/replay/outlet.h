@@ -22,10 +22,10 @@ class Outlet {
   // All bytes, in as many portions as the system takes. False: interrupted before. Throws std::runtime_error
   // with one line: the other end is gone, or any other failure.
   bool send_bytes(const void* bytes, std::size_t n) { return send(bytes, n, false); }
-  // One datagram, which the system takes whole or not at all. As above.
+  // One datagram, which the system accepts whole or not at all. As above.
   bool send_datagram(const void* bytes, std::size_t n) { return send(bytes, n, true); }
 
-  // Times the system had no room (ENOBUFS, EAGAIN), or took a part only.
+  // Times the system had no room (ENOBUFS, EAGAIN), or accepted a part only.
   [[nodiscard]] std::uint64_t retries() const { return retries_; }
   [[nodiscard]] int fd() const { return fd_; }
 

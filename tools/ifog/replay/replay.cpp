@@ -3,7 +3,7 @@
 // recorded.
 //
 // Every deadline is computed from the first item's, so that lateness never adds up, and slept for by absolute
-// time on CLOCK_MONOTONIC. Lateness is what passes from an item's deadline until the system has taken it.
+// time on CLOCK_MONOTONIC. Lateness is what passes from an item's deadline until the system has accepted it.
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -22,6 +22,7 @@
 #include <string>
 #include <system_error>
 
+#include "drivers/system/nanoseconds.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/file/pace.h"
 #include "tools/ifog/commands.h"
@@ -31,7 +32,6 @@
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/replay/lateness.h"
 #include "tools/ifog/replay/replay_target.h"
 #include "tools/ifog/replay/replay_timeline.h"
 
@@ -49,12 +49,12 @@ struct ReplaySettings {
 };
 
 struct ReplayResult {
-  std::uint64_t sent = 0;    // taken by the system
+  std::uint64_t sent = 0;    // accepted by the system
   std::uint64_t wanted = 0;  // 0: without end
   bool failed = false;
   std::int64_t begin_ns = 0;  // monotonic: of the first deadline
   double seconds = 0.0;
-  Lateness late;
+  DurationHistogram late;
 };
 
 // Time from being ready to the first deadline: the first item is slept for like every other.
@@ -145,7 +145,6 @@ bool complete(const ReplayResult& result) {
 
 void report(const ReplaySettings& settings, const ReplayTimeline& timeline, const ReplayTarget& target,
             const ReplayResult& result) {
-  const auto us = [](std::uint64_t ns) { return static_cast<double>(ns) * 1e-3; };
   const bool paced = settings.speed > 0.0 && result.sent > 0;
   const std::string of = result.wanted > result.sent ? " of " + std::to_string(result.wanted) : "";
   say("%ssent %llu%s %s in %.3f s, %llu retries\n",
@@ -155,8 +154,8 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
       static_cast<unsigned long long>(result.sent), of.c_str(), timeline.is_can() ? "frames" : "blocks",
       result.seconds, static_cast<unsigned long long>(target.retries()));
   if (paced)
-    say("lateness p50 %.1f µs, p99 %.1f µs, max %.1f µs\n", us(result.late.percentile_ns(0.5)),
-        us(result.late.percentile_ns(0.99)), us(result.late.max_ns()));
+    say("lateness p50 %.1f µs, p99 %.1f µs, max %.1f µs\n", result.late.percentile_us(0.5),
+        result.late.percentile_us(0.99), result.late.max_us());
   if (settings.json.empty()) return;
   nlohmann::json json = {{"schema", "ifog.replay/1"},
                          {"sent", result.sent},
@@ -169,9 +168,9 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
                          {"unit", timeline.is_can() ? "frame" : "block"}};
   if (result.wanted > 0) json["of"] = result.wanted;
   if (paced)
-    json["lateness_us"] = {{"p50", us(result.late.percentile_ns(0.5))},
-                           {"p99", us(result.late.percentile_ns(0.99))},
-                           {"max", us(result.late.max_ns())}};
+    json["lateness_us"] = {{"p50", result.late.percentile_us(0.5)},
+                           {"p99", result.late.percentile_us(0.99)},
+                           {"max", result.late.max_us()}};
   write_json(settings.json, json);
 }
 
@@ -194,7 +193,7 @@ void run(ReplaySettings settings) {
   const std::unique_ptr<ReplayTarget> target =
       open_target(to, timeline, settings.line, settings.speed == 0.0);
   if (target == nullptr) {
-    warn("ifog replay: interrupted before anybody took anything: nothing was sent\n");
+    warn("ifog replay: interrupted before anything was sent\n");
     throw Failed("interrupted");
   }
   prepare(settings);

@@ -12,10 +12,9 @@
 #include <array>
 #include <cerrno>
 #include <charconv>
+#include <span>
 #include <stdexcept>
 #include <system_error>
-#include <utility>
-#include <vector>
 
 #include "drivers/capture/candump/candump.h"
 #include "drivers/capture/files/output_file.h"
@@ -34,108 +33,6 @@ constexpr std::size_t kHeld = 1U << 16U;  // bytes collected when nothing is due
 [[noreturn]] void fail(const std::string& name, const std::string& what, int error) {
   throw std::runtime_error(name + ": " + what + ": " + std::generic_category().message(error));
 }
-
-class CanTarget final : public ReplayTarget {
- public:
-  CanTarget(const std::string& interface, const ReplayTimeline& timeline)
-      : CanTarget(CanSocket(interface), interface, timeline) {}
-
-  bool send(std::size_t i) override {
-    canfd_frame frame{};
-    const std::size_t size = to_socket(timeline_.frames[i], frame);
-    return outlet_.send_datagram(&frame, size);
-  }
-
- private:
-  CanTarget(CanSocket socket, const std::string& interface, const ReplayTimeline& timeline)
-      : ReplayTarget(interface, socket.fd()), timeline_(timeline), socket_(std::move(socket)) {
-    socket_.receive_nothing();
-  }
-
-  const ReplayTimeline& timeline_;
-  CanSocket socket_;
-};
-
-// Anything that takes bytes.
-class ByteTarget final : public ReplayTarget {
- public:
-  ByteTarget(const std::string& name, int fd, const ReplayTimeline& timeline, bool hold)
-      : ReplayTarget(name, fd), timeline_(timeline), hold_(hold) {
-    held_.reserve(kHeld + 2 * kCandumpLineMax);
-  }
-  ByteTarget(std::unique_ptr<SerialPort> port, const std::string& name, const ReplayTimeline& timeline,
-             bool hold)
-      : ByteTarget(name, port->fd(), timeline, hold) {
-    port_ = std::move(port);
-  }
-  ByteTarget(IpSocket socket, const std::string& name, const ReplayTimeline& timeline, bool hold)
-      : ByteTarget(name, socket.fd(), timeline, hold) {
-    socket_ = std::move(socket);
-  }
-  ByteTarget(std::unique_ptr<OutputFile> file, const std::string& name, const ReplayTimeline& timeline,
-             bool hold)
-      : ByteTarget(name, file->descriptor(), timeline, hold) {
-    file_ = std::move(file);
-  }
-
-  bool send(std::size_t i) override {
-    if (timeline_.is_can()) {
-      std::array<char, kCandumpLineMax> line{};
-      const std::size_t n = format_candump_line(timeline_.frames[i], timeline_.interface(i), line.data());
-      return put(reinterpret_cast<const std::uint8_t*>(line.data()), n);
-    }
-    const std::size_t begin = i == 0 ? 0 : timeline_.blocks[i - 1].end;
-    return put(timeline_.bytes.data() + begin, timeline_.blocks[i].end - begin);
-  }
-
-  bool finish() override {
-    if (!flush()) return false;
-    if (port_ != nullptr) tcdrain(outlet_.fd());
-    if (file_ != nullptr) file_->finish();
-    return true;
-  }
-
-  [[nodiscard]] std::uint64_t held() const override { return held_items_; }
-
- private:
-  bool put(const std::uint8_t* bytes, std::size_t n) {
-    if (!hold_) return outlet_.send_bytes(bytes, n);
-    held_.insert(held_.end(), bytes, bytes + n);
-    if (held_.size() >= kHeld) return flush();
-    ++held_items_;
-    return true;
-  }
-  // What was interrupted in the middle is not sent a second time, and has not been sent.
-  bool flush() {
-    const bool done = outlet_.send_bytes(held_.data(), held_.size());
-    held_.clear();
-    if (done) held_items_ = 0;
-    return done;
-  }
-
-  const ReplayTimeline& timeline_;
-  bool hold_;
-  std::unique_ptr<SerialPort> port_;  // one of the three
-  IpSocket socket_;
-  std::unique_ptr<OutputFile> file_;
-  std::vector<std::uint8_t> held_;
-  std::uint64_t held_items_ = 0;
-};
-
-class UdpTarget final : public ReplayTarget {
- public:
-  UdpTarget(IpSocket socket, const std::string& name, const ReplayTimeline& timeline)
-      : ReplayTarget(name, socket.fd()), timeline_(timeline), socket_(std::move(socket)) {}
-
-  bool send(std::size_t i) override {
-    const std::size_t begin = i == 0 ? 0 : timeline_.blocks[i - 1].end;
-    return outlet_.send_datagram(timeline_.bytes.data() + begin, timeline_.blocks[i].end - begin);
-  }
-
- private:
-  const ReplayTimeline& timeline_;
-  IpSocket socket_;
-};
 
 // The wait for a FIFO's reader can be interrupted: null.
 std::unique_ptr<OutputFile> open_fifo(const std::string& name) {
@@ -239,69 +136,93 @@ ReplayDestination ReplayDestination::parse(const std::string& text) {
       "fifo:PATH or -");
 }
 
-namespace {
-
-void expect_bytes(const std::string& name, const ReplayTimeline& timeline, const char* where) {
-  if (timeline.is_can())
-    throw std::runtime_error(name + ": CAN frames cannot go " + where + ", expected bytes");
+bool ReplayTarget::send(std::size_t i) {
+  if (form_ == Form::can_frames) {
+    canfd_frame frame{};
+    const std::size_t size = to_socket(timeline_.frames[i], frame);
+    return outlet_.send_datagram(&frame, size);
+  }
+  std::array<char, kCandumpLineMax> line{};
+  std::span<const std::uint8_t> item;
+  if (timeline_.is_can()) {
+    const std::size_t size = format_candump_line(timeline_.frames[i], timeline_.interface(i), line.data());
+    item = {reinterpret_cast<const std::uint8_t*>(line.data()), size};
+  } else {
+    const std::size_t begin = i == 0 ? 0 : timeline_.blocks[i - 1].end;
+    item = std::span(timeline_.bytes).subspan(begin, timeline_.blocks[i].end - begin);
+  }
+  if (form_ == Form::datagrams) return outlet_.send_datagram(item.data(), item.size());
+  if (!hold_) return outlet_.send_bytes(item.data(), item.size());
+  held_.insert(held_.end(), item.begin(), item.end());
+  if (held_.size() >= kHeld) return flush();
+  ++held_items_;
+  return true;
 }
 
-std::unique_ptr<ReplayTarget> can_target(const std::string& name, const ReplayTimeline& timeline) {
-  if (!timeline.is_can())
-    throw std::runtime_error(name +
-                             ": raw bytes cannot go onto a CAN bus, expected a candump log or a CSV capture");
-  return std::make_unique<CanTarget>(name, timeline);
+// What was interrupted in the middle is not sent a second time, and has not been sent.
+bool ReplayTarget::flush() {
+  const bool done = outlet_.send_bytes(held_.data(), held_.size());
+  held_.clear();
+  if (done) held_items_ = 0;
+  return done;
 }
 
-std::unique_ptr<ReplayTarget> serial_target(const std::string& name, const ReplayTimeline& timeline,
-                                            SerialSettings line, bool hold) {
-  expect_bytes(name, timeline, "onto a serial line");
-  line.device = name;
-  if (line.baud == 0) line.baud = timeline.baud;
-  if (line.baud == 0) throw std::runtime_error(name + ": no speed known, expected --baud");
-  std::string warning;
-  return std::make_unique<ByteTarget>(open_serial_port(line, warning), name, timeline, hold);
+bool ReplayTarget::finish() {
+  if (!flush()) return false;
+  finish_();
+  return true;
 }
-
-std::unique_ptr<ReplayTarget> udp_target(const std::string& name, const ReplayTimeline& timeline) {
-  expect_bytes(name, timeline, "over UDP");
-  return std::make_unique<UdpTarget>(connected_udp(name), name, timeline);
-}
-
-std::unique_ptr<ReplayTarget> tcp_target(const std::string& name, const ReplayTimeline& timeline, bool hold) {
-  expect_bytes(name, timeline, "over TCP");
-  IpSocket socket = served_tcp(name);
-  if (!socket.is_open()) return nullptr;
-  return std::make_unique<ByteTarget>(std::move(socket), name, timeline, hold);
-}
-
-std::unique_ptr<ReplayTarget> file_target(const std::string& name, std::unique_ptr<OutputFile> file,
-                                          const ReplayTimeline& timeline, bool hold) {
-  if (file == nullptr) return nullptr;
-  return std::make_unique<ByteTarget>(std::move(file), name, timeline, hold);
-}
-
-}  // namespace
 
 std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const ReplayTimeline& timeline,
                                           SerialSettings line, bool hold) {
+  using Kind = ReplayDestination::Kind;
+  using Form = ReplayTarget::Form;
+  const auto target = [&](int fd, Form form, std::function<void()> finish) {
+    return std::make_unique<ReplayTarget>(to.name, fd, form, timeline, hold, std::move(finish));
+  };
+  const auto expect_bytes = [&](const char* where) {
+    if (timeline.is_can())
+      throw std::runtime_error(to.name + ": CAN frames cannot go " + where + ", expected bytes");
+  };
   switch (to.kind) {
-    case ReplayDestination::Kind::can:
-      return can_target(to.name, timeline);
-    case ReplayDestination::Kind::serial:
-      return serial_target(to.name, timeline, std::move(line), hold);
-    case ReplayDestination::Kind::udp:
-      return udp_target(to.name, timeline);
-    case ReplayDestination::Kind::tcp:
-      return tcp_target(to.name, timeline, hold);
-    case ReplayDestination::Kind::fifo:
-      return file_target(to.name, open_fifo(to.name), timeline, hold);
-    case ReplayDestination::Kind::standard_output:
-      return file_target(to.name, std::make_unique<OutputFile>("-"), timeline, hold);
-    case ReplayDestination::Kind::file:
+    case Kind::can: {
+      if (!timeline.is_can())
+        throw std::runtime_error(
+            to.name + ": raw bytes cannot go onto a CAN bus, expected a candump log or a CSV capture");
+      const auto socket = std::make_shared<CanSocket>(to.name);
+      socket->receive_nothing();
+      return target(socket->fd(), Form::can_frames, [socket] {});
+    }
+    case Kind::serial: {
+      expect_bytes("onto a serial line");
+      line.device = to.name;
+      if (line.baud == 0) line.baud = timeline.baud;
+      if (line.baud == 0) throw std::runtime_error(to.name + ": no speed known, expected --baud");
+      std::string warning;
+      const std::shared_ptr<SerialPort> port = open_serial_port(line, warning);
+      return target(port->fd(), Form::stream, [port] { tcdrain(port->fd()); });
+    }
+    case Kind::udp: {
+      expect_bytes("over UDP");
+      const auto socket = std::make_shared<IpSocket>(connected_udp(to.name));
+      return target(socket->fd(), Form::datagrams, [socket] {});
+    }
+    case Kind::tcp: {
+      expect_bytes("over TCP");
+      const auto socket = std::make_shared<IpSocket>(served_tcp(to.name));
+      if (!socket->is_open()) return nullptr;
+      return target(socket->fd(), Form::stream, [socket] {});
+    }
+    case Kind::fifo:
+    case Kind::standard_output:
+    case Kind::file:
       break;
   }
-  return file_target(to.name, std::make_unique<OutputFile>(to.name), timeline, hold);
+  const std::shared_ptr<OutputFile> file =
+      to.kind == Kind::fifo ? open_fifo(to.name)
+                            : std::make_unique<OutputFile>(to.kind == Kind::standard_output ? "-" : to.name);
+  if (file == nullptr) return nullptr;
+  return target(file->descriptor(), Form::stream, [file] { file->finish(); });
 }
 
 }  // namespace ifog::tools

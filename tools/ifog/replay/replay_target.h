@@ -4,8 +4,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "drivers/transport/serial/serial_port.h"
 #include "tools/ifog/replay/outlet.h"
@@ -15,20 +18,35 @@ namespace ifog::tools {
 
 class ReplayTarget {
  public:
-  virtual ~ReplayTarget() = default;
-  // Sends item i and returns once the system has taken it; waits where the system has no room for it at the
-  // moment. False: interrupted before. Throws std::runtime_error when the target is gone.
-  virtual bool send(std::size_t i) = 0;
-  // Sends what is still held. False: interrupted.
-  virtual bool finish() { return true; }
-  // Items that send() took and the system has not.
-  [[nodiscard]] virtual std::uint64_t held() const { return 0; }
+  enum class Form { stream, datagrams, can_frames };
+  // name, fd: see Outlet. finish: behind the last byte, and what keeps the descriptor open until then.
+  ReplayTarget(std::string name, int fd, Form form, const ReplayTimeline& timeline, bool hold,
+               std::function<void()> finish)
+      : outlet_(std::move(name), fd),
+        form_(form),
+        timeline_(timeline),
+        hold_(hold),
+        finish_(std::move(finish)) {}
 
+  // Sends item i and returns once the system has accepted it; waits where the system has no room for it at the
+  // moment. False: interrupted before. Throws std::runtime_error when the target is gone.
+  bool send(std::size_t i);
+  // Sends what is still held. False: interrupted.
+  bool finish();
+  // Items that send() accepted and the system has not.
+  [[nodiscard]] std::uint64_t held() const { return held_items_; }
   [[nodiscard]] std::uint64_t retries() const { return outlet_.retries(); }
 
- protected:
-  ReplayTarget(std::string name, int fd) : outlet_(std::move(name), fd) {}
+ private:
+  bool flush();
+
   Outlet outlet_;
+  Form form_;
+  const ReplayTimeline& timeline_;
+  bool hold_;
+  std::function<void()> finish_;
+  std::vector<std::uint8_t> held_;
+  std::uint64_t held_items_ = 0;
 };
 
 struct ReplayDestination {

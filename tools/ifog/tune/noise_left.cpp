@@ -2,9 +2,7 @@
 #include "tools/ifog/tune/noise_left.h"
 
 #include <algorithm>
-#include <array>
 #include <cstddef>
-#include <cstdio>
 #include <exception>
 #include <span>
 #include <stdexcept>
@@ -12,6 +10,7 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/text.h"
 #include "filters/allan/stretches.h"
 #include "filters/tune/tune.h"
 #include "tools/ifog/captures/model_axes.h"
@@ -20,7 +19,7 @@
 namespace ifog::tools {
 namespace {
 
-constexpr std::size_t kMostRows = 200000;  // as `ifog tune` takes unless told otherwise
+constexpr std::size_t kMostRows = 200000;  // the default of `ifog tune`
 
 CaptureView first_rows(CaptureView capture, std::size_t most) {
   const std::size_t rows = std::min(capture.size(), most);
@@ -63,16 +62,15 @@ std::string fit_noise_left(Model& model, const Model& added, const CaptureView& 
       rates.reference_rate_radps[a] = {};
     }
     const TunedModel found = fitted(rates, filter.state, path);
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(),
-                  "noise of the filter, fitted to the corrected rate: process_noise %.4g (rad/s)^2/s, "
-                  "measurement_noise %.4g (rad/s)^2",
-                  found.settings.process_noise, found.settings.measurement_noise);
+    const std::string text = formatted(
+        "noise of the filter, fitted to the corrected rate: process_noise %.4g (rad/s)^2/s, "
+        "measurement_noise %.4g (rad/s)^2",
+        found.settings.process_noise, found.settings.measurement_noise);
     filter.process_noise = found.settings.process_noise;
     filter.measurement_noise = found.settings.measurement_noise;
     filter.state_parameters = found.settings.state_parameters;
     model.filter = std::move(filter);
-    return text.data();
+    return text;
   } catch (const std::exception& error) {
     const std::string why = printable(error.what(), kLongestMessage);
     if (!known) return "no noise for the filter: " + why;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog tune: Q, R and the state model of a sensor at rest, into a model file.
 #include "filters/tune/tune.h"
+#include "drivers/system/text.h"
 
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -15,7 +15,6 @@
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
-#include "drivers/system/utc_now.h"
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/model_file/model.h"
 #include "filters/rest/cleaned_rate.h"
@@ -51,11 +50,7 @@ struct TuneArguments {
   std::size_t samples = 200000;
 };
 
-std::string tau_text(double tau_s) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%g", tau_s);
-  return text;
-}
+std::string tau_text(double tau_s) { return formatted("%g", tau_s); }
 
 // What people read: deg/h, deg/h/sqrt(h) and SI.
 std::string in_field_units(const TunedFigure& figure) {
@@ -64,9 +59,7 @@ std::string in_field_units(const TunedFigure& figure) {
   if (figure.unit == "rad/s^2/sqrt(Hz)") factor = 1.0 / kDegreePerHourPerRootHour, unit = "deg/h/sqrt(h)";
   if (figure.unit == "rad/s") factor = 1.0 / kDegreePerHour, unit = "deg/h";
   if (factor == 0.0) return "";
-  char text[64];
-  std::snprintf(text, sizeof text, "   %.4g %s", figure.value * factor, unit);
-  return text;
+  return formatted("   %.4g %s", figure.value * factor, unit);
 }
 
 json rate_json(const RateFigures& figures) {
@@ -102,7 +95,7 @@ json model_json(const TunedModel& model, const std::vector<std::string>& axes) {
           {"held_out", model.held_out ? outcome_json(*model.held_out, axes) : json(nullptr)}};
 }
 
-void print(const Tuning& tuning) {
+void print_models(const Tuning& tuning) {
   say("%-28s %4s %16s %10s\n", "state model", "free", "ln likelihood", "BIC - best");
   for (const TunedModel& model : tuning.models)
     say("%-28s %4d %16.1f %10.1f\n", model.settings.state.c_str(), model.parameters, model.log_likelihood,
@@ -155,13 +148,13 @@ void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) 
 
 // By axis, of all of the capture's rest: what `ifog allan` says of it. A filter's own Q and R are no noise
 // terms: with colour in the state they are whatever predicts best.
-struct AxisNoise {
+struct RestNoise {
   NoiseCoefficients terms;
   std::vector<NoiseChange> changes;
 };
-using NoiseByAxis = std::map<std::string, AxisNoise>;
+using NoiseByAxis = std::map<std::string, RestNoise>;
 
-json noise_json(const NoiseByAxis& noise) {
+json rest_noise_json(const NoiseByAxis& noise) {
   json axes = json::array();
   for (const auto& [axis, found] : noise)
     axes.push_back({{"axis", axis},
@@ -199,7 +192,7 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
     const std::span<const double> rate = capture.rate_radps[a];
     const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
     try {
-      AxisNoise found{
+      RestNoise found{
           noise_coefficients(AngleSum(rate, parts), clock.period_s),
           noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.told_time_s(i); })};
       if (const std::string markov = markov_in_words(found.terms); !markov.empty())
@@ -215,7 +208,7 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
   return noise;
 }
 
-// `before`: whose effects were taken from the rates; they stay, and so do its filter's settings besides
+// `before`: the rates were corrected by its effects; they stay, and so do its filter's settings besides
 // the noise.
 Model model_of(Model before, const Tuning& tuning, const NoiseByAxis& noise, const std::string& path) {
   Model model = std::move(before);
@@ -253,7 +246,7 @@ json tuning_json(const TuneArguments& options, const Tuning& tuning, std::size_t
               {"sample_rate_hz", 1.0 / period},
               {"best", tuning.models[tuning.chosen].settings.state},
               {"best_by_bic", tuning.models.front().settings.state},
-              {"noise", noise_json(noise)},
+              {"noise", rest_noise_json(noise)},
               {"models", models}};
 }
 
@@ -275,7 +268,7 @@ LongCapture read_rates(const TuneArguments& options, const Model& before) {
   return read;
 }
 
-void run(const TuneArguments& options) {
+void run_tune(const TuneArguments& options) {
   options.input.will_read("capture", options.capture);
   will_read("--model", options.model);
   will_write("--json", options.json_file, kJsonEndings);
@@ -317,7 +310,7 @@ void run(const TuneArguments& options) {
       capture.axes.size() > 1 ? ", all axes under one model" : "");
   if (left > 0) say("the last %zu rows are dropped; --samples %zu takes all\n", left, capture.size());
   for (const std::string& note : notes) say("note: %s\n", note.c_str());
-  print(tuning);
+  print_models(tuning);
   print_held_out(tuning, capture.axes);
   for (const auto& [axis, found] : noise)
     say("\nnoise%s%s at rest, as `ifog allan` finds it\n%s", axis.empty() ? "" : " of ", axis.c_str(),
@@ -354,11 +347,11 @@ void add_tune(const Command& program) {
   command.add_option("--state", options->states, "state models to try; may stand several times")
       .one_value_each();
   command.add_option("--samples", options->samples, "most rows of the capture to fit")
-      .within(std::size_t{200}, std::size_t{100000000})
+      .within(200, 100000000)
       .shows_default();
   options->input.add_to(command);
   options->part.add_to(command);
-  command.callback([options] { run(*options); });
+  command.callback([options] { run_tune(*options); });
 }
 
 }  // namespace ifog::tools

@@ -29,9 +29,8 @@ std::string parameter_rows(const FoundEffect& found) {
       if (name.ends_with(suffix)) name.erase(name.size() - suffix.size());
     }
     std::replace(name.begin(), name.end(), '_', ' ');
-    out += "<tr><th scope=\"row\">" + escaped(name) + "</th><td class=\"n\">" +
-           with_error(p.value * unit.scale, p.std_error * unit.scale) + "</td><td>" + escaped(unit.unit) +
-           "</td></tr>\n";
+    out += row(escaped(name),
+               {number_cell(with_error(p.value * unit.scale, p.std_error * unit.scale)), escaped(unit.unit)});
   }
   return out;
 }
@@ -45,23 +44,14 @@ std::string effect_section(const PageAxis& axis, std::size_t index) {
                     probability(found.p_value) + ". Share of the error's variance" +
                     (parts_overlap(*axis.diagnosis) ? ", alone, overlapping with other parts: " : ": ") +
                     number(100.0 * found.variance_explained, 3) + " %.</p>\n";
-  out +=
-      "<div class=\"scroll\"><table><caption>Parameters, with their standard errors</caption><thead><tr><th "
-      "scope=\"col\">parameter</th><th scope=\"col\" class=\"n\">value</th><th "
-      "scope=\"col\">unit</th></tr></thead>"
-      "<tbody>\n" +
-      parameter_rows(found) + "</tbody></table></div>\n";
+  out += table("Parameters, with their standard errors", {"parameter", number_cell("value"), "unit"},
+               parameter_rows(found));
   return out + "<div class=\"pair\">\n" + traced_picture(axis, index) +
          contribution_picture(*axis.diagnosis, index) + "</div>\n";
 }
 
 std::string figures_table(const Diagnosis& d) {
-  std::string out =
-      "<div class=\"scroll\"><table><caption>By the model as written, or on data held out of the fit: the "
-      "larger</caption><thead><tr><th scope=\"col\">figure</th>"
-      "<th scope=\"col\" class=\"n\">before</th><th scope=\"col\" class=\"n\">after</th><th "
-      "scope=\"col\">unit</th>"
-      "<th scope=\"col\" class=\"n\">change</th></tr></thead><tbody>\n";
+  std::string rows;
   for (const std::string& key : in_reading_order(d.before)) {
     const double before = d.before.at(key);
     const auto at = d.after.find(key);
@@ -69,14 +59,14 @@ std::string figures_table(const Diagnosis& d) {
     const Figure f = figure(key);
     const double change = 100.0 * (after / before - 1.0);
     const bool relative = key != "whiteness" && std::isfinite(change);
-    out += "<tr><th scope=\"row\">" + escaped(f.label) + "</th><td class=\"n\">" + number(before * f.scale) +
-           "</td><td class=\"n\">" + number(after * f.scale) + "</td><td>" + f.unit + "</td><td class=\"n" +
-           (relative && change < -0.5 ? " better" : "") + "\">" +
-           (relative ? (std::abs(change) < 0.05 ? "0" : (change > 0 ? "+" : "") + number(change, 2)) + " %"
-                     : "") +
-           "</td></tr>\n";
+    const std::string shown =
+        !relative ? "" : (std::abs(change) < 0.05 ? "0" : (change > 0 ? "+" : "") + number(change, 2)) + " %";
+    rows += row(escaped(f.label),
+                {number_cell(number(before * f.scale)), number_cell(number(after * f.scale)), f.unit,
+                 Cell(shown, relative && change < -0.5 ? Cell::Kind::better : Cell::Kind::number)});
   }
-  return out + "</tbody></table></div>\n";
+  return table("By the model as written, or on data held out of the fit: the larger",
+               {"figure", number_cell("before"), number_cell("after"), "unit", number_cell("change")}, rows);
 }
 
 // The figure that gained most comes first.
@@ -131,20 +121,16 @@ std::string noise_table(const NoiseTerms& noise) {
                       {"bias instability B", noise.B, 1.0 / kDegreePerHour, "°/h"},
                       {"rate random walk K", noise.K, 1.0 / kDegreePerHourPerRootHour, "°/h/√h"},
                       {"rate ramp R", noise.R, 1.0 / kDegreePerHourPerHour, "°/h/h"}};
-  std::string out =
-      "<div class=\"scroll\"><table><caption>Noise after the effects (IEEE Std 952 "
-      "terms)</caption><thead><tr><th scope=\"col\">term</th><th scope=\"col\" class=\"n\">value</th><th "
-      "scope=\"col\">unit</th></tr></thead><tbody>\n";
-  for (const Row& row : rows)
-    out += std::string("<tr><th scope=\"row\">") + row.name + "</th><td class=\"n\">" +
-           (row.value ? number(*row.value * row.scale) : "not seen") + "</td><td>" +
-           (row.value ? row.unit : "") + "</td></tr>\n";
-  return out + "</tbody></table></div>\n";
+  std::string out;
+  for (const Row& each : rows)
+    out += row(each.name, {number_cell(each.value ? number(*each.value * each.scale) : "not seen"),
+                           each.value ? each.unit : ""});
+  return table("Noise after the effects (IEEE Std 952 terms)", {"term", number_cell("value"), "unit"}, out);
 }
 
 std::string heading_words(const HeadingPrediction& h) {
   if (h.after_s.empty()) return "";
-  return "<p>With the bias taken over the first " + duration(h.aligned_s) +
+  return "<p>With the bias averaged over the first " + duration(h.aligned_s) +
          " at rest and held, this sensor is expected "
          "to be " +
          number(h.sigma_rad.back() / kDegree, 2) + "° off (1 σ) after " + duration(h.after_s.back()) +
@@ -194,15 +180,11 @@ std::string origin(const Page& page) {
     constexpr std::size_t kMostComments = 4;
     for (std::size_t i = 0; i < std::min(kMostComments, input.comments.size()); ++i)
       said += (said.empty() ? "" : "<br>") + escaped(input.comments[i]);
-    rows += "<tr><th scope=\"row\">" + escaped(input.name) + "</th><td>" + said + "</td><td><code>" +
-            escaped(input.sha256) + "</code></td></tr>\n";
+    rows += row(escaped(input.name), {said, "<code>" + escaped(input.sha256) + "</code>"});
   }
-  if (rows.empty()) return out;
-  return out +
-         "<div class=\"scroll\"><table class=\"origin\"><caption>Captures</caption><thead><tr><th "
-         "scope=\"col\">file</th><th scope=\"col\">what it says of itself (sensor, serial number)</th><th "
-         "scope=\"col\">SHA-256, unpacked</th></tr></thead><tbody>\n" +
-         rows + "</tbody></table></div>\n";
+  return out + table("Captures",
+                     {"file", "what it says of itself (sensor, serial number)", "SHA-256, unpacked"}, rows,
+                     "origin");
 }
 
 std::string axis_sections(const PageAxis& axis) {

@@ -110,7 +110,7 @@ std::string traced_picture(const PageAxis& axis, std::size_t index) {
   chart.line(Role::kFit, "fitted", t.curve_x, scaled(t.curve_y, scale));
   return figure_html(chart.svg(480, 320),
                      "Against what it was traced to: each dot the mean of a ninetieth of the "
-                     "samples, all other effects taken away.");
+                     "samples, without all other effects.");
 }
 
 std::string contribution_picture(const Diagnosis& d, std::size_t index) {

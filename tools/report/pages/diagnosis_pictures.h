@@ -12,7 +12,7 @@ namespace ifog::report {
 std::string time_picture(const Diagnosis& d);
 std::string spectrum_picture(const Diagnosis& d);
 std::string allan_picture(const Diagnosis& d);
-// Of the effect of that index: the error against the channel that it was traced to, and its part over time.
+// For the effect of that index: the error against the channel that it was traced to, and its part over time.
 std::string traced_picture(const PageAxis& axis, std::size_t index);
 std::string contribution_picture(const Diagnosis& d, std::size_t index);
 std::string heading_picture(const HeadingPrediction& h);

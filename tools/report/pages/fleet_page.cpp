@@ -20,20 +20,6 @@ namespace {
 
 constexpr std::size_t kMostDrawn = 7;  // parameters of one picture: a colour each
 
-std::string table(const std::string& caption, const std::vector<std::string>& heads,
-                  const std::string& rows) {
-  if (rows.empty()) return "";
-  std::string out = "<div class=\"scroll\"><table><caption>" + caption + "</caption><thead><tr>";
-  for (const std::string& head : heads) out += "<th scope=\"col\">" + head + "</th>";
-  return out + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
-}
-
-std::string row(const std::string& head, const std::vector<std::string>& cells) {
-  std::string out = "<tr><th scope=\"row\">" + head + "</th>";
-  for (const std::string& cell : cells) out += "<td>" + cell + "</td>";
-  return out + "</tr>\n";
-}
-
 std::string linked(const Population& p, std::size_t gyro) {
   const std::string serial = escaped(p.serials[gyro]);
   return "<a href=\"gyros/" + serial + "/report.html\">" + serial + "</a>";
@@ -157,8 +143,7 @@ std::string z_picture(const Population& p) {
     drawn.insert(drawn.end(), p.parameters[i].z.begin(), p.parameters[i].z.end());
   Chart chart("How far each gyro is from the median", "Robust z of every parameter, over the gyros.", along,
               roomy_axis("distance from the median (robust σ)", {&drawn}));
-  for (const double limit : limits)
-    chart.guide(Role::kRaw, {*along.low, *along.high}, {limit, limit}, {"", 0.0, limit, "start"});
+  for (const double limit : limits) chart.guide(Role::kRaw, {*along.low, *along.high}, {limit, limit});
   for (std::size_t i = 0; i < std::min(kMostDrawn, p.parameters.size()); ++i) {
     const PopulationParameter& each = p.parameters[i];
     std::vector<double> x;
@@ -173,10 +158,9 @@ std::string z_picture(const Population& p) {
 std::string parameters_section(const Population& p) {
   std::string rows;
   for (const PopulationParameter& each : p.parameters) rows += parameter_row(each);
-  return table(
-             "How the type's parameters are spread",
-             {"parameter", "unit", "gyros", "median ± robust σ", "mean ± spread, own errors taken out", "I²"},
-             rows) +
+  return table("How the type's parameters are spread",
+               {"parameter", "unit", "gyros", "median ± robust σ", "mean ± spread, without own errors", "I²"},
+               rows) +
          z_picture(p);
 }
 

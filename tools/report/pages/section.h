@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace ifog::report {
 
@@ -15,6 +16,35 @@ inline std::string section(const std::string& id, const std::string& heading, co
 inline std::string figure_html(const std::string& svg, const std::string& caption) {
   if (svg.empty()) return "";
   return "<figure>\n" + svg + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
+}
+
+// A cell of a table, HTML. `number` stands at the right, `better` in colour, too.
+struct Cell {
+  enum class Kind { text, number, better };
+  Cell(std::string text, Kind its = Kind::text) : html(std::move(text)), kind(its) {}
+  Cell(const char* text) : html(text) {}
+  [[nodiscard]] std::string style() const {
+    return kind == Kind::text ? "" : kind == Kind::number ? " class=\"n\"" : " class=\"n better\"";
+  }
+  std::string html;
+  Kind kind = Kind::text;
+};
+inline Cell number_cell(std::string html) { return {std::move(html), Cell::Kind::number}; }
+
+inline std::string row(const std::string& head, const std::vector<Cell>& cells) {
+  std::string out = "<tr><th scope=\"row\">" + head + "</th>";
+  for (const Cell& cell : cells) out += "<td" + cell.style() + ">" + cell.html + "</td>";
+  return out + "</tr>\n";
+}
+
+// style: of the table, "" for none.
+inline std::string table(const std::string& caption, const std::vector<Cell>& heads, const std::string& rows,
+                         const std::string& style = "") {
+  if (rows.empty()) return "";
+  std::string out = "<div class=\"scroll\"><table" + (style.empty() ? "" : " class=\"" + style + "\"") +
+                    "><caption>" + caption + "</caption><thead><tr>";
+  for (const Cell& head : heads) out += "<th scope=\"col\"" + head.style() + ">" + head.html + "</th>";
+  return out + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
 }
 
 }  // namespace ifog::report

@@ -27,7 +27,7 @@ double step_s(const Record& r, std::size_t k) {
   return r.time_s[std::max<std::size_t>(k, 1)] - r.time_s[std::max<std::size_t>(k, 1) - 1];
 }
 
-// The error with every effect but one taken away, about its mean.
+// The error without every effect but one, about its mean.
 Trace error_without(const Record& record, const Diagnosis& diagnosis, std::size_t kept) {
   Model others;
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i)

@@ -270,7 +270,7 @@ TEST(Recorder, ARecordingThatIsTakenAwayIsToldAndCounted) {
   }
   bool good = false;
   const std::string message = recorder.take_message(good);
-  EXPECT_NE(message.find("the recording in work has been taken away"), std::string::npos) << message;
+  EXPECT_NE(message.find("the recording in work has been removed"), std::string::npos) << message;
   EXPECT_GE(recorder.lost_deliveries(), 7U);
   EXPECT_EQ(recorder.lost_bytes(), 3 * recorder.lost_deliveries());
 }

@@ -1,52 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/console/options/checked_values.h"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <charconv>
 #include <cmath>
-#include <cstdint>
 #include <string_view>
-#include <utility>
 
 #include "drivers/ifog/decimal.h"
+#include "drivers/ifog/nearest.h"
 #include "drivers/ifog/quoted.h"
 
 namespace ifog::tools {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, ValueKind>, 7> kKinds = {{{"FLOAT", ValueKind::number},
-                                                                           {"SECONDS", ValueKind::number},
-                                                                           {"S", ValueKind::number},
-                                                                           {"INT", ValueKind::whole},
-                                                                           {"UINT", ValueKind::count},
-                                                                           {"N", ValueKind::count},
-                                                                           {"INDEX", ValueKind::count}}};
-
-// All of the text as a T.
+// All of the text as a T; a plus sign may lead.
 template <typename T>
-bool read(std::string_view text, T& value) {
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return error == std::errc() && end == text.data() + text.size();
-}
-
-std::string_view without_plus(std::string_view digits) {
+std::optional<T> integer_in(std::string_view digits) {
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
-  return digits;
-}
-
-std::string complaint(const std::string& value, const std::string& expected) {
-  return "is " + in_quotes(value) + ", expected " + expected;
+  T value{};
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
+  return value;
 }
 
 }  // namespace
-
-ValueKind value_kind(const std::string& type) {
-  const auto found =
-      std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& each) { return each.first == type; });
-  return found == kKinds.end() ? ValueKind::text : found->second;
-}
 
 std::optional<double> number_in(const std::string& text) {
   double value = 0.0;
@@ -56,44 +33,38 @@ std::optional<double> number_in(const std::string& text) {
   return value;
 }
 
-std::optional<std::int64_t> whole_in(const std::string& text) {
-  std::int64_t value = 0;
-  if (!read(without_plus(text), value)) return std::nullopt;
-  return value;
+std::optional<std::int64_t> whole_in(const std::string& text) { return integer_in<std::int64_t>(text); }
+
+void ValueRule::range(double least, double most, bool without_least, const std::string& words) {
+  least_ = least;
+  most_ = most;
+  without_least_ = without_least;
+  range_ = words;
 }
 
-bool is_number(const std::string& text, ValueKind kind) {
-  if (kind == ValueKind::number) return number_in(text).has_value();
-  const std::string_view digits = without_plus(text);
-  std::int64_t whole = 0;
-  std::uint64_t count = 0;
-  if (kind == ValueKind::count) return read(digits, count);
-  return read(digits, whole) || read(digits, count);
+bool ValueRule::fits(const std::string& value) const {
+  if (kind_ == ValueKind::text)
+    return choices_.empty() ? !value.empty() : std::ranges::count(choices_, value) > 0;
+  // A whole number is one of 64 bits, with a sign or without.
+  const bool whole = integer_in<std::uint64_t>(value) || (kind_ == ValueKind::whole && whole_in(value));
+  const std::optional<double> number = number_in(value);
+  return (kind_ == ValueKind::number || whole) && number && *number <= most_ &&
+         (without_least_ ? *number > least_ : *number >= least_);
 }
 
-std::string number_in_words(ValueKind kind, const std::string& range) {
-  std::string out = kind == ValueKind::number ? "a number" : "a whole number";
-  if (!range.empty()) return out + " " + range;
-  return kind == ValueKind::count ? out + " 0 or more" : out;
-}
-
-void say_expected(CLI::Validator& check, std::function<std::string(const std::string&)> expected) {
-  const CLI::Validator before = check;
-  check.operation([before, expected = std::move(expected)](std::string& value) {
-    const std::string given = value;
-    return before(value).empty() ? std::string() : complaint(given, expected(given));
-  });
-}
-
-void hold_to_something(CLI::Option& option, const std::string& word) {
-  option.check(
-      [word](const std::string& value) { return value.empty() ? complaint(value, word) : std::string(); });
-}
-
-void hold_to_number(CLI::Option& option, ValueKind kind, const std::string& expected) {
-  option.check([kind, expected](const std::string& value) {
-    return is_number(value, kind) ? std::string() : complaint(value, expected);
-  });
+std::string ValueRule::complaint(const std::string& value, const std::string& word) const {
+  if (check_)
+    if (std::string wrong = check_(value); !wrong.empty()) return wrong;
+  if (fits(value)) return "";
+  std::string expected = word;  // a variable of a script that was never set: --model "$MODEL"
+  if (!choices_.empty()) expected = ifog::one_of(value, choices_);
+  if (kind_ != ValueKind::text) {
+    expected = kind_ == ValueKind::number ? "a number" : "a whole number";
+    if (const std::string range = range_.empty() && kind_ == ValueKind::count ? "0 or more" : range_;
+        !range.empty())
+      expected += " " + range;
+  }
+  return "is " + in_quotes(value) + ", expected " + expected;
 }
 
 }  // namespace ifog::tools

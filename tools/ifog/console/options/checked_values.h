@@ -4,20 +4,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
-
-namespace CLI {
-class Option;
-class Validator;
-}  // namespace CLI
+#include <vector>
 
 namespace ifog::tools {
 
 enum class ValueKind { text, number, whole, count };  // count: whole, 0 or more
-
-// By the type as the parser names it, or as a command does.
-ValueKind value_kind(const std::string& type);
 
 // Decimal and finite, by the rule of drivers/ifog/decimal.h; empty: it is none.
 std::optional<double> number_in(const std::string& text);
@@ -25,19 +19,28 @@ std::optional<double> number_in(const std::string& text);
 // Whole, within 63 bits and a sign; empty: it is none. (The parser takes the largest one for what is larger.)
 std::optional<std::int64_t> whole_in(const std::string& text);
 
-// Decimal and finite; whole where the kind says so, and within 64 bits.
-bool is_number(const std::string& text, ValueKind kind);
+// What the values of one option are held to, beyond the type of the variable that they go to.
+class ValueRule {
+ public:
+  explicit ValueRule(ValueKind kind) : kind_(kind) {}
+  // words: "more than 0", "1 to 1000"; the help ends in them.
+  void range(double least, double most, bool without_least, const std::string& words);
+  void one_of(const std::vector<std::string>& words) { choices_ = words; }
+  // Asked before the rest, for its words say more.
+  void check(std::function<std::string(const std::string&)> complaint) { check_ = std::move(complaint); }
 
-// "a number more than 0"; "a whole number 1 to 1000". range: of it, may be "".
-std::string number_in_words(ValueKind kind, const std::string& range);
+  // "" or "is 'VALUE', expected EXPECTED". word: for the value, in the help.
+  [[nodiscard]] std::string complaint(const std::string& value, const std::string& word) const;
 
-// The check's own words become: is 'VALUE', expected EXPECTED, which may depend on the value.
-void say_expected(CLI::Validator& check, std::function<std::string(const std::string&)> expected);
+ private:
+  [[nodiscard]] bool fits(const std::string& value) const;
 
-// The option takes what is_number() says, and nothing else.
-void hold_to_number(CLI::Option& option, ValueKind kind, const std::string& expected);
-
-// The option takes no empty text. word: for what it takes.
-void hold_to_something(CLI::Option& option, const std::string& word);
+  ValueKind kind_;
+  double least_ = -std::numeric_limits<double>::infinity(), most_ = std::numeric_limits<double>::infinity();
+  bool without_least_ = false;
+  std::string range_;
+  std::vector<std::string> choices_;
+  std::function<std::string(const std::string&)> check_;
+};
 
 }  // namespace ifog::tools

@@ -2,43 +2,120 @@
 #include "tools/ifog/console/options/command.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
-#include <utility>
+#include <sstream>
+#include <string_view>
+#include <type_traits>
+
+#include "tools/ifog/console/options/checked_values.h"
 
 namespace ifog::tools {
 
-Option Option::required() const { return Option(*option_->required()); }
+namespace {
 
-Option Option::type_name(const std::string& word) const { return Option(*option_->type_name(word)); }
+// Texts that are no file. The same name is the same in every command.
+constexpr std::array<std::pair<std::string_view, const char*>, 9> kTexts = {{{"--axis", "NAME"},
+                                                                             {"--channel", "NAME"},
+                                                                             {"--filter", "NAME"},
+                                                                             {"--sensor", "NAME"},
+                                                                             {"--state", "NAME"},
+                                                                             {"--weights", "NAME"},
+                                                                             {"--to", "WHERE"},
+                                                                             {"NAME", "NAME"},
+                                                                             {"sensor", "NAME"}}};
 
-Option Option::shows_default() const { return Option(*option_->capture_default_str()); }
+template <typename T>
+struct ValueOf {
+  using type = T;
+};
+template <typename T>
+struct ValueOf<std::optional<T>> : ValueOf<T> {};
+template <typename T>
+struct ValueOf<std::vector<T>> : ValueOf<T> {};
 
-Option Option::group(const std::string& heading) const { return Option(*option_->group(heading)); }
-
-Option Option::delimiter(char between) const { return Option(*option_->delimiter(between)); }
-
-Option Option::one_value_each() const { return Option(*option_->allow_extra_args(false)); }
-
-Option Option::positive() const { return Option(*option_->check(CLI::PositiveNumber)); }
-
-Option Option::not_negative() const { return Option(*option_->check(CLI::NonNegativeNumber)); }
-
-Option Option::within(double least, double most) const {
-  return Option(*option_->check(CLI::Range(least, most)));
+// The word for its value where the command gives none, and what it is held to: by the type of the variable.
+template <typename T>
+Option ruled(CLI::Option* option) {
+  using Value = typename ValueOf<T>::type;
+  const ValueKind kind = std::is_same_v<Value, std::string> ? ValueKind::text
+                         : std::is_floating_point_v<Value>  ? ValueKind::number
+                         : std::is_signed_v<Value>          ? ValueKind::whole
+                                                            : ValueKind::count;
+  const std::string name = option->get_name(option->get_positional());
+  const auto text =
+      std::ranges::find(kTexts, std::string_view(name), [](const auto& each) { return each.first; });
+  option->type_name(kind == ValueKind::number ? "NUMBER"
+                    : kind != ValueKind::text ? "N"
+                    : text != kTexts.end()    ? text->second
+                                              : "FILE");
+  auto rule = std::make_shared<ValueRule>(kind);
+  option->check(
+      [rule, option](const std::string& value) { return rule->complaint(value, option->get_type_name()); });
+  return Option(*option, std::move(rule));
 }
 
-Option Option::within(int least, int most) const { return Option(*option_->check(CLI::Range(least, most))); }
+// "1e-9", "0.5", "1e12".
+std::string in_digits(double value) {
+  std::ostringstream out;
+  out << value;
+  std::string text = out.str();
+  for (const auto& [from, to] : {std::pair{"e+0", "e"}, {"e-0", "e-"}, {"e+", "e"}})
+    if (const std::size_t at = text.find(from); at != std::string::npos)
+      text.replace(at, std::string_view(from).size(), to);
+  return text;
+}
 
-Option Option::within(std::size_t least, std::size_t most) const {
-  return Option(*option_->check(CLI::Range(least, most)));
+}  // namespace
+
+Option Option::required() const { return Option(*option_->required(), rule_); }
+
+Option Option::type_name(const std::string& word) const { return Option(*option_->type_name(word), rule_); }
+
+Option Option::shows_default() const { return Option(*option_->capture_default_str(), rule_); }
+
+Option Option::group(const std::string& heading) const { return Option(*option_->group(heading), rule_); }
+
+Option Option::delimiter(char between) const { return Option(*option_->delimiter(between), rule_); }
+
+Option Option::one_value_each() const { return Option(*option_->allow_extra_args(false), rule_); }
+
+Option Option::ranged(double least, double most, bool without_least, const std::string& words) const {
+  rule_->range(least, most, without_least, words);
+  option_->description(option_->get_description() + "; " + words);
+  return *this;
+}
+
+Option Option::positive() const {
+  return ranged(0.0, std::numeric_limits<double>::infinity(), true, "more than 0");
+}
+
+Option Option::not_negative() const {
+  return ranged(0.0, std::numeric_limits<double>::infinity(), false, "0 or more");
+}
+
+Option Option::within(double least, double most) const {
+  return ranged(least, most, false, in_digits(least) + " to " + in_digits(most));
+}
+
+Option Option::within(int least, int most) const {
+  return ranged(least, most, false, std::to_string(least) + " to " + std::to_string(most));
 }
 
 Option Option::one_of(const std::vector<std::string>& words) const {
-  return Option(*option_->check(CLI::IsMember(words)));
+  rule_->one_of(words);
+  std::string shown;
+  for (const std::string& word : words) shown += (shown.empty() ? "" : "|") + word;
+  return type_name(shown);
 }
 
-Option Option::check(Complaint complaint) const { return Option(*option_->check(std::move(complaint))); }
+Option Option::check(Complaint complaint) const {
+  rule_->check(std::move(complaint));
+  return *this;
+}
 
 bool Option::given() const { return option_->count() > 0; }
 
@@ -48,13 +125,13 @@ Command Command::add_subcommand(const std::string& name, const std::string& help
 
 template <typename T>
 Option Command::add_option(const std::string& names, T& value, const std::string& help) const {
-  return Option(*command_->add_option(names, value, help));
+  return ruled<T>(command_->add_option(names, value, help));
 }
 
 template <typename T>
 Option Command::add_taken(const std::string& names, std::function<void(const T&)> take,
                           const std::string& help) const {
-  return Option(*command_->add_option_function<T>(names, take, help));
+  return ruled<T>(command_->add_option_function<T>(names, take, help));
 }
 
 Option Command::add_flag(const std::string& names, bool& value, const std::string& help) const {

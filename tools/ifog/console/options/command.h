@@ -3,9 +3,10 @@
 // alone reads: it is headers, and whatever includes them compiles all of the parser again.
 #pragma once
 
-#include <cstddef>
 #include <functional>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace CLI {
@@ -18,10 +19,15 @@ namespace ifog::tools {
 // "" or what is wrong with a value.
 using Complaint = std::function<std::string(const std::string& value)>;
 
-// Stands for an option of the command line, and lives no longer than that.
+// What an option takes, see checked_values.h.
+class ValueRule;
+
+// Stands for an option of the command line, and lives no longer than that. Its help and what is said of a wrong value
+// come from the same rule, so that they are in the same words.
 class Option {
  public:
-  explicit Option(CLI::Option& option) : option_(&option) {}
+  explicit Option(CLI::Option& option, std::shared_ptr<ValueRule> rule = nullptr)
+      : option_(&option), rule_(std::move(rule)) {}
 
   Option required() const;
   // The word for its value, in the help.
@@ -39,7 +45,7 @@ class Option {
   // Both ends allowed.
   Option within(double least, double most) const;
   Option within(int least, int most) const;
-  Option within(std::size_t least, std::size_t most) const;
+  // The help has them as a|b in the place of a word for the value.
   Option one_of(const std::vector<std::string>& words) const;
   Option check(Complaint complaint) const;
 
@@ -47,7 +53,10 @@ class Option {
   [[nodiscard]] bool given() const;
 
  private:
+  [[nodiscard]] Option ranged(double least, double most, bool without_least, const std::string& words) const;
+
   CLI::Option* option_;
+  std::shared_ptr<ValueRule> rule_;  // null: a flag
 };
 
 // Stands for a command, or for the program whose commands there are.

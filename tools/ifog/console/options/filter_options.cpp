@@ -3,15 +3,16 @@
 
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <type_traits>
+#include <vector>
 
 #include "drivers/ifog/quoted.h"
 #include "filters/rules/names.h"
 #include "filters/settings/filter_table.h"
 #include "tools/ifog/console/options/checked_values.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
 
 namespace ifog::tools {
 namespace {
@@ -27,32 +28,25 @@ std::string help(const FilterSetting& setting) {
   return ranged ? out + "; " + expected(setting) : out;
 }
 
-// "" or what is wrong with a name that another room than the table knows.
-std::string wrong_name(const FilterSetting& setting, const std::string& name) {
-  const std::string expected = expected_name(setting, name);
-  return expected.empty() ? "" : "is " + in_quotes(name) + ", expected " + expected;
+template <typename T>
+std::optional<SettingValue> value_in(const std::string& text) {
+  if constexpr (std::is_same_v<T, std::string>) return text;
+  if constexpr (std::is_integral_v<T>) return whole_in(text);
+  return number_in(text);
 }
 
-// A whole number may stand for one that is not; the rest of it the setting's row knows.
+// "" or what is wrong with the value. What has its name elsewhere than in the table is known there.
 template <typename T>
-std::string wrong_number(const FilterSetting& setting, const std::string& text) {
-  constexpr bool kWhole = std::is_integral_v<T>;
+std::string complaint(const FilterSetting& setting, const std::string& text) {
   FilterChoice ignored;
-  bool good = is_number(text, kWhole ? ValueKind::whole : ValueKind::number);
-  if constexpr (kWhole) {
-    good = good && whole_in(text) && choose(setting, *whole_in(text), ignored);
-  } else if constexpr (std::is_same_v<T, double>) {
-    good = good && choose(setting, *number_in(text), ignored);
-  }
-  return good ? "" : "is " + in_quotes(text) + ", expected " + expected(setting);
-}
-
-std::string refusal(const FilterSetting& setting, const std::string& value) {
-  return "is " + in_quotes(value) + ", expected " + expected(setting, value);
-}
-template <typename T>
-std::string refusal(const FilterSetting& setting, const T&) {
-  return "expected " + expected(setting);
+  const std::optional<SettingValue> value = value_in<T>(text);
+  std::string wrong;
+  if constexpr (std::is_same_v<T, std::string>) wrong = expected_name(setting, text);
+  // A list has one word a value, and its setting all of them.
+  const bool listed = std::is_same_v<T, std::vector<double>>;
+  if (wrong.empty() && !(value && (listed || choose(setting, *value, ignored))))
+    wrong = expected(setting, text);
+  return wrong.empty() ? "" : "is " + in_quotes(text) + ", expected " + wrong;
 }
 
 template <typename T>
@@ -69,16 +63,9 @@ Option add(const Command& command, const FilterSetting& setting, FilterChoice& c
     return command
         .add_taken<Read<T>>(
             setting.option,
-            [&setting, &choice](const Read<T>& value) {
-              if (!choose(setting, value, choice)) throw WrongUsage(setting.option, refusal(setting, value));
-            },
+            [&setting, &choice](const Read<T>& value) { static_cast<void>(choose(setting, value, choice)); },
             help(setting))
-        .check([&setting](const std::string& text) {
-          if constexpr (std::is_same_v<T, std::string>)
-            return wrong_name(setting, text);
-          else
-            return wrong_number<T>(setting, text);
-        });
+        .check([&setting](const std::string& text) { return complaint<T>(setting, text); });
   }
 }
 

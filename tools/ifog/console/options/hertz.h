@@ -2,16 +2,14 @@
 // A rate as people read it: a decimal, and of a slow one as many as it takes to see it.
 #pragma once
 
-#include <array>
-#include <cstdio>
 #include <string>
+
+#include "drivers/system/text.h"
 
 namespace ifog::tools {
 
 inline std::string in_hertz(double rate_hz) {
-  std::array<char, 40> text{};
-  std::snprintf(text.data(), text.size(), rate_hz > 0.0 && rate_hz < 1.0 ? "%.2g Hz" : "%.1f Hz", rate_hz);
-  return text.data();
+  return formatted(rate_hz > 0.0 && rate_hz < 1.0 ? "%.2g Hz" : "%.1f Hz", rate_hz);
 }
 
 }  // namespace ifog::tools

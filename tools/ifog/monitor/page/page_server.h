@@ -16,7 +16,7 @@ struct PageAddress {
   std::string host;
   int port = 0;
 };
-// Of [ADDRESS:]PORT, the address a numeric one, of IPv6 in brackets, or localhost; without it 127.0.0.1. Nothing: it is none.
+// Reads [ADDRESS:]PORT: the address is numeric, IPv6 in brackets, or localhost; 127.0.0.1 without it. Nothing: it is none.
 std::optional<PageAddress> page_address(const std::string& text);
 
 class PageServer {

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: Apache-2.0
+// Structs as JSON and back, by one list of their fields:
+//
+//   template <typename Io, Is<ModelName> T>
+//   void fields(Io& io, T& of) {
+//     io("identity", of.identity);
+//     io("sha256", of.sha256);
+//   }
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+namespace ifog::tools {
+
+template <typename T, typename Of>
+concept Is = std::same_as<std::remove_const_t<T>, Of>;
+
+// What is no number is null, which stands for no bound where a field may have none.
+class FieldsWriter {
+ public:
+  template <typename T>
+  void operator()(const char* key, const T& value) {
+    json[key] = of(value);
+  }
+  void or_unbounded(const char* key, double value) { (*this)(key, value); }
+  template <typename T>
+  void if_there(const char* key, const std::optional<T>& value) {
+    if (value) json[key] = of(*value);
+  }
+
+  template <typename T>
+  static nlohmann::ordered_json of(const T& value) {
+    if constexpr (requires(FieldsWriter io) { fields(io, value); }) {
+      FieldsWriter io;
+      fields(io, value);
+      return io.json;
+    } else if constexpr (std::floating_point<T>) {
+      return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
+    } else {
+      return value;
+    }
+  }
+  template <typename T>
+  static nlohmann::ordered_json of(const std::optional<T>& value) {
+    return value ? of(*value) : nlohmann::ordered_json(nullptr);
+  }
+  template <typename T>
+  static nlohmann::ordered_json of(const std::vector<T>& values) {
+    auto out = nlohmann::ordered_json::array();
+    for (const T& value : values) out.push_back(of(value));
+    return out;
+  }
+
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+};
+
+// Throws nlohmann::json::exception.
+class FieldsReader {
+ public:
+  explicit FieldsReader(const nlohmann::json& json) : json_(json) {}
+
+  template <typename T>
+  void operator()(const char* key, T& value) const {
+    read(json_.at(key), value);
+  }
+  void or_unbounded(const char* key, double& value) const {
+    const nlohmann::json& there = json_.at(key);
+    value = there.is_null() ? std::numeric_limits<double>::infinity() : there.get<double>();
+  }
+  template <typename T>
+  void if_there(const char* key, std::optional<T>& value) const {
+    if (json_.contains(key)) read(json_.at(key), value.emplace());
+  }
+
+  template <typename T>
+  static void read(const nlohmann::json& json, T& value) {
+    if constexpr (requires(const FieldsReader io) { fields(io, value); }) {
+      const FieldsReader io(json);
+      fields(io, value);
+    } else {
+      value = json.get<T>();
+    }
+  }
+  template <typename T>
+  static void read(const nlohmann::json& json, std::optional<T>& value) {
+    value.reset();
+    if (!json.is_null()) read(json, value.emplace());
+  }
+  template <typename T>
+  static void read(const nlohmann::json& json, std::vector<T>& values) {
+    values.clear();
+    for (const nlohmann::json& each : json) read(each, values.emplace_back());
+  }
+
+ private:
+  const nlohmann::json& json_;
+};
+
+template <typename T>
+nlohmann::ordered_json as_json(const T& value) {
+  return FieldsWriter::of(value);
+}
+
+template <typename T>
+T from_json(const nlohmann::json& json) {
+  T out{};
+  FieldsReader::read(json, out);
+  return out;
+}
+
+}  // namespace ifog::tools
