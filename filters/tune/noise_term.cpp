@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/tune/noise_term.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -122,18 +123,21 @@ class ArmaTerm final : public NoiseTerm {
                    std::span<double> out) const override {
     const std::vector<double> c = coefficients(theta);
     const double variance = std::exp(theta[0]);
-    for (std::size_t b = 0; b < out.size(); ++b) {
-      double ar = 1.0, ar_i = 0.0, ma = 1.0, ma_i = 0.0;
-      for (std::size_t i = 0; i < count(p_); ++i) {
-        ar -= c[i] * spectrum.cosine[i][b];
-        ar_i -= c[i] * spectrum.sine[i][b];
-      }
-      for (std::size_t i = 0; i < count(q_); ++i) {
-        ma += c[count(p_) + i] * spectrum.cosine[i][b];
-        ma_i += c[count(p_) + i] * spectrum.sine[i][b];
-      }
-      out[b] += variance * (ma * ma + ma_i * ma_i) / (ar * ar + ar_i * ar_i);
+    const auto bins = static_cast<Eigen::Index>(out.size());
+    const auto row = [&](const std::vector<double>& values) {
+      return Eigen::Map<const Eigen::ArrayXd>(values.data(), bins);
+    };
+    Eigen::ArrayXd ar = Eigen::ArrayXd::Ones(bins), ar_i = Eigen::ArrayXd::Zero(bins), ma = ar, ma_i = ar_i;
+    for (std::size_t i = 0; i < count(p_); ++i) {
+      ar -= c[i] * row(spectrum.cosine[i]);
+      ar_i -= c[i] * row(spectrum.sine[i]);
     }
+    for (std::size_t i = 0; i < count(q_); ++i) {
+      ma += c[count(p_) + i] * row(spectrum.cosine[i]);
+      ma_i += c[count(p_) + i] * row(spectrum.sine[i]);
+    }
+    Eigen::Map<Eigen::ArrayXd>(out.data(), bins) +=
+        variance * (ma.square() + ma_i.square()) / (ar.square() + ar_i.square());
   }
   [[nodiscard]] std::vector<double> parameters(std::span<const double> theta,
                                                double period_s) const override {
