@@ -77,7 +77,7 @@ NoiseTruth fitted_noise(const Series& rate) {
 // Of another capture than the noise: its own channels may well know what happened to it.
 bool foreign(const std::string& channel, const std::string& source) {
   if (source.starts_with("blueseis")) return channel != "other_gyro";
-  return !source.starts_with("rlg") || !channel.starts_with("accel_");
+  return !source.starts_with("rlg") || !channel.starts_with("pressure_");
 }
 
 struct Count {
@@ -116,8 +116,12 @@ Recordings recordings(const std::string& folder) {
   }
   for (std::size_t a = 0; a < 3; ++a)
     out.columns.emplace_back("flow_" + turned.axes[a] + "_lpm", resampled(turned, turned.rate_radps[a]));
+  // Without a reference nothing is traced to what senses motion: accelerations are borrowed as pressures, and
+  // rates of turn as flows.
   for (const ifog::CaptureColumn& c : vehicle.channels)
-    out.columns.emplace_back(c.name, resampled(vehicle, c.values));
+    out.columns.emplace_back(
+        c.name.starts_with("accel_") ? "pressure_" + c.name.substr(6, 1) + "_Pa" : c.name,
+        resampled(vehicle, c.values));
   out.columns.emplace_back("temperature_degC", table.channels[0].values);
   out.columns.emplace_back("flow_lpm", table.reference_rate_radps[0]);
   out.columns.emplace_back("other_gyro", low_passed(wander, 60.0, kStep_s));
@@ -191,9 +195,7 @@ Trial one_trial(int number, bool implant, const Recordings& from) {
   ifog::Capture c = piece(source, from, draw);
   const auto target = static_cast<std::size_t>(draw.below(static_cast<int>(c.channels.size())));
   const char* forms[] = {"linear", "rate", "lagged"};
-  std::string form = forms[draw.below(3)];
-  // The derivative of an acceleration is rotation, not an error: see candidates.cpp.
-  if (c.channels[target].name.starts_with("accel_") && form == "rate") form = "linear";
+  const std::string form = forms[draw.below(3)];
   Trial trial{source.name, implant ? form : "", implant ? c.channels[target].name : "", 0.0, false, false, 0,
               ""};
   if (implant) trial.sigma = implant_effect(c, c.channels[target].values, form, draw);
