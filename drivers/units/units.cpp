@@ -112,7 +112,10 @@ constexpr std::array kSpellings{
     Spelling{"\xD0\xB3\xD1\x80\xD0\xB0\xD0\xB4", "deg"},  // град
     Spelling{"\xD1\x80\xD0\xB0\xD0\xB4", "rad"},          // рад
     Spelling{"\xD1\x81", "s"},                            // с
-    Spelling{"\xE2\x80\xB2", "arcmin"},                   // the prime and the double prime
+    Spelling{"\xE3\xF0\xE0\xE4", "deg"},                  // the three in Windows' Cyrillic
+    Spelling{"\xF0\xE0\xE4", "rad"},
+    Spelling{"\xF1", "s"},
+    Spelling{"\xE2\x80\xB2", "arcmin"},  // the prime and the double prime
     Spelling{"\xE2\x80\xB3", "arcsec"},
     Spelling{"\"", "arcsec"},   // as typewriters have it
     Spelling{"\xC3\xA9", "e"},  // é

@@ -82,7 +82,7 @@ void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector
 }
 
 void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
-  auto cleaned = with(rate, leaps_in(rate, stretches({}, rate, {}), LeapOf::kPlaceholder, time_s, faults));
+  auto cleaned = with(rate, leaps_in(rate, stretches({}, rate, {}), LeapOf::kOneValue, time_s, faults));
   if (cleaned) rate = *std::move(cleaned);
 }
 

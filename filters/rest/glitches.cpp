@@ -126,12 +126,12 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
   for (const Stretch& part : parts) samples += part.size();
   // One in the shortest of records is no habit of its sensor yet.
   const std::size_t most = samples / kOneInAtMost + 1;
-  std::size_t end = 0;  // of the last one
+  std::size_t end = 0, various = 0;  // end: of the last one; various: samples that are no placeholder
   for_each_run(rate, parts, [&](const Run& run) {
     const double between = 0.5 * (run.before + run.after), away = std::abs(run.value - between);
-    const bool single =
-        of == LeapOf::kOneSample || (of == LeapOf::kPlaceholder && yardstick.is_placeholder(run.value));
-    if (run.length > kLongest || (run.length == 1 ? !single : of == LeapOf::kOneSample)) return;
+    const bool placeholder = of == LeapOf::kOneValue && yardstick.is_placeholder(run.value);
+    const bool wanted = placeholder || (run.length == 1) == (of == LeapOf::kOneSample);
+    if (run.length > kLongest || !wanted) return;
     if (!(away > kFar * yardstick.least()) || std::abs(run.after - run.before) >= 0.5 * away) return;
     const double deviation = yardstick.at(run.begin);
     if (!(deviation > 0.0) || away <= kFar * deviation) return;
@@ -141,9 +141,10 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
     if (out.count == 0) out.first = run.begin;
     out.count += run.length;
     out.most_times = std::max(out.most_times, away / deviation);
-    for (std::size_t i = run.begin; i < end && out.count <= most; ++i) out.few.push_back({i, between});
+    various += placeholder ? 0 : run.length;
+    for (std::size_t i = run.begin; i < end && various <= most; ++i) out.few.push_back({i, between});
   });
-  if (out.count > most) out.few.clear();
+  if (various > most) out.few.clear();
   return out;
 }
 

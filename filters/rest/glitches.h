@@ -22,16 +22,16 @@ struct Glitches {
   };
   std::size_t count = 0;
   std::size_t first = 0;  // sample; meaningful when count > 0
-  // All of them while they are few, at most one in a thousand samples; empty where there are more, which is
-  // how the sensor is.
+  // All of them while they are few, at most one in a thousand samples besides those of one value farthest from zero;
+  // empty where there are more, which is how the sensor is.
   std::vector<Leap> few;
   // The largest leap over the standard deviation of the noise, by the median of second differences.
   double most_times = 0.0;
 };
 
-// One sample; or two to seven of one value, as a placeholder has, wherever the sensor moved; or these and single
-// ones of the value farthest from zero where the record has that more than once, as with -9999 now and then.
-enum class LeapOf { kOneSample, kOneValue, kPlaceholder };
+// One sample; or, wherever the sensor moved, what a placeholder looks like: two to seven of one value, or any of the
+// value farthest from zero where the record has that more than once, as with -9999 now and then.
+enum class LeapOf { kOneSample, kOneValue };
 
 // parts: without holes, and for one sample at rest, as a blow is one too. What leaps stands between two that
 // differ by less than half of the leap, by more than 30 standard deviations: of Gaussian noise not one in

@@ -59,14 +59,13 @@ std::size_t format_candump_line(const ifog_can_frame& frame, std::string_view in
 // first never are.
 class CandumpClock {
  public:
-  CandumpClock() = default;
-  // differences: known from a log's beginning.
-  explicit CandumpClock(bool differences) : differences_(differences) {}
+  // differences: where a log's beginning shows them.
+  explicit CandumpClock(bool differences = false) : differences_(differences) {}
   std::int64_t time_ns(const CandumpEntry& entry) noexcept;
   [[nodiscard]] bool differences() const { return differences_; }
 
  private:
-  bool differences_ = false;
+  bool differences_;
   std::int64_t last_stamp_ns_ = 0;
   std::int64_t now_ns_ = 0;
 };

@@ -7,9 +7,7 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/columns/column_times.h"
 #include "drivers/capture/columns/column_words.h"
-#include "drivers/capture/columns/rates_by_values.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"
@@ -23,42 +21,14 @@ constexpr std::size_t kMostShown = 16;  // columns, likewise
 // By sensor: columns whose names differ by the axis only belong together.
 using Sensors = std::map<std::string, std::vector<RateCandidate>>;
 
-bool has_any(const Words& words, std::initializer_list<std::string_view> wanted) {
-  return std::any_of(wanted.begin(), wanted.end(), [&](std::string_view word) { return words.has(word); });
-}
-
-// What follows from a rate, describes it or belongs to another quantity is no rate, whatever else its name
-// says.
-bool excluded(const Words& words) {
-  return has_any(words,
-                 {"bias",        "offset",       "range",    "std",         "stddev",       "sigma",
-                  "var",         "variance",     "cov",      "covariance",  "noise",        "temp",
-                  "temperature", "id",           "dt",       "status",      "state",        "count",
-                  "counter",     "num",          "flag",     "flags",       "valid",        "clip",
-                  "clipping",    "quality",      "scale",    "sf",          "min",          "max",
-                  "mean",        "avg",          "rms",      "err",         "error",        "residual",
-                  "limit",       "threshold",    "gain",     "timestamp",   "tmp",          "sts",
-                  "period",      "relative",     "sample",   "sampling",    "update",       "frame",
-                  "odr",         "integral",     "accel",    "acc",         "acceleration", "accelerometer",
-                  "mag",         "magnetometer", "denoised", "compensated", "innovation",   "command",
-                  "cmd",         "setpoint",     "desired",  "target",      "drift"});
-}
-
-bool is_reference(const Words& words) {
-  return has_any(words, {"reference", "ref", "truth", "true", "groundtruth", "gt"});
-}
-
 // The turn within a sample: delta_angle, dtheta.
 bool speaks_of_increment(const Words& words) {
-  return has_any(words, {"dtheta", "dangle", "dang"}) ||
-         (has_any(words, {"delta", "inc", "increment"}) && has_any(words, {"angle", "theta", "ang"}));
+  return words.has("dtheta") || words.has("dangle") || words.has("dang") ||
+         (words.have(Role::step) && words.have(Role::angle));
 }
 
 bool speaks_of_rate(const Words& words) {
-  const bool speed = has_any(words, {"rate", "speed", "velocity", "vel"});
-  return has_any(words, {"gyro", "gyr", "gyros", "gyroscope", "omega", "angvel", "angrate", "angularvelocity",
-                         "angularrate", "rotationrate", "turnrate", "turnspeed", "gyroskop", "fog"}) ||
-         (speed && has_any(words, {"angular", "ang", "rotation", "rot", "turn", "body"})) ||
+  return words.have(Role::rate) || (words.have(Role::speed) && words.have(Role::turn)) ||
          (words.first() == "rate" && !words.has("hz")) || (words.first() == "raw" && words.size() <= 2) ||
          // gx, wz; w_RS_S_x of kalibr.
          (!words.axis.empty() && (words.first() == "w" || (words.first() == "g" && words.size() == 1)));
@@ -79,7 +49,7 @@ std::string rate_unit(const Words& words, const std::string& unit) {
 
 // Whether a column is a rate at all; the candidate's place is the caller's.
 std::optional<RateCandidate> candidate_of(const Words& words, const std::string& unit) {
-  if (excluded(words)) return std::nullopt;
+  if (words.have(Role::no_rate)) return std::nullopt;
   const bool rate = angle_unit(unit, true, false).has_value(),
              angle = angle_unit(unit, false, false).has_value();
   if (!unit.empty() && !rate && !angle) return std::nullopt;
@@ -88,21 +58,9 @@ std::optional<RateCandidate> candidate_of(const Words& words, const std::string&
   RateCandidate found;
   found.unit = rate_unit(words, unit);
   found.axis = words.axis;
-  found.reference = is_reference(words);
+  found.reference = words.have(Role::truth);
   found.increment = speaks_of_increment(words);
   return found;
-}
-
-// In letters that can be typed: deg/s for a degree sign of another encoding than UTF-8.
-std::string typed(const std::string& unit) {
-  if (printable(unit, unit.size()) == unit) return unit;
-  for (const char* const known : {"deg/s", "deg", "deg/h", "deg/min", "degC", "us"}) {
-    const auto by = convert_unit(unit, known);
-    const auto angle = angle_unit(unit, false, false);
-    if ((by && by->scale == 1.0 && by->offset == 0.0) || (angle && angle == angle_unit(known, false, false)))
-      return known;
-  }
-  return unit;
 }
 
 std::string unit_of(const TableSample& table, std::size_t place) {
@@ -268,6 +226,17 @@ bool is_unit_unknown(const RateCandidate& rate) { return rate.unit.empty(); }
 
 }  // namespace
 
+std::string typed(const std::string& unit) {
+  if (printable(unit, unit.size()) == unit) return unit;
+  for (const char* const known : {"deg/s", "rad/s", "deg", "deg/h", "degC", "s", "us"}) {
+    const auto by = convert_unit(unit, known);
+    const auto angle = angle_unit(unit, false, false);
+    if ((by && by->scale == 1.0 && by->offset == 0.0) || (angle && angle == angle_unit(known, false, false)))
+      return known;
+  }
+  return unit;
+}
+
 std::string TableSample::header_of(std::size_t place) const {
   const std::string& name = names[place];
   const bool alone = !name.empty() && std::count(names.begin(), names.end(), name) == 1;
@@ -349,7 +318,10 @@ std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayou
         others.push_back({"other_" + capture_name(rate), header, ""});
     }
     if (sibling == nullptr) continue;
-    for (CsvColumn& other : others) other.unit = sibling->unit.empty() ? "rad/s" : sibling->unit;
+    for (CsvColumn& other : others) {
+      other.unit = sibling->unit.empty() ? "rad/s" : sibling->unit;
+      other.scale = sibling->scale;
+    }
     return others;
   }
   return {};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the columns of a foreign table are to a capture, by their names, units and first values. The same
-// rules make the reading and the suggestion, so that what is suggested is what reads the file.
+// rules make the reading and the suggestion, so that what is suggested is what reads the file. Below: which column is
+// the time, and in what unit; and what the first values tell where a name does not: gravity, counts, an angle.
 #pragma once
 
 #include <cstddef>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "drivers/capture/columns/csv_layout.h"
+#include "drivers/capture/times/date_time.h"
 
 namespace ifog {
 
@@ -53,5 +55,67 @@ std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayou
 
 // "time 'Time (s)' in s, rate_x 'Gyroscope X (deg/s)' in deg/s", for the line that says how a file is read.
 std::string in_words(const CsvLayout& layout);
+
+// The columns that the time may be, most likely alone: one, where one is more likely than all others. Without a unit
+// where neither name nor values tell it.
+std::vector<CsvTime> times_of(const TableSample& table);
+
+// A unit in letters that can be typed: deg/s for a degree sign of another encoding than UTF-8.
+std::string typed(const std::string& unit);
+
+// A column of whole numbers one apart, which no time is: "Sample No."; "" where there is none.
+std::string counting_column(const TableSample& table);
+
+// Not the same in all of these rows, and numbers.
+bool varies(const std::vector<std::string>& cells);
+// Goes from row to row by little of what it has come through, as an angle does and white noise does not.
+bool is_smooth(const std::vector<std::string>& cells);
+// Whole numbers, of several values.
+bool is_whole(const std::vector<std::string>& cells);
+
+// Digits behind the point that a whole number in the second column of "sec+nsec" stands for: 9 for
+// nanoseconds, by its name or its values; 0 where the two are a date and a time of day.
+int digits_of_second(const std::string& name, const std::vector<std::string>& cells);
+
+// What to say of a time column of whole numbers: one apart they are a count of rows, unless their unit is given;
+// further apart and without decimals they are more often milliseconds than samples of a second each. It is
+// said, not changed. "" for nothing.
+std::string whole_times_notice(const TableSample& table, std::size_t place, const CsvTime& time);
+
+// The order of dates as 05/06/2023, which a day above 12 tells; nothing where it is unknown; either of all
+// other times.
+std::optional<DateOrder> date_order(const std::vector<std::string>& cells);
+
+// A stated sample rate, as loggers write it above the table: "Output Rate,200.0"; nothing where none is.
+std::optional<double> stated_rate_hz(const std::vector<std::string>& comments);
+
+// What a gyro's count stands for, scale and unit, as loggers write it there: "gscale,0.00122" of the gcsv format of
+// Gyroflow, "Gyro_SF=0.0151515" of Epson's logger. No unit where none does.
+CsvColumn stated_scale(const std::vector<std::string>& comments);
+
+// A column that may be a rate.
+struct RateCandidate {
+  std::size_t place = 0;
+  std::string unit;  // "" where it is unknown
+  std::string axis;
+  double scale = 1.0;  // of counts
+  bool reference = false, increment = false;
+};
+
+using Rates = std::vector<RateCandidate>;
+
+// Three columns as long together as gravity are an accelerometer at rest: in m/s², g, mg or, of 16 bits and a
+// range of 2, 4, 8 or 16 g, counts.
+bool is_gravity(const TableSample& table, const Rates& columns);
+
+// Whole numbers, as a converter counts.
+bool are_counts(const TableSample& table, const Rates& rates);
+
+// What a rate's column may hold where neither its name nor a row of units tells; the likeliest first.
+std::vector<std::string> units_of(const TableSample& table, const Rates& rates);
+
+// Columns that have no names, without those of the time: one of numbers is the rate, and three next to each
+// other may be its axes.
+std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<CsvTime>& time);
 
 }  // namespace ifog

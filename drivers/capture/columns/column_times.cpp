@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/columns/column_times.h"
+#include "drivers/capture/columns/column_roles.h"
 
 #include <algorithm>
 #include <array>
@@ -30,7 +30,8 @@ std::optional<double> stated(const std::vector<std::string>& comments,
                              std::initializer_list<std::string_view> names) {
   constexpr std::size_t kBetween = 12;  // characters, as in ": "
   for (const std::string& comment : comments) {
-    const std::string text = lower(comment);
+    std::string text = lower(comment);
+    std::erase_if(text, [](char c) { return c == ' ' || c == '_'; });
     for (const std::string_view name : names) {
       const std::size_t at = text.find(name);
       if (at == std::string::npos) continue;
@@ -125,47 +126,40 @@ std::string unit_by_values(const std::vector<double>& values) {
 // How well a name says that a column is the time of the rows; 0: not at all.
 int rank_of(const std::string& name, const Words& words) {
   if (name == "time_s") return 5;
-  for (const std::string_view not_time :
-       {"dt",     "relative", "period", "delta",  "integral", "id",    "status",   "valid",
-        "offset", "zone",     "delay",  "age",    "exposure", "week",  "accuracy", "interval",
-        "flags",  "tflags",   "hour",   "minute", "year",     "month", "nano"})
-    if (words.has(not_time)) return 0;
+  if (words.have(Role::no_time)) return 0;
   // UTC_Day, UTC_Second: a part of a date that is in no column alone.
   if (words.first() == "utc" && (words.has("day") || words.has("second"))) return 0;
-  constexpr std::array<std::string_view, 19> kTimes{
-      "time", "timestamp", "stamp",   "t",    "utc",  "datetime",       "date",
-      "zeit", "seconds",   "elapsed", "tow",  "sow",  "sampletimefine", "timeusec",
-      "secs", "millis",    "micros",  "gpst", "nanos"};
-  const auto is_time = [&](const std::string& word) {
-    return word.ends_with("time") || word.ends_with("stamp") ||
-           std::find(kTimes.begin(), kTimes.end(), word) != kTimes.end();
+  const auto is_time = [](const std::string& word) {
+    return word.ends_with("time") || word.ends_with("stamp") || says(word, Role::time);
   };
   if (words.has("header") && words.has("stamp")) return 4;  // when it was measured, as ROS has it
   if (!words.words.empty() && std::all_of(words.words.begin(), words.words.end(), is_time)) return 3;
   return std::any_of(words.words.begin(), words.words.end(), is_time) ? 2 : 0;
 }
 
+bool are_dates(const std::vector<std::string>& cells) {
+  return !cells.empty() &&
+         std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return is_date(cell); });
+}
+
+// By the row of units or by the name.
+std::string unit_stated(const TableSample& table, std::size_t place) {
+  const std::string stated = table.stated_unit(place);
+  return time_unit(stated) ? stated : unit_in_name(table.names[place]);
+}
+
 std::string time_unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
-  if (time_unit(table.stated_unit(place))) return table.stated_unit(place);
-  const std::string named = unit_in_name(table.names[place]);
-  if (time_unit(named)) return named;
+  if (const std::string named = unit_stated(table, place); time_unit(named)) return typed(named);
   const std::vector<double> values = numbers_in(table.cells[place]);
   if (const std::string stated = unit_by_stated_rate(table, mean_step(values)); !stated.empty())
     return stated;
   if (const auto scale = stated(table.comments, {"tscale"})) return shortest(*scale) + "s";  // gcsv
   if (words.has("sample") && words.has("time") && words.has("fine"))
     return "100us";  // Xsens: a clock of 10 kHz
-  constexpr std::array<std::pair<std::string_view, const char*>, 9> kWords{{{"millis", "ms"},
-                                                                            {"ms", "ms"},
-                                                                            {"micros", "us"},
-                                                                            {"us", "us"},
-                                                                            {"nanos", "ns"},
-                                                                            {"ns", "ns"},
-                                                                            {"sec", "s"},
-                                                                            {"secs", "s"},
-                                                                            {"seconds", "s"}}};
-  for (const auto& [word, unit] : kWords)
-    if (words.has(word)) return unit;
+  constexpr std::array<std::pair<const char*, Role>, 4> kUnits{
+      {{"ms", Role::ms}, {"us", Role::us}, {"ns", Role::ns}, {"s", Role::s}}};
+  for (const auto& [unit, role] : kUnits)
+    if (words.have(role)) return unit;
   return "";
 }
 
@@ -195,8 +189,7 @@ bool is_fraction_of_second(const TableSample& table, std::size_t place, const st
 std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
   const std::vector<std::string> cells = filled(table.cells[place]);
   if (cells.empty() && !table.cells[place].empty()) return std::nullopt;
-  const bool dated = !cells.empty() && std::all_of(cells.begin(), cells.end(),
-                                                   [](const std::string& cell) { return is_date(cell); });
+  const bool dated = are_dates(cells);
   // The day of all rows is no time of them; a time of day in whole seconds may be that of all rows looked at.
   if (dated && cells.size() > 1 && cells.front() == cells.back() && cells[0].find(':') == std::string::npos)
     return std::nullopt;
@@ -279,7 +272,11 @@ std::vector<CsvTime> times_of(const TableSample& table) {
   int rank = 1;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
-    const int here = table.named ? rank_of(table.names[i], words) : 1;
+    int here = table.named ? rank_of(table.names[i], words) : 1;
+    // Names of other languages: a unit of time, or dates, say it as well.
+    if (here == 0 && !words.have(Role::no_time) &&
+        (time_unit(unit_stated(table, i)) || are_dates(table.cells[i])))
+      here = 1;
     if (here < rank) continue;
     const auto found = candidate_at(table, i, words);
     if (!found || (!table.named && !best.empty())) continue;
@@ -374,9 +371,8 @@ std::optional<DateOrder> date_order(const std::vector<std::string>& cells) {
 }
 
 std::optional<double> stated_rate_hz(const std::vector<std::string>& comments) {
-  const auto rate_hz = stated(comments, {"output rate", "sample rate", "sampling rate", "data rate",
-                                         "sample frequency", "sampling frequency", "outputrate",
-                                         "sample_rate", "sampling_rate", "samplerate", "update rate"});
+  const auto rate_hz = stated(comments, {"outputrate", "samplerate", "samplingrate", "datarate", "updaterate",
+                                         "samplefrequency", "samplingfrequency"});
   return rate_hz && *rate_hz <= 1e6 ? rate_hz : std::nullopt;
 }
 
@@ -384,7 +380,7 @@ CsvColumn stated_scale(const std::vector<std::string>& comments) {
   CsvColumn of;
   if (const auto gyroflow = stated(comments, {"gscale"}))
     of.scale = *gyroflow, of.unit = "rad/s";
-  else if (const auto epson = stated(comments, {"gyro_sf"}))
+  else if (const auto epson = stated(comments, {"gyrosf"}))
     of.scale = *epson, of.unit = "deg/s";
   return of;
 }

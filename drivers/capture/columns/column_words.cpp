@@ -12,6 +12,41 @@
 namespace ifog {
 namespace {
 
+// By role, each word between blanks. speed is a rate's where a word of turning stands with it; glued words may have an
+// axis written together with them (xgyro, wx); step stands before an angle: the turn within a sample; no_time is of
+// a time, but not of that of the rows; one numbers or names one of several sensors.
+constexpr std::array<std::pair<Role, std::string_view>, 15> kWords{{
+    {Role::rate,
+     " gyro gyr gyros gyroscope gyroskop omega angvel angrate angularvelocity angularrate rotationrate "
+     "turnrate turnspeed fog "},
+    {Role::speed, " rate speed velocity vel "},
+    {Role::turn, " angular ang rotation rot turn body "},
+    {Role::glued,
+     " gyro gyr gyroscope omega rate angvel angrate w g angularvelocity angularrate rotationrate dtheta "
+     "dangle "},
+    // What follows from a rate, describes it or belongs to another quantity is no rate, whatever else it is called.
+    {Role::no_rate,
+     " bias offset range std stddev sigma var variance cov covariance noise temp temperature id dt status "
+     "state count counter num flag flags valid clip clipping quality scale sf min max mean avg rms err "
+     "error residual limit threshold gain timestamp tmp sts period relative sample sampling update frame "
+     "odr integral accel acc acceleration accelerometer mag magnetometer denoised compensated innovation "
+     "command cmd setpoint desired target drift "},
+    {Role::truth, " reference ref truth true groundtruth gt "},
+    {Role::step, " delta inc increment "},
+    {Role::angle, " angle theta ang "},
+    {Role::time,
+     " time timestamp stamp t utc datetime date zeit seconds elapsed tow sow sampletimefine timeusec secs "
+     "millis micros nanos gpst "},
+    {Role::no_time,
+     " dt relative period delta integral id status valid offset zone delay age exposure week accuracy "
+     "interval flags tflags hour minute year month nano "},
+    {Role::ms, " millis ms "},
+    {Role::us, " micros us "},
+    {Role::ns, " nanos ns "},
+    {Role::s, " sec secs seconds "},
+    {Role::one, " id sensor device instance topic i imu "},
+}};
+
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_upper(char c) { return std::isupper(static_cast<unsigned char>(c)) != 0; }
@@ -68,18 +103,12 @@ std::vector<std::string> split(const std::string& text) {
 
 // An axis that is written together with a word of a rate: xgyro, gyrox, wx.
 std::optional<std::string> glued_axis(std::string& word) {
-  constexpr std::array<std::string_view, 14> kWords{
-      "gyro", "gyr", "gyroscope",       "omega",       "rate",         "angvel", "angrate",
-      "w",    "g",   "angularvelocity", "angularrate", "rotationrate", "dtheta", "dangle"};
-  const auto known = [&](const std::string& rest) {
-    return std::find(kWords.begin(), kWords.end(), rest) != kWords.end();
-  };
   if (word.size() < 2) return std::nullopt;
   const auto is_axis = [](char c) { return c >= 'x' && c <= 'z'; };
   std::string rest = word.substr(0, word.size() - 1), axis = word.substr(word.size() - 1);
-  if (!is_axis(axis[0]) || !known(rest)) {
+  if (!is_axis(axis[0]) || !says(rest, Role::glued)) {
     axis = word.substr(0, 1), rest = word.substr(1);
-    if (!is_axis(axis[0]) || !known(rest)) return std::nullopt;
+    if (!is_axis(axis[0]) || !says(rest, Role::glued)) return std::nullopt;
   }
   word = rest;
   return axis;
@@ -102,6 +131,12 @@ std::string axis_of_turn(std::string& word) {
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return text;
+}
+
+bool says(std::string_view word, Role role) {
+  const auto* const words =
+      std::find_if(kWords.begin(), kWords.end(), [role](const auto& each) { return each.first == role; });
+  return words->second.find(" " + std::string(word) + " ") != std::string_view::npos;
 }
 
 Words::Words(const std::string& header) {
@@ -133,6 +168,11 @@ Words::Words(const std::string& header) {
 
 bool Words::has(std::string_view word) const {
   return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+bool Words::have(Role role) const {
+  return std::any_of(words.begin(), words.end(),
+                     [role](const std::string& word) { return says(word, role); });
 }
 
 }  // namespace ifog

@@ -12,6 +12,10 @@ namespace ifog {
 // In small letters.
 [[nodiscard]] std::string lower(std::string text);
 
+// What a word says of a column; the words of each role, and what the role is, stand in column_words.cpp.
+enum class Role { rate, speed, turn, glued, no_rate, truth, step, angle, time, no_time, ms, us, ns, s, one };
+[[nodiscard]] bool says(std::string_view word, Role role);
+
 struct Words {
   explicit Words(const std::string& header);
 
@@ -21,6 +25,7 @@ struct Words {
   std::string text;  // the name without its unit, as a column's name may be: letters, digits, "_"
 
   [[nodiscard]] bool has(std::string_view word) const;
+  [[nodiscard]] bool have(Role role) const;  // one of them at least
   [[nodiscard]] std::string_view first() const { return words.empty() ? std::string_view() : words.front(); }
   [[nodiscard]] std::size_t size() const { return words.size(); }
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <string_view>
+#include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/driver.h"
@@ -18,12 +19,7 @@ namespace {
 constexpr double kMostTime_s = 4.6e9;
 constexpr double kMostAngle_rad = 1e9;  // beyond, a float32 resolves 64 rad
 
-struct OfUnit {
-  std::string_view unit;
-  Measurable range;
-};
-
-constexpr std::array<OfUnit, 6> kUnits = {{
+constexpr std::array<std::pair<std::string_view, Measurable>, 6> kUnits = {{
     {"degC", {-273.15, 3000.0}},  // absolute zero; a pyrometer
     {"mps2", {-5e5, 5e5}},        // what a shell is launched with
     {"V", {-1e6, 1e6}},           // high-voltage lines
@@ -46,11 +42,11 @@ Measurable measurable(const std::string& column) {
   if (is_rate_column(column)) return {-IFOG_MAX_RATE, IFOG_MAX_RATE};
   const std::string unit = unit_in_name(column);
   if (unit.empty()) return {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE};
-  for (const OfUnit& known : kUnits) {
-    const auto conversion = convert_unit(known.unit, unit);
+  for (const auto& [known, range] : kUnits) {
+    const auto conversion = convert_unit(known, unit);
     if (!conversion) continue;
     const auto converted = [&](double value) { return value * conversion->scale + conversion->offset; };
-    return {converted(known.range.least), converted(known.range.most)};
+    return {converted(range.least), converted(range.most)};
   }
   return {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE};
 }

@@ -2,16 +2,14 @@
 #include "drivers/capture/csv/csv_header.h"
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
-#include <functional>
-#include <numeric>
 #include <set>
 #include <stdexcept>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/column_roles.h"
-#include "drivers/capture/columns/column_times.h"
 #include "drivers/capture/columns/column_words.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
@@ -38,16 +36,15 @@ std::size_t place_of(const std::string& wanted, const std::vector<std::string>& 
               listed(names));
 }
 
-bool starts_with_letter(const std::string& cell) {
-  return !cell.empty() && ((cell[0] >= 'a' && cell[0] <= 'z') || (cell[0] >= 'A' && cell[0] <= 'Z'));
-}
-
-// The name that is a gyro's among those of several sensors, else the first.
-std::set<std::string>::const_iterator the_gyro(const std::set<std::string>& names) {
-  const auto found = std::find_if(names.begin(), names.end(), [](const std::string& name) {
-    return name.find("yro") != std::string::npos || name.find("GYR") != std::string::npos;
-  });
-  return found == names.end() ? names.begin() : found;
+// The name that is a gyro's among those of several sensors; "" where none is alone in that.
+std::string the_gyro(const std::set<std::string>& names) {
+  std::string found;
+  for (const std::string& name : names)
+    if (lower(name).find("gyr") != std::string::npos) {
+      if (!found.empty()) return "";
+      found = name;
+    }
+  return found;
 }
 
 // The options of each reading, where none of them is taken.
@@ -75,11 +72,9 @@ class Chooser {
 
   CsvHeader choose() {
     header_.cells = names_;
+    if (header_.layout.only_header.empty()) look_what_alternates();
+    if (!header_.layout.only_header.empty()) keep_only(place(header_.layout.only_header));
     choose_columns();
-    if (!header_.layout.only_header.empty())
-      header_.only_place = place(header_.layout.only_header);
-    else
-      say_what_alternates();
     return std::move(header_);
   }
 
@@ -89,25 +84,42 @@ class Chooser {
   }
   [[noreturn]] void fail(const std::string& what) const { fail_at(path_, line_, what); }
 
-  // Rows of several sensors in turn, which a column numbers or names.
-  void say_what_alternates() {
+  // Rows of several sensors in turn, which a column numbers or names: where one name is a gyro's, only its are read.
+  void look_what_alternates() {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const Words words(names_[i]);
       const std::vector<std::string>& cells = form_.sample.cells[i];
-      const bool is_text = std::all_of(cells.begin(), cells.end(),
-                                       [](const std::string& cell) { return starts_with_letter(cell); });
-      if (!is_text && !words.has("id") && !words.has("sensor") && !words.has("device") &&
-          !words.has("instance") && !words.has("topic") && !words.has("i") && !words.has("imu"))
-        continue;
+      const bool is_text = std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
+        return std::isalpha(static_cast<unsigned char>(cell.c_str()[0])) != 0;
+      });
+      if (!is_text && !words.have(Role::one)) continue;
       const std::set<std::string> values(cells.begin(), cells.end());
-      const auto changes = std::inner_product(cells.begin(), cells.empty() ? cells.end() : cells.end() - 1,
-                                              cells.empty() ? cells.begin() : cells.begin() + 1,
-                                              std::size_t{0}, std::plus<>(), std::not_equal_to<>());
-      if (values.size() < 2 || values.size() > 8 || 2 * changes < cells.size()) continue;
-      header_.notices.push_back(path_ + ": " + in_quotes(names_[i]) + " is " +
-                                listed({values.begin(), values.end()}) +
-                                " in turn: rows of several sensors; one of them: --only " +
-                                shell_word(names_[i] + "=" + *the_gyro(values)));
+      std::size_t changes = 0;
+      for (std::size_t row = 1; row < cells.size(); ++row) changes += cells[row] != cells[row - 1] ? 1 : 0;
+      const std::string gyro = the_gyro(values);
+      if (values.size() < 2 || values.size() > 8 || (gyro.empty() && 2 * changes < cells.size())) continue;
+      const std::string said = path_ + ": " + in_quotes(names_[i]) + " is " +
+                               listed({values.begin(), values.end()}) + " in turn: ";
+      const std::string& other = *values.begin() == gyro ? *values.rbegin() : *values.begin();
+      const std::string option = "--only " + shell_word(form_.sample.header_of(i) + "=" + other);
+      if (gyro.empty()) {
+        header_.notices.push_back(said + "rows of several sensors; one of them: " + option);
+        continue;
+      }
+      header_.notices.push_back(said + "only rows of " + in_quotes(gyro) + " are read; others: " + option);
+      header_.layout.only_header = form_.sample.header_of(i);
+      header_.layout.only_value = gyro;
+      return;
+    }
+  }
+
+  // Of the first rows those that are read say what the columns are.
+  void keep_only(std::size_t place) {
+    header_.only_place = place;
+    const std::vector<std::string> which = form_.sample.cells[place];
+    for (std::vector<std::string>& cells : form_.sample.cells) {
+      std::size_t row = 0;
+      std::erase_if(cells, [&](const std::string&) { return which[row++] != header_.layout.only_value; });
     }
   }
 
@@ -184,6 +196,16 @@ class Chooser {
     return column.angle_rad() || convert_unit(column.unit, column.own_unit()) ? column.unit : "";
   }
 
+  // What reads a voltage; "" where no column is one.
+  [[nodiscard]] std::string volts() const {
+    for (std::size_t i = 0; i < names_.size(); ++i)
+      if (const std::string unit = form_.sample.stated_unit(i) + unit_in_name(names_[i]);
+          convert_unit(unit, "V") || lower(unit).starts_with("volt"))
+        return "; a voltage with the scale before the unit: --column " +
+               shell_word("rate_x_radps=" + form_.sample.header_of(i) + ":0.05deg/s");
+    return "";
+  }
+
   // What was not asked for, as the names have it.
   void take_reading() {
     const Readings found = readings_of(form_.sample, header_.layout);
@@ -195,7 +217,8 @@ class Chooser {
     if (found.ways.empty() && form_.sample.named)
       fail("no rate column among " + listed(names_) +
            ", expected 'rate_radps' or 'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of "
-           "these names");
+           "these names" +
+           volts());
     fail(
         (form_.sample.named
              ? ""

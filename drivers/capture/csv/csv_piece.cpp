@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/csv/csv_piece.h"
+#include "drivers/capture/csv/csv_header.h"
 
 #include <algorithm>
 #include <array>
@@ -8,6 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/capture/checks/row_checks.h"
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/files/input_file.h"

@@ -97,6 +97,7 @@ std::string stamp_alone(std::string_view line) {
 
 // Numbers of a line, each with the text before it.
 struct Values {
+  std::string_view begin;  // of the line, before the first number
   std::vector<std::string> labels;
   std::vector<std::string_view> numbers;
 };
@@ -136,6 +137,7 @@ Values values_in(std::string_view line) {
       ++at;
       continue;
     }
+    if (out.numbers.empty()) out.begin = line.substr(0, at);
     out.labels.push_back(label_in(line.substr(behind, at - behind)));
     out.numbers.push_back(line.substr(at, end - at));
     at = behind = end;
@@ -188,6 +190,7 @@ LineForm::LineForm(std::string_view beginning) {
   Lines lines(beginning);
   std::size_t before = 0, alone = 0, looked = 0, alike = 0;
   std::vector<std::string> labels;
+  std::map<std::string, std::size_t> begins;  // of lines with labels
   for (std::string_view line; lines.next(line);) {
     if (trimmed(line).empty()) continue;
     ++looked;
@@ -198,7 +201,9 @@ LineForm::LineForm(std::string_view beginning) {
       ++alone;
     }
     Values values = values_in(line);
-    if (alike >= kAlike || names_by(values.labels).empty()) continue;
+    if (names_by(values.labels).empty()) continue;
+    ++begins[lower(std::string(values.begin))];
+    if (alike >= kAlike) continue;
     alike = values.labels == labels ? alike + 1 : 1;
     labels = std::move(values.labels);
   }
@@ -208,6 +213,11 @@ LineForm::LineForm(std::string_view beginning) {
   if (alike < kAlike) return;
   labels_ = std::move(labels);
   names_ = names_by(labels_);
+  // Lines of several sensors that differ in their beginning only: those of the gyro are read.
+  const auto gyro = std::find_if(begins.begin(), begins.end(), [](const auto& each) {
+    return each.second >= kAlike && each.first.find("gyr") != std::string::npos;
+  });
+  if (begins.size() > 1 && gyro != begins.end()) begin_ = gyro->first;
   if (stamps_ != Stamps::none) names_.insert(names_.begin(), kStampName);
 }
 
@@ -244,6 +254,7 @@ void LineForm::append_row(std::string_view line, std::string& out) {
   const bool header = labels_.empty() && values.numbers.empty();
   if (stamps_ != Stamps::none && stamp_.empty() && !header) return append_other();
   if (!labels_.empty() && values.labels != labels_) return append_other();
+  if (!begin_.empty() && lower(std::string(values.begin)) != begin_) return append_other();
   if (stamps_ != Stamps::none) out += header ? kStampName : stamp_;
   if (labels_.empty()) {
     const std::size_t separator = rest.find_first_of(",;\t");

@@ -38,6 +38,7 @@ class LineForm {
   Stamps stamps_ = Stamps::none;
   std::string record_;  // "%RAWIMUSXA," or "UncalGyro,": that of the lines that are read; "" of other files
   std::string stamp_;   // of the rows that follow
+  std::string begin_;   // of the lines that are read, in small letters; "" for any
   std::vector<std::string> labels_;  // before each value; "" where none stands
   std::vector<std::string> names_;
 };

@@ -119,7 +119,11 @@ std::vector<Header> headers_above(const std::vector<Line>& lines, const Grid& gr
   std::vector<std::vector<std::string>> above;  // upwards
   for (std::size_t back = 1; back <= std::min(first, kMostNameLines); ++back) {
     above.push_back(names_in(lines[first - back].text, grid.separator(), row));
-    if (row.is_as_wide(above.back().size()) && !grid.rows()[first - back].is_row()) continue;
+    // Above a row of units channels may be called by their numbers.
+    const bool names =
+        !grid.rows()[first - back].is_row() || (back == 2 && !is_value(above[1][0], grid.separator()) &&
+                                                !units_in(above[0], grid.separator()).empty());
+    if (row.is_as_wide(above.back().size()) && names) continue;
     above.pop_back();
     break;
   }

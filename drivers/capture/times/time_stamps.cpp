@@ -82,6 +82,13 @@ bool add_ns(std::string& digits, std::int64_t ns) {
   return carry > 0;
 }
 
+// Days are counted by MATLAB from the year 0 and by spreadsheets from 1899-12-30; 1970-01-01 by each. As days
+// since 1970 the first of these would be in 3900 and the second, which is the year 2000, in 2070.
+std::int64_t day_of_1970(double unit_s, std::int64_t day) {
+  if (unit_s != 86'400.0) return 0;
+  return day >= 700'000 ? 719'529 : day >= 36'526 ? 25'569 : 0;
+}
+
 }  // namespace
 
 TimeOrigin TimeOrigin::of(std::int64_t first_ns) {
@@ -99,17 +106,6 @@ std::optional<SaidTime> SaidTime::parse(std::string_view said) {
   const std::optional<double> value = finite_number(text);
   return value ? std::optional(SaidTime{*value, 0.0}) : std::nullopt;
 }
-
-namespace {
-
-// Days are counted by MATLAB from the year 0 and by spreadsheets from 1899-12-30; 1970-01-01 by each. As days
-// since 1970 the first of these would be in 3900 and the second, which is the year 2000, in 2070.
-std::int64_t day_of_1970(double unit_s, std::int64_t day) {
-  if (unit_s != 86'400.0) return 0;
-  return day >= 700'000 ? 719'529 : day >= 36'526 ? 25'569 : 0;
-}
-
-}  // namespace
 
 TimeStamps::TimeStamps(std::string_view first, double unit_s)
     : unit_s_(unit_s), units_a_second_(whole(1.0 / unit_s)) {

@@ -109,6 +109,19 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       {rows_of("time_ms,\xC3\xE8\xF0\xEE gyro_x (deg/s)\n", "1{i},{x}"), {"rate_x '#2' in deg/s"}},
       {rows_of("Zeit [s],Gyro x [\xB0/s]\n", "0.{i},{x}"), {"rate_x '#2' in deg/s"}},
       {rows_of("time [s],\xCD\xD3\xC2\xDD gyro z [\xA1\xE3/s]\n", "0.{i},{z}"), {"rate_z '#2' in deg/s"}},
+      {rows_of("\xC2\xF0\xE5\xEC\xFF (\xF1),X (\xE3\xF0\xE0\xE4/\xF1)\n", "0.{i},{x}"),
+       {"time '#1' in s, rate_x '#2' in deg/s"}},
+      // Rows and lines of several sensors: those that are called a gyro's are read.
+      {rows_of("sensor,time_s,x,y,z\n", "Gyroscope,0.{i},{x},{y},{z}\nAccelerometer,0.{i},0.1,0.2,9.8"),
+       {"--column rate_x_radps=x:rad/s"}},
+      {rows_of("",
+               "{\"type\":\"gyro\",\"t\":0.{i},\"x\":{x},\"y\":{y},\"z\":{z}}\n{\"type\":\"acc\",\"t\":0.{i},"
+               "\"x\":9.8,"
+               "\"y\":0,\"z\":0}"),
+       {"--time t:s --column rate_x_radps=x:rad/s --column rate_y_radps=y:rad/s"}},
+      // An oscilloscope: channels called by their numbers, in volts.
+      {rows_of("x-axis,1,2\nsecond,Volt,Volt\n", "0.{i},{x},{y}"),
+       {"a voltage with the scale before the unit: --column rate_x_radps=1:0.05deg/s"}},
       // Text that is no table says what makes one.
       {"[{\"sensor\":\"Gyroscope\",\"time\":\"1\",\"x\":\"0.1\"},{\"sensor\":\"Accelerometer\",\"time\":"
        "\"1\",\"x\":\"9\"}]",

@@ -10,7 +10,6 @@
 #include <cstring>
 #include <sstream>
 #include <string>
-#include <vector>
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/csv/csv_rows.h"

@@ -11,9 +11,7 @@
 #include <cmath>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <limits>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <string>
