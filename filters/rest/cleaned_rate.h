@@ -19,10 +19,10 @@ using TimeOfSample = std::function<double(std::size_t)>;  // s, for the text
 
 // Before it is asked where the sensor rested, values that the rate (rad/s, NaN where missing) repeats become
 // missing: a sensor or logger that did nothing, or a placeholder such as -999. That is eight samples or more,
-// where nine of ten values stand once; or two and more that leap away and back (glitches.h).
+// where nine of ten values stand once; or a value that leaps away and back as placeholders do (glitches.h).
 void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
-// For commands that hand the rate on as it came: placeholders alone become missing, single ones, too.
+// For commands that hand the rate on as it came: placeholders alone become missing, by the same rule.
 void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
 // The rate with the middle of their neighbours in place of single samples that leap away and back; nothing where

@@ -6,8 +6,8 @@
 #include <charconv>
 #include <span>
 
-#include "drivers/capture/times/date_time.h"
 #include "drivers/capture/times/text_cursor.h"
+#include "drivers/capture/times/time_stamps.h"
 
 namespace ifog {
 namespace {

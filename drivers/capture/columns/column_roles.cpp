@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/columns/column_words.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/columns/column_words.h"
+#include "drivers/capture/columns/column_roles.h"
 
 #include <algorithm>
 #include <array>

@@ -10,7 +10,6 @@
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/column_roles.h"
-#include "drivers/capture/columns/column_words.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 #include "drivers/system/shell_word.h"
@@ -96,7 +95,7 @@ class Chooser {
       const std::set<std::string> values(cells.begin(), cells.end());
       std::size_t changes = 0;
       for (std::size_t row = 1; row < cells.size(); ++row) changes += cells[row] != cells[row - 1] ? 1 : 0;
-      const std::string gyro = the_gyro(values);
+      const std::string gyro = reads_as_named() ? "" : the_gyro(values);
       if (values.size() < 2 || values.size() > 8 || (gyro.empty() && 2 * changes < cells.size())) continue;
       const std::string said = path_ + ": " + in_quotes(names_[i]) + " is " +
                                listed({values.begin(), values.end()}) + " in turn: ";

@@ -13,7 +13,6 @@
 #include "drivers/capture/columns/column_roles.h"
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/columns/measurable.h"
-#include "drivers/capture/times/date_time.h"
 #include "drivers/capture/times/row_sink.h"
 #include "drivers/capture/times/time_stamps.h"
 

@@ -8,9 +8,9 @@
 #include <system_error>
 #include <utility>
 
-#include "drivers/capture/columns/column_words.h"
+#include "drivers/capture/columns/column_roles.h"
 #include "drivers/capture/csv/text_cells.h"
-#include "drivers/capture/times/date_time.h"
+#include "drivers/capture/times/time_stamps.h"
 
 namespace ifog {
 namespace {

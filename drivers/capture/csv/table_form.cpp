@@ -10,7 +10,7 @@
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/files/input_file.h"
-#include "drivers/capture/times/date_time.h"
+#include "drivers/capture/times/time_stamps.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 

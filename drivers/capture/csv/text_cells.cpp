@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "drivers/capture/times/date_time.h"
+#include "drivers/capture/times/time_stamps.h"
 #include "drivers/ifog/decimal.h"
 
 namespace ifog {

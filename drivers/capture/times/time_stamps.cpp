@@ -6,8 +6,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "drivers/capture/times/date_time.h"
-
 namespace ifog {
 namespace {
 

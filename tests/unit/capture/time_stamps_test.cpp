@@ -13,7 +13,6 @@
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/csv/csv_rows.h"
-#include "drivers/capture/times/date_time.h"
 #include "tests/unit/capture/refusal.h"
 
 namespace {

@@ -103,24 +103,24 @@ TEST(Glitches, RepeatedValuesAreOut) {
 }
 
 // A placeholder now and then, each time for one sample. A single blow, however far, is the sensor's.
-TEST(Glitches, SinglePlaceholdersAreOutOfARateThatIsHandedOn) {
-  for (const bool often : {true, false}) {
-    std::vector<double> logged = white(20000, 6);
-    logged[100] = -174.5;
-    if (often) logged[5000] = -174.5;
-    logged[12000] = 3.0;
-    LongSeries rate;
-    rate.add(logged);
-    std::vector<ValueFault> faults;
-    leave_out_placeholders(
-        rate, [](std::size_t i) { return 1e-2 * static_cast<double>(i); }, faults);
-    ASSERT_EQ(faults.size(), often ? 1U : 0U);
-    for (const ValueFault& fault : faults)
-      EXPECT_NE(fault.text.find("2 samples leap away and back (the first at 1 s"), std::string::npos);
-    EXPECT_EQ(std::isnan(SeriesView(rate).at(100)), often);
-    EXPECT_EQ(std::isnan(SeriesView(rate).at(5000)), often);
-    EXPECT_EQ(SeriesView(rate).at(12000), 3.0);
-  }
+TEST(Glitches, SinglePlaceholdersAreOutForEveryCommandHoweverOftenTheyStand) {
+  const auto time_s = [](std::size_t i) { return 1e-2 * static_cast<double>(i); };
+  for (const auto rule : {leave_out_placeholders, leave_out_repeats})
+    for (const std::size_t times : {1UL, 2UL, 500UL}) {
+      std::vector<double> logged = white(20000, 6);
+      for (std::size_t i = 0; i < times; ++i) logged[100 + 20 * i] = -174.5;
+      logged[12000] = 3.0;
+      LongSeries rate;
+      rate.add(logged);
+      std::vector<ValueFault> faults;
+      rule(rate, time_s, faults);
+      ASSERT_EQ(faults.size(), times > 1 ? 1U : 0U);
+      for (const ValueFault& fault : faults)
+        EXPECT_NE(fault.text.find("samples leap away and back (the first at 1 s"), std::string::npos);
+      for (const std::size_t at : {std::size_t{100}, 80 + 20 * times})
+        EXPECT_EQ(std::isnan(SeriesView(rate).at(at)), times > 1);
+      EXPECT_EQ(SeriesView(rate).at(12000), 3.0);
+    }
 }
 
 // What stays where it has gone is a step, what takes several samples a blow: both are rates.
