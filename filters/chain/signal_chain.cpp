@@ -198,8 +198,8 @@ void ChainParts::refuse_impossible(const Increment& in, ChainOutput& out) noexce
 void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try {
   if ((in.flags & kGapBefore) != 0 && in.dt_s > kShortGap * period_s_) start_up_.break_off();
   // What repeats one value shows no noise.
-  start_up_.take(out.compensated_radps, in.valid_axes & ~in.stuck_axes, true);
-  const std::optional<Walk::Found> found = start_up_.take_news();
+  const std::optional<Walk::Found> found =
+      start_up_.take(out.compensated_radps, in.valid_axes & ~in.stuck_axes, true);
   if (!found) return;
   double sum = 0.0, axes = 0.0;
   for (const double noise : found->noise) {

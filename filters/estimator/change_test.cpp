@@ -16,10 +16,8 @@ constexpr double kShakingVariance = 4.0;
 // Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
 // worth.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
-// Square of two and a half standard deviations: of a sum in which a change may have begun.
-constexpr double kUnseenSquare = 6.25;
-// Mean of a change that grows as a parabola over a horizon to its end: (0.8)^-2.
-constexpr double kAtEnd = 1.55;
+// Below it no sum of five samples or more speaks for a change; and as nats, that there are numbers enough.
+constexpr double kLeastSquare = 2.0, kMostSumNats = 30.0;
 
 }  // namespace
 
@@ -30,7 +28,10 @@ double ChangeTest::same_size(const Contest& c, Eigen::Index a) const noexcept {
 }
 
 void ChangeTest::begin() noexcept {
-  for (Contest& c : contest_) c.ratio = c.sum = c.weight = c.rest = c.rest2 = c.tracker = Lanes::Zero();
+  for (Contest& c : contest_) {
+    c.ratio = c.sum = c.weight = c.rest = c.rest2 = c.tracker = Lanes::Zero();
+    c.often.setConstant(0.5);
+  }
   forget_angle();
   shaking_.setZero();
   unseen_.setZero();
@@ -38,21 +39,41 @@ void ChangeTest::begin() noexcept {
   age_ = 0.0;
 }
 
+// Bayes: a change over the horizon is as likely beforehand as it has been on average at this rest. An offset that makes
+// of R kShakingVariance, its variance beforehand so being m / n of R, makes the sum of n innovations of normalised
+// square z^2 likelier by exp(z^2 / 2 m / (m + 1)) / sqrt(m + 1). A sum that speaks against a change counts as none.
+void ChangeTest::expect(Contest& c, double h, const Lanes& square, const Lanes& n,
+                        const Sample& now) noexcept {
+  Lanes likely = Lanes::Zero();
+  if ((square > kLeastSquare).any()) {
+    for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
+      const double m = (kShakingVariance - 1.0) * n[a];
+      const double nats = std::min(0.5 * square[a] * m / (m + 1.0), kMostSumNats);
+      const double ratio = exponential(nats) / std::sqrt(m + 1.0);
+      if (ratio > 1.0) likely[a] = c.often[a] * ratio / (c.often[a] * ratio + 1.0 - c.often[a]);
+    }
+    unseen_ = unseen_.max(likely * now.scale * (c.sum / c.weight.max(1.0)).square());
+  }
+  c.often += now.mask * (likely - c.often) / (h + age_);
+}
+
 void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
-                         const Lanes& colour, double lag) noexcept {
+                         const Lanes& colour) noexcept {
   Contest& c = contest_[j];
   const Trackers::Gains& g = trackers.gains(j);
   const double h = trackers.horizon(j), keep = 1.0 - 1.0 / h;
   const Lanes error = now.rate - trackers.rate(j);
   const Lanes mine = error * error * now.inverse * (1.0 / g.factor);
   c.sum = keep * c.sum + common.clipped;
-  c.weight = keep * keep * c.weight + now.mask;
-  const Lanes square = c.sum * c.sum;
+  c.weight = keep * c.weight + now.mask;
+  // How many innovations of full weight the sum is worth: its variance over R.
+  const Lanes n = (c.weight * (2.0 - c.weight / h) / (2.0 - 1.0 / h)).max(1.0);
+  const Lanes square = c.sum * c.sum / n;
   Lanes evidence = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
   Lanes& likely = c.divisor.setOnes();
   if (coloured_) {
     c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
-    c.wide += now.mask * (square / c.weight.max(1.0) - c.wide) / (h * (c.horizons + 1.0));
+    c.wide += now.mask * (square - c.wide) / (h * (c.horizons + 1.0));
     // Until it is learned the width is the widest that the known noise allows with its third differences.
     const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
     const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
@@ -60,14 +81,11 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     widest_ = widest_.max(likely);
     evidence /= likely;
   }
-  // A change is the likelier to have begun the fewer horizons rest has lasted.
-  const auto large = square > std::min(kUnseenSquare, age_ / h) * likely * c.weight;
-  if (j >= 1 && h <= 2.0 * lag && large.any())
-    unseen_ = large.select(unseen_.max(now.scale * kAtEnd * square / c.weight.square().max(1.0)), unseen_);
+  expect(c, h, square / likely, n, now);
   short_[j] = keep * short_[j] + now.short_rad;
   c.ratio = (keep * c.ratio + evidence).max(0.0);
   c.rest = keep * c.rest + common.squares;
-  c.rest2 = keep * c.rest2 + common.squares2;
+  c.rest2 = keep * c.rest2 + common.squares.square();
   c.tracker = keep * c.tracker + mine.min(kFarSquare);
 }
 
@@ -78,7 +96,6 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   const double most_deviations = std::min(kMostDeviations, std::sqrt(common.cap));
   common.clipped = (now.innovation * now.inverse.sqrt()).max(-most_deviations).min(most_deviations);
   common.squares = now.surprise.min(kFarSquare);
-  common.squares2 = common.squares * common.squares;
   common.rest_evidence = 0.5 * (now.surprise.min(common.cap) + now.log_rest_factor) * now.mask;
   coloured_ = greatest(colour) > kColoured;
   age_ += 1.0;
@@ -88,7 +105,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   std::optional<std::size_t> found;
   double most = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
-    contest(trackers, j, now, common, colour, lag);
+    contest(trackers, j, now, common, colour);
     const Contest& c = contest_[j];
     if (!(greatest(c.ratio) > 0.5 * kEvidence)) continue;
     suspected_ = true;
@@ -109,17 +126,19 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   return found;
 }
 
-// Noise of one correlation time has 1 / ((k + b) f(b)) a straight line in the bandwidth b: followed to zero.
-Lanes ChangeTest::wide(const Trackers& trackers, double lag) const noexcept {
+// Of noise of correlation rate r a filter of gain k leaves k R / (r + k), and its innovations, summed over 1 / b, are
+// 2 b r / ((r + k) (r + b) (k + b)) of R, and the walk's part k / (k + b) of the rule's R more. So b / (k + b) over the
+// noise's part is a straight line in b, of which the end at zero is wanted.
+Lanes ChangeTest::wide(const Trackers& trackers, double lag, double rule) const noexcept {
   Lanes wide = Lanes::Ones(), inverse_before = Lanes::Zero();
   if (!coloured_) return wide;
   const double k = 1.0 / (1.0 + lag);
   double before = 0.0;
   for (std::size_t j = 0; j < trackers.size() && (j <= 1 || trackers.horizon(j) <= 2.0 * lag); ++j) {
     const double b = 1.0 / trackers.horizon(j), both = k + b;
-    const Lanes inverse = 2.0 * b / (both * (contest_[j].wide - 0.5 * k / both).max(0.1 * b / both));
+    const Lanes inverse = b / (both * (contest_[j].wide - rule * k / both).max(0.1 * b / both));
     const double ahead = before > b ? b / (before - b) : 0.0;
-    wide = (2.0 / (inverse - ahead * (inverse_before - inverse)).max(0.25 * inverse)).max(1.0);
+    wide = 1.0 / (rule * (inverse - ahead * (inverse_before - inverse)).max(0.25 * inverse));
     before = b;
     inverse_before = inverse;
   }

@@ -38,22 +38,25 @@ class ChangeTest {
   void forget_angle() noexcept { short_.fill(Lanes::Zero()); }
   // Variance of a change that may have begun, (rad/s)^2.
   [[nodiscard]] const Lanes& unseen() const noexcept { return unseen_; }
-  // Variance of the mean over the filter's memory, over that of white noise.
-  [[nodiscard]] Lanes wide(const Trackers& trackers, double lag) const noexcept;
+  // Variance that the noise makes in the filter at rest, over that of white noise of the R that its rule believes in,
+  // which is `rule` of the known one.
+  [[nodiscard]] Lanes wide(const Trackers& trackers, double lag, double rule) const noexcept;
 
  private:
   struct Contest {
     Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero();
     // Variance of a sum over that of white noise, as learned, and what evidence is divided by for it.
     Lanes wide = Lanes::Ones(), divisor = Lanes::Ones(), horizons = Lanes::Zero();
+    Lanes often = Lanes::Constant(0.5);  // share of the time that a change may have begun
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {
-    Lanes clipped, capped, rest_evidence, squares, squares2;
+    Lanes clipped, rest_evidence, squares;
     double cap;
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
-               const Lanes& colour, double lag) noexcept;
+               const Lanes& colour) noexcept;
+  void expect(Contest& c, double h, const Lanes& square, const Lanes& n, const Sample& now) noexcept;
   [[nodiscard]] double same_size(const Contest& c, Eigen::Index a) const noexcept;
 
   std::array<Contest, Trackers::kMost> contest_{};

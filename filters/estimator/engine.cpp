@@ -82,7 +82,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   if (rests(s)) out.flags |= kAtRest;
   learn(s);
   unmeasured_.take(s.sample, s.rate, s.variance, s.gain, grown * noise_.walk_share(), started_,
-                   !follow_.moving);
+                   follow_.moving);
   follow_.published = s.rate;
   if (settings_.conserve_angle) pay(s);
   publish(s);
@@ -156,7 +156,7 @@ void Engine::follow(Step& s) noexcept {
   Follower& f = follow_;
   // What shaking makes is no outlier among the like. Where nothing follows the motion nothing tells an outlier
   // from it.
-  const Lanes allowed = f.moving ? noise_.each(&Noise::shaken) : Lanes::Ones();
+  const Lanes allowed = f.moving ? noise_.each(&Noise::heard) : Lanes::Ones();
   switch (f.moving && f.mix.raw() ? Outliers::Verdict::usual
                                   : f.outliers.take(f.trackers, s.sample, allowed, f.moving, f.lag())) {
     case Outliers::Verdict::waits:
@@ -298,13 +298,9 @@ void Engine::publish_rest(Step& s) noexcept {
   s.gain = rest_->gain();
   s.variance.setConstant(rest_->variance());
   if (!settings_.follow_manoeuvres) return;
-  Lanes wide = follow_.change.wide(follow_.trackers, follow_.lag());
-  // The width is that of the known noise, of which a filter that follows coloured noise leaves less to its
-  // rule.
-  if (greatest(wide) > 1.0)
-    wide = (wide > 1.0).select(wide * settings_.measurement_noise / rest_->rule().measurement_noise(), wide);
-  const Lanes walk = noise_.learns_walk() ? (noise_.walk_share() * wide).eval() : noise_.walk_share();
-  s.variance *= 0.5 * (walk + noise_.share() * wide);
+  const double rule = rest_->rule().measurement_noise() / settings_.measurement_noise;
+  const Lanes wide = follow_.change.wide(follow_.trackers, follow_.lag(), rule);
+  s.variance *= 0.5 * (noise_.walk_share() + noise_.share() * wide);
   s.variance += follow_.change.unseen() + noise_.each(&Noise::rounding);
 }
 
@@ -337,12 +333,11 @@ void Engine::pay(Step& s) noexcept {
                                                                              : f.settled ? kCarried
                                                                                          : kTail);
   if (f.moving) ledger.pace(f.mix.length(f.trackers, follow_.lag()));
-  ledger.pace_tail(follow_.lag());
   // What a gap hides is no angle.
   const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
   Lanes most = Lanes::Constant(1e300);
   if (follows) most = kMostPaid * (rest_->variance() * noise_.share()).sqrt();
-  const Lanes paid = ledger.pay(most, dt_s);
+  const Lanes paid = ledger.pay(most, f.lag(), dt_s);
   s.rate += paid;
   if (follows) s.variance = s.variance.max(paid * paid);
 }
@@ -366,7 +361,7 @@ void Engine::publish(const Step& s) noexcept {
   const Lanes known = noise_.each(&Noise::known), colour = noise_.each(&Noise::colour);
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
-    const double variance = unmeasured_.variance(a, s.variance[i]);
+    const double variance = s.variance[i] + unmeasured_.more()[i];
     s.out.denoised_radps[a] = s.rate[i];
     // A rule without a floor may take the covariance below zero: it then says no more than one measurement
     // does.

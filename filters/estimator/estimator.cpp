@@ -51,8 +51,9 @@ FilterSettings in_force(FilterSettings settings) {
 Estimator::Estimator(const FilterSettings& told, int axes, double nominal_period_s, const KnownNoise& known) {
   check(told, axes, nominal_period_s);
   const FilterSettings settings = in_force(told);
-  auto rest = make_rest_filter(make_state_model(settings.state, settings.state_parameters, nominal_period_s),
-                               make_rule(settings), settings.process_noise, settings.measurement_noise);
+  auto rest = std::make_unique<RestFilter>(
+      make_state_model(settings.state, settings.state_parameters, nominal_period_s), make_rule(settings),
+      settings.process_noise, settings.measurement_noise);
   engine_ = std::make_unique<Engine>(settings, known, std::move(rest), axes, nominal_period_s);
 }
 

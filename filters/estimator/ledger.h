@@ -29,11 +29,11 @@ class Ledger {
   enum class Account { kDebt, kTail, kDoubt, kCarried };
   explicit Ledger(double period_s) noexcept : period_s_(period_s) {}
 
-  // Rate to be added to this sample's. most: of what is paid of the tail. dt_s: of the angle that is
-  // integrated with it, by axis.
-  [[nodiscard]] Lanes pay(const Lanes& most, const Lanes& dt_s) noexcept {
+  // Rate to be added to this sample's. most: of what is paid of the tail; lag: of the filter at rest, samples; dt_s: of
+  // the angle that is integrated with it, by axis.
+  [[nodiscard]] Lanes pay(const Lanes& most, double lag, const Lanes& dt_s) noexcept {
     const Lanes debt = debt_ / dt_s.max(pace_ * period_s_), late = late_ / dt_s.max(late_pace_ * period_s_);
-    const Lanes tail = (tail_ / dt_s.max(tail_pace_ * period_s_)).max(-most).min(most);
+    const Lanes tail = (tail_ / dt_s.max(std::max(kQuickest, lag) * period_s_)).max(-most).min(most);
     debt_ -= debt * dt_s;
     late_ -= late * dt_s;
     tail_ -= tail * dt_s;
@@ -77,16 +77,15 @@ class Ledger {
     if (!settled) tail_ -= angle_rad;
     late_pace_ = std::max(kQuickest, samples);
   }
-  // Samples that the followers of a manoeuvre look back on, and the lag of the filter at rest.
+  // Samples that the followers of a manoeuvre look back on.
   void pace(double followers) noexcept { pace_ = std::max(kQuickest, 0.5 * followers); }
-  void pace_tail(double lag) noexcept { tail_pace_ = std::max(kQuickest, lag); }
   [[nodiscard]] Lanes owed() const noexcept { return debt_ + late_ + tail_ + doubt_; }
 
  private:
   static constexpr double kQuickest = 16.0;       // samples
   static constexpr double kOwedSamples = 1024.0;  // samples
 
-  double period_s_, pace_ = kQuickest, late_pace_ = kQuickest, tail_pace_ = kQuickest;
+  double period_s_, pace_ = kQuickest, late_pace_ = kQuickest;
   Lanes debt_ = Lanes::Zero(), late_ = Lanes::Zero(), tail_ = Lanes::Zero(), doubt_ = Lanes::Zero(),
         at_rest_ = Lanes::Zero();
 };

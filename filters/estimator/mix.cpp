@@ -106,12 +106,15 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
 
 Mix::Published Mix::publish(const Trackers& trackers, const Lanes& rest, const Lanes& rest_variance,
                             const Lanes& scale) const noexcept {
-  Lanes moving = Lanes::Zero(), bias = Lanes::Zero();
-  double noise = 0.0, shorter = 0.0, gain = 0.0;
+  Lanes moving = Lanes::Zero(), bias = Lanes::Zero(), noise = Lanes::Zero();
+  double shorter = 0.0, gain = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     const double weight = weight_[j];
-    if (j > 0) bias += (1.0 - shorter) * (1.0 - shorter) * bias_[j];
-    noise += trackers.gains(j).output * weight * (weight + kCorrelated * shorter);
+    // Where nothing is measured the parabola's variance grows with the fourth power of its reach, and what it lacks, a
+    // cube, with the sixth.
+    const Lanes reach = trackers.prolonged(j), fourth = reach.square().square();
+    if (j > 0) bias += (1.0 - shorter) * (1.0 - shorter) * bias_[j] * fourth * reach.square();
+    noise += fourth * (trackers.gains(j).output * weight * (weight + kCorrelated * shorter));
     gain += weight * trackers.gains(j).rate;
     shorter += weight;
     moving += weight * trackers.rate(j);

@@ -35,13 +35,13 @@ void SensorNoise::take(const Sample& now, const Lanes& since) noexcept {
 
 void SensorNoise::learn(const Axes& rate, std::uint32_t valid, bool at_rest, RestFilter& filter) noexcept {
   walk_.set_stretch(at_rest ? Walk::kStretch : std::max(2.0 * Walk::kStretch, kLouder_s / period_s_));
-  walk_.take(rate, valid, at_rest);
-  const std::optional<Walk::Found> found = walk_.take_news();
+  const std::optional<Walk::Found> found = walk_.take(rate, valid, at_rest);
   if (!found) return;
   bool other = false;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!(found->noise[a] > 0.0) || !found->white) continue;
-    const double heard = found->noise[a], known = noise_[a].known();
+    // What a coarse converter leaves depends on the level: less than its steps' own variance is not R.
+    const double heard = std::max(found->noise[a], noise_[a].of_steps()), known = noise_[a].known();
     if (at_rest ? kOtherNoise * heard < known : heard > kOtherNoise * known) {
       noise_[a].set_known(heard);
       other = true;

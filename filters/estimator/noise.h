@@ -65,8 +65,6 @@ class Noise {
   }
   // The same without that doubt, 1 at least: for who takes all that is louder for noise.
   [[nodiscard]] double heard() const noexcept { return std::max(1.0, fast_ / usual()); }
-  // By which third differences are now above the known noise, 1 at least: broadband motion is in them.
-  [[nodiscard]] double shaken() const noexcept { return std::max(1.0, fast_ / known_); }
   // Variance of the known noise over that of equally rough white noise; 1 within chance.
   [[nodiscard]] double colour() const noexcept { return colour_; }
   // Variance of a mean of coarse steps d, averaged over the true level: that of the sawtooth's first harmonic,
@@ -79,21 +77,24 @@ class Noise {
     return exponent < 600.0 ? d2 / (2.0 * pi_squared) * exponential(-exponent) : 0.0;
   }
 
- private:
-  void refresh_colour() noexcept {
-    const double chance = std::sqrt(kThirdVariance / std::clamp(taken_, 1.0, kSlow));
-    const double ratio = known_ / usual();
-    colour_ = taken_ >= kFew && ratio > 1.0 + kSurely * chance ? ratio : 1.0;
-  }
   // Variance of one of the converter's steps.
   [[nodiscard]] double of_steps() const noexcept {
     return std::isfinite(digit_) ? digit_ * digit_ / 12.0 : 0.0;
   }
+
+ private:
+  // The cube root of a mean square of n degrees of freedom is nearly normal about 1 - 2 / 9n with variance 2 / 9n
+  // (Wilson and Hilferty, PNAS 17, 1931).
+  void refresh_colour() noexcept {
+    const double chance = kThirdVariance / (9.0 * std::clamp(taken_, 1.0, kSlow));
+    const double least = std::max(0.0, 1.0 - chance - kSurely * std::sqrt(chance)), ratio = usual() / known_;
+    colour_ = ratio < least * least * least ? 1.0 / ratio : 1.0;
+  }
   // R by third differences. A converter at rest between two changes of its last digit shows none.
   [[nodiscard]] double usual() const noexcept { return std::max({slow_, 1e-9 * known_, of_steps()}); }
 
-  static constexpr double kThird = 20.0;                             // 1 + 9 + 9 + 1
-  static constexpr double kFew = 8.0, kFast = 32.0, kSlow = 1024.0;  // samples
+  static constexpr double kThird = 20.0;                 // 1 + 9 + 9 + 1
+  static constexpr double kFast = 32.0, kSlow = 1024.0;  // samples
   // n overlapping third differences of white noise have a mean square of variance 2 (1 + 1.3) / n R^2.
   static constexpr double kThirdVariance = 4.6, kSurely = 3.0;
   // The mean square of 32 overlapping third differences scatters by 0.4: four standard deviations.
@@ -126,7 +127,6 @@ class SensorNoise {
   // R of each axis over its mean, and the same of the walk.
   [[nodiscard]] const Lanes& share() const noexcept { return share_; }
   [[nodiscard]] Lanes walk_share() const noexcept { return walk_share_ ? to_lanes(*walk_share_) : share_; }
-  [[nodiscard]] bool learns_walk() const noexcept { return learns_walk_; }
   [[nodiscard]] LearnedNoise learned() const noexcept;
 
  private:

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
 
 #include "filters/kalman/core.h"
@@ -13,221 +14,201 @@
 namespace ifog {
 namespace {
 
-// The filter at rest for one number of states. One core for most rules; for a rule with several hypotheses
-// about the noise, one core each and their weighted mean.
-template <int n>
-class SizedRestFilter final : public RestFilter {
- public:
-  SizedRestFilter(std::unique_ptr<StateModel> model, std::unique_ptr<Rule> rule, double process_noise,
-                  double measurement_noise)
-      : RestFilter(std::move(rule)),
-        model_(std::move(model)),
-        hypotheses_(rule_->hypotheses()),
-        process_noise_(process_noise),
-        level_(model_->level()),
-        readout_(model_->rate()),
-        start_(process_noise * model_->stationary()) {
-    // Large enough to be forgotten after one measurement, small enough to leave the covariance ten digits.
-    constexpr double kDiffuse = 1e6;
-    start_.diagonal() += kDiffuse * measurement_noise * model_->start();
-    for (Core& core : cores_) core.h = model_->measurement();
-    rate_alone_ = readout_ == cores_[0].h;
-    restart();
-  }
+// Large enough to be forgotten after one measurement, small enough to leave the covariance ten digits.
+constexpr double kDiffuse = 1e6;
 
-  void restart() noexcept override {
-    for (Core& core : cores_) {
-      core.x.setZero();
-      core.p = start_;
-    }
-    rule_->restart();
-    refresh();
-  }
-
-  void retune(double process_noise) noexcept override {
-    process_noise_ = process_noise;
-    discretised_dt_s_ = 0.0;
-  }
-
-  void predict(double dt_s) noexcept override {
-    if (dt_s != discretised_dt_s_) {
-      discretised_dt_s_ = dt_s;
-      model_->discretise(dt_s, transition_, driving_);
-      driving_ *= process_noise_;
-    }
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j)
-      cores_[j].predict(transition_, driving_, hypotheses_[j]);
-    refresh();
-  }
-
-  void update(const Measured& m, std::uint64_t sequence, bool learn) noexcept override {
-    // The innovation published is that of the weighted mean of predictions; each core's own covariance and
-    // its distance from that mean make its variance, under the weights from before this measurement.
-    const Lanes predicted = measurement_;
-    double mixture = 0.0;
-    valid_ = m.valid;
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      Core& core = cores_[j];
-      const double weight = rule_->weight(j);
-      mixture += weight * distance(core, core.h, predicted);
-      Axes innovations{}, normalised{};
-      std::array<int, kMaxAxes> axes{};
-      std::size_t count = 0;
-      for (int axis = 0; axis < Core::kAxes; ++axis) {
-        if ((m.valid >> static_cast<unsigned>(axis) & 1U) == 0) continue;
-        axes[count] = axis;
-        innovations[count] = m.rate[axis] - core.rate(axis);
-        normalised[count] =
-            m.share[axis] == 1.0 ? innovations[count] : innovations[count] / std::sqrt(m.share[axis]);
-        ++count;
-      }
-      const double projected = core.variance();
-      const double c = learn ? rule_->innovation_covariance(
-                                   {projected, m.noise_scale, {normalised.data(), count}, sequence, j})
-                             : projected + rule_->measurement_noise_of(j) * m.noise_scale;
-      core.correct(c);
-      for (std::size_t i = 0; i < count; ++i) core.update(axes[i], innovations[i]);
-      mixture += weight * c;
-    }
-    covariance_ = mixture;
-    refresh();
-  }
-
-  void skip() noexcept override {
-    for (Core& core : cores_) core.gain.setZero();
-    gain_ = 0.0;
-    covariance_ = measurement_variance_ + rule_->measurement_noise();
-  }
-
-  void shift_to(const Lanes& rate, std::uint32_t which) noexcept override {
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      Core& core = cores_[j];
-      for (int axis = 0; axis < Core::kAxes; ++axis)
-        if ((which >> static_cast<unsigned>(axis) & 1U) != 0)
-          core.x.col(axis) += level_ * (rate[axis] - along(core.h, core, axis));
-    }
-    refresh();
-  }
-
-  void set_variance(double variance) noexcept override {
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      const double now = spread(readout_, cores_[j]);
-      if (variance >= now)
-        cores_[j].p += (variance - now) * level_ * level_.transpose();
-      else
-        cores_[j].p *= variance / now;
-    }
-    refresh();
-  }
-
-  // Of a bank the weighted mean: where the model holds a constant rate every G(1) is one, and the delay of a sum of
-  // filters is the sum of their delays.
-  Settled settled() const noexcept override {
-    Settled mean;
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      const Settled one = ifog::settled(transition_, cores_[j].h, readout_, cores_[j].gain, cores_[j].p);
-      mean.lag += rule_->weight(j) * one.lag;
-      mean.correlation += rule_->weight(j) * one.correlation;
-    }
-    return mean;
-  }
-
-  bool sound() const noexcept override {
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      const double v = cores_[j].variance();
-      if (!(v >= 0.0 && v < 1e300) || !cores_[j].x.allFinite()) return false;
-    }
-    return true;
-  }
-
- private:
-  using Core = KalmanCore<n>;
-
-  void refresh() noexcept {
-    read(readout_, rate_, variance_, gain_);
-    if constexpr (n == 1) {
-      // A single state is the rate, and all that is measured.
-      measurement_ = rate_;
-      measurement_variance_ = variance_;
-    } else {
-      double gain = 0.0;
-      read(cores_[0].h, measurement_, measurement_variance_, gain);
-    }
-  }
-
-  // What the cores make of `of`'x: value, variance, gain.
-  void read(const typename Core::Vector& of, Lanes& value, double& variance, double& gain) const noexcept {
-    if (hypotheses_.size() == 1) {
-      for (int axis = 0; axis < Core::kAxes; ++axis) value[axis] = along(of, cores_[0], axis);
-      variance = spread(of, cores_[0]);
-      gain = of.dot(cores_[0].gain);
-      return;
-    }
-    value.setZero();
-    variance = gain = 0.0;
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
-      const double weight = rule_->weight(j);
-      for (int axis = 0; axis < Core::kAxes; ++axis) value[axis] += weight * along(of, cores_[j], axis);
-      gain += weight * of.dot(cores_[j].gain);
-    }
-    for (std::size_t j = 0; j < hypotheses_.size(); ++j)
-      variance += rule_->weight(j) * (spread(of, cores_[j]) + distance(cores_[j], of, value));
-  }
-
-  // A single state is the rate itself: no product, each of which the next step would wait for.
-  static double along(const typename Core::Vector& of, const Core& core, int axis) noexcept {
-    if constexpr (n == 1) return core.x(0, axis);
-    return of.dot(core.x.col(axis));
-  }
-  static double spread(const typename Core::Vector& of, const Core& core) noexcept {
-    if constexpr (n == 1) return core.p(0, 0);
-    return of.dot(core.p * of);
-  }
-
-  // Mean square over the measured axes of a core's `of`'x against this; zero by itself for a single core.
-  double distance(const Core& core, const typename Core::Vector& of, const Lanes& mean) const noexcept {
-    if (hypotheses_.size() == 1 || valid_ == 0) return 0.0;
-    double sum = 0.0;
-    for (int axis = 0; axis < Core::kAxes; ++axis) {
-      if ((valid_ >> static_cast<unsigned>(axis) & 1U) == 0) continue;
-      const double apart = along(of, core, axis) - mean[axis];
-      sum += apart * apart;
-    }
-    return sum / std::popcount(valid_);
-  }
-
-  std::unique_ptr<StateModel> model_;
-  std::span<const double> hypotheses_;
-  double process_noise_;
-  std::array<Core, Rule::kMaxHypotheses> cores_;
-  typename Core::Vector level_, readout_;
-  typename Core::Matrix start_, transition_, driving_;
-  double discretised_dt_s_ = -1.0;
-  std::uint32_t valid_ = 0;  // axes of the last measurement
-};
-
-// The filter for a model of n states or more.
-template <int n>
-std::unique_ptr<RestFilter> make(int states, std::unique_ptr<StateModel> model, std::unique_ptr<Rule> rule,
-                                 double process_noise, double measurement_noise) {
+// Calls f with the number of states as a constant. Only what every step does is compiled for each.
+template <int n = 1, class F>
+auto sized(Eigen::Index states, const F& f) {
   if constexpr (n < kMaxStates) {
-    if (states > n)
-      return make<n + 1>(states, std::move(model), std::move(rule), process_noise, measurement_noise);
+    if (states > n) return sized<n + 1>(states, f);
   }
-  return std::make_unique<SizedRestFilter<n>>(std::move(model), std::move(rule), process_noise,
-                                              measurement_noise);
+  return f(std::integral_constant<int, n>{});
+}
+
+template <int n, class Core>
+KalmanCore<n> load(const Core& core, const FewStatesVector& h) noexcept {
+  return {core.x.template topRows<n>(), core.p.template topLeftCorner<n, n>(), h.template head<n>(),
+          core.gain.template head<n>()};
+}
+template <int n, class Core>
+void store(const KalmanCore<n>& from, Core& core) noexcept {
+  core.x.template topRows<n>() = from.x;
+  core.p.template topLeftCorner<n, n>() = from.p;
+  core.gain.template head<n>() = from.gain;
 }
 
 }  // namespace
 
-std::unique_ptr<RestFilter> make_rest_filter(std::unique_ptr<StateModel> model, std::unique_ptr<Rule> rule,
-                                             double process_noise, double measurement_noise) {
-  const int states = model->states();
-  if (states < 1 || states > kMaxStates) {
-    throw std::invalid_argument("state: " + std::to_string(states) + " states in all, expected 1 to " +
+RestFilter::RestFilter(std::unique_ptr<StateModel> model, std::unique_ptr<Rule> rule, double process_noise,
+                       double measurement_noise)
+    : rule_(std::move(rule)), hypotheses_(rule_->hypotheses()), process_noise_(process_noise) {
+  const int n = model->states();
+  if (n < 1 || n > kMaxStates)
+    throw std::invalid_argument("state: " + std::to_string(n) + " states in all, expected 1 to " +
                                 std::to_string(kMaxStates));
+  model_ = {nullptr,
+            n,
+            model->measurement(),
+            model->level(),
+            model->rate(),
+            process_noise * model->stationary(),
+            model->rate() == model->measurement()};
+  model_.start.diagonal() += kDiffuse * measurement_noise * model->start();
+  model_.form = std::move(model);
+  transition_.resize(n, n);
+  driving_.resize(n, n);
+  restart();
+}
+
+void RestFilter::restart() noexcept {
+  const Eigen::Index n = model_.states;
+  for (Core& core : cores_) {
+    core.x.setZero(n, kMaxAxes);
+    core.p = model_.start;
+    core.gain.setZero(n);
   }
-  return make<1>(states, std::move(model), std::move(rule), process_noise, measurement_noise);
+  rule_->restart();
+  refresh();
+}
+
+void RestFilter::predict(double dt_s) noexcept {
+  if (dt_s != discretised_dt_s_) {
+    discretised_dt_s_ = dt_s;
+    model_.form->discretise(dt_s, transition_, driving_);
+    driving_ *= process_noise_;
+  }
+  sized(model_.states, [&](auto n) {
+    const Eigen::Matrix<double, n, n> a = transition_.template topLeftCorner<n, n>(),
+                                      q = driving_.template topLeftCorner<n, n>();
+    for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+      KalmanCore<n> core = load<n>(cores_[j], model_.h);
+      core.predict(a, q, hypotheses_[j]);
+      store<n>(core, cores_[j]);
+    }
+  });
+  refresh();
+}
+
+void RestFilter::update(const Measured& m, std::uint64_t sequence, bool learn) noexcept {
+  // The innovation published is that of the weighted mean of predictions; each core's own covariance and
+  // its distance from that mean make its variance, under the weights from before this measurement.
+  const Lanes normalise = m.share.sqrt();
+  double mixture = 0.0;
+  valid_ = m.valid;
+  for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+    const double weight = rule_->weight(j);
+    const Reading before = read(model_.h, cores_[j]);
+    const Lanes innovation = m.rate - before.value;
+    Axes normalised{};
+    std::size_t count = 0;
+    for (int axis = 0; axis < kMaxAxes; ++axis)
+      if ((m.valid >> static_cast<unsigned>(axis) & 1U) != 0)
+        normalised[count++] = innovation[axis] / normalise[axis];
+    const double c = learn ? rule_->innovation_covariance(
+                                 {before.variance, m.noise_scale, {normalised.data(), count}, sequence, j})
+                           : before.variance + rule_->measurement_noise_of(j) * m.noise_scale;
+    sized(model_.states, [&](auto n) {
+      KalmanCore<n> core = load<n>(cores_[j], model_.h);
+      core.correct(c);
+      for (int axis = 0; axis < kMaxAxes; ++axis)
+        if ((m.valid >> static_cast<unsigned>(axis) & 1U) != 0) core.update(axis, innovation[axis]);
+      store<n>(core, cores_[j]);
+    });
+    mixture += weight * (apart(before.value, measured_.value) + c);
+  }
+  covariance_ = mixture;
+  refresh();
+}
+
+void RestFilter::skip() noexcept {
+  for (Core& core : cores()) core.gain.setZero();
+  rate_.gain = 0.0;
+  covariance_ = measured_.variance + rule_->measurement_noise();
+}
+
+void RestFilter::shift_to(const Lanes& rate, std::uint32_t which) noexcept {
+  for (Core& core : cores()) {
+    const Lanes now = read(model_.h, core).value;
+    for (int axis = 0; axis < kMaxAxes; ++axis)
+      if ((which >> static_cast<unsigned>(axis) & 1U) != 0)
+        core.x.col(axis) += model_.level * (rate[axis] - now[axis]);
+  }
+  refresh();
+}
+
+void RestFilter::set_variance(double variance) noexcept {
+  for (Core& core : cores()) {
+    const double now = read(model_.readout, core).variance;
+    if (variance >= now)
+      core.p += (variance - now) * model_.level.lazyProduct(model_.level.transpose());
+    else
+      core.p *= variance / now;
+  }
+  refresh();
+}
+
+// Of a bank the weighted mean: where the model holds a constant rate every G(1) is one, and the delay of a sum of
+// filters is the sum of their delays.
+Settled RestFilter::settled() const noexcept {
+  Settled mean;
+  for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+    const Core& core = cores_[j];
+    const Settled one = ifog::settled(transition_, model_.h, model_.readout, core.gain, core.p);
+    mean.lag += rule_->weight(j) * one.lag;
+    mean.correlation += rule_->weight(j) * one.correlation;
+  }
+  return mean;
+}
+
+bool RestFilter::sound() const noexcept {
+  return std::ranges::all_of(cores(), [&](const Core& core) {
+    const double v = read(model_.h, core).variance;
+    return v >= 0.0 && v < 1e300 && core.x.allFinite();
+  });
+}
+
+void RestFilter::refresh() noexcept {
+  rate_ = read(model_.readout);
+  measured_ = model_.rate_alone ? rate_ : read(model_.h);
+}
+
+RestFilter::Reading RestFilter::read(const FewStatesVector& of, const Core& core) const noexcept {
+  return sized(model_.states, [&](auto n) {
+    // A single state is the rate itself: no product, each of which the next step would wait for.
+    if constexpr (n == 1)
+      return Reading{{core.x(0, 0), core.x(0, 1), core.x(0, 2), 0.0}, core.p(0, 0), core.gain[0]};
+    const auto h = of.template head<n>();
+    Reading out{Lanes::Zero(), h.dot(core.p.template topLeftCorner<n, n>() * h),
+                h.dot(core.gain.template head<n>())};
+    for (int axis = 0; axis < kMaxAxes; ++axis)
+      out.value[axis] = h.dot(core.x.template topRows<n>().col(axis));
+    return out;
+  });
+}
+
+RestFilter::Reading RestFilter::read(const FewStatesVector& of) const noexcept {
+  if (hypotheses_.size() == 1) return read(of, cores_[0]);
+  Reading mean;
+  std::array<Reading, Rule::kMaxHypotheses> each;
+  for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
+    each[j] = read(of, cores_[j]);
+    mean.value += rule_->weight(j) * each[j].value;
+    mean.gain += rule_->weight(j) * each[j].gain;
+  }
+  for (std::size_t j = 0; j < hypotheses_.size(); ++j)
+    mean.variance += rule_->weight(j) * (each[j].variance + apart(each[j].value, mean.value));
+  return mean;
+}
+
+// Mean square over the measured axes of what a core says against this; zero by itself for a single core.
+double RestFilter::apart(const Lanes& one, const Lanes& mean) const noexcept {
+  if (hypotheses_.size() == 1 || valid_ == 0) return 0.0;
+  double sum = 0.0;
+  for (int axis = 0; axis < kMaxAxes; ++axis)
+    if ((valid_ >> static_cast<unsigned>(axis) & 1U) != 0)
+      sum += (one[axis] - mean[axis]) * (one[axis] - mean[axis]);
+  return sum / std::popcount(valid_);
 }
 
 }  // namespace ifog

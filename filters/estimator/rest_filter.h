@@ -1,26 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// State model, Kalman core and rule put together: the filter at rest. The core is of fixed size, one
-// instantiation for each number of states; this is what they have in common.
+// State model, Kalman core and rule put together: the filter at rest. One core for most rules; for a rule with several
+// hypotheses about the noise, one core each and their weighted mean.
 #pragma once
 
+#include <array>
 #include <memory>
+#include <span>
 
 #include "filters/estimator/sample.h"
 #include "filters/kalman/settled.h"
 #include "filters/rules/rule.h"
+#include "filters/state_models/few_states.h"
 #include "filters/state_models/state_model.h"
 
 namespace ifog {
 
 class RestFilter {
  public:
-  virtual ~RestFilter() = default;
+  // Throws std::invalid_argument when the model has too many states.
+  RestFilter(std::unique_ptr<StateModel> model, std::unique_ptr<Rule> rule, double process_noise,
+             double measurement_noise);
 
-  virtual void restart() noexcept = 0;
+  void restart() noexcept;
   // Another driving noise from the next prediction on.
-  virtual void retune(double process_noise) noexcept = 0;
+  void retune(double process_noise) noexcept {
+    process_noise_ = process_noise;
+    discretised_dt_s_ = -1.0;
+  }
   // Eqs. (9), (10) of the paper over dt.
-  virtual void predict(double dt_s) noexcept = 0;
+  void predict(double dt_s) noexcept;
   // One sample. noise_scale: mean R of the valid axes over the R that the filter was made with; share: R of
   // each axis over that mean, by which the rule's innovations are normalised.
   struct Measured {
@@ -29,47 +37,70 @@ class RestFilter {
     double noise_scale = 1.0;
     Lanes share = Lanes::Ones();
   };
-  // Takes it in. With learn off the rule keeps its opinion of R: the innovations of a filter that is catching
+  // Corrects with a measurement. With learn off the rule keeps its R: the innovations of a filter that is catching
   // up say nothing about it.
-  virtual void update(const Measured& m, std::uint64_t sequence, bool learn) noexcept = 0;
+  void update(const Measured& m, std::uint64_t sequence, bool learn) noexcept;
   // No measurement at this step.
-  virtual void skip() noexcept = 0;
-  // Moves the level of the axes in `which` until the measurement would be this, leaving what the model holds
-  // beside it (a line, a slope) alone.
-  virtual void shift_to(const Lanes& rate, std::uint32_t which) noexcept = 0;
+  void skip() noexcept;
+  // Moves the level of the axes in `which` until the measurement would be this. A line or a slope of the model stays.
+  void shift_to(const Lanes& rate, std::uint32_t which) noexcept;
   // Makes this the variance of the rate.
-  virtual void set_variance(double variance) noexcept = 0;
+  void set_variance(double variance) noexcept;
   // Lag and correlation if the gain stayed as it is.
-  [[nodiscard]] virtual Settled settled() const noexcept = 0;
+  [[nodiscard]] Settled settled() const noexcept;
   // False when the covariance is none any more or the state no number.
-  [[nodiscard]] virtual bool sound() const noexcept = 0;
+  [[nodiscard]] bool sound() const noexcept;
 
   // As the last of the calls above left them. Rate, its variance and its gain are of StateModel::rate(), what
   // is published; the measurement's are of everything that is measured, the noise's colour and lines
   // included.
-  [[nodiscard]] const Lanes& rate() const noexcept { return rate_; }
-  [[nodiscard]] double variance() const noexcept { return variance_; }
-  [[nodiscard]] double gain() const noexcept { return gain_; }
-  [[nodiscard]] const Lanes& measurement() const noexcept { return measurement_; }
-  [[nodiscard]] double measurement_variance() const noexcept { return measurement_variance_; }
+  [[nodiscard]] const Lanes& rate() const noexcept { return rate_.value; }
+  [[nodiscard]] double variance() const noexcept { return rate_.variance; }
+  [[nodiscard]] double gain() const noexcept { return rate_.gain; }
+  [[nodiscard]] const Lanes& measurement() const noexcept { return measured_.value; }
+  [[nodiscard]] double measurement_variance() const noexcept { return measured_.variance; }
   // The rate is all that is measured: the model knows no colour and no line.
-  [[nodiscard]] bool rate_alone() const noexcept { return rate_alone_; }
+  [[nodiscard]] bool rate_alone() const noexcept { return model_.rate_alone; }
   [[nodiscard]] double covariance() const noexcept { return covariance_; }  // of the innovation, as used
   [[nodiscard]] Rule& rule() noexcept { return *rule_; }
   [[nodiscard]] const Rule& rule() const noexcept { return *rule_; }
 
- protected:
-  explicit RestFilter(std::unique_ptr<Rule> rule) : rule_(std::move(rule)) {}
+ private:
+  struct Model {
+    std::unique_ptr<StateModel> form;
+    Eigen::Index states;
+    FewStatesVector h, level, readout;
+    FewStatesMatrix start;  // covariance
+    bool rate_alone;
+  };
+  // The state of KalmanCore<n>: one column an axis, and what is common to all axes.
+  struct Core {
+    Eigen::Matrix<double, Eigen::Dynamic, kMaxAxes, Eigen::ColMajor, kMaxStates, kMaxAxes> x;
+    FewStatesMatrix p;
+    FewStatesVector gain;
+  };
+  struct Reading {
+    Lanes value = Lanes::Zero();
+    double variance = 0.0, gain = 0.0;
+  };
 
+  [[nodiscard]] std::span<Core> cores() noexcept { return {cores_.data(), hypotheses_.size()}; }
+  [[nodiscard]] std::span<const Core> cores() const noexcept { return {cores_.data(), hypotheses_.size()}; }
+  // What a core, and what all of them together, say of `of`'x.
+  [[nodiscard]] Reading read(const FewStatesVector& of, const Core& core) const noexcept;
+  [[nodiscard]] Reading read(const FewStatesVector& of) const noexcept;
+  void refresh() noexcept;
+  [[nodiscard]] double apart(const Lanes& one, const Lanes& mean) const noexcept;
+
+  Model model_;
   std::unique_ptr<Rule> rule_;
-  Lanes rate_ = Lanes::Zero(), measurement_ = Lanes::Zero();
-  double variance_ = 0.0, gain_ = 0.0, covariance_ = 0.0;
-  double measurement_variance_ = 0.0;
-  bool rate_alone_ = true;
+  std::span<const double> hypotheses_;
+  double process_noise_, discretised_dt_s_ = -1.0;
+  FewStatesMatrix transition_, driving_;
+  std::array<Core, Rule::kMaxHypotheses> cores_;
+  Reading rate_, measured_;
+  double covariance_ = 0.0;
+  std::uint32_t valid_ = 0;  // axes of the last measurement
 };
-
-// Throws std::invalid_argument when the model has too many states.
-std::unique_ptr<RestFilter> make_rest_filter(std::unique_ptr<StateModel> model, std::unique_ptr<Rule> rule,
-                                             double process_noise, double measurement_noise);
 
 }  // namespace ifog

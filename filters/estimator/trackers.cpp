@@ -14,8 +14,6 @@ constexpr double kSpacing = 3.1622776601683795;
 // Memory, samples, of the second one: half of the raw measurement's weight. Shorter ones differ from that by
 // nothing.
 constexpr double kSecond = 4.5;
-// Samples over which the usual distance between measurements is averaged.
-constexpr double kUsualMemory = 32.0;
 // The shortest four follow any motion that 200 samples show, whatever the filter at rest is.
 constexpr std::size_t kAlways = 4;
 
@@ -91,7 +89,7 @@ void Trackers::prolong(State& state, double steps) const noexcept {
 
 [[gnu::flatten]] void Trackers::predict(double steps) noexcept {
   since_ += steps;
-  const bool whole = even_ && steps == 1.0 && all_since_last();
+  const bool whole = steps == 1.0 && all_since_last();
   for (std::size_t j = 0; j < size_; ++j) {
     State& state = state_[j];
     if (!state.settled) set_gains(state, j);
@@ -105,11 +103,11 @@ void Trackers::prolong(State& state, double steps) const noexcept {
 }
 
 [[gnu::flatten]] void Trackers::correct(const Lanes& rate, const Lanes& mask) noexcept {
-  even_ = all_since_last() && (axes_ * (1.0 - mask + (usual_ - 1.0).abs())).sum() == 0.0;
+  const bool whole = all_since_last() && (axes_ * (1.0 - mask)).sum() == 0.0;
   for (std::size_t j = 0; j < size_; ++j) {
     State& state = state_[j];
     const Gains& g = state.gains;
-    if (even_) {
+    if (whole) {
       const Lanes innovation = rate - state.rate;
       state.rate += g.rate * innovation;
       state.slope += g.slope * innovation;
@@ -120,10 +118,6 @@ void Trackers::prolong(State& state, double steps) const noexcept {
     state.age += 1.0;
     if (!state.settled) state.length = std::min(memory_[j], state.age / 3.0 + 1.0);
   }
-  if (!even_) {
-    usual_ += mask * (since_.min(kUsualMemory) - usual_) / kUsualMemory;
-    usual_ = ((usual_ - 1.0).abs() < 1e-3).select(1.0, usual_);
-  }
   since_ *= 1.0 - mask;
 }
 
@@ -132,7 +126,7 @@ void Trackers::prolong(State& state, double steps) const noexcept {
 // circle.
 void Trackers::correct_some(State& state, const Lanes& rate, const Lanes& mask) noexcept {
   const Gains& g = state.gains;
-  const Lanes innovation = mask * (rate - state.rate), step = since_.max(usual_);
+  const Lanes innovation = mask * (rate - state.rate), step = since_.max(1.0);
   // What a parabola that has ended holds is not corrected but begun again.
   state.rate += ended(state).select(innovation, g.rate * innovation);
   state.slope += ended(state).select(0.0, g.slope / step * innovation);

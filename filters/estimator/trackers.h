@@ -61,6 +61,10 @@ class Trackers {
   [[nodiscard]] double length(std::size_t j) const noexcept { return state_[j].length; }
   // Samples over which it is compared with another filter: its impulse response has decayed.
   [[nodiscard]] double horizon(std::size_t j) const noexcept { return horizon_[j]; }
+  // By how much the parabola's reach is longer than itself for each axis; 1 for one that has just been measured.
+  [[nodiscard]] Lanes prolonged(std::size_t j) const noexcept {
+    return 1.0 + (since_ / state_[j].length).min(kMostLengths);
+  }
   // Nominal samples since each axis was corrected; 1 when none is missing.
   [[nodiscard]] const Lanes& since() const noexcept { return since_; }
 
@@ -80,9 +84,7 @@ class Trackers {
   // Every axis was corrected at the last nominal sample.
   [[nodiscard]] bool all_since_last() const noexcept { return (axes_ * (since_ - 1.0)).abs().sum() == 0.0; }
   // Axes that have been missing for longer than the parabola reaches.
-  [[nodiscard]] auto ended(const State& state) const noexcept {
-    return since_ > kMostLengths * state.length * usual_;
-  }
+  [[nodiscard]] auto ended(const State& state) const noexcept { return since_ > kMostLengths * state.length; }
 
   // A parabola is prolonged over so many of its lengths at most: beyond, its variance exceeds a thousand times
   // R.
@@ -93,8 +95,6 @@ class Trackers {
   std::array<State, kMost> state_{};
   std::size_t size_ = 0;
   Lanes since_ = Lanes::Zero();
-  Lanes usual_ = Lanes::Ones();  // mean distance of an axis' measurements, nominal samples
-  bool even_ = true;             // all measurements so far were one nominal sample apart
 };
 
 }  // namespace ifog

@@ -76,12 +76,12 @@ void Walk::break_off() noexcept {
   in_stretch_ = 0.0;
 }
 
-void Walk::take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept {
-  if (valid_axes == 0) return;
+std::optional<Walk::Found> Walk::take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept {
+  if (valid_axes == 0) return {};
   if (std::exchange(learn_, learn) != learn) break_off();
   for (std::size_t a = 0; a < kMaxAxes; ++a)
     if ((valid_axes >> a & 1U) != 0) add(a, rate[a]);
-  if (++in_stretch_ >= stretch_) judge();
+  return ++in_stretch_ >= stretch_ ? judge() : std::nullopt;
 }
 
 void Walk::add(std::size_t axis, double rate) noexcept {
@@ -161,7 +161,7 @@ double Walk::white_noise(const Allan& allan, std::size_t trial, std::size_t firs
   return noise;
 }
 
-void Walk::judge() noexcept {
+std::optional<Walk::Found> Walk::judge() noexcept {
   const std::size_t trial = likeliest(lately_, 0.0);
   bool noise = true;
   Found found{{}, ratio_, true, in_stretch_};
@@ -180,11 +180,11 @@ void Walk::judge() noexcept {
   }
   if (noise && learn_) believe();
   found.ratio = ratio_;
-  if (noise) news_ = found;
   // The long blocks go on where it was noise.
   if (!noise) blocks_ = {};
   lately_ = {};
   in_stretch_ = 0.0;
+  return noise ? std::optional(found) : std::nullopt;
 }
 
 void Walk::believe() noexcept {
@@ -202,7 +202,5 @@ void Walk::believe() noexcept {
     recalled_samples_ = 0.0;
   if (recalled_samples_ == 0.0) ratio_ = ratio_of(likeliest(all_, kNearly));
 }
-
-std::optional<Walk::Found> Walk::take_news() noexcept { return std::exchange(news_, std::nullopt); }
 
 }  // namespace ifog

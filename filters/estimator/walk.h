@@ -44,13 +44,12 @@ class Walk {
   // The walk as an earlier run has found it, in so many samples: stands until this run has had as many or
   // contradicts it.
   void recall(double ratio, double samples) noexcept;
-  // The next measurements, rad/s. What is learned of the walk is learned only with `learn`.
-  void take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept;
+  // The next measurements, rad/s; returns what a stretch that ends with them shows, if it is noise. The walk is learned
+  // only with `learn`.
+  std::optional<Found> take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept;
   // A motion or a gap: the stretch begins anew.
   void break_off() noexcept;
   void set_stretch(double samples) noexcept { stretch_ = samples; }
-  // Once, when a stretch was judged to be noise.
-  [[nodiscard]] std::optional<Found> take_news() noexcept;
   // Samples that the ratio stands on.
   [[nodiscard]] double samples() const noexcept { return samples_ + recalled_samples_; }
 
@@ -67,7 +66,7 @@ class Walk {
   using Octaves = std::array<Allan, kMaxAxes>;
 
   void add(std::size_t axis, double rate) noexcept;
-  void judge() noexcept;
+  [[nodiscard]] std::optional<Found> judge() noexcept;
   // R of an axis if it is white noise and this walk from that octave on; 0 if it is not, NaN if nothing was
   // measured.
   [[nodiscard]] static double white_noise(const Allan& allan, std::size_t trial, std::size_t first) noexcept;
@@ -83,7 +82,6 @@ class Walk {
   double ratio_ = kMostRatio;
   double recalled_samples_ = 0.0;  // that ratio_ was recalled with; 0: it is this run's
   bool learn_ = true;
-  std::optional<Found> news_;
 };
 
 }  // namespace ifog

@@ -28,7 +28,7 @@ Lengths lengths(double ratio) {
           .started = std::max<std::size_t>(80'000, time_constants(ratio, 10.0))};
 }
 
-enum Stream : std::uint32_t { kWalk, kNoise, kMotion, kOffset };
+enum Stream : std::uint32_t { kWalk, kNoise, kMotion };
 
 // Streams that have nothing in common for any two of (regime, ratio, seed, stream).
 class Streams {
@@ -106,14 +106,15 @@ Regime borne(const std::string& name, bool slow, MotionKind motion) {
   return regime;
 }
 
-// The level is anywhere between two steps of the converter, another place in each record.
+// The level is between two steps of the converter, over consecutive seeds evenly everywhere: what the steps leave of
+// the mean depends on it.
 Regime quantised_regime(const std::string& name, double limit, double step) {
   Regime regime = at_rest(name, limit, nullptr);
   regime.make = [name, step](double ratio, std::uint64_t seed) {
     const Streams streams(name, ratio, seed);
     const Lengths length = lengths(ratio);
-    Random of_noise = streams(kNoise), of_offset = streams(kOffset);
-    const double level = std::uniform_real_distribution<double>(0.0, step)(of_offset);
+    Random of_noise = streams(kNoise);
+    const double level = step * std::fmod(0.618034 * static_cast<double>(seed), 1.0);
     const std::size_t samples = length.settle + length.rest;
     RegimeRecord record = compose(streams, ratio, length.settle, gaussian_noise(of_noise, samples),
                                   std::vector<double>(samples, level));

@@ -25,8 +25,7 @@ Heard hear(int samples, unsigned seed, const std::function<double(int, double)>&
   double level = 0.0;
   for (int i = 0; i < samples; ++i) {
     level += std::sqrt(walk) * normal(engine);
-    learner.take({level + sample(i, normal(engine))}, 1, true);
-    if (auto news = learner.take_news()) {
+    if (auto news = learner.take({level + sample(i, normal(engine))}, 1, true)) {
       heard.last = news;
       ++heard.stretches;
     }
@@ -92,8 +91,8 @@ TEST(Walk, RecallsUntilItIsContradicted) {
     const double rate = normal(engine);
     walked += 1e-2 * normal(engine);
     for (std::size_t k = 0; k < 3; ++k) {
-      walks[k].take({k == 2 ? rate + walked : rate}, 1, true);
-      if (const auto news = walks[k].take_news()) found[k] = news->ratio;
+      const auto news = walks[k].take({k == 2 ? rate + walked : rate}, 1, true);
+      if (news) found[k] = news->ratio;
     }
   }
   EXPECT_NEAR(found[0], 1e-9, 1e-12);
