@@ -156,7 +156,7 @@ void Engine::follow(Step& s) noexcept {
   Follower& f = follow_;
   // What shaking makes is no outlier among the like. Where nothing follows the motion nothing tells an outlier
   // from it.
-  const Lanes allowed = f.moving ? noise_.each(&Noise::heard) : Lanes::Ones();
+  const Lanes allowed = f.moving ? noise_.each(&Noise::shaken) : Lanes::Ones();
   switch (f.moving && f.mix.raw() ? Outliers::Verdict::usual
                                   : f.outliers.take(f.trackers, s.sample, allowed, f.moving, f.lag())) {
     case Outliers::Verdict::waits:

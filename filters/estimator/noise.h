@@ -65,6 +65,8 @@ class Noise {
   }
   // The same without that doubt, 1 at least: for who takes all that is louder for noise.
   [[nodiscard]] double heard() const noexcept { return std::max(1.0, fast_ / usual()); }
+  // By which third differences are now above the known noise, 1 at least: broadband motion is in them.
+  [[nodiscard]] double shaken() const noexcept { return std::max(1.0, fast_ / known_); }
   // Variance of the known noise over that of equally rough white noise; 1 within chance.
   [[nodiscard]] double colour() const noexcept { return colour_; }
   // Variance of a mean of coarse steps d, averaged over the true level: that of the sawtooth's first harmonic,
