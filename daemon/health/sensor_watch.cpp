@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {

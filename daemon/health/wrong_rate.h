@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "drivers/system/text.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 

@@ -23,7 +23,7 @@
 #include "daemon/publish/inertial_encoder.h"
 #include "daemon/publish/publisher.h"
 #include "daemon/publish/rate_encoder.h"
-#include "drivers/system/nanoseconds.h"
+#include "daemon/sensor/duration_histogram.h"
 #include "drivers/transport/counter.h"
 #include "filters/allan/streaming.h"
 #include "filters/chain/signal_chain.h"

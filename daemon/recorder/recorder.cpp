@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "daemon/realtime/realtime.h"
-#include "drivers/system/text.h"
 #include "drivers/transport/clock.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {

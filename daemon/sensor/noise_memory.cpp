@@ -7,7 +7,8 @@
 
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
+#include "drivers/system/utc_now.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {

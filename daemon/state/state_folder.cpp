@@ -16,7 +16,7 @@
 #include <system_error>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 

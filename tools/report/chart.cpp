@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "drivers/system/text.h"
+#include "filters/units/told_time.h"
 #include "tools/report/plot_data.h"
 #include "tools/report/text.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 
 namespace ifog::report {
 namespace {

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
+#include "filters/units/told_time.h"
 
 namespace ifog::report {
 namespace {

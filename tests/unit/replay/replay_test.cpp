@@ -19,7 +19,7 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/system/nanoseconds.h"
+#include "daemon/sensor/duration_histogram.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/file/pace.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/console/listed_fields.h"
 #include "tools/ifog/console/say.h"

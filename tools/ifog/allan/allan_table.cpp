@@ -4,8 +4,8 @@
 #include <cmath>
 #include <filesystem>
 
-#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/console/say.h"
 

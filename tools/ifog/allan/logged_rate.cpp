@@ -7,7 +7,6 @@
 #include <span>
 #include <stdexcept>
 
-#include "drivers/system/text.h"
 #include "filters/allan/noise/curve_miss.h"
 #include "filters/allan/row_times.h"
 #include "filters/rest/cleaned_rate.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog compare: every adaptation rule on one capture, with the same settings.
 #include "filters/compare/compare.h"
-#include "drivers/system/text.h"
+#include "filters/units/told_time.h"
 
 #include <algorithm>
 #include <cmath>
@@ -118,8 +118,6 @@ void fill_noise(FilterSettings& settings, const CaptureView& capture, const std:
   if (settings.process_noise <= 0.0) settings.process_noise = ratio * settings.measurement_noise / period_s;
 }
 
-std::string tau_name(double tau) { return formatted("%g", tau); }
-
 json settings_json(const FilterSettings& s) {
   return {{"state", s.state},
           {"state_parameters", s.state_parameters},
@@ -137,7 +135,7 @@ json settings_json(const FilterSettings& s) {
 json row_json(const ComparisonRow& row, const std::string& axis, const FilterSettings& settings) {
   json adev = json::object();
   for (std::size_t i = 0; i < kComparedTaus.size(); ++i)
-    adev[tau_name(kComparedTaus[i])] = as_json(row.adev_radps[i]);
+    adev[formatted("%g", kComparedTaus[i])] = as_json(row.adev_radps[i]);
   json out{{"rule", row.rule},
            {"axis", axis},
            {"settings", settings_json(settings)},
@@ -170,7 +168,7 @@ std::string figure_cell(const std::optional<double>& value, double scale, const 
 
 void print_axis(const Comparison& result, int axis, bool reference, const Verdict& verdict) {
   say("%-10s %7s %10s", "rule", "above", "std");
-  for (const double tau : kComparedTaus) say(" %9s", ("ADEV " + tau_name(tau) + "s").c_str());
+  for (const double tau : kComparedTaus) say(" %9s", formatted("ADEV %gs", tau).c_str());
   if (reference) say(" %10s %10s %8s", "RMSE", "bias", "lag s");
   say(" %11s %8s %7s %7s %6s %7s %7s\n", "heading deg", "max", "at rest", "lag-1", "NIS", "20s 90%",
       "5s 90%");

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/progress.h"
 

@@ -16,7 +16,6 @@
 #include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
 #include "filters/series/samples.h"
 #include "filters/series/series_view.h"
 #include "filters/smoother/smoother.h"

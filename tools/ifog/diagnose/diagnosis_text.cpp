@@ -2,7 +2,6 @@
 #include "tools/ifog/diagnose/diagnosis_text.h"
 #include <array>
 
-#include "drivers/system/text.h"
 #include "filters/effects/form.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"

@@ -14,7 +14,7 @@
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
+#include "drivers/system/utc_now.h"
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/diagnosis/cleaning/steps.h"
 #include "filters/effects/form.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
+#include "drivers/system/utc_now.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/interrupt.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/system/text.h"
+#include "filters/units/told_time.h"
 #include "msgs/axis_name.h"
 
 namespace ifog::tools {

@@ -17,8 +17,9 @@
 
 #include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
+#include "drivers/system/utc_now.h"
 #include "filters/model_file/sha256.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"

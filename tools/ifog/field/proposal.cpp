@@ -7,9 +7,9 @@
 
 #include "daemon/sensor/sensor_parts.h"
 #include "daemon/state/state_folder.h"
-#include "drivers/system/text.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {

@@ -12,7 +12,7 @@
 
 #include "daemon/state/running_mark.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
+#include "drivers/system/utc_now.h"
 #include "msgs/counters.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"

@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "drivers/system/text.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 

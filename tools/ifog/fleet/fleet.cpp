@@ -14,7 +14,7 @@
 
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
+#include "drivers/system/utc_now.h"
 #include "filters/units/field_units.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_line.h"

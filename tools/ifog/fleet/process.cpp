@@ -18,7 +18,7 @@
 #include <system_error>
 #include <thread>
 
-#include "drivers/system/text.h"
+#include "filters/units/told_time.h"
 
 namespace ifog::tools {
 namespace {

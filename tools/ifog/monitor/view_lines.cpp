@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 #include "msgs/axis_name.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/console/options/hertz.h"

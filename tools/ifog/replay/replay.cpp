@@ -22,7 +22,7 @@
 #include <string>
 #include <system_error>
 
-#include "drivers/system/nanoseconds.h"
+#include "daemon/sensor/duration_histogram.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/file/pace.h"
 #include "tools/ifog/commands.h"

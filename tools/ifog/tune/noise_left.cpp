@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
 #include "filters/allan/stretches.h"
 #include "filters/tune/tune.h"
+#include "filters/units/told_time.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/tune/rest_columns.h"
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog tune: Q, R and the state model of a sensor at rest, into a model file.
 #include "filters/tune/tune.h"
-#include "drivers/system/text.h"
+#include "drivers/system/utc_now.h"
+#include "filters/units/told_time.h"
 
 #include <cmath>
 #include <filesystem>
@@ -50,8 +51,6 @@ struct TuneArguments {
   std::size_t samples = 200000;
 };
 
-std::string tau_text(double tau_s) { return formatted("%g", tau_s); }
-
 // What people read: deg/h, deg/h/sqrt(h) and SI.
 std::string in_field_units(const TunedFigure& figure) {
   double factor = 0.0;
@@ -65,7 +64,7 @@ std::string in_field_units(const TunedFigure& figure) {
 json rate_json(const RateFigures& figures) {
   json adev = json::object();
   for (std::size_t t = 0; t < kOutcomeTaus.size(); ++t)
-    if (figures.adev_radps[t]) adev[tau_text(kOutcomeTaus[t])] = *figures.adev_radps[t];
+    if (figures.adev_radps[t]) adev[formatted("%g", kOutcomeTaus[t])] = *figures.adev_radps[t];
   return {{"rms_radps", figures.rms_radps}, {"adev_radps", adev}};
 }
 
@@ -139,7 +138,7 @@ void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) 
     print_figure("RMS", before.rms_radps, after.rms_radps, walk ? &walk->after[a].rms_radps : nullptr);
     for (std::size_t t = 0; t < kOutcomeTaus.size(); ++t) {
       if (!before.adev_radps[t] || !after.adev_radps[t]) continue;
-      print_figure(("Allan deviation " + tau_text(kOutcomeTaus[t]) + " s").c_str(), *before.adev_radps[t],
+      print_figure(formatted("Allan deviation %g s", kOutcomeTaus[t]).c_str(), *before.adev_radps[t],
                    *after.adev_radps[t],
                    walk && walk->after[a].adev_radps[t] ? &*walk->after[a].adev_radps[t] : nullptr);
     }

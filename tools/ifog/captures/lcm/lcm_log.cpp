@@ -19,7 +19,7 @@
 
 #include "drivers/capture/times/time_stamps.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/text.h"
+#include "drivers/system/utc_now.h"
 #include "msgs/channel_name.h"
 #include "msgs/in_order.h"
 #include "tools/ifog/captures/lcm/lcm_channels.h"

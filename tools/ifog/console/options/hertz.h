@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "drivers/system/text.h"
+#include "filters/units/told_time.h"
 
 namespace ifog::tools {
 

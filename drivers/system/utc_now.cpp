@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/system/text.h"
+#include "drivers/system/utc_now.h"
 
 #include <ctime>
 
