@@ -69,8 +69,8 @@ nlohmann::ordered_json driver_json(const FoundPlugin& found) {
           {"options", options}};
 }
 
-void write(const std::string& path, const std::vector<FoundPlugin>& all,
-           const std::vector<std::string>& folders) {
+void write_drivers(const std::string& path, const std::vector<FoundPlugin>& all,
+                   const std::vector<std::string>& folders) {
   auto drivers = nlohmann::ordered_json::array(), refused = nlohmann::ordered_json::array();
   for (const FoundPlugin& found : all)
     if (found.plugin)
@@ -93,7 +93,7 @@ void run_drivers(const std::string& name, const std::string& json) {
   } else {
     all = list_plugins(folders);
   }
-  if (!json.empty()) write(json, all, folders);
+  if (!json.empty()) write_drivers(json, all, folders);
   if (!name.empty()) {
     print_driver(all.front());
     return;

@@ -22,7 +22,7 @@ namespace ifog::tools {
 namespace {
 
 // Rates worked on at a time, were there fewer processors: with three on two processors in turn, one would be idle.
-constexpr unsigned kTogether = 3;
+constexpr unsigned kRatesTogether = 3;
 
 // "rate_x_radps" → signal "rate", axis "x"; likewise those of a denoised file. False for another column.
 bool signal_of(const std::string& column, std::string& signal, std::string& axis) {
@@ -248,7 +248,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
   // Side by side. An axis that cannot be analysed costs the others nothing; where none can, the first says why.
   std::vector<AllanRecord> records(rates.size());
   std::vector<std::exception_ptr> refused(rates.size());
-  share_out(rates.size(), std::max(kTogether, std::thread::hardware_concurrency()), [&](std::size_t i) {
+  share_out(rates.size(), std::max(kRatesTogether, std::thread::hardware_concurrency()), [&](std::size_t i) {
     try {
       records[i] = record_of(part, rates[i], options);
     } catch (...) {

@@ -11,7 +11,7 @@
 
 namespace ifog::tools {
 
-constexpr std::size_t kTogether = std::size_t{1} << 14U;  // rows written at once
+constexpr std::size_t kRowsTogether = std::size_t{1} << 14U;  // rows written at once
 
 DenoisedRows::DenoisedRows(std::string output, TimePart part, bool keep, bool smooth)
     : output_(std::move(output)), part_(std::move(part)), keep_(keep || smooth), smooth_(smooth) {}
@@ -38,7 +38,7 @@ void DenoisedRows::append(double value) { held_[place_++].push_back(value); }
 
 void DenoisedRows::end_row() {
   place_ = 0;
-  if (held_.front().size() >= kTogether) flush();
+  if (held_.front().size() >= kRowsTogether) flush();
 }
 
 void DenoisedRows::flush() {

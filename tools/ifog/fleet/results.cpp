@@ -146,10 +146,10 @@ std::string Results::told_in_log(std::size_t gyro) const {
   std::error_code none;
   if (const auto bytes = fs::file_size(file, none); !none && bytes > 0) return ", see " + file;
   // A full disk takes nothing of what was said, either; the next byte shows it.
-  const int fd = open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-  const bool written = fd >= 0 && write(fd, "\n", 1) == 1;
+  const int fd = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
+  const bool written = fd >= 0 && ::write(fd, "\n", 1) == 1;
   const int error = errno;
-  if (fd >= 0) close(fd);
+  if (fd >= 0) ::close(fd);
   return written ? ", see " + file : ", and " + file + ": cannot write: " + std::strerror(error);
 }
 
