@@ -47,12 +47,13 @@ void CaptureInput::add_to(const Command& command) {
           "Column of a CSV file with another header, by its name or number (#3), or dataset of an HDF5 file: "
           "rate_x_radps=GyroX:deg/s; a unit of angle (deg) makes its differences the rate, one of increments "
           "(deg/sample) the turn within each sample, a number before it (0.00763deg/s) the scale of counts. "
-          "May stand several times; columns not named are passed "
-          "over")
+          "May stand several times; columns not named are ignored")
       .type_name("NAME=HEADER[:UNIT]");
   command
-      .add_option("--time", time,
-                  "Its time column: t:ms; sec+nsec or date+time: two columns that are one time")
+      .add_option(
+          "--time", time,
+          "Its time column: t:ms; sec+nsec or date+time: two columns that are one time; Date:d/m/y: dates "
+          "with the day first")
       .type_name("HEADER[:UNIT]");
   command
       .add_option("--sample-rate", sample_rate_hz, "Its rows are even, at this rate, whatever its times say")
