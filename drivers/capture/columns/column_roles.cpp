@@ -73,7 +73,7 @@ std::string unit_of(const TableSample& table, std::size_t place) {
 }
 
 // p, q and r together are body rates; x, y and z without another word are the axes of a file that holds one
-// sensor only, as phones write it. Beside w or qw they are a quaternion or a position.
+// sensor only, as phones write it. Next to w or qw they are a quaternion or a position.
 void add_triple(const TableSample& table, Sensors& sensors) {
   if (!sensors.empty()) return;
   std::vector<RateCandidate> body, bare;
@@ -86,7 +86,8 @@ void add_triple(const TableSample& table, Sensors& sensors) {
         (unit.empty() || angle_unit(unit, true, true)))
       body.push_back({i, unit.empty() ? "" : rate_unit(words, unit),
                       std::string(1, static_cast<char>('x' + (words.text[0] - 'p')))});
-    if (words.size() == 0 && !words.axis.empty() && unit.empty()) bare.push_back({i, "", words.axis});
+    const bool nameless = words.size() == 0 || words.text == "xyz";  // "xyz[0]" of PX4
+    if (nameless && !words.axis.empty() && unit.empty()) bare.push_back({i, "", words.axis});
   }
   if (body.size() == 3)
     sensors["p q r"] = body;

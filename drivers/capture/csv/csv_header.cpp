@@ -5,7 +5,6 @@
 #include <cctype>
 #include <charconv>
 #include <set>
-#include <stdexcept>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"

@@ -2,7 +2,6 @@
 #include "drivers/capture/csv/csv_header.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <set>
 #include <utility>
@@ -143,9 +142,10 @@ std::vector<Header> headers_above(const std::vector<Line>& lines, const Grid& gr
     const std::set<std::string> each(names.begin(), names.end());
     return each.size() == names.size() && !each.contains("");
   };
-  if (above.size() > 1 && !are_names(above[0])) add(1, joined(above[1], above[0]));
+  const bool two = above.size() > 1, own = !above.empty() && are_names(above[0]);
+  if (two && !own) are_names(above[1]) ? add(2, above[1]) : add(1, joined(above[1], above[0]));
   if (!above.empty()) add(1, above[0]);
-  if (above.size() > 1 && are_names(above[1])) add(2, above[1]);
+  if (two && own && are_names(above[1])) add(2, above[1]);
   return found;
 }
 

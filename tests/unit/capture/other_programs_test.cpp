@@ -119,6 +119,8 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
                "\"x\":9.8,"
                "\"y\":0,\"z\":0}"),
        {"--time t:s --column rate_x_radps=x:rad/s --column rate_y_radps=y:rad/s"}},
+      {rows_of("timestamp,xyz[0],xyz[1],xyz[2]\n", "1{i}000,{x},{y},{z}"),
+       {"--column 'rate_x_radps=xyz[0]:rad/s'"}},
       // An oscilloscope: channels called by their numbers, in volts.
       {rows_of("x-axis,1,2\nsecond,Volt,Volt\n", "0.{i},{x},{y}"),
        {"a voltage with the scale before the unit: --column rate_x_radps=1:0.05deg/s"}},
