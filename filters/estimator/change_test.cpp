@@ -16,9 +16,6 @@ constexpr double kShakingVariance = 4.0;
 // Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
 // worth.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
-// Below it no sum of five samples or more speaks for a change; and as nats, that there are numbers enough.
-constexpr double kLeastSquare = 2.0, kMostSumNats = 30.0;
-
 }  // namespace
 
 // Evidence by the sizes of the errors alone, of so many as are independent by their fourth moment.
@@ -28,10 +25,8 @@ double ChangeTest::same_size(const Contest& c, Eigen::Index a) const noexcept {
 }
 
 void ChangeTest::begin() noexcept {
-  for (Contest& c : contest_) {
-    c.ratio = c.sum = c.weight = c.rest = c.rest2 = c.tracker = Lanes::Zero();
-    c.often.setConstant(0.5);
-  }
+  for (Contest& c : contest_)
+    c.ratio = c.sum = c.weight = c.times = c.rest = c.rest2 = c.tracker = Lanes::Zero();
   forget_angle();
   shaking_.setZero();
   unseen_.setZero();
@@ -39,22 +34,29 @@ void ChangeTest::begin() noexcept {
   age_ = 0.0;
 }
 
-// Bayes: a change over the horizon is as likely beforehand as it has been on average at this rest. An offset that makes
-// of R kShakingVariance, its variance beforehand so being m / n of R, makes the sum of n innovations of normalised
-// square z^2 likelier by exp(z^2 / 2 m / (m + 1)) / sqrt(m + 1). A sum that speaks against a change counts as none.
-void ChangeTest::expect(Contest& c, double h, const Lanes& square, const Lanes& n,
-                        const Sample& now) noexcept {
-  Lanes likely = Lanes::Zero();
-  if ((square > kLeastSquare).any()) {
-    for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-      const double m = (kShakingVariance - 1.0) * n[a];
-      const double nats = std::min(0.5 * square[a] * m / (m + 1.0), kMostSumNats);
-      const double ratio = exponential(nats) / std::sqrt(m + 1.0);
-      if (ratio > 1.0) likely[a] = c.often[a] * ratio / (c.often[a] * ratio + 1.0 - c.often[a]);
-    }
-    unseen_ = unseen_.max(likely * now.scale * (c.sum / c.weight.max(1.0)).square());
+// Of R kShakingVariance is made by an offset whose variance beforehand is m / n of R, n being what a sum over the horizon
+// is worth. It makes a sum of normalised square z^2 likelier by exp(z^2 / 2 m / (m + 1)) / sqrt(m + 1).
+ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
+  forget_angle();
+  for (std::size_t j = 0; j < Trackers::kMost; ++j) {
+    const double h = trackers.horizon(j), m = (kShakingVariance - 1.0) * h * h / (2.0 * h - 1.0);
+    contest_[j].shrinks = 0.5 * m / (m + 1.0);
+    contest_[j].spread = 0.5 * logarithm(m + 1.0);
   }
-  c.often += now.mask * (likely - c.often) / (h + age_);
+}
+
+// Bayes: a change over the horizon is as likely beforehand as it has been on average at this rest. A sum that speaks
+// against a change counts as none.
+void ChangeTest::expect(Contest& c, double h, const Lanes& nats, const Sample& now) noexcept {
+  Lanes likely = Lanes::Zero();
+  for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
+    if (!(nats[a] > 0.0)) continue;
+    const double often = (0.5 * h + c.times[a]) / (h + age_);
+    const double begun = often * exponential(std::min(nats[a], kEvidence));
+    likely[a] = begun / (begun + 1.0 - often);
+  }
+  c.times += now.mask * likely;
+  unseen_ = unseen_.max(likely * now.scale * (c.sum / c.weight.max(1.0)).square());
 }
 
 void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
@@ -67,13 +69,12 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   c.sum = keep * c.sum + common.clipped;
   c.weight = keep * c.weight + now.mask;
   // How many innovations of full weight the sum is worth: its variance over R.
-  const Lanes n = (c.weight * (2.0 - c.weight / h) / (2.0 - 1.0 / h)).max(1.0);
-  const Lanes square = c.sum * c.sum / n;
+  const Lanes n = (c.weight * (2.0 * h - c.weight) * (1.0 / (2.0 * h - 1.0))).max(1.0);
   Lanes evidence = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
   Lanes& likely = c.divisor.setOnes();
   if (coloured_) {
     c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
-    c.wide += now.mask * (square - c.wide) / (h * (c.horizons + 1.0));
+    c.wide += now.mask * (c.sum.square() / n - c.wide) / (h * (c.horizons + 1.0));
     // Until it is learned the width is the widest that the known noise allows with its third differences.
     const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
     const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
@@ -81,7 +82,8 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     widest_ = widest_.max(likely);
     evidence /= likely;
   }
-  expect(c, h, square / likely, n, now);
+  const Lanes limit = c.spread * n * likely, square = c.shrinks * c.sum.square();
+  if ((square > limit).any()) expect(c, h, (square - limit) / (n * likely), now);
   short_[j] = keep * short_[j] + now.short_rad;
   c.ratio = (keep * c.ratio + evidence).max(0.0);
   c.rest = keep * c.rest + common.squares;

@@ -21,7 +21,7 @@ namespace ifog {
 
 class ChangeTest {
  public:
-  ChangeTest() noexcept { forget_angle(); }
+  explicit ChangeTest(const Trackers& trackers) noexcept;
 
   // Index of "no tracker: the measurements are larger than the known noise".
   static constexpr std::size_t kShaking = Trackers::kMost;
@@ -47,7 +47,8 @@ class ChangeTest {
     Lanes ratio = Lanes::Zero(), sum = Lanes::Zero(), weight = Lanes::Zero();
     // Variance of a sum over that of white noise, as learned, and what evidence is divided by for it.
     Lanes wide = Lanes::Ones(), divisor = Lanes::Ones(), horizons = Lanes::Zero();
-    Lanes often = Lanes::Constant(0.5);  // share of the time that a change may have begun
+    Lanes times = Lanes::Zero();         // for which a change was likely to have begun
+    double shrinks = 0.0, spread = 0.0;  // of an offset's likelihood
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {
@@ -56,7 +57,7 @@ class ChangeTest {
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
                const Lanes& colour) noexcept;
-  void expect(Contest& c, double h, const Lanes& square, const Lanes& n, const Sample& now) noexcept;
+  void expect(Contest& c, double h, const Lanes& nats, const Sample& now) noexcept;
   [[nodiscard]] double same_size(const Contest& c, Eigen::Index a) const noexcept;
 
   std::array<Contest, Trackers::kMost> contest_{};

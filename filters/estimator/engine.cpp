@@ -143,7 +143,7 @@ void Engine::weigh(Step& s) noexcept {
   m.inverse = m.mask / m.scale;
   const Lanes covered = to_lanes(s.in.covered_s);
   m.covered_s = (covered > 0.0).select(covered, s.dt_s);
-  m.surprise = m.innovation * m.innovation * m.inverse / m.rest_factor;
+  m.surprise = m.innovation * m.innovation * m.inverse * (1.0 / m.rest_factor);
   s.out.innovation_radps = to_axes(m.innovation);
 }
 
@@ -253,8 +253,10 @@ void Engine::take(Step& s, bool learn) noexcept {
   }
   RestFilter::Measured measured{m.rate, m.valid, s.noise_scale, Lanes::Ones()};
   if (settings_.follow_manoeuvres) {
-    const Lanes most = kMostDeviations * (m.scale * m.rest_factor).sqrt();
-    measured.rate += m.innovation.max(-most).min(most) - m.innovation;
+    if (greatest(m.surprise) > kMostSquare) {
+      const Lanes most = kMostDeviations * (m.scale * m.rest_factor).sqrt();
+      measured.rate += m.innovation.max(-most).min(most) - m.innovation;
+    }
     // The mean of all axes, whichever are measured: one gain is for all.
     measured.share = noise_.each(&Noise::known);
     if (settings_.wideband == "noise") measured.share *= noise_.each(&Noise::heard);

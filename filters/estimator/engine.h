@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "filters/estimator/change_test.h"
 #include "filters/estimator/estimator.h"
@@ -45,7 +44,7 @@ class Grades {
 // The two ways in which the rate is followed, and the state that belongs to them.
 class Follower {
  public:
-  Follower(std::size_t axes, double period_s) noexcept : trackers(axes), ledger(period_s) { mix.begin(0); }
+  Follower(std::size_t axes, double period_s) noexcept : trackers(axes), change(trackers), ledger(period_s) {}
 
   // Of the filter at rest, samples; after a move it is as slow as what it has received since is long.
   [[nodiscard]] double lag() const noexcept {

@@ -41,20 +41,10 @@ class Ledger {
   }
   // One sample's angle by which the rate without payments fell short of the measured one.
   void book(const Lanes& short_by_rad, Account account) noexcept {
-    switch (account) {
-      case Account::kDebt:
-        debt_ += short_by_rad;
-        break;
-      case Account::kTail:
-        tail_ += short_by_rad;
-        [[fallthrough]];
-      case Account::kCarried:
-        at_rest_ += short_by_rad;
-        break;
-      case Account::kDoubt:
-        doubt_ += short_by_rad;
-        break;
-    }
+    if (account == Account::kDebt) debt_ += short_by_rad;
+    if (account == Account::kTail) tail_ += short_by_rad;
+    if (account == Account::kDoubt) doubt_ += short_by_rad;
+    if (account == Account::kTail || account == Account::kCarried) at_rest_ += short_by_rad;
   }
   // The outliers were rotation.
   void admit() noexcept { debt_ += std::exchange(doubt_, Lanes::Zero()); }

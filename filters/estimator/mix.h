@@ -20,6 +20,7 @@ namespace ifog {
 
 class Mix {
  public:
+  Mix() noexcept { begin(0); }
   struct Published {
     Lanes rate = Lanes::Zero(), variance = Lanes::Zero();
     double gain = 0.0;

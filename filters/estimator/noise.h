@@ -88,9 +88,12 @@ class Noise {
   // The cube root of a mean square of n degrees of freedom is nearly normal about 1 - 2 / 9n with variance 2 / 9n
   // (Wilson and Hilferty, PNAS 17, 1931).
   void refresh_colour() noexcept {
-    const double chance = kThirdVariance / (9.0 * std::clamp(taken_, 1.0, kSlow));
-    const double least = std::max(0.0, 1.0 - chance - kSurely * std::sqrt(chance)), ratio = usual() / known_;
-    colour_ = ratio < least * least * least ? 1.0 / ratio : 1.0;
+    if (taken_ <= kSlow) {
+      const double chance = kThirdVariance / (9.0 * std::max(taken_, 1.0));
+      const double root = std::max(0.0, 1.0 - chance - kSurely * std::sqrt(chance));
+      least_ = root * root * root;
+    }
+    colour_ = usual() < least_ * known_ ? known_ / usual() : 1.0;
   }
   // R by third differences. A converter at rest between two changes of its last digit shows none.
   [[nodiscard]] double usual() const noexcept { return std::max({slow_, 1e-9 * known_, of_steps()}); }
@@ -102,7 +105,8 @@ class Noise {
   // The mean square of 32 overlapping third differences scatters by 0.4: four standard deviations.
   static constexpr double kSurelyLouder = 2.6;
 
-  double known_, slow_, fast_, taken_ = 0.0, colour_ = 1.0, digit_ = std::numeric_limits<double>::infinity();
+  double known_, slow_, fast_, taken_ = 0.0, least_ = 0.0, colour_ = 1.0,
+                               digit_ = std::numeric_limits<double>::infinity();
   std::array<double, 3> last_{};
   int in_row_ = 0;
 };

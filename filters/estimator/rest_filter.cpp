@@ -19,7 +19,7 @@ constexpr double kDiffuse = 1e6;
 
 // Calls f with the number of states as a constant. Only what every step does is compiled for each.
 template <int n = 1, class F>
-auto sized(Eigen::Index states, const F& f) {
+[[gnu::always_inline]] inline auto sized(Eigen::Index states, const F& f) {
   if constexpr (n < kMaxStates) {
     if (states > n) return sized<n + 1>(states, f);
   }
@@ -93,18 +93,19 @@ void RestFilter::predict(double dt_s) noexcept {
 void RestFilter::update(const Measured& m, std::uint64_t sequence, bool learn) noexcept {
   // The innovation published is that of the weighted mean of predictions; each core's own covariance and
   // its distance from that mean make its variance, under the weights from before this measurement.
-  const Lanes normalise = m.share.sqrt();
+  const bool alike = (m.share == 1.0).all();
+  const Lanes predicted = measured().value;
   double mixture = 0.0;
   valid_ = m.valid;
   for (std::size_t j = 0; j < hypotheses_.size(); ++j) {
     const double weight = rule_->weight(j);
-    const Reading before = read(model_.h, cores_[j]);
+    const Reading before = hypotheses_.size() == 1 ? measured() : read(model_.h, cores_[j]);
     const Lanes innovation = m.rate - before.value;
     Axes normalised{};
     std::size_t count = 0;
     for (int axis = 0; axis < kMaxAxes; ++axis)
       if ((m.valid >> static_cast<unsigned>(axis) & 1U) != 0)
-        normalised[count++] = innovation[axis] / normalise[axis];
+        normalised[count++] = alike ? innovation[axis] : innovation[axis] / std::sqrt(m.share[axis]);
     const double c = learn ? rule_->innovation_covariance(
                                  {before.variance, m.noise_scale, {normalised.data(), count}, sequence, j})
                            : before.variance + rule_->measurement_noise_of(j) * m.noise_scale;
@@ -115,7 +116,7 @@ void RestFilter::update(const Measured& m, std::uint64_t sequence, bool learn) n
         if ((m.valid >> static_cast<unsigned>(axis) & 1U) != 0) core.update(axis, innovation[axis]);
       store<n>(core, cores_[j]);
     });
-    mixture += weight * (apart(before.value, measured_.value) + c);
+    mixture += weight * (apart(before.value, predicted) + c);
   }
   covariance_ = mixture;
   refresh();
@@ -124,7 +125,7 @@ void RestFilter::update(const Measured& m, std::uint64_t sequence, bool learn) n
 void RestFilter::skip() noexcept {
   for (Core& core : cores()) core.gain.setZero();
   rate_.gain = 0.0;
-  covariance_ = measured_.variance + rule_->measurement_noise();
+  covariance_ = measured().variance + rule_->measurement_noise();
 }
 
 void RestFilter::shift_to(const Lanes& rate, std::uint32_t which) noexcept {
@@ -162,7 +163,7 @@ Settled RestFilter::settled() const noexcept {
 }
 
 bool RestFilter::sound() const noexcept {
-  return std::ranges::all_of(cores(), [&](const Core& core) {
+  return std::all_of(cores_.begin(), cores_.begin() + std::ssize(hypotheses_), [&](const Core& core) {
     const double v = read(model_.h, core).variance;
     return v >= 0.0 && v < 1e300 && core.x.allFinite();
   });
@@ -170,7 +171,7 @@ bool RestFilter::sound() const noexcept {
 
 void RestFilter::refresh() noexcept {
   rate_ = read(model_.readout);
-  measured_ = model_.rate_alone ? rate_ : read(model_.h);
+  if (!model_.rate_alone) measured_ = read(model_.h);
 }
 
 RestFilter::Reading RestFilter::read(const FewStatesVector& of, const Core& core) const noexcept {

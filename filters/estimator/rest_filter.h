@@ -57,8 +57,8 @@ class RestFilter {
   [[nodiscard]] const Lanes& rate() const noexcept { return rate_.value; }
   [[nodiscard]] double variance() const noexcept { return rate_.variance; }
   [[nodiscard]] double gain() const noexcept { return rate_.gain; }
-  [[nodiscard]] const Lanes& measurement() const noexcept { return measured_.value; }
-  [[nodiscard]] double measurement_variance() const noexcept { return measured_.variance; }
+  [[nodiscard]] const Lanes& measurement() const noexcept { return measured().value; }
+  [[nodiscard]] double measurement_variance() const noexcept { return measured().variance; }
   // The rate is all that is measured: the model knows no colour and no line.
   [[nodiscard]] bool rate_alone() const noexcept { return model_.rate_alone; }
   [[nodiscard]] double covariance() const noexcept { return covariance_; }  // of the innovation, as used
@@ -85,10 +85,10 @@ class RestFilter {
   };
 
   [[nodiscard]] std::span<Core> cores() noexcept { return {cores_.data(), hypotheses_.size()}; }
-  [[nodiscard]] std::span<const Core> cores() const noexcept { return {cores_.data(), hypotheses_.size()}; }
   // What a core, and what all of them together, say of `of`'x.
   [[nodiscard]] Reading read(const FewStatesVector& of, const Core& core) const noexcept;
   [[nodiscard]] Reading read(const FewStatesVector& of) const noexcept;
+  [[nodiscard]] const Reading& measured() const noexcept { return model_.rate_alone ? rate_ : measured_; }
   void refresh() noexcept;
   [[nodiscard]] double apart(const Lanes& one, const Lanes& mean) const noexcept;
 
