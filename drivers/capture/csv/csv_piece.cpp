@@ -133,7 +133,7 @@ class Rows {
   void add_cells(std::string_view line, std::size_t number) {
     const std::size_t at_place = piece_.places++;
     const char *at = line.data(), *const end = at + line.size();
-    std::size_t place = 0;
+    std::size_t& place = reached_ = 0;
     for (;; ++at) {
       while (separator_ == ' ' && at != end && *at == ' ') ++at;
       // Some writers end each row with a separator.
@@ -205,12 +205,12 @@ class Rows {
     ++piece_.untimed;
   }
 
-  // The row at hand.
+  // The row at hand, as far as it was read: a file of short lines below a wide header takes no longer for it.
   void drop() {
     const std::size_t rows = piece_.rows.lines.size();
     piece_.rows.time_s.resize(rows);
-    for (const Place& place : to_)
-      if (place.values != nullptr) place.values->resize(rows);
+    for (std::size_t i = 0; i < reached_; ++i)
+      if (to_[i].values != nullptr) to_[i].values->resize(rows);
   }
 
   // False: the row has none.
@@ -260,7 +260,8 @@ class Rows {
   const TimeStamps& stamps_;
   double unit_s_;
   const Measurable time_range_ = measurable("time_s");
-  std::vector<Place> to_;  // by cell of a row
+  std::vector<Place> to_;    // by cell of a row
+  std::size_t reached_ = 0;  // cells of the row at hand
   RowTime time_;
 };
 
