@@ -270,7 +270,7 @@ file_s = 3
             shutil.copy(name, self.state)
         # The sensor has just stopped: whether the daemon has seen it yet or not.
         said = self.run("adopt", "nose", "--config", self.config, code=1)
-        self.check('in state "no data"' in said and "taken with the next sample" in said and "\n" not in said and self.sensor()["model"] == "",
+        self.check('in state "no data"' in said and "used from the next sample on" in said and "\n" not in said and self.sensor()["model"] == "",
                    "of a sensor that is silent: one line that says so, and nothing is changed")
         seen = self.published()
         feeder = self.feed(TURNED_OVER)
