@@ -34,8 +34,8 @@ void ChangeTest::begin() noexcept {
   age_ = 0.0;
 }
 
-// Of R kShakingVariance is made by an offset whose variance beforehand is m / n of R, n being what a sum over the horizon
-// is worth. It makes a sum of normalised square z^2 likelier by exp(z^2 / 2 m / (m + 1)) / sqrt(m + 1).
+// An offset that makes R into kShakingVariance R has a prior variance of m / n of R, where n is what a sum over the
+// horizon is worth. A sum of normalised square z^2 is likelier by it by exp(z^2 / 2 m / (m + 1)) / sqrt(m + 1).
 ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
   forget_angle();
   for (std::size_t j = 0; j < Trackers::kMost; ++j) {
@@ -128,7 +128,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   return found;
 }
 
-// Of noise of correlation rate r a filter of gain k leaves k R / (r + k), and its innovations, summed over 1 / b, are
+// A filter of gain k leaves k R / (r + k) of noise of correlation rate r. Its innovations, summed over 1 / b, are
 // 2 b r / ((r + k) (r + b) (k + b)) of R, and the walk's part k / (k + b) of the rule's R more. So b / (k + b) over the
 // noise's part is a straight line in b, of which the end at zero is wanted.
 Lanes ChangeTest::wide(const Trackers& trackers, double lag, double rule) const noexcept {

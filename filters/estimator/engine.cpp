@@ -16,7 +16,7 @@ constexpr std::uint64_t kLagEvery = 256;
 constexpr double kMostRestRate = 0.02;
 // Lags of rest after which the end of a manoeuvre, and where it moved the filter to, have faded.
 constexpr double kYoungLags = 7.0;
-// Of the standard deviation of the filter at rest, that is paid: a quarter of its variance for as long as it takes.
+// The largest payment over the standard deviation of the filter at rest: it costs a quarter of its variance.
 constexpr double kMostPaid = 0.5;
 
 }  // namespace

@@ -46,7 +46,7 @@ class Follower {
  public:
   Follower(std::size_t axes, double period_s) noexcept : trackers(axes), change(trackers), ledger(period_s) {}
 
-  // Of the filter at rest, samples; after a move it is as slow as what it has received since is long.
+  // Lag of the filter at rest, samples; after a move at most the number of samples received since.
   [[nodiscard]] double lag() const noexcept {
     return std::max(1.0, std::min(settled_lag, since_moved + 1.0));
   }

@@ -149,7 +149,7 @@ void RestFilter::set_variance(double variance) noexcept {
   refresh();
 }
 
-// Of a bank the weighted mean: where the model holds a constant rate every G(1) is one, and the delay of a sum of
+// The weighted mean of a bank: where the model holds a constant rate every G(1) is one, and the delay of a sum of
 // filters is the sum of their delays.
 Settled RestFilter::settled() const noexcept {
   Settled mean;

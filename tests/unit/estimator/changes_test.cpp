@@ -177,7 +177,7 @@ TEST(PublishedRate, IsTheLevelWithoutTheModelsColour) {
   for (const bool follows : {true, false}) {
     settings.follow_manoeuvres = settings.conserve_angle = follows;
     const Filtered got = run(settings, measured);
-    // Of white noise of the colour's spectral density at zero, 100, the filter leaves (Q R)^(1/4).
+    // The filter leaves (Q R)^(1/4) of white noise of the colour's spectral density at zero, 100.
     EXPECT_LT(std::sqrt(mean_square_error(got.denoised, truth, 20'000)), 1.6 * std::pow(kWalk * 100.25, 0.25))
         << follows;
   }

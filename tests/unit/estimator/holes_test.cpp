@@ -39,7 +39,7 @@ class Turning {
         fate_(std::move(fate)),
         estimator_(settings(), axes, kPeriod) {}
 
-  // Of the first axis, over the samples [from, to) that come.
+  // What is seen of the first axis, over the samples [from, to) that are received.
   Seen go(int from, int to, int length) {
     Seen seen;
     int lost = 0;
@@ -139,7 +139,7 @@ TEST(Holes, AMotionIsFollowedThroughThem) {
   }
 }
 
-// Of each n samples some cannot be used, from the first one on or in a turn, of the only axis or of one of
+// Some of each n samples cannot be used, from the first one on or in a turn, of the only axis or of one of
 // three.
 TEST(Holes, UnusableSamplesInARhythmLeaveTheTrackersStable) {
   for (const int axes : {1, 3}) {
@@ -296,7 +296,7 @@ TEST(Holes, AMissingSampleIsAsGoodAsAnUnusableOne) {
   }
 }
 
-// Of an axis that has every n-th sample, while another has all, the noise is heard as well.
+// The noise is detected as well of an axis that has every n-th sample, while another has all.
 TEST(Holes, TheVarianceOfAnAxisInARhythmIsItsOwn) {
   for (const int n : {2, 3, 7}) {
     const auto fate = [=](int i) { return i % n == 0 ? Sample::good : Sample::invalid; };

@@ -22,7 +22,7 @@ struct Judged {
   std::vector<double> variance;
 };
 
-// Of the samples from `from` on.
+// Over the samples from `from` on.
 Judged judge(const ifog::FilterSettings& settings, const Record& made, std::size_t from) {
   ifog::Estimator estimator(settings, 1, kPeriod);
   ifog::EstimatorInput in;

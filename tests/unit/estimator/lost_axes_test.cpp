@@ -57,7 +57,7 @@ class Sensor {
 
 double swing(double sigmas, double cycles) { return sigmas * std::sin(2.0 * std::numbers::pi * cycles); }
 
-// Of 300 to 3000 samples each, as often as the trackers have begun anew.
+// Gaps of 300 to 3000 samples each, wherever the trackers have started again.
 TEST(LostAxes, BehindAGapInASwingTheMeasurementCounts) {
   for (const double q_over_r : {1e-6, 1e-9}) {
     for (const double sigmas : {3.0, 1000.0}) {

@@ -127,7 +127,7 @@ TEST(Motion, ThatIsUnderWayAtTheFirstSampleIsNoColour) {
     worst_angle = std::max(worst_angle, std::abs(angle));
   }
   EXPECT_LT(worst_off, 1.0);
-  // Of the lag of some 70 samples that the filter at rest has, noise alone turns by 70 / sqrt(70) sigma
+  // Noise alone turns, over the lag of some 70 samples that the filter at rest has, by 70 / sqrt(70) sigma
   // samples.
   EXPECT_LT(worst_angle, 3.0 * std::sqrt(70.0));
 }

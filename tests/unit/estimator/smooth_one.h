@@ -21,7 +21,7 @@ inline Smoothed smooth_one(const FilterSettings& settings, const std::vector<dou
   return std::move(smooth(settings, noise, rates, dt_s, kPeriod)[0]);
 }
 
-// Of the samples in [from, to): mean square of the error, and of it over its variance.
+// Mean square of the error over the samples in [from, to), and of the error over its variance.
 struct Judged {
   double square = 0.0, normalised = 0.0, count = 0.0;
   void add(const Smoothed& got, const std::vector<double>& truth, std::size_t from, std::size_t to) {

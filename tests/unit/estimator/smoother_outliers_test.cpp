@@ -35,7 +35,7 @@ TEST(SmoothedOutliers, AreNotInItAtRest) {
 }
 
 // In motion the shortest parabola that averages predicts to 2 sigma, and both directions have to reject an outlier.
-// Of those of 20 sigma none stay in, of those of 15 some.
+// None of those of 20 sigma stay in, some of those of 15 do.
 TEST(SmoothedOutliers, AreNotInItInMotion) {
   constexpr std::size_t kLength = 40'000;
   constexpr double kRatio = 1e-8;

@@ -84,7 +84,7 @@ TEST(SmoothedRecord, AnAxisWithHalfOfItsSamplesHasItsOwnNoise) {
   EXPECT_LT(judged.nees(), 1.5);
 }
 
-// Of too few samples to hear it.
+// There are too few samples to detect it.
 TEST(SmoothedRecord, AnAxisThatIsNotHeardHasTheNoiseDeclared) {
   constexpr std::size_t kLength = 5000;
   const Record seen = record(77, kLength, 1e-12);

@@ -119,7 +119,7 @@ TEST(Smoother, IsTheLeastSquaresSolutionInMotion) {
     }
     driving(0, 0) += walk[k];
     if (moves && !moved) driving(1, 1) += kSlopeBefore * kNoise, driving(2, 2) += kSlopeBefore * kNoise;
-    // Of a sample at rest the level is all there is.
+    // A sample at rest has a level and nothing else.
     const int n = moves ? 3 : 1;
     const Eigen::MatrixXd weight = driving.topLeftCorner(n, n).inverse();
     Eigen::MatrixXd step(n, 6);
