@@ -65,10 +65,8 @@ std::string without_unit(const std::string& header) {
   const std::size_t bracket = header.find_last_of("([");  // "Gyroscope (z) [rad/s]" has an axis before it
   if (bracket != std::string::npos && bracket > 0 && (header.back() == ')' || header.back() == ']'))
     return header.substr(0, bracket);
-  const std::string unit = unit_in_name(header);
-  if (unit.empty() || header.size() <= unit.size()) return header;
-  const std::string stem = header.substr(0, header.size() - unit.size());
-  return stem.ends_with('_') || stem.ends_with(' ') ? stem.substr(0, stem.size() - 1) : stem;
+  const std::size_t unit = unit_in_name(header).size();
+  return header.size() > unit ? header.substr(0, header.size() - unit) : header;
 }
 
 // At what is no letter, where a digit follows a letter, and where a capital begins a word.

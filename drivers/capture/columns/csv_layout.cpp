@@ -126,6 +126,8 @@ std::string unit_in_name(const std::string& name) {
     const std::string inside = header.substr(at + 1, header.size() - at - 2);
     return is_unit(inside) ? inside : "";
   }
+  if (const std::size_t comma = header.rfind(", "); comma != std::string::npos)  // "Gyro X, deg/s"
+    if (const std::string behind = header.substr(comma + 2); is_unit(behind)) return behind;
   const std::string last = unit_of_name(header);
   // omega_z_deg_h: a quotient whose stroke a name cannot hold.
   if (const std::size_t line = header.rfind('_'); line != std::string::npos && line > 0 && !last.empty()) {

@@ -63,7 +63,7 @@ def large_files(place):
     write("one.toml", 'type = "t"\n[[gyro]]\nserial = "g"\ncaptures = [' + ", ".join(f'"none{i}.csv"' for i in range(MANY)) + "]\n")
     ends(place, f"a gyro without {MANY} captures", [place.ifog, "fleet", "one.toml", "--engine", "local"], 1, "cannot open: No such file or directory")
     write("lot2.toml", 'type = "t"\n' + "".join(f'[[gyro]]\nserial = "g{i}"\ncaptures = ["none{i}.csv"]\n' for i in range(70_000)))
-    ends(place, "more captures than a lot may have", [place.ifog, "fleet", "lot2.toml", "--engine", "local"], 1, "more than 65536 captures")
+    ends(place, "more captures than a lot may have", [place.ifog, "fleet", "lot2.toml", "--engine", "local"], 1, "gyro.captures: more than 65536 in all")
     for what, names in (("named", ["time_s", "rate_radps"] + [f"c{i}_V" for i in range(100_000)]), ("foreign", ["Timestamp", "GyroX"] + [f"Sensor {i} id" for i in range(100_000)]),
                         ("a rate each", ["time_s"] + [f"rate_{i}_radps" for i in range(100_000)])):
         write("wide.csv", wide(names))

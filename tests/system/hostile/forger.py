@@ -96,7 +96,7 @@ def vetoed(place, packet):
         time.sleep(1.5)
         place.propose("2e-08")
         said = place.of("adopt", "nose", "--watch", "0", code=0)
-        place.check("the daemon has taken it" in said, "a status of another model does not keep adopt from it: " + said)
+        place.check("the daemon uses it" in said, "a status of another model does not keep adopt from it: " + said)
         said = place.of("revert", "nose", code=0)
         place.check("model none is in place again" in said and place.status()["sensors"][0]["model"] == "", "nor revert, and status says what the daemon does")
     finally:

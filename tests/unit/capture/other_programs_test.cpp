@@ -67,6 +67,9 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       // MATLAB datenum and Excel serial dates: days.
       {rows_of("time,gyro_x_dps\n", "738856.500{i}57858,{x}"), {"read as: time 'time' in d"}},
       {rows_of("time_days,gyro_x_dps\n", "0.00000{i},{x}"), {"read as: time 'time_days' in d"}},
+      // GOST 2.105 and DIN 461 put a unit behind a comma.
+      {rows_of("Время, с;Угловая скорость X, град/с\n", "0.{i};{x}"),
+       {"rate_x 'Угловая скорость X, град/с' in град/с"}},
       // Movella DOT data exporter: the stated rate tells that its clock is of us.
       {rows_of("sep=,\nDeviceTag:,DOT1\nOutputRate:,100Hz\nPacketCounter,SampleTimeFine,Gyr_X\n",
                "{i},3{i}0000,{x}"),
