@@ -42,6 +42,8 @@ ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
     const double h = trackers.horizon(j), m = (kShakingVariance - 1.0) * h * h / (2.0 * h - 1.0);
     contest_[j].shrinks = 0.5 * m / (m + 1.0);
     contest_[j].spread = 0.5 * logarithm(m + 1.0);
+    contest_[j].keep = 1.0 - 1.0 / h;
+    contest_[j].worth = 1.0 / (2.0 * h - 1.0);
   }
 }
 
@@ -63,13 +65,13 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
                          const Lanes& colour) noexcept {
   Contest& c = contest_[j];
   const Trackers::Gains& g = trackers.gains(j);
-  const double h = trackers.horizon(j), keep = 1.0 - 1.0 / h;
+  const double h = trackers.horizon(j), keep = c.keep;
   const Lanes error = now.rate - trackers.rate(j);
   const Lanes mine = error * error * now.inverse * (1.0 / g.factor);
   c.sum = keep * c.sum + common.clipped;
   c.weight = keep * c.weight + now.mask;
   // How many innovations of full weight the sum is worth: its variance over R.
-  const Lanes n = (c.weight * (2.0 * h - c.weight) * (1.0 / (2.0 * h - 1.0))).max(1.0);
+  const Lanes n = (c.weight * (2.0 * h - c.weight) * c.worth).max(1.0);
   Lanes evidence = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
   Lanes& likely = c.divisor.setOnes();
   if (coloured_) {
@@ -95,7 +97,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
                                             double rarity, double lag) noexcept {
   Common common;
   common.cap = 2.0 * rarity;
-  const double most_deviations = std::min(kMostDeviations, std::sqrt(common.cap));
+  const double most_deviations = common.cap < kMostSquare ? std::sqrt(common.cap) : kMostDeviations;
   common.clipped = (now.innovation * now.inverse.sqrt()).max(-most_deviations).min(most_deviations);
   common.squares = now.surprise.min(kFarSquare);
   common.rest_evidence = 0.5 * (now.surprise.min(common.cap) + now.log_rest_factor) * now.mask;
@@ -120,7 +122,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   }
   // Tails and colour make large innovations come together.
   seen_ = std::min(seen_ + 1.0, kTailMemory);
-  const Lanes capped = now.surprise.min(common.cap), unlikely = (fourth_ / 3.0).max(1.0) * widest_;
+  const Lanes capped = now.surprise.min(common.cap), unlikely = (fourth_ * (1.0 / 3.0)).max(1.0) * widest_;
   const Lanes larger = 0.5 * (1.0 - 1.0 / kShakingVariance) * capped - std::numbers::ln2;
   shaking_ = (shaking_ + now.mask * larger / unlikely).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;

@@ -49,6 +49,7 @@ class ChangeTest {
     Lanes wide = Lanes::Ones(), divisor = Lanes::Ones(), horizons = Lanes::Zero();
     Lanes times = Lanes::Zero();         // for which a change was likely to have begun
     double shrinks = 0.0, spread = 0.0;  // of an offset's likelihood
+    double keep = 0.0, worth = 0.0;      // 1 - 1 / h and 1 / (2 h - 1) of the horizon h
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {

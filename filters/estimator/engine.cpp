@@ -258,11 +258,12 @@ void Engine::take(Step& s, bool learn) noexcept {
       measured.rate += m.innovation.max(-most).min(most) - m.innovation;
     }
     // The mean of all axes, whichever are measured: one gain is for all.
-    measured.share = noise_.each(&Noise::known);
-    if (settings_.wideband == "noise") measured.share *= noise_.each(&Noise::heard);
-    const double of_all = noise_.mean(measured.share);
-    measured.share /= of_all;
-    measured.noise_scale *= of_all / settings_.measurement_noise;
+    const bool smooths = settings_.wideband == "noise";
+    measured.share = noise_.share();
+    if (smooths) measured.share *= noise_.each(&Noise::heard);
+    const double more = smooths ? noise_.mean(measured.share) : 1.0;
+    measured.share *= 1.0 / more;
+    measured.noise_scale *= more * noise_.mean_known() / settings_.measurement_noise;
   }
   // The first measurement sets the state: its innovation is zero and no evidence.
   rest_->update(measured, s.in.sequence, learn && follow_.since_moved > 0.0);

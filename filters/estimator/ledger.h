@@ -32,6 +32,7 @@ class Ledger {
   // Rate to be added to this sample's. most: of what is paid of the tail; lag: of the filter at rest, samples; dt_s: of
   // the angle that is integrated with it, by axis.
   [[nodiscard]] Lanes pay(const Lanes& most, double lag, const Lanes& dt_s) noexcept {
+    if ((debt_.abs() + late_.abs() + tail_.abs() < kNothing).all()) return Lanes::Zero();
     const Lanes debt = debt_ / dt_s.max(pace_ * period_s_), late = late_ / dt_s.max(late_pace_ * period_s_);
     const Lanes tail = (tail_ / dt_s.max(std::max(kQuickest, lag) * period_s_)).max(-most).min(most);
     debt_ -= debt * dt_s;
@@ -72,8 +73,8 @@ class Ledger {
   [[nodiscard]] Lanes owed() const noexcept { return debt_ + late_ + tail_ + doubt_; }
 
  private:
-  static constexpr double kQuickest = 16.0;       // samples
-  static constexpr double kOwedSamples = 1024.0;  // samples
+  static constexpr double kQuickest = 16.0, kOwedSamples = 1024.0;  // samples
+  static constexpr double kNothing = 1e-18;                         // rad: what is less stays owed
 
   double period_s_, pace_ = kQuickest, late_pace_ = kQuickest;
   Lanes debt_ = Lanes::Zero(), late_ = Lanes::Zero(), tail_ = Lanes::Zero(), doubt_ = Lanes::Zero(),

@@ -56,16 +56,6 @@ void SensorNoise::learn(const Axes& rate, std::uint32_t valid, bool at_rest, Res
   filter.retune(process_noise_);
 }
 
-Lanes SensorNoise::each(double (Noise::*figure)() const noexcept) const noexcept {
-  Lanes all = Lanes::Ones();
-  for (std::size_t a = 0; a < axes_; ++a) all[static_cast<Eigen::Index>(a)] = (noise_[a].*figure)();
-  return all;
-}
-
-double SensorNoise::mean(const Lanes& of) const noexcept {
-  return (of * mask_of(axes_of_sensor(axes_))).sum() / static_cast<double>(axes_);
-}
-
 void SensorNoise::refresh_share() noexcept {
   const Lanes known = each(&Noise::known);
   mean_ = mean(known);

@@ -38,7 +38,7 @@ class Noise {
     if (in_row_ >= 3) {
       const double third = rate - 3.0 * last_[2] + 3.0 * last_[1] - last_[0];
       // An outlier counts for at most five standard deviations.
-      const double square = third * third / kThird;
+      const double square = third * third * (1.0 / kThird);
       fast_ += (std::min(square, kMostSquare * fast_) - fast_) / std::min(kFast, taken_ + 4.0);
       // The usual level is not learned while it is surely exceeded.
       if (louder() == 1.0)
@@ -61,7 +61,7 @@ class Noise {
   }
   // By which third differences are now above their usual level: 1 unless by more than chance.
   [[nodiscard]] double louder() const noexcept {
-    return taken_ > kFast && heard() > kSurelyLouder ? heard() : 1.0;
+    return taken_ > kFast && fast_ > kSurelyLouder * usual() ? heard() : 1.0;
   }
   // The same without that doubt, 1 at least: for who takes all that is louder for noise.
   [[nodiscard]] double heard() const noexcept { return std::max(1.0, fast_ / usual()); }
@@ -78,7 +78,6 @@ class Noise {
     const double pi_squared = std::numbers::pi * std::numbers::pi, exponent = 4.0 * pi_squared * white / d2;
     return exponent < 600.0 ? d2 / (2.0 * pi_squared) * exponential(-exponent) : 0.0;
   }
-
   // Variance of one of the converter's steps.
   [[nodiscard]] double of_steps() const noexcept {
     return std::isfinite(digit_) ? digit_ * digit_ / 12.0 : 0.0;
@@ -97,7 +96,6 @@ class Noise {
   }
   // R by third differences. A converter at rest between two changes of its last digit shows none.
   [[nodiscard]] double usual() const noexcept { return std::max({slow_, 1e-9 * known_, of_steps()}); }
-
   static constexpr double kThird = 20.0;                 // 1 + 9 + 9 + 1
   static constexpr double kFast = 32.0, kSlow = 1024.0;  // samples
   // n overlapping third differences of white noise have a mean square of variance 2 (1 + 1.3) / n R^2.
@@ -126,9 +124,15 @@ class SensorNoise {
   void break_off() noexcept { walk_.break_off(); }
 
   // One figure of each axis; 1 where the sensor has no axis.
-  [[nodiscard]] Lanes each(double (Noise::*figure)() const noexcept) const noexcept;
+  [[nodiscard]] Lanes each(double (Noise::*figure)() const noexcept) const noexcept {
+    Lanes all = Lanes::Ones();
+    for (std::size_t a = 0; a < axes_; ++a) all[static_cast<Eigen::Index>(a)] = (noise_[a].*figure)();
+    return all;
+  }
   // Over the axes of the sensor.
-  [[nodiscard]] double mean(const Lanes& of) const noexcept;
+  [[nodiscard]] double mean(const Lanes& of) const noexcept {
+    return (of * mask_of(axes_of_sensor(axes_))).sum() / static_cast<double>(axes_);
+  }
   [[nodiscard]] double mean_known() const noexcept { return mean_; }  // (rad/s)^2
   // R of each axis over its mean, and the same of the walk.
   [[nodiscard]] const Lanes& share() const noexcept { return share_; }

@@ -29,7 +29,8 @@ class Outliers {
       return Verdict::usual;
     }
     Eigen::Index axis = 0;
-    const double least = (least_surprise(trackers, now) / allowed).maxCoeff(&axis);
+    const bool at_rest = (now.surprise <= kMostSquare).all();  // nearly always
+    const double least = at_rest ? 0.0 : (least_surprise(trackers, now) / allowed).maxCoeff(&axis);
     const Lanes& rate = now.rate;
     seen_ = std::min(seen_ + 1.0, kTailMemory);
     // Where they are frequent at rest they may be blows, whose angle counts.
@@ -61,7 +62,7 @@ class Outliers {
   }
   // Nats by which an outlier at rest is rare.
   [[nodiscard]] double rarity() const noexcept {
-    return std::min(kMostNats, -logarithm(std::max(share_, 1e-8)));
+    return share_ < kRare * kRare ? kMostNats : std::min(kMostNats, -logarithm(share_));
   }
   [[nodiscard]] std::size_t run() const noexcept { return run_; }
   void end_run() noexcept { run_ = 0; }
