@@ -44,7 +44,7 @@ const std::vector<NamedCoefficient>& named_coefficients() {
 
 std::string bound_text(double upper) {
   // The digits by the library's own rounding, then one more in the last place if that fell short.
-  const std::string text = formatted("%.2g", upper);
+  std::string text = formatted("%.2g", upper);
   const double shown = std::strtod(text.c_str(), nullptr);
   if (!(upper > 0.0) || shown >= upper) return text;
   return formatted("%.2g", shown + std::pow(10.0, std::floor(std::log10(upper)) - 1.0));

@@ -143,7 +143,7 @@ bool are_dates(const std::vector<std::string>& cells) {
 
 // By the row of units or by the name.
 std::string unit_stated(const TableSample& table, std::size_t place) {
-  const std::string stated = table.stated_unit(place);
+  std::string stated = table.stated_unit(place);
   return time_unit(stated) ? stated : unit_in_name(table.names[place]);
 }
 

@@ -127,7 +127,7 @@ std::string unit_in_name(const std::string& name) {
     return is_unit(inside) ? inside : "";
   }
   if (const std::size_t comma = header.rfind(", "); comma != std::string::npos)  // "Gyro X, deg/s"
-    if (const std::string behind = header.substr(comma + 2); is_unit(behind)) return behind;
+    if (std::string behind = header.substr(comma + 2); is_unit(behind)) return behind;
   const std::string last = unit_of_name(header);
   // omega_z_deg_h: a quotient whose stroke a name cannot hold.
   if (const std::size_t line = header.rfind('_'); line != std::string::npos && line > 0 && !last.empty()) {
@@ -137,7 +137,7 @@ std::string unit_in_name(const std::string& name) {
   if (last == "s" || last == "S") return "s";
   // UncalGyroXRadPerSec
   if (const std::size_t per = header.rfind("Per"); last.empty() && per != std::string::npos && per > 3)
-    if (const std::string rate = header.substr(per - 3); angle_unit(rate, true, false)) return rate;
+    if (std::string rate = header.substr(per - 3); angle_unit(rate, true, false)) return rate;
   if (last.size() == 1)
     return std::any_of(kOneLetter.begin(), kOneLetter.end(),
                        [&](const auto& each) {

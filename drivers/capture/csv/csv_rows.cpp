@@ -101,7 +101,7 @@ class CsvRows {
       if (begun - done == ring.size()) deliver(ring[done++ % ring.size()]);
       Piece& piece = ring[begun % ring.size()];
       if (more)
-        piece.text = std::move(text);
+        piece.text = std::exchange(text, {});
       else if (!pieces_.next(piece.text))
         break;
       else if (!form_.is_plain())

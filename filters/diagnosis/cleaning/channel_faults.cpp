@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -30,8 +29,7 @@ using Flags = std::vector<std::uint8_t>;
 // How many values at the beginning of sorted ones are a placeholder. A logger's 9999 or 85 °C, which may stand for
 // minutes, is one number, farther from all others than most of them are from each other; but zero is what a
 // channel reads that is switched off.
-template <class Sorted>
-std::size_t placeholders_of(const Sorted& values) {
+std::size_t placeholders_of(const std::vector<double>& values) {
   const std::size_t n = values.size();
   const auto most = static_cast<std::size_t>(kMostFaults * static_cast<double>(n));
   const double first = values.front();
@@ -49,7 +47,8 @@ std::optional<ChannelRange> usual_range(std::span<const double> column) {
     if (std::isfinite(column[i])) values.push_back(column[i]);
   if (values.size() < kFewest) return std::nullopt;
   std::ranges::sort(values);
-  const std::size_t below = placeholders_of(values), above = placeholders_of(values | std::views::reverse);
+  const std::vector<double> falling(values.rbegin(), values.rend());
+  const std::size_t below = placeholders_of(values), above = placeholders_of(falling);
   const std::span<const double> used = std::span(values).subspan(below, values.size() - below - above);
   if (std::set<double>(used.begin(), used.end()).size() <= kFewValues) return std::nullopt;
   const auto at = [&](double share) {

@@ -237,6 +237,23 @@ void name_files(DenoiseOptions& options) {
   will_write("--plot", options.picture);
 }
 
+template <class Settings>
+OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, const Settings& settings,
+                            DenoisedRows& rows, const OfflineSink& sink) {
+  LongTable table = options.input.read_long(capture);
+  table.clean_and_tell(leave_out_placeholders, options.capture);
+  keep_usable_axes(table, options.capture);
+  rows.count_from(table.origin);
+  OfflineSettings of = settings();
+  tell_other_rate(options, of.sensor.nominal_rate_hz, table);
+  const std::string model = of.model ? of.model->identity() : "";
+  if (of.model && !table.dead_axes.empty())
+    of.model = std::make_shared<const Model>(without_axes(*of.model, table.dead_axes));
+  OfflineResult result = denoise_capture(table, options.capture, of, sink);
+  result.model = model;  // of the file, whatever of it is for axes that are not here
+  return result;
+}
+
 void run_denoise(DenoiseOptions options) {
   name_files(options);
   InputFile capture(options.capture);
@@ -281,17 +298,7 @@ void run_denoise(DenoiseOptions options) {
     DriverInstance driver = options.input.make_driver(folders);
     result = denoise_recording(options.input, capture, driver, settings(), sink);
   } else {
-    LongTable table = options.input.read_long(capture);
-    table.clean_and_tell(leave_out_placeholders, options.capture);
-    keep_usable_axes(table, options.capture);
-    rows.count_from(table.origin);
-    OfflineSettings of = settings();
-    tell_other_rate(options, of.sensor.nominal_rate_hz, table);
-    const std::string model = of.model ? of.model->identity() : "";
-    if (of.model && !table.dead_axes.empty())
-      of.model = std::make_shared<const Model>(without_axes(*of.model, table.dead_axes));
-    result = denoise_capture(table, options.capture, of, sink);
-    result.model = model;  // of the file, whatever of it is for axes that are not here
+    result = denoise_table(options, capture, settings, rows, sink);
   }
   if (options.smooth) smooth(rows.columns(), result);
   rows.finish(options.capture);

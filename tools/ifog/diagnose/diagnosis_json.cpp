@@ -129,14 +129,22 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
   json["schema"] = "ifog.diagnosis/1";
   json["samples"] = first.samples;
   json["sample_rate_hz"] = first.sample_rate_hz;
-  const bool single = axes.size() == 1;
   const auto put = [&](const char* key, auto&& make) {
-    if (single) {
+    if (axes.size() == 1) {
       json[key] = make(first);
       return;
     }
     json[key] = Json::object();
     for (const AxisDiagnosis& each : axes) json[key][each.axis] = make(each.diagnosis);
+  };
+  // Of all axes, each entry with its own where there are several.
+  const auto list = [&](const char* key, auto items, auto&& make) {
+    json[key] = Json::array();
+    for (const AxisDiagnosis& each : axes)
+      for (const auto& item : each.diagnosis.*items) {
+        json[key].push_back(make(item));
+        if (!each.axis.empty()) json[key].back()["axis"] = each.axis;
+      }
   };
   put("noise", [](const Diagnosis& d) {
     Json noise = noise_terms_json(d.noise);
@@ -144,22 +152,12 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
     noise["gauss_markov"] = report::markov_json(d.markov);
     return noise;
   });
-  json["noise_changes"] = Json::array();
-  for (const AxisDiagnosis& each : axes) {
-    for (const NoiseChangeIn& found : each.diagnosis.noise_changes) {
-      Json change = report::noise_changes_json({&found.change, 1})[0];
-      change["capture"] = found.capture;
-      if (!each.axis.empty()) change["axis"] = each.axis;
-      json["noise_changes"].push_back(change);
-    }
-  }
-  json["effects"] = Json::array();
-  for (const AxisDiagnosis& each : axes) {
-    for (const FoundEffect& found : each.diagnosis.effects) {
-      json["effects"].push_back(effect_json(found));
-      if (!each.axis.empty()) json["effects"].back()["axis"] = each.axis;
-    }
-  }
+  list("noise_changes", &Diagnosis::noise_changes, [](const NoiseChangeIn& found) {
+    Json change = report::noise_changes_json({&found.change, 1})[0];
+    change["capture"] = found.capture;
+    return change;
+  });
+  list("effects", &Diagnosis::effects, [](const FoundEffect& found) { return effect_json(found); });
   put("bias", [](const Diagnosis& d) {
     return d.bias ? Json{{"value", as_json(d.bias->value)},
                          {"std_error", as_json(d.bias->std_error)},
@@ -168,23 +166,16 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
   });
   put("before", [](const Diagnosis& d) { return figures_json(d.before); });
   put("after", [](const Diagnosis& d) { return figures_json(d.after); });
-  json["indistinguishable"] = Json::array();
-  for (const AxisDiagnosis& each : axes) {
-    for (const Indistinguishable& pair : each.diagnosis.indistinguishable) {
-      json["indistinguishable"].push_back(alternative_json(pair));
-      if (!each.axis.empty()) json["indistinguishable"].back()["axis"] = each.axis;
-    }
-  }
+  list("indistinguishable", &Diagnosis::indistinguishable,
+       [](const Indistinguishable& pair) { return alternative_json(pair); });
   put("unexplained", [](const Diagnosis& d) { return unexplained_json(d); });
   put("heading_prediction", [](const Diagnosis& d) { return heading_json(d.heading); });
   put("reference_delay", [](const Diagnosis& d) { return delays_json(d.reference_delays); });
   put("channel_delays", [](const Diagnosis& d) { return delays_json(d.channel_delays); });
   json["remarks"] = Json::array();
-  for (const AxisDiagnosis& each : axes) {
-    for (const std::string& remark : each.diagnosis.remarks) {
+  for (const AxisDiagnosis& each : axes)
+    for (const std::string& remark : each.diagnosis.remarks)
       json["remarks"].push_back(each.axis.empty() ? remark : each.axis + ": " + remark);
-    }
-  }
   return json;
 }
 

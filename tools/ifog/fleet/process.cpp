@@ -59,6 +59,7 @@ void tie_to_parent(void* data) {
 
 pid_t spawn(const std::vector<std::string>& words, int in, int out) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   struct sigaction hangup {};

@@ -79,6 +79,7 @@ bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effec
 std::vector<double> covariance_of(const std::vector<Fitted>& axes, const std::vector<Effect>& effects) {
   std::vector<double> all = of_all_parameters({}, effects);
   std::vector<std::size_t> first;  // parameter of each effect
+  first.reserve(effects.size());
   std::size_t n = 0;
   for (const Effect& effect : effects) first.push_back(std::exchange(n, n + effect.parameters.size()));
   std::size_t begin = 0;  // effect

@@ -62,7 +62,7 @@ std::string fit_noise_left(Model& model, const Model& added, const CaptureView& 
       rates.reference_rate_radps[a] = {};
     }
     const TunedModel found = fitted(rates, filter.state, path);
-    const std::string text = formatted(
+    std::string text = formatted(
         "noise of the filter, fitted to the corrected rate: process_noise %.4g (rad/s)^2/s, "
         "measurement_noise %.4g (rad/s)^2",
         found.settings.process_noise, found.settings.measurement_noise);
