@@ -150,8 +150,7 @@ std::string unit_stated(const TableSample& table, std::size_t place) {
 std::string time_unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
   if (const std::string named = unit_stated(table, place); time_unit(named)) return typed(named);
   const std::vector<double> values = numbers_in(table.cells[place]);
-  if (std::string stated = unit_by_stated_rate(table, mean_step(values)); !stated.empty())
-    return stated;
+  if (std::string stated = unit_by_stated_rate(table, mean_step(values)); !stated.empty()) return stated;
   if (const auto scale = stated(table.comments, {"tscale"})) return shortest(*scale) + "s";  // gcsv
   if (words.has("sample") && words.has("time") && words.has("fine"))
     return "100us";  // Xsens: a clock of 10 kHz
