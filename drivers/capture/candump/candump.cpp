@@ -6,8 +6,8 @@
 #include <charconv>
 #include <span>
 
+#include "drivers/capture/times/date_time.h"
 #include "drivers/capture/times/text_cursor.h"
-#include "drivers/capture/times/time_stamps.h"
 
 namespace ifog {
 namespace {
@@ -151,17 +151,6 @@ bool parse_drops(TextCursor in, CandumpEntry& entry) {
   return in.text("' socket (total drops ");
 }
 
-// Behind the interface: "123 [0016] (00|81:00:12345678) …" on the screen, "00123#81:00:12345678#…" in a log.
-bool is_xl(TextCursor in) {
-  std::uint32_t digit = 0;
-  std::uint64_t length = 0;
-  std::size_t ids = 0, digits = 0;
-  while (in.hex(digit)) ++ids;
-  if (ids == 5 && in.literal('#')) return in.hex(digit) && in.hex(digit) && in.at(':');
-  return ids == 3 && in.blanks() && in.literal('[') && decimal(in, length, digits) && digits == 4 &&
-         in.text("] (");
-}
-
 // "RX - -" or "TX B E" of candump -x.
 bool pass_direction(TextCursor& in) {
   TextCursor ahead = in;
@@ -194,10 +183,6 @@ CandumpLine parse_candump_line(std::string_view line, CandumpEntry& entry) noexc
   entry.interface = in.word();
   if (entry.interface.empty() || !in.blanks() || !pass_direction(in)) return CandumpLine::malformed;
 
-  if (is_xl(in)) {
-    if (timed) entry.stamp = digits >= kEpochDigits ? CandumpStamp::absolute : CandumpStamp::since;
-    return CandumpLine::xl;
-  }
   bool error = false;
   if (!parse_id(in, frame, error)) return CandumpLine::malformed;
   CandumpLine kind = CandumpLine::malformed;

@@ -23,9 +23,8 @@
 
 namespace ifog {
 
-// drops: frames that the kernel lost before candump could read them, of candump -d; xl: a CAN XL frame, which
-// no driver reads.
-enum class CandumpLine { frame, remote, error, drops, xl, blank, malformed };
+// drops: frames that the kernel lost before candump could read them, of candump -d.
+enum class CandumpLine { frame, remote, error, drops, blank, malformed };
 
 inline constexpr const char* kCandumpExpected =
     "expected '(seconds.micros) interface id#data' or 'interface id [length] bytes'";
@@ -93,9 +92,9 @@ class CandumpBuses {
 
 // What of a log was no frame of data.
 struct CandumpLosses {
-  std::size_t remote = 0, error = 0, xl = 0;  // frames not decoded
-  std::uint64_t dropped = 0;                  // that the kernel lost before candump
-  bool cut_off = false;  // the last line has no end and is no whole frame: it was dropped
+  std::size_t remote = 0, error = 0;  // frames not decoded
+  std::uint64_t dropped = 0;          // that the kernel lost before candump
+  bool cut_off = false;               // the last line has no end and is no whole frame: it was dropped
 };
 
 // A frame, and the interface on which it was received.

@@ -40,7 +40,6 @@ class Frames {
     if (!interface_.empty() && entry_.interface != interface_) return Is::nothing;
     if (kind == CandumpLine::remote) ++losses_.remote;
     if (kind == CandumpLine::error) ++losses_.error;
-    if (kind == CandumpLine::xl) ++losses_.xl;
     if (kind != CandumpLine::frame) return Is::nothing;
     lengths_[{entry_.frame.id, entry_.frame.flags}] = entry_.frame.length;
     return Is::frame;

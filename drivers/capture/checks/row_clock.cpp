@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/checks/row_checks.h"
+#include "drivers/capture/checks/row_clock.h"
 
 #include <algorithm>
 #include <array>

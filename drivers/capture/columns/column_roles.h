@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "drivers/capture/columns/csv_layout.h"
-#include "drivers/capture/times/time_stamps.h"
+#include "drivers/capture/times/date_time.h"
 
 namespace ifog {
 

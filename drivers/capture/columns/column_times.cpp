@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
-#include "drivers/capture/times/time_stamps.h"
+#include "drivers/capture/times/date_time.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"

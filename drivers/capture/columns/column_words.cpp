@@ -17,7 +17,8 @@ namespace {
 // a time, but not of that of the rows; one numbers or names one of several sensors.
 constexpr std::array<std::pair<Role, std::string_view>, 15> kWords{{
     {Role::rate,
-     " gyro gyr gyros gyroscope gyroskop omega angvel angrate angularvelocity angularrate rotationrate "
+     " gyro gyr gyros gyroscope gyroskop drehrate omega angvel angrate angularvelocity angularrate "
+     "rotationrate "
      "turnrate turnspeed fog "},
     {Role::speed, " rate speed velocity vel "},
     {Role::turn, " angular ang rotation rot turn body "},

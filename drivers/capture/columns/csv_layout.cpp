@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/columns/column_roles.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "drivers/units/units.h"
@@ -126,8 +127,9 @@ std::string unit_in_name(const std::string& name) {
     const std::string inside = header.substr(at + 1, header.size() - at - 2);
     return is_unit(inside) ? inside : "";
   }
-  if (const std::size_t comma = header.rfind(", "); comma != std::string::npos)  // "Gyro X, deg/s"
-    if (std::string behind = header.substr(comma + 2); is_unit(behind)) return behind;
+  // "Gyro X, deg/s", "Gyro X in deg/s"; a word such as min is more often a minimum.
+  std::string behind = header.substr(header.find_last_of(" ,:") + 1);
+  if (behind == "s" || (behind.size() > 1 && is_unit(behind) && !says(behind, Role::no_rate))) return behind;
   const std::string last = unit_of_name(header);
   // omega_z_deg_h: a quotient whose stroke a name cannot hold.
   if (const std::size_t line = header.rfind('_'); line != std::string::npos && line > 0 && !last.empty()) {

@@ -9,6 +9,7 @@
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/column_roles.h"
+#include "drivers/capture/csv/table_form.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 #include "drivers/system/shell_word.h"

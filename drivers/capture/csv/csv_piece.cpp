@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/csv/csv_header.h"
+#include "drivers/capture/csv/csv_piece.h"
 
 #include <algorithm>
 #include <array>

@@ -15,6 +15,7 @@
 #include "drivers/capture/checks/row_checks.h"
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/csv_header.h"
+#include "drivers/capture/csv/csv_piece.h"
 #include "drivers/capture/csv/line_form.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/files/file_kind.h"

@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 
+#include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {

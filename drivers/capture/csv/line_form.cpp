@@ -10,7 +10,7 @@
 
 #include "drivers/capture/columns/column_roles.h"
 #include "drivers/capture/csv/text_cells.h"
-#include "drivers/capture/times/time_stamps.h"
+#include "drivers/capture/times/date_time.h"
 
 namespace ifog {
 namespace {
@@ -46,13 +46,10 @@ std::vector<std::string> novatel_names(std::string_view log, std::string_view li
   if (!log.substr(1).starts_with("RAWIMU")) return {};
   const bool extended = log.find('X') != std::string_view::npos,
              is_short = log.find("IMUS") != std::string_view::npos;
-  std::vector<std::string> names{"log"};
-  if (is_short)
-    names.insert(names.end(), {"head_week", "head_tow_s"});
-  else
-    for (const char* const name : {"port", "sequence", "idle", "quality", "head_week", "head_tow_s",
-                                   "receiver", "reserved", "version"})
-      names.emplace_back(name);
+  std::vector<std::string> names{"log", "head_week", "head_tow_s"};
+  if (!is_short)
+    names = {"log",       "port",       "sequence", "idle",     "quality",
+             "head_week", "head_tow_s", "receiver", "reserved", "version"};
   if (extended) names.insert(names.end(), {"imu_info", "imu_type"});
   names.insert(names.end(), {"gps_week", "tow_s", "imu_status", "accel_z", "accel_minus_y", "accel_x",
                              "dtheta_z", "dtheta_minus_y", "dtheta_x"});
@@ -163,8 +160,7 @@ std::vector<std::string> names_by(const std::vector<std::string>& labels) {
 
 // Of the records that lines begin with the one that stands most often, of those with names of a gyro.
 void LineForm::find_record(std::string_view text) {
-  std::map<std::string_view, std::pair<std::size_t, std::string_view>>
-      records;  // how often, and a line of each
+  std::map<std::string_view, std::pair<std::size_t, std::string_view>> records;  // number, one of them
   Lines lines(text);
   for (std::string_view line; lines.next(line);) {
     const std::string_view log = novatel_log(line), record = log.empty() ? word_before(line) : log;

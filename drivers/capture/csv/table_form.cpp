@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/csv/csv_header.h"
+#include "drivers/capture/csv/table_form.h"
 
 #include <algorithm>
 #include <optional>
@@ -9,7 +9,7 @@
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/files/input_file.h"
-#include "drivers/capture/times/time_stamps.h"
+#include "drivers/capture/times/date_time.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
 

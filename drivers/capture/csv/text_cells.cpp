@@ -5,7 +5,7 @@
 #include <system_error>
 #include <utility>
 
-#include "drivers/capture/times/time_stamps.h"
+#include "drivers/capture/times/date_time.h"
 #include "drivers/ifog/decimal.h"
 
 namespace ifog {
@@ -26,6 +26,13 @@ Row row_of(std::string_view line, char separator) {
 }
 
 }  // namespace
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> out;
+  Lines lines(text);
+  for (std::string_view line; lines.next(line);) out.emplace_back(line);
+  return out;
+}
 
 std::string_view trimmed(std::string_view cell) {
   while (!cell.empty() && (cell.front() == ' ' || cell.front() == '\t')) cell.remove_prefix(1);

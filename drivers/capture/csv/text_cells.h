@@ -24,6 +24,8 @@ class Lines {
   std::size_t number_;
 };
 
+// Each line of a text that ends with one, without its end.
+[[nodiscard]] std::vector<std::string> lines_of(std::string_view text);
 [[nodiscard]] std::string_view trimmed(std::string_view cell);
 [[nodiscard]] std::string_view unquoted(std::string_view cell);
 // Where the first cell of a row ends: at a separator outside of quotes, or with the row.

@@ -41,8 +41,7 @@ std::string foreign_json(std::string_view head) {
   const std::size_t first = head.find('{'), inner = head.find('{', first + 1), end = head.find('}');
   if (inner < end)
     return "is JSON with objects inside of objects, expected a table; jq -r '[.t, .gyro.x, .gyro.y, .gyro.z] "
-           "| "
-           "@csv', with the names of this file, makes one";
+           "| @csv', with the names of this file, makes one";
   const bool one_line = head.find('\n', end) > inner;
   bool kinds = false;
   constexpr std::string_view kKind = "\"sensor\":";
@@ -71,12 +70,10 @@ std::string foreign_text(std::string_view head) {
   line = line.substr(0, line.find_last_not_of(' ') + 1);
   if (line.ends_with(':') && has("\n---\n"))
     return "is YAML as rostopic echo prints it, expected a table; rostopic echo -p, or ros2 topic echo "
-           "--csv, "
-           "writes one";
+           "--csv, writes one";
   if (line.starts_with("TIMESERIES ") && line.find(", SLIST,") != std::string_view::npos)
     return "is SLIST with several samples a line, expected one a line; the format TSPAIR of the same service "
-           "has "
-           "that";
+           "has that";
   const std::size_t begin = head.find_first_not_of(" \t\r\n");
   return begin != std::string_view::npos && (head[begin] == '{' || head[begin] == '[') ? foreign_json(head)
                                                                                        : "";

@@ -28,8 +28,9 @@
 
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/csv/csv_rows.h"
+#include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/hdf5/hdf5_columns.h"
-#include "drivers/capture/times/time_stamps.h"
+#include "drivers/capture/times/date_time.h"
 
 namespace ifog {
 

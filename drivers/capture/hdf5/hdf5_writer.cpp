@@ -8,6 +8,7 @@
 #include <string_view>
 #include <utility>
 
+#include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/times/time_stamps.h"
+#include "drivers/capture/times/date_time.h"
 
 #include <algorithm>
 #include <charconv>

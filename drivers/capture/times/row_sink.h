@@ -81,9 +81,6 @@ class RowSink {
   virtual void take(RowBlock& rows) = 0;
 };
 
-// Each line of a text that ends with one, without its end.
-[[nodiscard]] std::vector<std::string> lines_of(std::string_view text);
-
 // What a reader reports besides the rows. Complete after the last row.
 struct RowNotes {
   // Rows from this one on stand on lines that follow one another.

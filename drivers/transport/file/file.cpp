@@ -305,7 +305,6 @@ bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
         if (settings().interface.empty() || entry_.interface == settings().interface)
           counters_.kernel_drops.add(entry_.dropped);
         break;
-      case CandumpLine::xl:
       case CandumpLine::remote:
       case CandumpLine::blank:
         break;

@@ -67,9 +67,12 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       // MATLAB datenum and Excel serial dates: days.
       {rows_of("time,gyro_x_dps\n", "738856.500{i}57858,{x}"), {"read as: time 'time' in d"}},
       {rows_of("time_days,gyro_x_dps\n", "0.00000{i},{x}"), {"read as: time 'time_days' in d"}},
-      // GOST 2.105 and DIN 461 put a unit behind a comma.
+      // A unit behind a comma (GOST 2.105) or "in" (DIN 461), or as a divisor; a minimum is no minute.
       {rows_of("Время, с;Угловая скорость X, град/с\n", "0.{i};{x}"),
        {"rate_x 'Угловая скорость X, град/с' in град/с"}},
+      {rows_of("Zeit in s;Drehrate X in °/s\n", "0.{i};{x}"), {"rate_x 'Drehrate X in °/s' in °/s"}},
+      {rows_of("Time / s;Gyro X / deg/s;Gyro X min\n", "0.{i};{x};{y}"),
+       {"rate_x 'Gyro X / deg/s' in deg/s"}},
       // Movella DOT data exporter: the stated rate tells that its clock is of us.
       {rows_of("sep=,\nDeviceTag:,DOT1\nOutputRate:,100Hz\nPacketCounter,SampleTimeFine,Gyr_X\n",
                "{i},3{i}0000,{x}"),

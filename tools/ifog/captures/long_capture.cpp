@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/csv/text_cells.h"
 #include "tools/ifog/captures/model_axes.h"
 
 namespace ifog::tools {

@@ -58,9 +58,8 @@ ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
         if (const std::string_view other = buses.other(frame, from); two.empty() && !other.empty())
           two = two_interfaces(source.path, other, from);
       });
-  if (lost.remote + lost.error + lost.xl > 0)
-    warn("%s: %zu remote, %zu error and %zu CAN XL frames are not sent\n", source.path.c_str(), lost.remote,
-         lost.error, lost.xl);
+  if (lost.remote + lost.error > 0)
+    warn("%s: %zu remote and %zu error frames are not sent\n", source.path.c_str(), lost.remote, lost.error);
   if (lost.cut_off) warn("%s: the last line is no whole frame and is not sent\n", source.path.c_str());
   if (file.ends_early())
     warn("%s: the gzip stream ends early (truncated file); what is there is sent\n", source.path.c_str());

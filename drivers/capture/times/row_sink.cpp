@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "drivers/capture/times/row_sink.h"
+
+#include <algorithm>
+#include <iterator>
+#include <numeric>
+
+namespace ifog {
+
+double median_value(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double median_step_s(const std::vector<double>& time_s) {
+  if (time_s.size() < 2) return kMissing;
+  std::vector<double> steps(time_s.size());
+  std::adjacent_difference(time_s.begin(), time_s.end(), steps.begin());
+  steps.erase(steps.begin());
+  return median_value(std::move(steps));
+}
+
+void RowBlock::append(RowBlock& rows) {
+  if (size() == 0) return std::swap(*this, rows);
+  time_s.insert(time_s.end(), rows.time_s.begin(), rows.time_s.end());
+  lines.insert(lines.end(), rows.lines.begin(), rows.lines.end());
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    columns[c].insert(columns[c].end(), rows.columns[c].begin(), rows.columns[c].end());
+}
+
+void RowBlock::move_row(std::size_t from, std::size_t to) {
+  if (from == to) return;
+  time_s[to] = time_s[from];
+  if (!lines.empty()) lines[to] = lines[from];
+  for (std::vector<double>& column : columns)
+    if (!column.empty()) column[to] = column[from];
+}
+
+void RowBlock::keep_first(std::size_t rows) {
+  time_s.resize(rows);
+  if (!lines.empty()) lines.resize(rows);
+  for (std::vector<double>& column : columns)
+    if (!column.empty()) column.resize(rows);
+}
+
+void RowBlock::split_off(std::size_t from, RowBlock& to) {
+  const auto behind = [from](auto& values, auto& kept) {
+    const auto begin = values.begin() + static_cast<std::ptrdiff_t>(std::min(from, values.size()));
+    kept.assign(begin, values.end());
+    values.erase(begin, values.end());
+  };
+  to.origin = origin;
+  to.columns.resize(columns.size());
+  behind(time_s, to.time_s);
+  behind(lines, to.lines);
+  for (std::size_t c = 0; c < columns.size(); ++c) behind(columns[c], to.columns[c]);
+}
+
+void RowNotes::add_lines(std::size_t rows, const RowBlock& block) {
+  for (std::size_t i = 0; i < block.lines.size(); ++i)
+    if (lines.empty() || block.lines[i] - lines.back().line != rows + i - lines.back().row)
+      lines.push_back({rows + i, block.lines[i]});
+}
+
+std::size_t RowNotes::line_of_row(std::size_t row) const {
+  const auto behind =
+      std::upper_bound(lines.begin(), lines.end(), row,
+                       [](std::size_t wanted, const Lines& each) { return wanted < each.row; });
+  return behind == lines.begin() ? 0 : std::prev(behind)->line + (row - std::prev(behind)->row);
+}
+
+}  // namespace ifog
