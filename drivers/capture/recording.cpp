@@ -61,7 +61,7 @@ bool is_text(std::string_view head) {
   });
 }
 
-// Two devices of one id would be taken for one.
+// Two devices of one id would be mistaken for one.
 void expect_one_device(CandumpBuses& buses, const DriverInstance& driver, const ifog_can_frame& frame,
                        std::string_view interface, const std::string& path) {
   if (!wants(driver.description(), frame)) return;

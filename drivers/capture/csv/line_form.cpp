@@ -57,23 +57,7 @@ std::vector<std::string> novatel_names(std::string_view log, std::string_view li
   return static_cast<std::size_t>(ends) + 1 == names.size() ? names : std::vector<std::string>();
 }
 
-// The names of a record's cells where a line states them: "# UncalGyro,utcTimeMillis,…" of GnssLogger, "FMT, 140,
-// 43, IMU, QBffffff, TimeUS,I,GyrX,…" of ArduPilot. Nothing where none does, or none of them is of a gyro.
-std::vector<std::string> names_of_record(std::string_view text, std::string_view record, std::size_t cells) {
-  Lines lines(text);
-  for (std::string_view line; lines.next(line);) {
-    if (line.starts_with(record)) continue;
-    std::vector<std::string> names = cells_of(without_mark(line), ',');
-    const auto word = std::find(names.begin(), names.end(), record.substr(0, record.size() - 1));
-    if (word == names.end() || std::distance(word, names.end()) < static_cast<std::ptrdiff_t>(cells))
-      continue;
-    names.erase(names.begin(), names.end() - static_cast<std::ptrdiff_t>(cells - 1));
-    names.insert(names.begin(), "record");
-    const auto of_gyro = [](const std::string& name) { return lower(name).find("gyr") != std::string::npos; };
-    if (std::any_of(names.begin(), names.end(), of_gyro)) return names;
-  }
-  return {};
-}
+bool is_of_gyro(const std::string& name) { return lower(name).find("gyr") != std::string::npos; }
 
 // The terminal's time in front of a line, "10:00:00" or "10:00:00.123"; "" where there is none.
 std::string_view stamp_before(std::string_view line) {
@@ -158,25 +142,40 @@ std::vector<std::string> names_by(const std::vector<std::string>& labels) {
 
 }  // namespace
 
-// Of the records that lines begin with the one that stands most often, of those with names of a gyro.
+// The most frequent of the records that lines begin with whose cells have names of a gyro: by NovAtel's manual, or where
+// a line states them, as "# UncalGyro,utcTimeMillis,…" of GnssLogger and "FMT, 140, 43, IMU, QBffffff, TimeUS,I,GyrX,…"
+// of ArduPilot. In two passes, however many records there are.
 void LineForm::find_record(std::string_view text) {
-  std::map<std::string_view, std::pair<std::size_t, std::string_view>> records;  // number, one of them
+  std::map<std::string, std::pair<std::size_t, std::string_view>> records;  // number, one of them
   Lines lines(text);
   for (std::string_view line; lines.next(line);) {
     const std::string_view log = novatel_log(line), record = log.empty() ? word_before(line) : log;
-    if (!record.empty()) ++records[record].first, records[record].second = line;
+    if (record.empty()) continue;
+    auto& [count, one] = records[std::string(record)];
+    if (count++ == 0) one = line;
   }
   std::size_t most = kAlike - 1;
   for (const auto& [record, found] : records) {
-    const auto& [count, line] = found;
-    if (count <= most) continue;
-    const bool novatel = !novatel_log(line).empty();
-    std::vector<std::string> names =
-        novatel ? novatel_names(record, line) : names_of_record(text, record, cells_of(line, ',').size());
-    if (names.empty() && !novatel) continue;
+    if (found.first <= most || novatel_log(found.second).empty()) continue;
     record_ = record;
-    names_ = std::move(names);
-    most = count;
+    names_ = novatel_names(record, found.second);
+    most = found.first;
+  }
+  Lines stating(text);
+  for (std::string_view line; stating.next(line);) {
+    if (!is_of_gyro(std::string(line))) continue;
+    const std::vector<std::string> cells = cells_of(without_mark(line), ',');
+    for (auto cell = cells.begin(); cell != cells.end(); ++cell) {
+      const auto found = records.find(*cell + ",");
+      if (found == records.end() || found->second.first <= most || line.starts_with(found->first)) continue;
+      const std::ptrdiff_t others = std::ssize(cells_of(found->second.second, ',')) - 1;
+      if (cells.end() - cell <= others || std::none_of(cells.end() - others, cells.end(), is_of_gyro))
+        continue;
+      record_ = found->first;
+      names_ = {"record"};
+      names_.insert(names_.end(), cells.end() - others, cells.end());
+      most = found->second.first;
+    }
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quality study: every rule on every motion, told Q and R rightly and wrongly. Figures are RMSE over the
-// samples after the first thousand, as a multiple of a Kalman filter told the true Q and R of the noise, mean
+// The quality study: every rule on every motion, given Q and R rightly and wrongly. Figures are RMSE over the
+// samples after the first thousand, as a multiple of a Kalman filter given the true Q and R of the noise, mean
 // over seeds with the standard deviation between seeds; on moving scenarios that filter lags, so figures far
 // below one are possible.
 //
@@ -83,10 +83,10 @@ void study(double ratio, int seeds) {
   columns.push_back({"ckf", true});
   columns.push_back({"irwe-akfg", true});
   std::printf(
-      "Q/R = %g, %d seeds. RMSE over that of the Kalman filter told the truth, +- standard deviation between "
+      "Q/R = %g, %d seeds. RMSE over a Kalman filter given the truth, +- standard deviation between "
       "seeds.\n\n",
       ratio, seeds);
-  std::printf("| scenario | Q told | R told |");
+  std::printf("| scenario | Q given | R given |");
   for (const Column& c : columns) std::printf(" %s%s |", c.rule.c_str(), c.following ? " + following" : "");
   std::printf("\n|---|---|---|");
   for (std::size_t i = 0; i < columns.size(); ++i) std::printf("---|");

@@ -38,12 +38,12 @@ def wide(names):
     return ",".join(names) + "\n" + "".join(f"{row * 0.1}" + ",0.1" * (len(names) - 1) + "\n" for row in range(3))
 
 
-def ends(place, what, words, code, said):
+def ends(place, what, words, code, said, seconds=SECONDS):
     began = time.monotonic()
     try:
-        done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=SECONDS, check=False)
+        done = subprocess.run(words, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=seconds, check=False)
     except subprocess.TimeoutExpired:
-        place.check(False, f"{what}: did not end in {SECONDS} s")
+        place.check(False, f"{what}: did not end in {seconds} s")
         return
     lines = (done.stdout + done.stderr).strip().splitlines()
     place.check(done.returncode == code and said in lines[-1], f"{what}: {time.monotonic() - began:.1f} s, {lines[-1][:160]}")
@@ -70,6 +70,8 @@ def large_files(place):
         ends(place, f"3 rows of 100000 columns, {what}", [place.ifog, "diagnose", "wide.csv"], 1, " more than ")
         write("wide.csv", wide(names[:4096]))
         ends(place, f"3 rows of 4096 columns, {what}", [place.ifog, "diagnose", "wide.csv"], 1, "")
+    write("records.txt", "".join(f"w{record},{row},0.1\n" for record in range(20_000) for row in range(4)))
+    ends(place, "records of 20000 names", [place.ifog, "allan", "records.txt"], 1, "no header line", seconds=4)
 
 
 def ended(place, what, words, asked):
