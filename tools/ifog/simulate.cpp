@@ -14,6 +14,7 @@
 #include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/progress.h"
@@ -38,13 +39,10 @@ struct Simulate {
                   has_ending(unpacked_name(truth), ".json") || file_kind(truth) == FileKind::capture,
                   std::string(".json, ").append(kColumnEndings));
     simulate::Scenario s = simulate::read_scenario(scenario, seed_given ? &seed : nullptr);
-    simulate::Simulation made;
-    try {
+    const simulate::Simulation made = naming(scenario, [&s] {
       Progress progress("simulating", 0);
-      made = simulate::simulate(s, progress.teller());
-    } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(scenario + ": " + error.what());
-    }
+      return simulate::simulate(s, progress.teller());
+    });
     if (file_kind(output) == FileKind::capture || (is_standard_output(output) && !encoding.has_driver())) {
       if (encoding.has_driver())
         throw WrongUsage(output,

@@ -16,6 +16,7 @@
 #include "filters/units/told_time.h"
 #include "tools/ifog/allan/logged_rate.h"
 #include "tools/ifog/captures/usable_axes.h"
+#include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -235,12 +236,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
   const SeriesView time_s = SeriesView(table.time_s).part(rows.begin, rows.end);
   if (time_s.size() < 3)
     throw std::runtime_error(name + ": " + std::to_string(time_s.size()) + " samples, expected at least 3");
-  SampleClock clock;
-  try {
-    clock = sample_clock(time_s);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(name + ": " + error.what());
-  }
+  const SampleClock clock = naming(name, [&] { return sample_clock(time_s); });
   std::string slow_turns;
   const Rest rest = rest_of(name, table, rows, clock, options, slow_turns);
   const std::vector<AnalysedRate> rates = rates_of(name, table, rows, options.axis);

@@ -19,6 +19,7 @@
 #include "tools/ifog/captures/lcm/lcm_log.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/say.h"
@@ -178,16 +179,12 @@ RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& i
 void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
                          const std::function<void()>& added) const {
   const std::string& path = file.path();
-  RecordingCounts counts;
-  try {
-    counts = for_each_sample(file, instance, [&](const ifog_sample& sample) {
+  const RecordingCounts counts = naming(path, [&] {
+    return for_each_sample(file, instance, [&](const ifog_sample& sample) {
       builder.add(sample);
       added();
     });
-  } catch (const std::runtime_error& error) {
-    const std::string line = error.what();
-    throw std::runtime_error(line.starts_with(path) ? line : path + ": " + line);
-  }
+  });
   for (const auto& lines : {losses(counts), builder.remarks()})
     for (const std::string& line : lines) warn("%s: %s\n", path.c_str(), line.c_str());
 }

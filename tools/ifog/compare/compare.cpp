@@ -31,6 +31,7 @@
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/listed_fields.h"
+#include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/filter_options.h"
 #include "tools/ifog/console/progress.h"
@@ -267,11 +268,7 @@ void run_compare(const CompareArguments& options) {
   Progress progress("comparing", compare.rules.size());
   compare.progress = progress.teller();
   compare.keep_denoised = !options.plot_file.empty();
-  try {
-    fill_noise(compare.settings, capture, in.at_rest, in.period_s);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(options.capture + ": " + error.what());
-  }
+  naming(options.capture, [&] { fill_noise(compare.settings, capture, in.at_rest, in.period_s); });
   const Comparison result = compare_rules(in, compare);
 
   const FilterSettings& s = compare.settings;

@@ -18,6 +18,7 @@
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/diagnosis_json.h"
@@ -67,11 +68,9 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   if (!arguments.model.empty()) {
     model = read_model(arguments.model);
     tell_model_of_one_axis(model, arguments.model, read.front().view().axes);
-    try {
+    naming(arguments.model, [&] {
       for (LongCapture& capture : read) capture.correct(model);
-    } catch (const std::exception& error) {
-      throw std::runtime_error(arguments.model + ": " + error.what());
-    }
+    });
   }
   std::vector<CaptureView> captures;
   for (std::size_t c = 0; c < read.size(); ++c) {

@@ -12,6 +12,7 @@
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -93,13 +94,10 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
     std::vector<std::size_t> numbers;
     const EffectsToMeasure wanted = effects_of_axis(type, model, axes[a], numbers);
     if (wanted.together.empty()) continue;
-    MeasuredEffects found;
-    try {
-      found = measure_effects(records_of(opened.captures, gyro.captures, a), wanted, axes[a],
-                              settings.wanted.significance);
-    } catch (const std::invalid_argument& error) {
-      throw std::runtime_error(gyro.captures.front() + ": " + error.what());
-    }
+    MeasuredEffects found = naming(gyro.captures.front(), [&] {
+      return measure_effects(records_of(opened.captures, gyro.captures, a), wanted, axes[a],
+                             settings.wanted.significance);
+    });
     for (std::size_t i = 0; i < numbers.size(); ++i)
       axis.together.push_back({std::move(found.together[i]), numbers[i]});
     axis.beside = std::move(found.beside);

@@ -31,6 +31,7 @@
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
@@ -259,11 +260,7 @@ LongCapture read_rates(const TuneArguments& options, const Model& before) {
   if (before.effects.empty()) return read;
   if (options.since_power_up_s) read.set_since_power_up(*options.since_power_up_s);
   tell_model_of_one_axis(before, options.model, read.view().axes);
-  try {
-    read.correct(before);
-  } catch (const std::exception& error) {
-    throw std::runtime_error(options.model + ": " + error.what());
-  }
+  naming(options.model, [&] { read.correct(before); });
   return read;
 }
 
@@ -299,12 +296,7 @@ void run_tune(const TuneArguments& options) {
   TuneOptions tune_options;
   tune_options.states = options.states;
   tune_options.progress = progress.teller();
-  Tuning tuning;
-  try {
-    tuning = tune(axes, period, tune_options);
-  } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(options.capture + ": " + error.what());
-  }
+  const Tuning tuning = naming(options.capture, [&] { return tune(axes, period, tune_options); });
   say("%s: %zu samples at %.6g Hz%s\n", options.capture.c_str(), tuning.samples, 1.0 / period,
       capture.axes.size() > 1 ? ", all axes under one model" : "");
   if (left > 0) say("the last %zu rows are dropped; --samples %zu takes all\n", left, capture.size());

@@ -17,6 +17,7 @@
 #include "drivers/capture/capture_builder.h"
 #include "filters/model_file/kept_noise.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -72,19 +73,9 @@ DriverInstance driver_of_run(const std::string& name, const DriverSettings& sett
   return made;
 }
 
-template <typename Work>
-auto FlightInput::with_name(Work&& work) const {
-  try {
-    return work();
-  } catch (const std::runtime_error& error) {
-    const std::string line = error.what();
-    throw std::runtime_error(line.starts_with(file_.path()) ? line : file_.path() + ": " + line);
-  }
-}
-
 FlightInput::FlightInput(InputFile& file)
     : file_(file), reader_([&file](char* to, std::size_t most) { return file.read(to, most); }) {
-  with_name([this] { reader_.next(); });
+  naming(file_.path(), [this] { reader_.next(); });
 }
 
 // The recording's own, not another in its place.
@@ -103,7 +94,7 @@ DriverInstance FlightInput::make_driver(const std::string& driver, const DriverS
 // A header is foreign: what it names is opened nowhere but in the recording itself.
 DriverInstance FlightInput::made() const {
   const bool other = !names_the_driver();
-  return with_name([&] {
+  return naming(file_.path(), [&] {
     if (header().driver.empty() && !other)
       throw std::runtime_error(
           "is a recording of LCM messages, expected none of --driver and --option with it");
@@ -132,7 +123,7 @@ DriverInstance FlightInput::made() const {
 }
 
 SensorConfig FlightInput::sensor() const {
-  return with_name([this] { return recorded_sensor(header()); });
+  return naming(file_.path(), [this] { return recorded_sensor(header()); });
 }
 
 std::shared_ptr<const Model> FlightInput::model(const SensorConfig& sensor) const {
@@ -157,7 +148,7 @@ void FlightInput::tell_losses() const {
 }
 
 RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const RecordedSamples& sink) {
-  return with_name([&] {
+  return naming(file_.path(), [&] {
     RecordingCounts counts;
     auto options = options_in(header());
     // What was recorded with other options would be read as what it is not.
@@ -216,7 +207,7 @@ std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder&
 }
 
 Capture FlightInput::capture(DriverInstance& driver) {
-  return with_name([&] {
+  return naming(file_.path(), [&] {
     CaptureBuilder builder(driver.description(), header().channels);
     const auto since_power_up_s = build(driver, builder, [] {});
     Capture out = builder.finish();
@@ -226,7 +217,7 @@ Capture FlightInput::capture(DriverInstance& driver) {
 }
 
 RowNotes FlightInput::rows(DriverInstance& driver, RowSink& sink) {
-  return with_name([&] {
+  return naming(file_.path(), [&] {
     CaptureBuilder builder(driver.description(), header().channels);
     BuiltRows rows(builder, sink);
     RowNotes notes;
@@ -237,7 +228,7 @@ RowNotes FlightInput::rows(DriverInstance& driver, RowSink& sink) {
 }
 
 void FlightInput::for_each_entry(const std::function<void(const FlightEntry&)>& sink) {
-  with_name([&] {
+  naming(file_.path(), [&] {
     for (auto item = reader_.next(); item != FlightReader::Item::end; item = reader_.next())
       if (item == FlightReader::Item::entry) sink(reader_.entry());
     tell_losses();

@@ -61,8 +61,6 @@ class FlightInput {
   void for_each_entry(const std::function<void(const FlightEntry&)>& sink);
 
  private:
-  template <typename Work>
-  auto with_name(Work&& work) const;
   // Returns the time since power-up of the first sample, where the header tells it.
   std::optional<double> build(DriverInstance& driver, CaptureBuilder& builder,
                               const std::function<void()>& added);
