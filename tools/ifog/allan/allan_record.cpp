@@ -46,18 +46,13 @@ bool is_dead(const SeriesView& values) {
   return true;
 }
 
-// Time of a row as people are shown it.
-double told_time_s(const LongTable& table, std::size_t row) {
-  return table.origin.told(SeriesView(table.time_s).at(row));
-}
-
-// All axes of the sensor together: what turns one shakes the others. Of a file written by denoise the raw
-// rates. note: what the reader should know of turns that stay in.
-Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Rows& rows,
-             const SampleClock& clock, const AllanOptions& options, std::string& note) {
+// Whether the part is at rest: all axes of the sensor together, since what turns one shakes the others. Of a file written
+// by denoise the raw rates.
+void find_rest_of(AnalysedPart& part, const AllanOptions& options) {
+  const TimePart::Rows& rows = part.rows;
   std::vector<SeriesView> axes, references;
   std::string signal, axis;
-  for (const LongColumn& column : table.columns) {
+  for (const LongColumn& column : part.table.columns) {
     const SeriesView values = SeriesView(column.values).part(rows.begin, rows.end);
     if (axis_of(column.name, "reference_rate", axis))
       references.push_back(values);
@@ -66,30 +61,30 @@ Rest rest_of(const std::string& name, const LongTable& table, const TimePart::Ro
              !is_dead(values))
       axes.push_back(values);
   }
-  Rest all;
-  all.samples = rows.end - rows.begin;
-  all.at_rest = {{0, all.samples}};
-  if (options.keep_motion || axes.empty()) return all;
+  part.rest.samples = rows.end - rows.begin;
+  part.rest.at_rest = {{0, part.rest.samples}};
+  if (options.keep_motion || axes.empty()) return;
+  const double period_s = part.clock.period_s;
+  const Rest found = find_rest(axes, references, period_s);
   if (options.minus_reference) {
     // Against a reference the sensor may turn.
-    const std::size_t turned = find_rest(axes, references, clock.period_s).turned;
-    if (turned > 0)
-      note = "turned in " + six_digits(static_cast<double>(turned) * clock.period_s) +
-             " s: the scale factor's error against the reference remains, which is no noise; ifog diagnose "
-             "takes it out";
-    return all;
+    if (found.turned > 0)
+      part.slow_turns =
+          "turned in " + six_digits(static_cast<double>(found.turned) * period_s) +
+          " s: the scale factor's error against the reference remains, which is no noise; ifog diagnose "
+          "takes it out";
+    return;
   }
-  Rest rest = find_rest(axes, references, clock.period_s);
+  part.rest = found;
   try {
-    require_rest(rest, clock.period_s, told_time_s(table, rows.begin));
+    require_rest(part.rest, period_s, part.told_time_s(0));
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(
-        name + ": " + error.what() + (references.empty() ? "" : ", or --minus-reference") +
+        part.capture + ": " + error.what() + (references.empty() ? "" : ", or --minus-reference") +
         ", or --moving keep" +
         (references.empty() ? "" : "; a sensor turned with a reference is for ifog diagnose"));
   }
-  note = slow_turns_in_words(rest, clock.period_s, told_time_s(table, rows.begin));
-  return rest;
+  part.slow_turns = slow_turns_in_words(part.rest, period_s, part.told_time_s(0));
 }
 
 LongSeries less_reference(const std::string& name, const LongTable& table, const SeriesView& rate,
@@ -167,17 +162,6 @@ std::vector<AnalysedRate> rates_of(const std::string& name, const LongTable& tab
   return rates;
 }
 
-// A capture's part that is analysed, and what holds for all of its rates.
-struct AnalysedPart {
-  const std::string& name;
-  const LongTable& table;
-  const TimePart::Rows& rows;
-  const SeriesView& time_s;
-  const SampleClock& clock;
-  const Rest& rest;
-  const std::string& slow_turns;
-};
-
 AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const AllanOptions& options) {
   const TimePart::Rows& rows = of.rows;
   const auto& [column, signal, axis] = wanted;
@@ -185,7 +169,7 @@ AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const 
   std::string shown = signal;
   LongSeries error;
   if (options.minus_reference && signal == "rate") {
-    error = less_reference(of.name, of.table, rate, axis);
+    error = less_reference(of.capture, of.table, rate, axis);
     rate = error;
     shown = "error";
   }
@@ -195,27 +179,16 @@ AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const 
   const std::vector<Stretch> running = {{later ? started - rows.begin : 0, rows.end - rows.begin}};
   Rest analysed = of.rest;
   analysed.at_rest = common(of.rest.at_rest, running);
-  const Gaps gaps(of.name, of.table, rows.begin);
-  const SeriesView part = rate.part(rows.begin, rows.end);
-  const LoggedRate logged{of.name,
-                          shown + (axis.empty() ? "" : "_" + axis),
-                          of.table.origin,
-                          of.time_s,
-                          part,
-                          column.repeats,
-                          of.clock,
-                          gaps,
-                          of.table.outlines,
-                          rows.begin};
+  const LoggedRate logged{of, shown + (axis.empty() ? "" : "_" + axis), rate.part(rows.begin, rows.end),
+                          column.repeats};
   AllanRecord record = analyse(logged, shown, axis, analysed, options);
   if (later)
-    record.notes.push_back(of.name + ": " + column.name + ": until " +
-                           told_time(told_time_s(of.table, started)) +
+    record.notes.push_back(of.capture + ": " + column.name + ": until " +
+                           told_time(of.told_time_s(started - rows.begin)) +
                            " s the filter had not started and this is the compensated rate: dropped");
-  if (const std::string motion = in_words(of.rest, of.clock.period_s, told_time_s(of.table, rows.begin));
-      !motion.empty())
-    record.notes.push_back(of.name + ": " + motion + "; only the rest is analysed");
-  if (!of.slow_turns.empty()) record.notes.push_back(of.name + ": " + of.slow_turns);
+  if (const std::string motion = in_words(of.rest, of.clock.period_s, of.told_time_s(0)); !motion.empty())
+    record.notes.push_back(of.capture + ": " + motion + "; only the rest is analysed");
+  if (!of.slow_turns.empty()) record.notes.push_back(of.capture + ": " + of.slow_turns);
   return record;
 }
 
@@ -236,11 +209,9 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
   const SeriesView time_s = SeriesView(table.time_s).part(rows.begin, rows.end);
   if (time_s.size() < 3)
     throw std::runtime_error(name + ": " + std::to_string(time_s.size()) + " samples, expected at least 3");
-  const SampleClock clock = naming(name, [&] { return sample_clock(time_s); });
-  std::string slow_turns;
-  const Rest rest = rest_of(name, table, rows, clock, options, slow_turns);
+  AnalysedPart part{name, table, rows, time_s, naming(name, [&] { return sample_clock(time_s); })};
+  find_rest_of(part, options);
   const std::vector<AnalysedRate> rates = rates_of(name, table, rows, options.axis);
-  const AnalysedPart part{name, table, rows, time_s, clock, rest, slow_turns};
   // Side by side. An axis that cannot be analysed costs the others nothing; where none can, the first says why.
   std::vector<AllanRecord> records(rates.size());
   std::vector<std::exception_ptr> refused(rates.size());

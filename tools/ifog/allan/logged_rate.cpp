@@ -84,13 +84,13 @@ void note_what_fits_badly(const LoggedRate& logged, const SeriesView& rate, cons
                           const AngleSum& sum, double period, AllanRecord& record) {
   const auto add = [&](const char* name, const std::string& text) {
     record.findings.push_back({name, text});
-    record.notes.push_back(logged.capture + ": " + logged.column + ": " + text);
+    record.notes.push_back(logged.of.capture + ": " + logged.column + ": " + text);
   };
   if (const CurveMiss miss = widen_to_curve(sum, period, *record.fit); miss.departure > 0.0)
     add("curve", "fit is " + two_digits(100.0 * miss.departure) + " % off at " + six_digits(miss.tau_s) +
                      " s; error bars widened");
   if (const auto followed =
-          followed_channel(rate, parts, logged.first_row, period, logged.channels, *record.fit))
+          followed_channel(rate, parts, logged.of.rows.begin, period, logged.of.table.outlines, *record.fit))
     add("curve", "slow means of the rate follow " + followed->name + " by " +
                      two_digits(100.0 * followed->share) +
                      " % of their variance: an effect of it would pass for noise, and the error bars of B, K "
@@ -99,11 +99,10 @@ void note_what_fits_badly(const LoggedRate& logged, const SeriesView& rate, cons
 
 // What is said of holes and of uneven stamps. Throws std::runtime_error where holes are to be refused.
 void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
-  const SampleClock& clock = logged.clock;
-  const Gaps& gaps = logged.gaps;
+  const SampleClock& clock = logged.of.clock;
   const auto note = [&](std::size_t row, const std::string& what) {
-    if (refuse) throw std::runtime_error(gaps.place(row) + ": " + what + ", expected none");
-    record.notes.push_back(gaps.place(row) + ": " + what);
+    if (refuse) throw std::runtime_error(logged.of.place(row) + ": " + what + ", expected none");
+    record.notes.push_back(logged.of.place(row) + ": " + what);
   };
   std::size_t nans = 0, first_nan = 0;
   for_each_piece(logged.rate, 0, logged.rate.size(), [&](std::span<const double> values, std::size_t first) {
@@ -115,11 +114,12 @@ void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
     note(clock.first_gap, std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
                               " in the time column (" + std::to_string(clock.missing) +
                               " samples missing), the first after " +
-                              told_time(logged.told_time_s(clock.first_gap)) + " s");
+                              told_time(logged.of.told_time_s(clock.first_gap)) + " s");
   if (nans > 0)
-    note(first_nan, missing_in_words(logged.column, nans, logged.rate.size(), logged.told_time_s(first_nan)));
+    note(first_nan,
+         missing_in_words(logged.column, nans, logged.rate.size(), logged.of.told_time_s(first_nan)));
   if (clock.worst_jitter_s > 0.1 * clock.period_s)
-    record.notes.push_back(logged.capture + ": time is uneven by up to " +
+    record.notes.push_back(logged.of.capture + ": time is uneven by up to " +
                            six_digits(clock.worst_jitter_s * 1e3) +
                            " ms; treated as jitter of the stamps of an even clock of " +
                            six_digits(record.sample_rate_hz) + " Hz");
@@ -128,7 +128,7 @@ void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
 // The deviations with their intervals, and the noise that they show.
 void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& options, double period,
              AllanRecord& record) {
-  const std::string& name = logged.capture;
+  const std::string& name = logged.of.capture;
   // A quarter of the longest stretch: beyond, a handful of differences decide.
   const std::vector<std::size_t> m =
       options.tau_s.empty() ? log_spaced(std::max<std::size_t>(1, record.longest / 4), options.per_decade)
@@ -162,25 +162,31 @@ void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& 
 
 }  // namespace
 
+std::string AnalysedPart::place(std::size_t row) const {
+  row += rows.begin;
+  const std::size_t line = table.line_of_row(row);
+  return capture + (line > 0 ? ":" + std::to_string(line) : ": sample " + std::to_string(row));
+}
+
 std::string six_digits(double value) { return formatted("%.6g", value); }
 
 AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const std::string& axis,
                     const Rest& rest, const AllanOptions& options) {
-  const std::string &name = logged.capture, &column = logged.column;
+  const std::string &name = logged.of.capture, &column = logged.column;
   AllanRecord record;
   record.capture = name;
   record.axis = axis;
   record.signal = signal;
-  record.sample_rate_hz = rounded_rate(logged.clock.period_s);
-  record.worst_jitter_s = logged.clock.worst_jitter_s;
-  record.gaps = logged.clock.gaps;
+  record.sample_rate_hz = rounded_rate(logged.of.clock.period_s);
+  record.worst_jitter_s = logged.of.clock.worst_jitter_s;
+  record.gaps = logged.of.clock.gaps;
   const double period = 1.0 / record.sample_rate_hz;
   note_holes(logged, options.refuse_gaps, record);
 
   const std::vector<Stretch> parts =
-      common(stretches(logged.time_s, logged.rate, logged.clock), rest.at_rest);
+      common(stretches(logged.of.time_s, logged.rate, logged.of.clock), rest.at_rest);
   if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
-  const auto told_time_s = [&](std::size_t row) { return logged.told_time_s(row); };
+  const auto told_time_s = [&](std::size_t row) { return logged.of.told_time_s(row); };
   // A filter leaps of itself, by its gain; what the logger did is in the raw rate.
   record.findings.assign(logged.repeats.begin(), logged.repeats.end());
   std::optional<LongSeries> cleaned;

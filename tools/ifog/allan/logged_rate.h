@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <span>
 #include <string>
-#include <utility>
 
 #include "filters/allan/stretches.h"
 #include "filters/rest/rest.h"
@@ -18,38 +17,28 @@ namespace ifog::tools {
 // For a line of text.
 std::string six_digits(double value);
 
-// Where a row stands in its file: "file:line", or the sample's number where the file is no text.
-class Gaps {
- public:
-  Gaps(std::string file, const RowNotes& lines, std::size_t first_row)
-      : file_(std::move(file)), lines_(lines), first_row_(first_row) {}
-  [[nodiscard]] std::string place(std::size_t row) const {
-    const std::size_t line = lines_.line_of_row(row + first_row_);
-    return line > 0 ? file_ + ":" + std::to_string(line)
-                    : file_ + ": sample " + std::to_string(row + first_row_);
-  }
+// The part of a capture that is analysed, and what holds for all of its rates.
+struct AnalysedPart {
+  const std::string& capture;  // its file
+  const LongTable& table;
+  TimePart::Rows rows;  // of the table
+  SeriesView time_s;    // of these rows, since the table's origin
+  SampleClock clock;
+  Rest rest = {};
+  std::string slow_turns = {};  // what the reader should know of turns that stay in; "" for nothing
 
- private:
-  std::string file_;
-  const RowNotes& lines_;
-  std::size_t first_row_;
+  // For messages, of one of its rows.
+  [[nodiscard]] double told_time_s(std::size_t row) const { return table.origin.told(time_s.at(row)); }
+  // "file:line", or the sample's number where the file is no text.
+  [[nodiscard]] std::string place(std::size_t row) const;
 };
 
-// A rate as it was logged: its name in the file, the times of its rows, and where the sensor rested.
-// time_s: since the origin.
+// A rate as it was logged.
 struct LoggedRate {
-  const std::string& capture;
+  const AnalysedPart& of;
   std::string column;
-  const TimeOrigin& origin;
-  const SeriesView& time_s;
-  const SeriesView& rate;
+  SeriesView rate;                      // in the part's rows
   std::span<const ValueFault> repeats;  // which are missing in it
-  const SampleClock& clock;
-  const Gaps& gaps;
-  std::span<const ChannelOutline> channels;  // of the file, whose rows begin `first_row` before these
-  std::size_t first_row = 0;
-
-  [[nodiscard]] double told_time_s(std::size_t row) const { return origin.told(time_s.at(row)); }
 };
 
 // Its deviations, noise terms and changes, over what is at rest. Throws std::runtime_error with one line for

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "drivers/capture/capture.h"
-#include "filters/series/series_view.h"
 
 namespace ifog::tools {
 
@@ -36,8 +35,6 @@ struct CaptureView {
   // Time of a row as shown to the user.
   [[nodiscard]] double told_time_s(std::size_t row) const { return origin.told(time_s[row]); }
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
-  // What rest is judged on: the axes, and the sensor's rates that the user did not choose.
-  [[nodiscard]] std::vector<SeriesView> moving_rates() const;
 };
 
 }  // namespace ifog::tools

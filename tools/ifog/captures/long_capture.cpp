@@ -3,7 +3,6 @@
 
 #include <utility>
 
-#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "tools/ifog/captures/model_axes.h"
 
@@ -19,13 +18,6 @@ CaptureView::CaptureView(const Capture& capture)
       faults(capture.faults),
       since_power_up_s(capture.since_power_up_s) {
   for (const CaptureColumn& column : capture.channels) channels.push_back({column.name, column.values});
-}
-
-std::vector<SeriesView> CaptureView::moving_rates() const {
-  std::vector<SeriesView> rates(rate_radps.begin(), rate_radps.end());
-  for (const Channel& channel : channels)
-    if (is_other_rate(channel.name)) rates.emplace_back(channel.values);
-  return rates;
 }
 
 LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std::move(table)) {

@@ -36,6 +36,7 @@
 #include "tools/ifog/console/options/filter_options.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
+#include "tools/ifog/tune/rest_columns.h"
 #include "tools/report/picture.h"
 
 namespace ifog::tools {
@@ -59,12 +60,8 @@ struct Motion {
 };
 
 Motion motion_of(const CaptureView& capture, double period_s) {
-  const std::vector<SeriesView> axes = capture.moving_rates();
-  std::vector<SeriesView> references;
-  for (const std::span<const double> reference : capture.reference_rate_radps)
-    if (!reference.empty()) references.emplace_back(reference);
   Motion motion;
-  motion.rest = find_rest(axes, references, period_s);
+  motion.rest = rest_of(capture, period_s);
   motion.words = in_words(motion.rest, period_s, capture.told_time_s(0));
   if (motion.words.empty()) return motion;
   try {

@@ -7,22 +7,29 @@
 #include <span>
 #include <stdexcept>
 
+#include "drivers/capture/columns/column_names.h"
 #include "filters/series/series_view.h"
 
 namespace ifog::tools {
 
-Rest mostly_at_rest(const CaptureView& capture, double period_s, const std::string& path) {
-  const std::vector<SeriesView> axes = capture.moving_rates();
-  std::vector<SeriesView> references;
+Rest rest_of(const CaptureView& capture, double period_s) {
+  std::vector<SeriesView> rates(capture.rate_radps.begin(), capture.rate_radps.end()), references;
+  for (const CaptureView::Channel& channel : capture.channels)
+    if (is_other_rate(channel.name)) rates.emplace_back(channel.values);
   for (const std::span<const double> reference : capture.reference_rate_radps)
     if (!reference.empty()) references.emplace_back(reference);
-  Rest rest = find_rest(axes, references, period_s);
+  return find_rest(rates, references, period_s);
+}
+
+Rest mostly_at_rest(const CaptureView& capture, double period_s, const std::string& path) {
+  Rest rest = rest_of(capture, period_s);
   try {
     require_rest(rest, period_s, capture.told_time_s(0));
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(
-        path + ": " + error.what() +
-        (references.empty() ? "" : "; a sensor turned with a reference is for ifog diagnose"));
+    const bool referenced = std::ranges::any_of(capture.reference_rate_radps,
+                                                [](const auto& reference) { return !reference.empty(); });
+    throw std::runtime_error(path + ": " + error.what() +
+                             (referenced ? "; a sensor turned with a reference is for ifog diagnose" : ""));
   }
   return rest;
 }

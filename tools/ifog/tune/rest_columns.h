@@ -11,7 +11,9 @@
 
 namespace ifog::tools {
 
-// Rest of all axes together. Throws std::runtime_error with one line, path in front, where the sensor was mostly
+// Of all axes together, and of the sensor's rates that the user did not choose.
+[[nodiscard]] Rest rest_of(const CaptureView& capture, double period_s);
+// The same. Throws std::runtime_error with one line, path in front, where the sensor was mostly
 // turned.
 [[nodiscard]] Rest mostly_at_rest(const CaptureView& capture, double period_s, const std::string& path);
 
