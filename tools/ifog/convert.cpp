@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog convert: a capture to what a device would have sent, and back.
-#include <cstdio>
 #include <memory>
 #include <string>
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog picture: what the daemon published, raw against denoised, as one picture: the rate over time and both
 // Allan curves.
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <stdexcept>

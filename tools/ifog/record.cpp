@@ -3,7 +3,6 @@
 // command reads.
 #include <poll.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog simulate: a capture from a scenario file, its truth apart.
 #include <cstdint>
-#include <cstdio>
 #include <memory>
-#include <stdexcept>
 #include <string>
 
 #include "drivers/capture/files/file_kind.h"

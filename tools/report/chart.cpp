@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -42,12 +41,7 @@ std::string fixed(double value) { return formatted("%.1f", value); }
 // One for every so many pixels, so that low panels are not crowded.
 int y_ticks(double pixels) { return std::clamp(static_cast<int>(pixels / 48.0), 2, 6); }
 
-// By characters, not bytes: ° and τ take two.
-double text_width(const std::string& text) {
-  return kCharacter * static_cast<double>(std::count_if(text.begin(), text.end(), [](char c) {
-           return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-         }));
-}
+double text_width(const std::string& text) { return kCharacter * static_cast<double>(characters_in(text)); }
 
 std::string words(const char* style, double x, double y, const char* anchor, const std::string& text) {
   return std::string("<text class=\"") + style + "\" x=\"" + fixed(x) + "\" y=\"" + fixed(y) +

@@ -7,15 +7,13 @@
 
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
+#include "tools/report/text.h"
 
 namespace ifog::report {
 namespace {
 
-// Pads by characters, not bytes: ° and √ take two or three.
 std::string padded(std::string s, std::size_t width) {
-  std::size_t characters = 0;
-  for (const char c : s) characters += (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;
-  if (characters < width) s.append(width - characters, ' ');
+  if (const std::size_t characters = characters_in(s); characters < width) s.append(width - characters, ' ');
   return s;
 }
 

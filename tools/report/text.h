@@ -2,6 +2,7 @@
 // Numbers and words for people: HTML escaping, significant digits, the field's units.
 #pragma once
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,12 @@
 #include "filters/units/field_units.h"
 
 namespace ifog::report {
+
+// Of UTF-8, not bytes: ° takes two.
+inline std::size_t characters_in(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
+}
 
 // For HTML and XML, whatever the text holds.
 std::string escaped(std::string_view text);

@@ -13,6 +13,7 @@
 #include "tools/ifog/monitor/message_json.h"
 #include "tools/ifog/monitor/sensor_view.h"
 #include "tools/ifog/monitor/view_lines.h"
+#include "tools/report/text.h"
 
 namespace ifog::tools {
 namespace {
@@ -116,9 +117,9 @@ TEST(MonitorView, NoLineIsWiderThanTheScreen) {
     const auto lines = view_lines("NOSE", view, {width, true});
     ASSERT_GT(lines.size(), 8U);
     for (const auto& [line, tone] : lines) {
-      EXPECT_LE(columns_of(line), std::max<std::size_t>(width, 95)) << line;
+      EXPECT_LE(report::characters_in(line), std::max<std::size_t>(width, 95)) << line;
       if (line.find("angle") != std::string::npos) {
-        EXPECT_LE(columns_of(line), width) << line;
+        EXPECT_LE(report::characters_in(line), width) << line;
       }
       EXPECT_EQ(line.find('\x1b'), std::string::npos);
     }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // An Allan analysis as JSON for programs (SI) and as a table (the field's units).
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>

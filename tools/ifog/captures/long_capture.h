@@ -3,8 +3,6 @@
 // that is a file's where they are long.
 #pragma once
 
-#include <list>
-#include <optional>
 #include <string>
 
 #include "filters/model_file/model.h"

@@ -6,7 +6,6 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "drivers/capture/times/time_stamps.h"
 #include "filters/series/samples.h"

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstdarg>
@@ -76,12 +77,14 @@ bool colours_wanted() {
   return (no == nullptr || *no == '\0') && term != nullptr && std::string_view(term) != "dumb";
 }
 
-void redraw(std::size_t before, const std::vector<ColouredLine>& lines) {
+void redraw(std::size_t before, const std::vector<ShownLine>& lines) {
+  constexpr std::array<std::string_view, 5> kColours{"", "1", "32", "33", "31"};  // by Tone: SGR of ECMA-48
   const bool terminal = isatty(fileno(people)) == 1, coloured = terminal && colours_wanted();
   std::string text = terminal && before > 0 ? "\x1b[" + std::to_string(before) + "A" : "";
-  for (const ColouredLine& line : lines) {
+  for (const ShownLine& line : lines) {
     const std::string plain = printable(line.text, kLongestMessage);
-    text += coloured && !line.colour.empty() ? "\x1b[" + line.colour + "m" + plain + "\x1b[m" : plain;
+    const std::string colour(kColours[static_cast<std::size_t>(line.tone)]);
+    text += coloured && !colour.empty() ? "\x1b[" + colour + "m" + plain + "\x1b[m" : plain;
     text += terminal ? "\x1b[K\n" : "\n";
   }
   put(text, people);

@@ -25,14 +25,16 @@ void data_to_standard_output(const std::string& option);
 // Whether a terminal may show colours: NO_COLOR (no-color.org) is not set, and it is no dumb one.
 bool colours_wanted();
 
-struct ColouredLine {
+enum class Tone { plain, figure, good, warning, bad };  // figure: what is read first
+
+struct ShownLine {
   std::string text;
-  std::string
-      colour{};  // at a terminal where colours are wanted: parameters of SGR (ECMA-48), "31"; "" for none
+  Tone tone = Tone::plain;  // a colour at a terminal where they are wanted
 };
+
 // Lines that take the place of the `before` lines drawn last, where people sit at a terminal; elsewhere they
 // follow. Throws as finish_saying() does: nobody reads any more.
-void redraw(std::size_t before, const std::vector<ColouredLine>& lines);
+void redraw(std::size_t before, const std::vector<ShownLine>& lines);
 
 // People have read enough, as `head` has: the end of the work, and nothing to complain of. No runtime_error,
 // so that nobody makes a complaint of it on the way.

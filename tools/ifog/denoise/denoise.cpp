@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog denoise: the daemon's signal chain over a capture or a recording.
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <memory>

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog diagnose: what the error is made of, what to correct, and what stays.
 #include <algorithm>
-#include <exception>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>

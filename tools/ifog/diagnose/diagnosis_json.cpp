@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/diagnose/diagnosis_json.h"
 
-#include <cmath>
-
 #include "filters/effects/form.h"
 #include "tools/ifog/console/listed_fields.h"
 #include "tools/report/coefficients.h"

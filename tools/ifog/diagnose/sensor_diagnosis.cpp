@@ -7,7 +7,6 @@
 #include <cmath>
 #include <exception>
 #include <filesystem>
-#include <limits>
 #include <list>
 #include <mutex>
 #include <numeric>

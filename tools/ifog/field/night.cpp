@@ -2,7 +2,6 @@
 // ifog night: what the flight recorder kept since the last time is diagnosed, and where that would pay, a new
 // model is proposed. Nothing is put into use, no device is touched, and the daemon is not asked for anything.
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <ctime>
 #include <deque>

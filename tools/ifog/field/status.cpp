@@ -2,7 +2,6 @@
 // ifog status: all sensors of this computer's daemon on one screen.
 #include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <exception>
 #include <memory>
 #include <optional>

@@ -3,7 +3,6 @@
 // and the measurement of its type's effects.
 #pragma once
 
-#include <cstddef>
 #include <string>
 
 #include "tools/ifog/captures/capture_input.h"

@@ -10,14 +10,9 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <chrono>
-#include <cstdint>
 #include <iterator>
-#include <map>
 #include <memory>
 #include <mutex>
-#include <optional>
-#include <set>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
@@ -35,15 +30,6 @@
 
 namespace ifog::tools {
 namespace {
-
-std::vector<ColouredLine> coloured(const std::vector<ShownLine>& lines) {
-  std::vector<ColouredLine> out;
-  out.reserve(lines.size());
-  constexpr std::array kColours{"", "1", "32", "33", "31"};  // as Tone
-  for (const ShownLine& line : lines)
-    out.push_back({line.text, kColours[static_cast<std::size_t>(line.tone)]});
-  return out;
-}
 
 // What ends the monitor, which every thread leaves to run().
 sigset_t blocked_signals() {
@@ -144,7 +130,7 @@ void Monitor::end_interval(double seconds) {
   if (web_) web_->end_interval();
   if (screen_ || web_ || !options_.json.empty()) return;
   const std::vector<ShownLine> now = lines({});
-  redraw(look_.lines_drawn, coloured(now));
+  redraw(look_.lines_drawn, now);
   look_.lines_drawn = now.size();
 }
 
@@ -208,7 +194,7 @@ bool Monitor::run() {
     end_interval(seconds_since(shown));
   if (screen_) {
     screen_.reset();
-    redraw(0, coloured(lines({})));  // what was seen last stays on the terminal
+    redraw(0, lines({}));  // what was seen last stays on the terminal
   }
   if (json_) json_->finish();
   return heard();

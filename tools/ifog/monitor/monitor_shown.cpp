@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // What a person sees of the monitor at a terminal, and its keys.
-#include <algorithm>
 #include <iterator>
 #include <utility>
 

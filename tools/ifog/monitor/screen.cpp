@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <clocale>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <cwchar>

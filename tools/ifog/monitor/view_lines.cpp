@@ -12,6 +12,7 @@
 #include "msgs/state_name.h"
 #include "tools/ifog/console/options/hertz.h"
 #include "tools/ifog/field/books.h"
+#include "tools/report/text.h"
 
 namespace ifog::tools {
 namespace {
@@ -54,8 +55,8 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
     return "  " + std::string(axis_name(a, sensor.axes().size())) + "  not measured";
   // What there is no room for goes, the least needed first.
   std::string out = rate + noise + raw + angle;
-  if (style.width != 0 && columns_of(out) > style.width) out = rate + noise + angle;
-  if (style.width != 0 && columns_of(out) > style.width) out = rate + angle;
+  if (style.width != 0 && report::characters_in(out) > style.width) out = rate + noise + angle;
+  if (style.width != 0 && report::characters_in(out) > style.width) out = rate + angle;
   return out;
 }
 
@@ -121,18 +122,14 @@ std::vector<std::string> counted(const std::string& when, const std::vector<Sens
 
 }  // namespace
 
-std::size_t columns_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 std::vector<std::string> wrapped(const std::vector<std::string>& parts, std::string_view separator,
                                  std::size_t width) {
   std::vector<std::string> out;
   for (const std::string& part : parts) {
     if (out.empty())
       out.push_back("  " + part);
-    else if (width == 0 || columns_of(out.back()) + separator.size() + columns_of(part) <= width)
+    else if (width == 0 ||
+             report::characters_in(out.back()) + separator.size() + report::characters_in(part) <= width)
       out.back() += std::string(separator) + part;
     else
       out.push_back("    " + part);

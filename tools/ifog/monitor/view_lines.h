@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "tools/ifog/console/say.h"
 #include "tools/ifog/monitor/sensor_view.h"
 
 namespace ifog::tools {
@@ -25,13 +26,7 @@ struct KnownSensor {
   std::set<std::string> channels;  // configured besides those of its own frames
 };
 
-enum class Tone { plain, figure, good, warning, bad };  // figure: an axis's
 const char* tone_name(Tone tone);
-
-struct ShownLine {
-  std::string text;
-  Tone tone = Tone::plain;
-};
 
 // How the sensor does, in a word.
 Tone tone_of(const SensorView& sensor);
@@ -39,9 +34,6 @@ Tone tone_of(const SensorView& sensor);
 // Names from the network are unchanged in them, but without control characters. `known`: null for nothing.
 std::vector<ShownLine> view_lines(std::string_view name, const SensorView& sensor, const LineStyle& style,
                                   const KnownSensor* known = nullptr);
-
-// Columns that a text takes on a terminal: bytes that begin a character.
-std::size_t columns_of(std::string_view text);
 
 // Words one behind the other, in as many lines as it takes; the second and later ones are indented by four.
 std::vector<std::string> wrapped(const std::vector<std::string>& parts, std::string_view separator,

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <exception>
 #include <span>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 

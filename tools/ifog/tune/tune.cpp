@@ -4,7 +4,6 @@
 #include "drivers/system/utc_now.h"
 #include "filters/units/told_time.h"
 
-#include <cmath>
 #include <filesystem>
 #include <map>
 #include <memory>

@@ -14,7 +14,6 @@
 #include "tools/report/pages/diagnosis_pictures.h"
 #include "tools/report/pages/section.h"
 #include "tools/report/pages/words.h"
-#include "tools/report/style.h"
 #include "tools/report/text.h"
 
 namespace ifog::report {
@@ -239,24 +238,16 @@ std::string diagnosis_page(const Page& page) {
     size = std::to_string(d.samples) + " samples at " + number(d.sample_rate_hz, 4) + " Hz, " +
            duration(static_cast<double>(d.samples) / d.sample_rate_hz) + " in all";
   }
-  const std::string title = "Diagnosis of " + escaped(page.sensor);
-  std::string out =
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-      "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light "
-      "dark\">\n"
-      "<link rel=\"icon\" href=\"data:,\">\n<title>" +
-      title + "</title>\n<style>" + page_style() + "</style>\n</head>\n<body>\n<main>\n<h1>" + title +
-      "</h1>\n<p class=\"sub\">" + names + " · " + size + "</p>\n" + contents(page);
-  for (const PageAxis& axis : page.axes) out += axis_sections(axis);
-  out += section("apply", "Applying it", applying(page));
-  out += section("origin", "Where it comes from", origin(page));
-  out +=
-      "<footer>Made " + escaped(page.made) +
-      ". Rates in °/h; the model file is in SI units. Standard errors are one "
-      "sigma. Under the pointer a picture shows its values; draw over a stretch to look closer, twice on it "
-      "for the whole; arrow keys, + and − do the same.</footer>\n</main>\n<script>" +
-      page_script() + "</script>\n</body>\n</html>\n";
-  return out;
+  std::string body = contents(page);
+  for (const PageAxis& axis : page.axes) body += axis_sections(axis);
+  body += section("apply", "Applying it", applying(page));
+  body += section("origin", "Where it comes from", origin(page));
+  return whole_page(
+      "Diagnosis of " + escaped(page.sensor), names + " · " + size, body,
+      "Made " + escaped(page.made) +
+          ". Rates in °/h; the model file is in SI units. Standard errors are one sigma. Under the "
+          "pointer a picture shows its values; draw over a stretch to look closer, twice on it "
+          "for the whole; arrow keys, + and − do the same.");
 }
 
 }  // namespace ifog::report

@@ -12,7 +12,6 @@
 #include "tools/report/pages/account.h"
 #include "tools/report/pages/section.h"
 #include "tools/report/pages/words.h"
-#include "tools/report/style.h"
 #include "tools/report/text.h"
 
 namespace ifog::report {
@@ -249,16 +248,11 @@ std::string fleet_page(const FleetPage& page) {
       section("own", "What only single gyros have", own_section(p)) +
       section("gyros", "The gyros", gyros_section(p)) +
       section("origin", "Where it comes from", "<p>Made by</p>\n<pre>" + escaped(page.command) + "</pre>\n");
-  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
-         "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light "
-         "dark\">\n<link rel=\"icon\" href=\"data:,\">\n<title>" +
-         title + "</title>\n<style>" + page_style() + "</style>\n</head>\n<body>\n<main>\n<h1>" + title +
-         "</h1>\n<p class=\"sub\">" + std::to_string(p.serials.size()) + " gyros</p>\n" + body +
-         "<footer>Made " + escaped(page.made) +
-         ". Rates in °/h; JSON and model files are in SI units. Under the pointer a picture shows its "
-         "values; draw over a stretch to look closer, twice on it for the "
-         "whole.</footer>\n</main>\n<script>" +
-         page_script() + "</script>\n</body>\n</html>\n";
+  return whole_page(
+      title, std::to_string(p.serials.size()) + " gyros", body,
+      "Made " + escaped(page.made) +
+          ". Rates in °/h; JSON and model files are in SI units. Under the pointer a picture shows "
+          "its values; draw over a stretch to look closer, twice on it for the whole.");
 }
 
 }  // namespace ifog::report

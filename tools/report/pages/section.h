@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tools/report/style.h"
+
 namespace ifog::report {
 
 inline std::string section(const std::string& id, const std::string& heading, const std::string& body) {
@@ -45,6 +47,17 @@ inline std::string table(const std::string& caption, const std::vector<Cell>& he
                     "><caption>" + caption + "</caption><thead><tr>";
   for (const Cell& head : heads) out += "<th scope=\"col\"" + head.style() + ">" + head.html + "</th>";
   return out + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
+}
+
+// The page around its sections, with its style and its script in it. All but the script is HTML.
+inline std::string whole_page(const std::string& title, const std::string& subtitle, const std::string& body,
+                              const std::string& footer) {
+  return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+         "content=\"width=device-width, initial-scale=1\">\n<meta name=\"color-scheme\" content=\"light "
+         "dark\">\n<link rel=\"icon\" href=\"data:,\">\n<title>" +
+         title + "</title>\n<style>" + page_style() + "</style>\n</head>\n<body>\n<main>\n<h1>" + title +
+         "</h1>\n<p class=\"sub\">" + subtitle + "</p>\n" + body + "<footer>" + footer +
+         "</footer>\n</main>\n<script>" + page_script() + "</script>\n</body>\n</html>\n";
 }
 
 }  // namespace ifog::report

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "drivers/capture/columns/column_names.h"

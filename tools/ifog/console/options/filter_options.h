@@ -3,8 +3,6 @@
 // structure the daemon's configuration is read into.
 #pragma once
 
-#include <string>
-
 #include "filters/settings/filter_settings.h"
 #include "tools/ifog/console/options/command.h"
 

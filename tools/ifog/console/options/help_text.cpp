@@ -7,25 +7,21 @@
 #include <algorithm>
 #include <string_view>
 
+#include "tools/report/text.h"
+
 namespace ifog::tools {
 namespace {
 
 constexpr std::string_view kExample = "  ifog ";
 
-// Letters, not bytes.
-std::size_t columns_of(std::string_view text) {
-  return static_cast<std::size_t>(std::count_if(
-      text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
-}
-
 std::string broken(std::string_view line, std::size_t indent, std::size_t width) {
   std::string out(line.substr(0, indent));
-  std::size_t at = columns_of(out);
+  std::size_t at = report::characters_in(out);
   const std::size_t begin = at;
   line.remove_prefix(indent);
   while (!line.empty()) {
     const std::size_t end = std::min(line.find(' '), line.size());
-    const std::size_t word = columns_of(line.substr(0, end));
+    const std::size_t word = report::characters_in(line.substr(0, end));
     if (at > begin && at + 1 + word > width) {
       out += "\n" + std::string(begin, ' ');
       at = begin;
@@ -52,7 +48,7 @@ std::string broken_lines(const std::string& help, std::size_t column, std::size_
     if (line.empty() && empty) continue;
     empty = line.empty();
     const bool described = line.starts_with("  ") && line.size() > column && line[column - 1] == ' ';
-    if (line.starts_with(kExample) || columns_of(line) <= width)
+    if (line.starts_with(kExample) || report::characters_in(line) <= width)
       out += line;
     else
       out += broken(line, described ? column : 0, width);
