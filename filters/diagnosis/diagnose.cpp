@@ -51,7 +51,7 @@ class Run {
     refuse_constant(records_);
     look_at_channels();
     separate_dead_zone();
-    search({});
+    search();
     separate_lines();
     separate_hysteresis();
     drop_what_a_capture_denies();
@@ -77,13 +77,12 @@ class Run {
     reconstructed_ = with_reconstructed_channels(data_);
   }
 
-  // Fits noise and effects together; spectral lines are given.
-  void search(const std::vector<Candidate>& given) {
+  // Fits noise and effects together.
+  void search() {
     SearchOptions search;
     search.significance = options_.significance;
     search.most_effects = options_.most_effects + (data_.grid.dwells ? kMoreOnDwells : 0);
     search.progress = options_.progress;
-    search.given = given;
     if (searched_) search.noise = found_.noise.shape;
     searched_ = true;
     found_ = search_effects(reconstructed_, search);
@@ -106,11 +105,8 @@ class Run {
   [[nodiscard]] double mean_of_corrected() const {
     const std::vector<Candidate> chosen = candidates_of(found_.chosen);
     Eigen::VectorXd coefficients = found_.coefficients;
-    Eigen::Index at = data_.grid.constants();
-    for (const Candidate& each : chosen) {
-      if (!each.corrected()) coefficients.segment(at, each.width()).setZero();
-      at += each.width();
-    }
+    for (std::size_t i = 0; i < chosen.size(); ++i)
+      if (!chosen[i].corrected()) coefficients[column_of(data_.grid, i) - 1] = 0.0;
     return mean_left(data_.grid, design(data_, chosen), coefficients);
   }
 
@@ -139,22 +135,17 @@ class Run {
     reconstructed_.grid.error = data_.grid.error;
   }
 
-  // Lines are looked for in what the effects leave; a slow one then competes with them in a second search. A
-  // peak that slow noise or an effect made is no line once both are in the fit.
+  // Lines are looked for in what the effects leave, and the search is made again without them.
   void separate_lines() {
     if (data_.grid.dwells) return;
     subtract_found();
-    lines_ = coherent_lines(errors_, data_.grid, options_.significance * kOfLines);
+    lines_ = coherent_lines(errors_, data_.grid.sample_s, options_.significance * kOfLines);
     if (std::ranges::any_of(errors_, [](const auto& one) { return one.before.size() > kMostTransformed; }))
       say("lines are sought in the first " + std::to_string(kMostTransformed) + " samples of a record");
-    take_out(lines_.fast, data_.grid.sample_s, errors_);
-    while (!lines_.slow.empty()) {
-      search(lines_.slow);
-      const std::size_t before = lines_.slow.size();
-      keep_proven(found_, result_.samples, options_.significance, lines_);
-      if (lines_.slow.size() == before) break;
-      if (lines_.slow.empty()) search({});
-    }
+    if (lines_.empty()) return;
+    take_out(lines_, data_.grid, errors_);
+    reconstructed_.grid.error = data_.grid.error;
+    search();
   }
 
   // A loop is no effect that the daemon corrects, but what it leaves is searched again without it.
@@ -164,7 +155,7 @@ class Run {
     if (!result_.hysteresis) return;
     take_out(*result_.hysteresis, reconstructed_, data_.grid);
     reconstructed_.grid.error = data_.grid.error;
-    search(lines_.slow);
+    search();
   }
 
   void drop_what_a_capture_denies() {
@@ -213,7 +204,7 @@ class Run {
     result_.indistinguishable = std::move(findings.pairs);
     result_.others = std::move(findings.others);
     result_.noise_posterior = joint_.noise;
-    for (FoundEffect& each : sample_effects(ramps_, zone_, lines_.fast, errors_, options_.axis))
+    for (FoundEffect& each : sample_effects(ramps_, zone_, lines_, errors_, options_.axis))
       result_.effects.push_back(std::move(each));
     result_.ranges = ranges_of(data_, result_.effects);
     parts_ = std::move(findings.parts);
@@ -259,7 +250,7 @@ class Run {
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
   std::optional<FoundZone> zone_;
-  CoherentLines lines_;
+  std::vector<LineOf> lines_;
   SearchResult found_;
   bool searched_ = false;
   JointFit joint_;

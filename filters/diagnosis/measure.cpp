@@ -48,21 +48,17 @@ Named candidate_named(const BlockData& data, const Effect& effect) {
   return named;
 }
 
-// In which of the captures a step or a line was, a model does not say: in each that it can be of.
-std::vector<Candidate> events_named(const BlockData& data, const Effect& effect) {
+// In which of the captures a step was, a model does not say: in each that it can be of.
+std::vector<Candidate> steps_named(const BlockData& data, const Effect& effect) {
   const BlockGrid& grid = data.grid;
-  Candidate event;
-  event.form = *form_named(effect.form);
-  event.frequency_hz = parameter(effect, "frequency_hz");
+  Candidate step;
+  step.form = Form::kStep;
   std::vector<Candidate> found;
-  for (event.record = 0; event.record < grid.records.size(); ++event.record) {
-    const BlockRange& record = grid.records[event.record];
-    const bool step = event.form == Form::kStep;
-    event.time_s = step ? grid.origin_of(event.record).since(parameter(effect, "time_s")) : 0.0;
-    if (step && (event.time_s <= grid.time_s[record.first] || event.time_s >= grid.time_s[record.end - 1]))
-      continue;
-    if (!step && event.frequency_hz * grid.block_s > 0.5) continue;  // the blocks average it away
-    found.push_back(event);
+  for (step.record = 0; step.record < grid.records.size(); ++step.record) {
+    const BlockRange& record = grid.records[step.record];
+    step.time_s = grid.origin_of(step.record).since(parameter(effect, "time_s"));
+    if (step.time_s > grid.time_s[record.first] && step.time_s < grid.time_s[record.end - 1])
+      found.push_back(step);
   }
   return found;
 }
@@ -77,11 +73,6 @@ void wait_for_early(const std::vector<ChannelRange>& ranges, BlockData& data) {
       any = true;
     }
   if (any) rebuild_differences(data);
-}
-
-bool is_event(const Effect& effect) {
-  const std::optional<Form> form = form_named(effect.form);
-  return form == Form::kStep || form == Form::kLine;
 }
 
 class Measuring {
@@ -114,8 +105,8 @@ class Measuring {
   }
 
   void take_beside(const Effect& effect) {
-    if (is_event(effect)) {
-      for (const Candidate& event : events_named(data_, effect)) events_.push_back(event);
+    if (effect.form == name_of(Form::kStep)) {
+      for (const Candidate& step : steps_named(data_, effect)) steps_.push_back(step);
       return;
     }
     const Named named = candidate_named(data_, effect);
@@ -143,7 +134,7 @@ class Measuring {
 
   [[nodiscard]] std::vector<Candidate> all() const {
     std::vector<Candidate> effects = model_;
-    effects.insert(effects.end(), events_.begin(), events_.end());
+    effects.insert(effects.end(), steps_.begin(), steps_.end());
     return effects;
   }
 
@@ -178,7 +169,7 @@ class Measuring {
   const EffectsToMeasure& wanted_;
   const std::string& axis_;
   std::vector<std::size_t> place_;  // in `together`, of the first effects of the model
-  std::vector<Candidate> model_, events_;
+  std::vector<Candidate> model_, steps_;
   NoiseFit noise_;
   MeasuredEffects result_;
 };

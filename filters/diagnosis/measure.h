@@ -22,7 +22,7 @@ struct EffectsToMeasure {
   std::vector<Effect> together;  // in one fit; of their parameters the time constants count
   // By effect of `together`: others that are each tried in its place. As many entries, or none.
   std::vector<std::vector<Effect>> instead;
-  // Other effects of the sensor, fitted along: a step or a line only in the captures that can have it.
+  // Other effects of the sensor, fitted along: a step only in the captures that can have it, a line in none.
   std::vector<Effect> beside;
   // Ranges of the sensor's own model, which say how early its channels are: the daemon waits for those.
   std::vector<ChannelRange> ranges = {};

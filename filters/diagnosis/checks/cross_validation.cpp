@@ -65,11 +65,8 @@ Eigen::VectorXd held_out_change(const BlockData& data, const std::vector<Candida
   const std::vector<int> fold = fold_of_block(grid);
   Columns centred = columns.rightCols(p);
   centre_records(grid, centred);
-  Eigen::Index at = 0;
-  for (const Candidate& effect : effects) {
-    if (!effect.corrected()) centred.middleCols(at, effect.width()).setZero();
-    at += effect.width();
-  }
+  for (std::size_t i = 0; i < effects.size(); ++i)
+    if (!effects[i].corrected()) centred.col(static_cast<Eigen::Index>(i)).setZero();
   Eigen::VectorXd change(columns.rows());
   for (Eigen::Index b = 0; b < change.size(); ++b) {
     const auto held_out = static_cast<std::size_t>(fold[static_cast<std::size_t>(b)]);
@@ -124,7 +121,7 @@ bool step_persists(const BlockData& data, const Claimed& claimed) {
   // Other steps stay where they are: of two that cancel, neither is still there later.
   Eigen::VectorXd taken = c.head(last - 1);
   for (std::size_t i = 0; i + 1 < claimed.model.size(); ++i)
-    if (claimed.model[i].form == Form::kStep) taken[column_of(grid, claimed.model, i) - 1] = 0.0;
+    if (claimed.model[i].form == Form::kStep) taken[column_of(grid, i) - 1] = 0.0;
   const BlockRange& record = grid.records[step.record];
   const std::size_t window = std::max<std::size_t>(8, record.size() / 20);
   std::array<std::vector<double>, 2> level;  // before and after, in the order of time

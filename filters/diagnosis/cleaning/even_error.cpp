@@ -2,6 +2,7 @@
 #include "filters/diagnosis/cleaning/even_error.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
 
@@ -28,6 +29,22 @@ std::vector<EvenError> even_errors(const std::vector<Record>& records, const Wit
     errors.push_back(std::move(error));
   }
   return errors;
+}
+
+void take_out(std::span<const double> part, std::size_t record, BlockGrid& grid, EvenError& error) {
+  const BlockRange& blocks = grid.records[record];
+  std::vector<FiniteSum> sums(blocks.size());
+  Samples& rest = error.rest.own();
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const auto step =
+        static_cast<std::size_t>(std::floor(static_cast<double>(i) * grid.sample_s / grid.fine_s + 0.5));
+    FiniteSum& block = sums[std::min(step / grid.fine, blocks.size() - 1)];
+    if (std::isfinite(rest[i])) block.sum += part[i], block.count += 1.0;
+    rest[i] -= part[i];
+  }
+  for (std::size_t b = 0; b < blocks.size(); ++b)
+    if (grid.valid[blocks.first + b] && sums[b].count > 0.0)
+      grid.error[blocks.row() + static_cast<Eigen::Index>(b)] -= sums[b].sum / sums[b].count;
 }
 
 FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::*series) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "filters/diagnosis/ramp/ramps_out.h"
+#include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/series/finite_sum.h"
 #include "filters/series/shared_samples.h"
@@ -27,6 +28,9 @@ struct EvenError {
 // on_even_grid() does.
 std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
                                    double sample_s);
+
+// Takes a part, by sample, out of the rest of a record's error and of the means over its blocks of the grid.
+void take_out(std::span<const double> part, std::size_t record, BlockGrid& grid, EvenError& error);
 
 // The sum of one series over all records.
 FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::*series);

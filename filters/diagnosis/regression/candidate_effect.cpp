@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A candidate as columns of the regression, as an effect of the model and the other way; what its form costs.
 #include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "filters/diagnosis/regression/candidates.h"
@@ -50,9 +49,8 @@ double complexity_of_form(const Candidate& candidate) {
 
 }  // namespace
 
-Columns regressors(const BlockData& data, const Candidate& candidate) {
+Eigen::VectorXd regressor(const BlockData& data, const Candidate& candidate) {
   const BlockGrid& grid = data.grid;
-  const auto n = static_cast<Eigen::Index>(grid.size());
   if (candidate.channel != Candidate::kNone) {
     if (candidate.form == Form::kProduct) {
       return column(
@@ -66,7 +64,7 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
     if (candidate.is_transition()) settings.reference = candidate.centre;
     return column(data, settings, candidate.channel);
   }
-  Columns columns = Columns::Zero(n, candidate.width());
+  Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(grid.size()));
   for (std::size_t r = 0; r < grid.records.size(); ++r) {
     const double start = grid.time_s[grid.records[r].first];
     for (std::size_t b = grid.records[r].first; b < grid.records[r].end; ++b) {
@@ -74,29 +72,20 @@ Columns regressors(const BlockData& data, const Candidate& candidate) {
       const double t = grid.time_s[b] - start;
       switch (candidate.form) {
         case Form::kRateRamp:
-          columns(row, 0) = t;
+          values[row] = t;
           break;
         case Form::kWarmUp:
-          columns(row, 0) = std::exp(-t / candidate.time_constant_s);
+          values[row] = std::exp(-t / candidate.time_constant_s);
           break;
         case Form::kStep:
-          columns(row, 0) = r == candidate.record && grid.time_s[b] > candidate.time_s ? 1.0 : 0.0;
+          values[row] = r == candidate.record && grid.time_s[b] > candidate.time_s ? 1.0 : 0.0;
           break;
-        case Form::kLine: {
-          if (r != candidate.record) break;
-          const double phase = 2.0 * std::numbers::pi * candidate.frequency_hz * grid.time_s[b];
-          const double half = std::numbers::pi * candidate.frequency_hz * grid.block_s;
-          const double kept = half < 1e-9 ? 1.0 : std::sin(half) / half;  // of a line, averaged over a block
-          columns(row, 0) = kept * std::cos(phase);
-          columns(row, 1) = kept * std::sin(phase);
-          break;
-        }
         default:
           throw std::logic_error("no column is made of " + std::string(name_of(candidate.form)));
       }
     }
   }
-  return columns;
+  return values;
 }
 
 double complexity(const Candidate& candidate) { return complexity_of_form(candidate) + candidate.of_channel; }
@@ -115,12 +104,7 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
     effect.with_channel = data.channels[candidate.with_channel].name;
     effect.with_reference = reference_of(effect.with_channel);
   }
-  if (candidate.form == Form::kLine) {
-    effect.parameters = {{"cosine", 0.0, 0.0, "rad/s"}, {"sine", 0.0, 0.0, "rad/s"}};
-    effect.parameters.push_back({"frequency_hz", candidate.frequency_hz, 0.0, "Hz"});
-  } else {
-    effect.parameters = {{"coefficient", 0.0, 0.0, coefficient_unit(effect)}};
-  }
+  effect.parameters = {{"coefficient", 0.0, 0.0, coefficient_unit(effect)}};
   if (candidate.is_transition()) {
     effect.parameters.push_back(
         {std::string(kHalfWidth), candidate.half_width, 0.0, std::string(unit_of(effect.channel))});
@@ -150,7 +134,7 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
 std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effect) {
   const std::optional<Form> form = form_named(effect.form);
   if (!form || *form == Form::kLookup || *form == Form::kRebuiltRamp || *form == Form::kBias ||
-      describes_noise(*form))
+      *form == Form::kLine || describes_noise(*form))
     return std::nullopt;
   Candidate candidate;
   candidate.form = *form == Form::kEarthRate ? Form::kLinear : *form;
@@ -171,7 +155,6 @@ std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effec
   }
   candidate.time_constant_s = parameter(effect, time_constant_name(effect));
   candidate.second_time_constant_s = parameter(effect, second_time_constant_name(effect));
-  candidate.frequency_hz = parameter(effect, "frequency_hz");
   candidate.period = effect.period;
   candidate.half_width = parameter(effect, kHalfWidth);
   if (candidate.is_transition()) candidate.centre = effect.reference;

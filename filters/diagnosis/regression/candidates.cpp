@@ -232,8 +232,7 @@ void add_through_temperature(const BlockData& data, std::vector<Candidate>& foun
 
 bool Candidate::same_shape(const Candidate& other) const {
   return form == other.form && channel == other.channel && with_form == other.with_form &&
-         with_channel == other.with_channel && time_s == other.time_s && frequency_hz == other.frequency_hz &&
-         period == other.period;
+         with_channel == other.with_channel && time_s == other.time_s && period == other.period;
 }
 
 bool has_shape(std::span<const Candidate> effects, const Candidate& wanted) {

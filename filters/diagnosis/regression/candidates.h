@@ -25,15 +25,13 @@ struct Candidate {
   double time_constant_s = 0.0;         // rate, second_rate, lagged, band_power, warm_up
   double second_time_constant_s = 0.0;  // lagged, band_power
   double time_s = 0.0;                  // step: block time in its record
-  std::size_t record = 0;               // step, line: where it is
-  double frequency_hz = 0.0;            // line
+  std::size_t record = 0;               // step: where it is
   double period = 0.0;                  // cosine, sine
   double centre = 0.0;                  // transition: the channel's value in its middle
   double half_width = 0.0;  // transition; dead_zone, which no search tries, see residual/dead_zone.h
   double of_channel = 0.0;  // what its channel adds to the complexity: one that no logger wrote
   FirstReading first_reading = FirstReading::kError;
 
-  [[nodiscard]] Eigen::Index width() const { return form == Form::kLine ? 2 : 1; }  // columns
   [[nodiscard]] bool searched() const { return time_constant_s > 0.0 || is_transition(); }
   [[nodiscard]] bool is_transition() const { return form == Form::kTransition; }
   [[nodiscard]] bool is_periodic() const { return form == Form::kCosine || form == Form::kSine; }
@@ -67,8 +65,8 @@ std::vector<double> time_constants(const BlockGrid& grid, Form form);
 // misalignment of another axis' rate where that axis was turned, and transitions of temperatures alone. lookup is
 // not among them: a table of a channel has a coefficient a knot, and polynomials to the cubic say what a few knots
 // would (the feedback ramp's table is fitted in ramp.h). Neither are steps, which scan.h places, nor lines,
-// which lines.h finds, nor the forms that have nothing to subtract; earth_rate is the same regressor as
-// acceleration, see findings.cpp.
+// which lines.h finds in samples, nor the forms that have nothing to subtract; earth_rate is the same regressor
+// as acceleration, see findings.cpp.
 std::vector<Candidate> library(const BlockData& data);
 
 // Light that reaches the detector by a second path, over a splice, a connector or the wrong polarisation,
@@ -89,15 +87,15 @@ std::vector<NaturalPair> natural_pairs(const BlockData& data);
 // size may depend on a second channel.
 std::vector<Candidate> products_of(const BlockData& data, std::size_t channel);
 
-// Regressors: one column, or two (cosine, sine) for a line. Unit: that of the form's value.
-Columns regressors(const BlockData& data, const Candidate& candidate);
+// The regressor of an effect, in the unit of the form's value.
+Eigen::VectorXd regressor(const BlockData& data, const Candidate& candidate);
 
 // Preference in units of twice the log-likelihood: of two that fit alike the plainer one is chosen.
 double complexity(const Candidate& candidate);
 
 // With names, references and units, coefficients still zero.
 Effect effect_of(const BlockData& data, const Candidate& candidate);
-// The other way. None of what has no regressor of its own (a table, a rebuilt ramp, a noise term), or where
+// The other way. None of what has no regressor of its own (a table, a rebuilt ramp, a line, a noise term), or where
 // the data lacks a channel of it.
 std::optional<Candidate> candidate_of(const BlockData& data, const Effect& effect);
 

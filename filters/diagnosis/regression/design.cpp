@@ -17,24 +17,16 @@ Columns constants(const BlockGrid& grid) {
 
 Columns design(const BlockData& data, const std::vector<Candidate>& effects) {
   const Columns constant = constants(data.grid);
-  Eigen::Index width = 1 + constant.cols();
-  for (const Candidate& effect : effects) width += effect.width();
-  Columns columns(constant.rows(), width);
+  Columns columns(constant.rows(), 1 + constant.cols() + static_cast<Eigen::Index>(effects.size()));
   columns.col(0) = data.grid.error;
   columns.middleCols(1, constant.cols()) = constant;
   Eigen::Index at = 1 + constant.cols();
-  for (const Candidate& effect : effects) {
-    const Columns mine = regressors(data, effect);
-    columns.middleCols(at, mine.cols()) = mine;
-    at += mine.cols();
-  }
+  for (const Candidate& effect : effects) columns.col(at++) = regressor(data, effect);
   return columns;
 }
 
-Eigen::Index column_of(const BlockGrid& grid, const std::vector<Candidate>& effects, std::size_t at) {
-  Eigen::Index column = 1 + grid.constants();
-  for (std::size_t i = 0; i < at; ++i) column += effects[i].width();
-  return column;
+Eigen::Index column_of(const BlockGrid& grid, std::size_t effect) {
+  return 1 + grid.constants() + static_cast<Eigen::Index>(effect);
 }
 
 double mean_left(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& coefficients) {

@@ -14,8 +14,8 @@ Columns constants(const BlockGrid& grid);
 // Measurement, constants, and the regressors of the effects.
 Columns design(const BlockData& data, const std::vector<Candidate>& effects);
 
-// Where among them the first column of effect `at` is.
-Eigen::Index column_of(const BlockGrid& grid, const std::vector<Candidate>& effects, std::size_t at);
+// Where among them the column of effect `effect` is; its coefficient is one before, as the measurement has none.
+Eigen::Index column_of(const BlockGrid& grid, std::size_t effect);
 
 // Mean over the valid blocks of the measurement less what the effects make of it. columns: of design();
 // coefficients: of the columns after the measurement, of which the constants stay in the mean.

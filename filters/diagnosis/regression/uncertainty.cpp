@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "filters/diagnosis/regression/design.h"
 #include "filters/linear/normal_equations.h"
@@ -111,24 +110,14 @@ Columns searched_columns(const BlockData& data, const std::vector<Candidate>& ef
   Eigen::Index at = nuisances;
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const Candidate& effect = effects[i];
-    const bool line = effect.form == Form::kLine;
-    if (line) {
-      const BlockGrid& grid = data.grid;
-      const Columns mine = regressors(data, effect);
-      Eigen::VectorXd column(mine.rows());
-      for (Eigen::Index b = 0; b < mine.rows(); ++b) {
-        column[b] = 2.0 * std::numbers::pi * grid.time_s[static_cast<std::size_t>(b)] *
-                    (coefficients[at + 1] * mine(b, 0) - coefficients[at] * mine(b, 1));
-      }
-      found.push_back(std::move(column));
-    } else if (effect.is_transition()) {
+    const double scale = coefficients[at++] / (2.0 * kLogStep);
+    if (effect.is_transition()) {
       for (const bool middle : {false, true}) {
         Candidate less = effect;
         Candidate more = effect;
         (middle ? less.centre : less.half_width) -= kLogStep * effect.half_width;
         (middle ? more.centre : more.half_width) += kLogStep * effect.half_width;
-        found.push_back(coefficients[at] / (2.0 * kLogStep) *
-                        (regressors(data, more).col(0) - regressors(data, less).col(0)));
+        found.push_back(scale * (regressor(data, more) - regressor(data, less)));
       }
       if (of) of->push_back(i);
     } else if (effect.searched()) {
@@ -136,11 +125,9 @@ Columns searched_columns(const BlockData& data, const std::vector<Candidate>& ef
       Candidate more = effect;
       less.time_constant_s *= std::exp(-kLogStep);
       more.time_constant_s *= std::exp(kLogStep);
-      found.push_back(coefficients[at] / (2.0 * kLogStep) *
-                      (regressors(data, more).col(0) - regressors(data, less).col(0)));
+      found.push_back(scale * (regressor(data, more) - regressor(data, less)));
     }
-    if (of && (line || effect.searched())) of->push_back(i);
-    at += line ? 2 : 1;
+    if (of && effect.searched()) of->push_back(i);
   }
   Columns columns(static_cast<Eigen::Index>(data.grid.size()), static_cast<Eigen::Index>(found.size()));
   for (std::size_t j = 0; j < found.size(); ++j) columns.col(static_cast<Eigen::Index>(j)) = found[j];
@@ -216,13 +203,9 @@ JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
   const Columns more = searched_columns(data, effects, coefficients, grid.constants(), &fit.searched);
   Columns columns(base.rows(), base.cols() + more.cols());
   columns << base, more;
-  const Eigen::Index p = columns.cols() - 1;
-  Eigen::VectorXd known = Eigen::VectorXd::Constant(p, std::numeric_limits<double>::infinity());
-  for (std::size_t j = 0; j < fit.searched.size(); ++j) {
-    if (effects[fit.searched[j]].form != Form::kLine) {
-      known[p - static_cast<Eigen::Index>(fit.searched.size() - j)] = kLogRange;
-    }
-  }
+  Eigen::VectorXd known =
+      Eigen::VectorXd::Constant(columns.cols() - 1, std::numeric_limits<double>::infinity());
+  known.tail(more.cols()).setConstant(kLogRange);
   fit_over_noise(grid, columns, known, best, fit);
   return fit;
 }

@@ -3,8 +3,7 @@
 // tell, and of which it holds few independent pieces: taking the likeliest noise for the true one makes
 // intervals too narrow, the more so where the likeliest walk is zero. So the coefficients are averaged over
 // the noise parameters the record allows, each weighted by its restricted likelihood, and their spread
-// counts. Time constants and frequencies that were searched are free along with the coefficients
-// (Gauss-Newton).
+// counts. Time constants that were searched are free along with the coefficients (Gauss-Newton).
 #pragma once
 
 #include <vector>
@@ -17,9 +16,8 @@ namespace ifog {
 
 struct JointFit {
   NoisePosterior noise;
-  // Nuisances (one constant a record), the columns of each effect, then one entry for each searched
-  // parameter, in the order of the effects: the logarithm of a time constant, the frequency (Hz) of a line;
-  // two of a transition, the logarithm of its half width, and its middle in half widths.
+  // Nuisances (one constant a record), the coefficient of each effect, then one entry for each searched
+  // parameter, in the order of the effects: the logarithm of a time constant; two of a transition, the logarithm of its half width, and its middle in half widths.
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;
   // Covariance of the coefficients with the searched parameters known. It decides whether there is an effect: where
@@ -32,7 +30,7 @@ struct JointFit {
 JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
                    const Eigen::VectorXd& coefficients, const NoiseFit& best);
 
-// The same at the time constants and frequencies that the effects have.
+// The same at the time constants that the effects have.
 JointFit joint_fit_at(const BlockData& data, const std::vector<Candidate>& effects, const NoiseFit& best);
 
 // Derivatives of the sum of the effects with respect to what was searched, one column each.

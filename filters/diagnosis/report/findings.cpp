@@ -35,7 +35,7 @@ std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& va
 
 bool is_searched(const ModelParameter& parameter, const Effect& effect) {
   if (effect.form == name_of(Form::kTransition)) return parameter.name == kHalfWidth;
-  return parameter.name == (effect.form == "line" ? "frequency_hz" : time_constant_name(effect));
+  return parameter.name == time_constant_name(effect);
 }
 
 // Which capture would tell two effects apart that this one cannot.
@@ -72,9 +72,7 @@ std::vector<Effect> effects_of(const BlockData& data, const std::vector<Candidat
   for (const Candidate& candidate : candidates) {
     effects.push_back(effect_of(data, candidate));
     effects.back().axis = axis;
-    for (Eigen::Index j = 0; j < candidate.width(); ++j)
-      effects.back().parameters[static_cast<std::size_t>(j)].value = coefficients[at + j];
-    at += candidate.width();
+    effects.back().parameters.front().value = coefficients[at++];
   }
   return effects;
 }
@@ -84,12 +82,10 @@ JointFit settle(const BlockData& reconstructed, SearchResult& found) {
   const Eigen::Index linear = found.coefficients.size();
   for (std::size_t j = 0; j < joint.searched.size(); ++j) {
     Candidate& candidate = found.chosen[joint.searched[j]].candidate;
-    const double moved = joint.values[linear + static_cast<Eigen::Index>(j)];
-    const double near = std::clamp(moved, -kFarthest, kFarthest);
+    const double near =
+        std::clamp(joint.values[linear + static_cast<Eigen::Index>(j)], -kFarthest, kFarthest);
     const bool second = j > 0 && joint.searched[j - 1] == joint.searched[j];
-    if (candidate.form == Form::kLine)
-      candidate.frequency_hz += moved;
-    else if (!candidate.is_transition())
+    if (!candidate.is_transition())
       candidate.time_constant_s *= std::exp(near);
     else if (second)
       candidate.centre += near * candidate.half_width;
@@ -163,23 +159,19 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
     effect.effect.axis = axis;
     effect.p_value = chosen.p_value;
     effect.likelihood_ratio = chosen.likelihood_ratio;
-    Eigen::VectorXd part = Eigen::VectorXd::Zero(columns.rows());
-    for (Eigen::Index j = 0; j < chosen.candidate.width(); ++j) {
-      ModelParameter& parameter = effect.effect.parameters[static_cast<std::size_t>(j)];
-      parameter.value = joint.values[at + j];
-      parameter.std_error = std::sqrt(joint.covariance(at + j, at + j));
-      part += columns.col(1 + at + j) * parameter.value;
-    }
-    if (chosen.candidate.searched() || chosen.candidate.form == Form::kLine) {
+    ModelParameter& coefficient = effect.effect.parameters.front();
+    coefficient.value = joint.values[at];
+    coefficient.std_error = std::sqrt(joint.covariance(at, at));
+    Eigen::VectorXd part = columns.col(1 + at) * coefficient.value;
+    if (chosen.candidate.searched()) {
       const double sigma = std::sqrt(joint.covariance(searched, searched));
       searched += chosen.candidate.is_transition() ? 2 : 1;
       for (ModelParameter& parameter : effect.effect.parameters) {
-        if (is_searched(parameter, effect.effect))
-          parameter.std_error = sigma * (chosen.candidate.form == Form::kLine ? 1.0 : parameter.value);
+        if (is_searched(parameter, effect.effect)) parameter.std_error = sigma * parameter.value;
       }
     }
     // By the same fit that gives the error bars, when that is less certain than the likelihood's loss.
-    if (chosen.candidate.width() == 1 && joint.of_coefficients(at, at) > 0.0) {
+    if (joint.of_coefficients(at, at) > 0.0) {
       const double z = joint.values[at] / std::sqrt(joint.of_coefficients(at, at));
       const double tries = chosen.of_a_law ? 1.0 : found.tries;
       effect.p_value = std::max(effect.p_value, std::min(1.0, kProfiled * tail(z * z, 1) * tries));
@@ -187,7 +179,7 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
     const double share = total > 0.0 ? variance_of(used_values(grid, part)) / total : 0.0;
     effect.variance_explained = std::min(1.0, share);
     findings.parts.push_back(std::move(part));
-    at += chosen.candidate.width();
+    ++at;
     findings.effects.push_back(std::move(effect));
   }
 }
@@ -256,15 +248,14 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
   Eigen::Index searched = joint.values.size() - static_cast<Eigen::Index>(joint.searched.size());
   for (std::size_t i = 0; i < effects.size(); ++i) {
     const Effect& effect = effects[i].effect;
-    const std::size_t width = effect.form == "line" ? 2 : 1;
     for (std::size_t j = 0; j < effect.parameters.size(); ++j) {
       const ModelParameter& parameter = effect.parameters[j];
       Row row;
       row.alone = parameter.std_error * parameter.std_error;
-      if (i < jointly && j < width) row.column = at++;
-      if (i < jointly && j >= width && is_searched(parameter, effect)) {
+      if (i < jointly && j == 0) row.column = at++;
+      if (i < jointly && j > 0 && is_searched(parameter, effect)) {
         row.column = searched++;
-        row.scale = effect.form == "line" ? 1.0 : parameter.value;
+        row.scale = parameter.value;
       }
       rows.push_back(row);
     }

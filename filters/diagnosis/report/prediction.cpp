@@ -103,7 +103,7 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
     const std::optional<Candidate> candidate = candidate_of(next, effect);
     if (!candidate || candidate->form == Form::kStep || effect.parameters.empty()) continue;
     const double coefficient = effect.parameters[0].value;
-    const Eigen::VectorXd column = regressors(next, *candidate).col(0);
+    const Eigen::VectorXd column = regressor(next, *candidate);
     if (candidate->form == Form::kDeadZone || (candidate->form == Form::kRateRamp && !ramp_s)) {
       on.going_on += coefficient * column;
       continue;
@@ -116,7 +116,7 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
     }
     const bool tangent = (power_of(candidate->form) > 1 && parameter(effect, kCurveReach) == 0.0) ||
                          candidate->form == Form::kLookup;
-    on.left += coefficient * (column - regressors(tangent ? held : followed, *candidate).col(0));
+    on.left += coefficient * (column - regressor(tangent ? held : followed, *candidate));
     // By the logarithm of a time constant, or of a transition's half width.
     const double searched = candidate->is_transition() ? candidate->half_width : candidate->time_constant_s;
     if (!(searched > 0.0)) continue;

@@ -54,7 +54,7 @@ FoundEffect line_effect(const SpectralLine& line, double total_variance) {
 
 std::vector<FoundEffect> sample_effects(const std::vector<RampFit>& ramps,
                                         const std::optional<FoundZone>& zone,
-                                        const std::vector<FastLine>& lines,
+                                        const std::vector<LineOf>& lines,
                                         const std::vector<EvenError>& errors, const std::string& axis) {
   std::vector<FoundEffect> found;
   found.reserve(ramps.size() + lines.size() + 1);
@@ -64,8 +64,8 @@ std::vector<FoundEffect> sample_effects(const std::vector<RampFit>& ramps,
         share_of(errors, [&](std::size_t r) -> const Samples& { return ramp.correction[r]; });
   }
   if (zone) found.push_back(zone_effect(*zone, errors));
-  for (const FastLine& fast : lines)
-    found.push_back(line_effect(fast.line, variance_of(errors[fast.record].before)));
+  for (const auto& [record, line] : lines)
+    found.push_back(line_effect(line, variance_of(errors[record].before)));
   for (FoundEffect& each : found) each.effect.axis = axis;
   return found;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Effects that were fitted to samples and not to block means, outside the joint fit: ramps, a dead zone and
-// fast lines.
+// lines.
 #pragma once
 
 #include <optional>
@@ -23,7 +23,7 @@ struct FoundZone {
 // Ramps first, then the zone. errors: of the records they were found in.
 std::vector<FoundEffect> sample_effects(const std::vector<RampFit>& ramps,
                                         const std::optional<FoundZone>& zone,
-                                        const std::vector<FastLine>& lines,
+                                        const std::vector<LineOf>& lines,
                                         const std::vector<EvenError>& errors, const std::string& axis);
 
 }  // namespace ifog

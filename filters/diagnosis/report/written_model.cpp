@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/record/compensated_error.h"
@@ -62,44 +61,37 @@ double between_blocks(const BlockGrid& grid, const BlockRange& record, const Eig
   return values[low] + (place - std::floor(place)) * (values[high] - values[low]);
 }
 
-// What is not corrected online: steps and lines at their times, and what is shown by its blocks.
+// What is not corrected online: steps at their times, and what is shown by its blocks.
 class Uncorrected {
  public:
   Uncorrected(const BlockData& data, const SearchResult& found)
       : grid_(data.grid), shown_(Eigen::VectorXd::Zero(static_cast<Eigen::Index>(data.grid.size()))) {
     Eigen::Index at = grid_.constants();
     for (const Candidate& each : candidates_of(found.chosen)) {
+      const double coefficient = found.coefficients[at++];
       if (each.shown())
-        shown_ += regressors(data, each) * found.coefficients.segment(at, each.width());
+        shown_ += coefficient * regressor(data, each);
       else if (!each.corrected())
-        events_.push_back({each, found.coefficients.segment(at, each.width())});
-      at += each.width();
+        steps_.push_back({each.record, each.time_s, coefficient});
     }
   }
 
   // Value for a record's sample at that time.
   [[nodiscard]] double at(std::size_t record, std::size_t sample, double time_s) const {
     double sum = between_blocks(grid_, grid_.records[record], shown_, sample);
-    for (const Event& each : events_) {
-      const Candidate& event = each.candidate;
-      if (event.record != record) continue;
-      const double phase = 2.0 * std::numbers::pi * event.frequency_hz * time_s;
-      if (event.form == Form::kLine)
-        sum += each.size[0] * std::cos(phase) + each.size[1] * std::sin(phase);
-      else if (time_s > event.time_s)
-        sum += each.size[0];
-    }
+    for (const Step& each : steps_)
+      if (each.record == record && time_s > each.time_s) sum += each.size;
     return sum;
   }
 
  private:
-  struct Event {
-    Candidate candidate;
-    Eigen::VectorXd size;
+  struct Step {
+    std::size_t record;
+    double time_s, size;
   };
   const BlockGrid& grid_;
   Eigen::VectorXd shown_;
-  std::vector<Event> events_;
+  std::vector<Step> steps_;
 };
 
 }  // namespace

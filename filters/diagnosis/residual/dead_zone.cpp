@@ -123,26 +123,7 @@ Samples hidden_by(const DeadZone& zone, std::span<const double> rate) {
 
 void take_out(const DeadZone& zone, const std::vector<Samples>& rates, BlockGrid& grid,
               std::vector<EvenError>& errors) {
-  const double steps = grid.sample_s / grid.fine_s;
-  for (std::size_t r = 0; r < errors.size(); ++r) {
-    const Samples hidden = hidden_by(zone, rates[r]);
-    const BlockRange& record = grid.records[r];
-    std::vector<double> sum(record.size(), 0.0);
-    std::vector<double> count(record.size(), 0.0);
-    Samples& rest = errors[r].rest.own();
-    for (std::size_t i = 0; i < hidden.size(); ++i) {
-      const bool measured = std::isfinite(rest[i]);
-      rest[i] -= hidden[i];
-      const auto step = static_cast<std::size_t>(std::floor(static_cast<double>(i) * steps + 0.5));
-      const std::size_t b = std::min(step / grid.fine, record.size() - 1);
-      if (!measured) continue;
-      sum[b] += hidden[i];
-      count[b] += 1.0;
-    }
-    for (std::size_t b = 0; b < record.size(); ++b)
-      if (grid.valid[record.first + b] && count[b] > 0.0)
-        grid.error[record.row() + static_cast<Eigen::Index>(b)] -= sum[b] / count[b];
-  }
+  for (std::size_t r = 0; r < errors.size(); ++r) take_out(hidden_by(zone, rates[r]), r, grid, errors[r]);
 }
 
 }  // namespace ifog

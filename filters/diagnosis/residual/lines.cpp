@@ -161,56 +161,24 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
   return lines;
 }
 
-namespace {
-
-constexpr std::size_t kMostSlowLines = 6;  // in one fit; the strongest come first
-
-// Slow enough for block means to carry it; faster lines are fitted to the samples themselves.
-bool is_slow(double frequency_hz, const BlockGrid& grid) { return frequency_hz * grid.block_s < 0.4; }
-
-}  // namespace
-
-CoherentLines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid,
-                             double significance) {
-  CoherentLines found;
-  for (std::size_t r = 0; r < errors.size(); ++r) {
-    for (const SpectralLine& line :
-         find_lines(errors[r].after, errors[r].start_s, grid.sample_s, significance)) {
-      if (line.coherence < kCoherent) continue;
-      if (is_slow(line.frequency_hz, grid)) {
-        if (found.slow.size() >= kMostSlowLines) continue;
-        Candidate candidate;
-        candidate.form = Form::kLine;
-        candidate.record = r;
-        candidate.frequency_hz = line.frequency_hz;
-        found.slow.push_back(candidate);
-      } else {
-        found.fast.push_back({r, line});
-      }
-    }
-  }
+std::vector<LineOf> coherent_lines(const std::vector<EvenError>& errors, double sample_s,
+                                   double significance) {
+  std::vector<LineOf> found;
+  for (std::size_t r = 0; r < errors.size(); ++r)
+    for (const SpectralLine& line : find_lines(errors[r].after, errors[r].start_s, sample_s, significance))
+      if (line.coherence >= kCoherent) found.push_back({r, line});
   return found;
 }
 
-void keep_proven(const SearchResult& found, std::size_t samples, double significance, CoherentLines& lines) {
-  const double tries = 0.5 * static_cast<double>(samples);
-  std::vector<Candidate> kept;
-  for (std::size_t i = 0; i < lines.slow.size(); ++i) {
-    if (tries * std::exp(-0.5 * found.chosen[i].likelihood_ratio) < significance)
-      kept.push_back(lines.slow[i]);
-  }
-  lines.slow = std::move(kept);
-}
-
-void take_out(const std::vector<FastLine>& lines, double sample_s, std::vector<EvenError>& errors) {
-  for (const FastLine& fast : lines) {
-    EvenError& error = errors[fast.record];
-    Samples& rest = error.rest.own();
-    for (std::size_t i = 0; i < rest.size(); ++i) {
-      const double phase =
-          2.0 * M_PI * fast.line.frequency_hz * (error.start_s + static_cast<double>(i) * sample_s);
-      rest[i] -= fast.line.cosine * std::cos(phase) + fast.line.sine * std::sin(phase);
+void take_out(const std::vector<LineOf>& lines, BlockGrid& grid, std::vector<EvenError>& errors) {
+  for (const auto& [record, line] : lines) {
+    const double turn = 2.0 * std::numbers::pi * line.frequency_hz;
+    Samples part(errors[record].rest.size());
+    for (std::size_t i = 0; i < part.size(); ++i) {
+      const double phase = turn * (errors[record].start_s + static_cast<double>(i) * grid.sample_s);
+      part[i] = line.cosine * std::cos(phase) + line.sine * std::sin(phase);
     }
+    take_out(part, record, grid, errors[record]);
   }
 }
 

@@ -9,8 +9,7 @@
 #include <vector>
 
 #include "filters/diagnosis/cleaning/even_error.h"
-#include "filters/diagnosis/regression/candidates.h"
-#include "filters/diagnosis/search/search.h"
+#include "filters/diagnosis/record/blocks.h"
 
 namespace ifog {
 
@@ -33,27 +32,17 @@ inline constexpr double kCoherent = 0.8;
 std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
                                      double significance, std::size_t most = 12);
 
-// The coherent lines of the records' errors, slow ones as candidates for the fit of block means, fast ones as
-// they are.
-struct FastLine {
+// A line in the error of a record.
+struct LineOf {
   std::size_t record;
   SpectralLine line;
 };
 
-struct CoherentLines {
-  std::vector<Candidate> slow;
-  std::vector<FastLine> fast;
-};
+// Coherent lines in what is left of each record's error, `after`.
+std::vector<LineOf> coherent_lines(const std::vector<EvenError>& errors, double sample_s,
+                                   double significance);
 
-// Lines in what is left of each record's error.
-CoherentLines coherent_lines(const std::vector<EvenError>& errors, const BlockGrid& grid,
-                             double significance);
-
-// Keeps the slow lines, which the search was given first, that are still lines once the slow noise and the
-// effects are known. samples: of all records.
-void keep_proven(const SearchResult& found, std::size_t samples, double significance, CoherentLines& lines);
-
-// Fast lines out of both rests of the errors, for good.
-void take_out(const std::vector<FastLine>& lines, double sample_s, std::vector<EvenError>& errors);
+// Out of the rest of the errors, and of the means over the grid's blocks.
+void take_out(const std::vector<LineOf>& lines, BlockGrid& grid, std::vector<EvenError>& errors);
 
 }  // namespace ifog

@@ -91,7 +91,7 @@ void read_as_earth_rate(const BlockData& data, const EarthRateOptions& options, 
     Candidate& mine = chosen.candidate;
     const double coefficient = found.coefficients[at];
     const double error = std::sqrt(std::max(0.0, found.covariance(at, at)));
-    at += mine.width();
+    ++at;
     if (is_earth_rate(data, options, mine, coefficient, error)) mine.first_reading = reading;
   }
 }
@@ -101,8 +101,7 @@ std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& o
   std::string words;
   Eigen::Index at = data.grid.constants();
   for (const Candidate& each : candidates_of(found.chosen)) {
-    const double coefficient = found.coefficients[at];
-    at += each.width();
+    const double coefficient = found.coefficients[at++];
     if (!each.is_earth_rate() || order_of(data, each) != 1) continue;
     const std::string& name = data.channels[each.channel].name;
     const double scale = gravity_in(name) / kDegreePerHour;

@@ -81,7 +81,7 @@ double swing_of(const BlockGrid& grid, Eigen::VectorXd values) {
 
 double size_of(const BlockData& data, const Candidate& effect, double coefficient) {
   const double channel = swing_of(data.grid, column(data, ShapeSettings{}, effect.channel));
-  const double own = std::abs(coefficient) * swing_of(data.grid, regressors(data, effect).col(0));
+  const double own = std::abs(coefficient) * swing_of(data.grid, regressor(data, effect));
   return channel > 0.0 ? own / channel : 0.0;
 }
 
@@ -100,8 +100,7 @@ void doubt_proxies(const BlockData& data, SearchResult& found) {
   Eigen::Index at = data.grid.constants();
   for (std::size_t i = 0; i < found.chosen.size(); ++i) {
     Candidate& mine = found.chosen[i].candidate;
-    const double coefficient = found.coefficients[at];
-    at += mine.width();
+    const double coefficient = found.coefficients[at++];
     if (!may_be_proxy(data, mine)) continue;
     const std::optional<Bound> bound = bound_of(grade, data.channels[mine.channel]);
     if (!bound || size_of(data, mine, coefficient) <= bound->most) continue;
@@ -114,8 +113,7 @@ std::string proxies_in_words(const BlockData& data, const SearchResult& found) {
   std::string words;
   Eigen::Index at = data.grid.constants();
   for (const Candidate& each : candidates_of(found.chosen)) {
-    const double coefficient = found.coefficients[at];
-    at += each.width();
+    const double coefficient = found.coefficients[at++];
     if (each.first_reading != FirstReading::kProxyShown) continue;
     const FineChannel& channel = data.channels[each.channel];
     const Bound bound = bound_of(grade, channel).value_or(Bound{0.0, grade.name});

@@ -30,13 +30,13 @@ double likeliest(const BlockGrid& grid, const NoiseShape& shape, double low, dou
 void refine_transition(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
                        std::size_t at) {
   Columns columns = design(data, model);
-  const Eigen::Index place = column_of(data.grid, model, at);
+  const Eigen::Index place = column_of(data.grid, at);
   const auto best = [&](double Candidate::*which, double low, double high) {
     if (!(low < high)) return;
     const auto with = [&](double value) -> const Columns& {
       Candidate trial = model[at];
       trial.*which = value;
-      columns.col(place) = regressors(data, trial).col(0);
+      columns.col(place) = regressor(data, trial);
       return columns;
     };
     model[at].*which = likeliest(data.grid, shape, low, high, with);
@@ -97,11 +97,11 @@ void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidat
   const double high = std::min(std::max(now * 2.5, least), most);
   const double low = std::min(std::max(now / 2.5, least), high);
   Columns columns = design(data, model);
-  const Eigen::Index place = column_of(data.grid, model, at);
+  const Eigen::Index place = column_of(data.grid, at);
   const auto with = [&](double log_tau) -> const Columns& {
     Candidate trial = model[at];
     trial.*which = std::exp(log_tau);
-    columns.col(place) = regressors(data, trial).col(0);
+    columns.col(place) = regressor(data, trial);
     return columns;
   };
   model[at].*which = std::exp(likeliest(data.grid, shape, std::log(low), std::log(high), with));
@@ -128,8 +128,8 @@ double gained(const NoiseFit& with, const NoiseFit& without) {
 
 }  // namespace
 
-void try_second_time_constants(const BlockData& data, std::size_t first, FittedModel& model) {
-  for (std::size_t i = first; i < model.effects.size(); ++i) {
+void try_second_time_constants(const BlockData& data, FittedModel& model) {
+  for (std::size_t i = 0; i < model.effects.size(); ++i) {
     const bool power = model.effects[i].form == Form::kBandPower;
     if (model.effects[i].form != Form::kLagged && !power) continue;
     const NoiseFit before = model.noise;

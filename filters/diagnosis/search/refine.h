@@ -31,7 +31,7 @@ struct FittedModel {
 };
 
 // A coil inside a housing follows the thermometer through two time constants, and a bias follows the power of
-// vibration as fast as it may. Effects from `first` on.
-void try_second_time_constants(const BlockData& data, std::size_t first, FittedModel& model);
+// vibration as fast as it may.
+void try_second_time_constants(const BlockData& data, FittedModel& model);
 
 }  // namespace ifog

@@ -86,7 +86,7 @@ void Scan::pair(const std::vector<NaturalPair>& pairs) {
 
 // Columns of unit size: units of channels are many decades apart.
 void Scan::fill(std::size_t candidate) {
-  Eigen::VectorXd column = regressors(data_, candidates_[candidate]).col(0);
+  Eigen::VectorXd column = regressor(data_, candidates_[candidate]);
   const double size = std::sqrt(column.squaredNorm() / static_cast<double>(column.size()));
   if (size > 0.0) column /= size;
   columns_.col(static_cast<Eigen::Index>(candidate)) = column;
@@ -141,7 +141,7 @@ std::vector<Scored> Scan::score(const std::vector<Candidate>& base, const NoiseF
       }
     }
     if (s == 0 && compared) {
-      const Projected mine = project(base, shapes[s], regressors(data_, *compared));
+      const Projected mine = project(base, shapes[s], regressor(data_, *compared));
       const Eigen::VectorXd dot = p.columns.transpose() * mine.columns.col(0);
       for (std::size_t i = 0; i < candidates_.size(); ++i) {
         const auto j = static_cast<Eigen::Index>(i);
@@ -190,9 +190,9 @@ std::vector<Scored> Scan::steps(const std::vector<Candidate>& base, const NoiseF
   return found;
 }
 
-double tail(double ratio, int columns) {
+double tail(double ratio, int parameters) {
   if (ratio <= 0.0) return 1.0;
-  return chi_squared_above(ratio, columns);
+  return chi_squared_above(ratio, parameters);
 }
 
 }  // namespace ifog

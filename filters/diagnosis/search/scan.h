@@ -70,9 +70,9 @@ class Scan {
 // thousand would have had more than 1 %.
 inline constexpr double kProfiled = 5.0;
 
-// Probability that chance makes twice the log-likelihood gained by `columns` regressors without an effect
+// Probability that chance makes twice the log-likelihood gained by so many parameters of what is not there
 // reach `ratio` (chi-square of that many degrees of freedom, 1 or 2).
-double tail(double ratio, int columns);
+double tail(double ratio, int parameters);
 
 // Neighbours among lags, powers and products of a channel correlate above 0.9: of so many columns a third is
 // new.

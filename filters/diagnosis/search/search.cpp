@@ -39,12 +39,7 @@ std::vector<Candidate> without(std::vector<Candidate> model, std::size_t at) {
 class EffectSearch {
  public:
   EffectSearch(const BlockData& data, const SearchOptions& options)
-      : data_(data),
-        options_(options),
-        scan_(data, library(data)),
-        laws_(natural_pairs(data)),
-        first_(options.given.size()),
-        model_(options.given) {
+      : data_(data), options_(options), scan_(data, library(data)), laws_(natural_pairs(data)) {
     scan_.pair(laws_);
   }
 
@@ -57,7 +52,7 @@ class EffectSearch {
     start_with_basics();
     improve();
     FittedModel unfolded{model_, noise_};
-    try_second_time_constants(data_, first_, unfolded);
+    try_second_time_constants(data_, unfolded);
     model_ = std::move(unfolded.effects);
     noise_ = std::move(unfolded.noise);
     finish(result);
@@ -74,7 +69,7 @@ class EffectSearch {
 
   [[nodiscard]] double p_value(const Candidate& candidate, double ratio) const {
     const double tries = candidate.form == Form::kStep ? tries_of_steps_ : tries_of_channels_;
-    return std::min(1.0, kProfiled * tail(ratio, static_cast<int>(candidate.width())) * tries);
+    return std::min(1.0, kProfiled * tail(ratio, 1) * tries);
   }
 
   // The ratio that chance reaches once in 1 / significance searches.
@@ -101,7 +96,7 @@ class EffectSearch {
   [[nodiscard]] double score(const std::vector<Candidate>& model, const NoiseFit& noise) const {
     const auto n = static_cast<double>(data_.grid.used());
     double sum = 2.0 * noise.log_likelihood;
-    for (std::size_t i = first_; i < model.size(); ++i) {
+    for (std::size_t i = 0; i < model.size(); ++i) {
       if (is_fringe(data_, model[i]) && !swings(model, model[i])) return -1e300;
       const bool law = completes_a_law(model[i], std::span(model).first(i));
       sum -= complexity(model[i]) + (law ? std::log(n) : threshold(model[i]));
@@ -150,7 +145,7 @@ class EffectSearch {
     Trial basics{model_, {}, 0.0};
     for (const Candidate& each : library(data_))
       if (is_basic(each)) basics.model.push_back(each);
-    if (basics.model.size() == first_) return;
+    if (basics.model.empty()) return;
     const auto fit = [&](Trial& trial, const NoiseShape& start) {
       const Columns columns = design(data_, trial.model);
       const NoiseFit one = fit_noise(data_.grid, columns, start), other = fit_noise(data_.grid, columns, {});
@@ -158,9 +153,9 @@ class EffectSearch {
       trial.score = score(trial.model, trial.noise);
     };
     fit(basics, noise_.shape);
-    while (basics.model.size() > first_) {
+    while (!basics.model.empty()) {
       Trial best;
-      for (std::size_t i = first_; i < basics.model.size(); ++i) {
+      for (std::size_t i = 0; i < basics.model.size(); ++i) {
         Trial less{without(basics.model, i), {}, 0.0};
         fit(less, basics.noise.shape);
         if (less.score > best.score) best = std::move(less);
@@ -168,8 +163,8 @@ class EffectSearch {
       if (best.score < basics.score) break;
       basics = std::move(best);
     }
-    if (basics.model.size() > first_ && take(std::move(basics)))
-      for (std::size_t i = first_; i < model_.size(); ++i) offer_products(model_[i].channel);
+    if (!basics.model.empty() && take(std::move(basics)))
+      for (const Candidate& each : model_) offer_products(each.channel);
   }
 
   [[nodiscard]] bool is_basic(const Candidate& each) const {
@@ -182,7 +177,7 @@ class EffectSearch {
   }
 
   void improve() {
-    while (model_.size() < options_.most_effects + first_) {
+    while (model_.size() < options_.most_effects) {
       if (options_.progress) options_.progress(model_.size(), options_.most_effects + 1);
       if (!add_one()) break;
       revise();
@@ -244,7 +239,7 @@ class EffectSearch {
 
   // Effects chosen early were chosen without the later ones: each one's removal, replacement and shape.
   void revise() {
-    for (std::size_t i = first_; i < model_.size() && model_.size() > first_ + 1;) {
+    for (std::size_t i = 0; i < model_.size() && model_.size() > 1;) {
       std::vector<Candidate> rest = without(model_, i);
       if (is_fringe(data_, model_[i]))
         std::erase_if(rest, [&](const Candidate& each) { return each.swings_with(model_[i]); });
@@ -254,7 +249,7 @@ class EffectSearch {
       if (!other.model.empty()) take(std::move(other));
       ++i;
     }
-    for (std::size_t i = first_; i < model_.size(); ++i)
+    for (std::size_t i = 0; i < model_.size(); ++i)
       if (model_[i].searched() || is_fringe(data_, model_[i])) take(refined(model_, i, noise_.shape));
   }
 
@@ -268,7 +263,7 @@ class EffectSearch {
       chosen.p_value = chosen.of_a_law ? std::min(1.0, kProfiled * tail(chosen.likelihood_ratio, 1))
                                        : p_value(model_[i], chosen.likelihood_ratio);
       result.chosen.push_back(chosen);
-      if (i >= first_) find_alternatives(result, i, rest, noise);
+      find_alternatives(result, i, rest, noise);
     }
     result.noise = noise_;
     result.tries = tries_of_channels_;
@@ -297,7 +292,6 @@ class EffectSearch {
   const SearchOptions& options_;
   Scan scan_;
   std::vector<NaturalPair> laws_;
-  std::size_t first_;  // effect of the model that was not given
   std::vector<Candidate> model_;
   NoiseFit noise_;
   double tries_of_channels_ = 1.0, tries_of_steps_ = 1.0;  // independent ones over their share

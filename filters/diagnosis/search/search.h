@@ -30,11 +30,10 @@ struct Alternative {
 struct SearchResult {
   std::vector<Chosen> chosen;
   std::vector<Alternative> alternatives;
-  NoiseFit noise;  // with the chosen effects
-  Eigen::VectorXd
-      coefficients;  // nuisances (one constant a record) first, then the columns of each chosen effect
-  Eigen::MatrixXd covariance;  // of those
-  double tries = 1.0;          // independent ones of a channel's effect, over their share of the significance
+  NoiseFit noise;                // with the chosen effects
+  Eigen::VectorXd coefficients;  // nuisances (one constant a record) first, then that of each chosen effect
+  Eigen::MatrixXd covariance;    // of those
+  double tries = 1.0;  // independent ones of a channel's effect, over their share of the significance
 };
 
 std::vector<Candidate> candidates_of(const std::vector<Chosen>& chosen);
@@ -44,7 +43,6 @@ struct SearchOptions {
   std::size_t most_effects = 8;
   std::function<void(std::size_t, std::size_t)> progress;
   std::optional<NoiseShape> noise;  // of a search before, to begin with; none: from nothing known
-  std::vector<Candidate> given;     // lines, found elsewhere; in the fit from the start
 };
 
 // data: channels as with_reconstructed_channels() makes them.

@@ -306,7 +306,7 @@ TEST(Grammar, APairOfBandPowersIsThePowerOfOneMachine) {
   const auto left_by = [&](const std::vector<Candidate>& effects) {
     Eigen::MatrixXd columns = Eigen::MatrixXd::Ones(rows, 1 + static_cast<Eigen::Index>(effects.size()));
     for (std::size_t i = 0; i < effects.size(); ++i)
-      columns.col(1 + static_cast<Eigen::Index>(i)) = regressors(data, effects[i]).col(0);
+      columns.col(1 + static_cast<Eigen::Index>(i)) = regressor(data, effects[i]);
     const Eigen::VectorXd left = truth - columns * columns.colPivHouseholderQr().solve(truth).eval();
     return left.squaredNorm() / (truth.array() - truth.mean()).matrix().squaredNorm();
   };
