@@ -45,7 +45,7 @@ class Run {
         options_(options),
         earth_{options.subtract_earth_rate, options.latitude_rad, options.axis},
         data_(cut_to_blocks(prepared.without_ramps.records)),
-        errors_(even_errors(records_, prepared.without_ramps, data_.grid.sample_s)) {}
+        errors_(even_errors(records_, data_.grid.sample_s)) {}
 
   Diagnosis run() {
     refuse_constant(records_);
@@ -90,12 +90,13 @@ class Run {
     if (!options_.allow_proxies) doubt_proxies(reconstructed_, found_);
   }
 
-  // Subtracts the effects that the search found from the errors.
+  // Subtracts the ramps and the effects that the search found from the errors.
   void subtract_found() {
     const std::vector<Candidate> chosen = candidates_of(found_.chosen);
     result_.effects.clear();
     for (const Effect& effect : effects_of(data_, chosen, found_.coefficients, options_.axis))
       result_.effects.emplace_back().effect = effect;
+    for (const RampFit& ramp : ramps_) result_.effects.push_back(ramp.found);
     result_.ranges = ranges_of(data_, result_.effects);
     if (data_.reference >= 0) result_.bias = ModelParameter{"coefficient", mean_of_corrected(), 0.0, "rad/s"};
     subtract_effects(records_, data_, found_, result_, errors_);

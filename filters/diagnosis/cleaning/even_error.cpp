@@ -8,24 +8,14 @@
 
 namespace ifog {
 
-std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
-                                   double sample_s) {
+std::vector<EvenError> even_errors(const std::vector<Record>& records, double sample_s) {
   std::vector<EvenError> errors;
   errors.reserve(records.size());
-  for (std::size_t r = 0; r < records.size(); ++r) {
+  for (const Record& record : records) {
     EvenError error;
-    error.origin = records[r].origin;
-    error.start_s = records[r].time_s.front();
-    Samples held_out = error_of(records[r]);
-    error.before = on_even_grid(records[r], sample_s, held_out);
-    if (without.ramps.empty()) {
-      error.rest = error.rest_held_out = error.before;
-    } else {
-      error.rest = on_even_grid(records[r], sample_s, error_of(without.records[r]));
-      for (const RampFit& ramp : without.ramps)
-        for (std::size_t i = 0; i < held_out.size(); ++i) held_out[i] -= ramp.held_out[r][i];
-      error.rest_held_out = on_even_grid(records[r], sample_s, held_out);
-    }
+    error.origin = record.origin;
+    error.start_s = record.time_s.front();
+    error.rest = error.before = on_even_grid(record, sample_s, error_of(record));
     errors.push_back(std::move(error));
   }
   return errors;

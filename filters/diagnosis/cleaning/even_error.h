@@ -4,7 +4,6 @@
 
 #include <vector>
 
-#include "filters/diagnosis/ramp/ramps_out.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/series/finite_sum.h"
@@ -16,18 +15,16 @@ namespace ifog {
 struct EvenError {
   RecordOrigin origin{};  // that start_s is counted from
   double start_s = 0.0;
-  SharedSamples before;         // rate - reference
-  SharedSamples rest;           // less ramps, and later lines and a dead zone
-  SharedSamples rest_held_out;  // less ramps as fitted without the sample's own part
-  SharedSamples after;          // `rest` less the effects
-  SharedSamples held_out;  // `rest_held_out` less what is corrected, fitted without the sample's own part
+  SharedSamples before;    // rate - reference
+  SharedSamples rest;      // less lines and a dead zone, which are not corrected
+  SharedSamples after;     // `rest` less the effects
   SharedSamples written;   // what the daemon's own correction leaves of `before`, by the model as written
+  SharedSamples held_out;  // the same with coefficients fitted without the sample's own part
 };
 
 // after, held_out and written: still empty. The records' rates outlive what is made of them. Throws as
 // on_even_grid() does.
-std::vector<EvenError> even_errors(const std::vector<Record>& records, const WithoutRamps& without,
-                                   double sample_s);
+std::vector<EvenError> even_errors(const std::vector<Record>& records, double sample_s);
 
 // Takes a part, by sample, out of the rest of a record's error and of the means over its blocks of the grid.
 void take_out(std::span<const double> part, std::size_t record, BlockGrid& grid, EvenError& error);

@@ -2,13 +2,14 @@
 #include "filters/diagnosis/ramp/phase_table.h"
 
 #include <Eigen/Dense>
+#include <array>
 
 #include "filters/linear/symmetric.h"
 
 namespace ifog {
 namespace {
 
-constexpr double kSamplesAStep = 20.0;  // that a table needs at least
+constexpr double kSamplesAStep = 100.0;  // that a table needs at least
 
 struct Sums {
   Eigen::MatrixXd gram;
@@ -17,13 +18,6 @@ struct Sums {
 
   explicit Sums(Eigen::Index steps)
       : gram(Eigen::MatrixXd::Zero(steps, steps)), moment(Eigen::VectorXd::Zero(steps)) {}
-  Sums& operator+=(const Sums& other) {
-    gram += other.gram;
-    moment += other.moment;
-    square += other.square;
-    samples += other.samples;
-    return *this;
-  }
 };
 
 // StepWeights of the steps that the phases now and before lie between; the first has no column, as it is zero.
@@ -40,15 +34,13 @@ struct StepWeights {
   }
 };
 
-std::array<Sums, kRampParts> sums_by_part(const std::vector<PhasedRecord>& records, Eigen::Index steps) {
-  std::array<Sums, kRampParts> parts{Sums(steps), Sums(steps), Sums(steps), Sums(steps)};
+Sums sums_of(const std::vector<PhasedRecord>& records, Eigen::Index steps) {
+  Sums sums(steps);
   for (const PhasedRecord& record : records) {
-    const std::size_t n = record.record->time_s.size();
-    each_phase_step(record, [&](std::size_t i, const PhaseStep& step) {
+    each_phase_step(record, [&](std::size_t, const PhaseStep& step) {
       StepWeights weights;
       weights.add(step.now, steps, 1.0 / step.dt_s);
       weights.add(step.before, steps, -1.0 / step.dt_s);
-      Sums& sums = parts[ramp_part(i, n)];
       for (std::size_t a = 0; a < weights.count; ++a) {
         const auto& [row, weight] = weights.entry[a];
         sums.moment[row] += weight * step.error_radps;
@@ -59,14 +51,7 @@ std::array<Sums, kRampParts> sums_by_part(const std::vector<PhasedRecord>& recor
       sums.samples += 1.0;
     });
   }
-  return parts;
-}
-
-Sums all_but(const std::array<Sums, kRampParts>& parts, std::size_t left_out) {
-  Sums all(parts.front().gram.rows());
-  for (std::size_t p = 0; p < kRampParts; ++p)
-    if (p != left_out) all += parts[p];
-  return all;
+  return sums;
 }
 
 SymmetricSolver solver_of(const Sums& sums) {
@@ -80,8 +65,7 @@ double explained(const Sums& sums, const Eigen::VectorXd& table) {
 }
 
 std::optional<PhaseTable> table_of(const std::vector<PhasedRecord>& records, Eigen::Index steps) {
-  const std::array<Sums, kRampParts> parts = sums_by_part(records, steps);
-  const Sums all = all_but(parts, kRampParts);
+  const Sums all = sums_of(records, steps);
   if (all.samples < kSamplesAStep * static_cast<double>(steps)) return std::nullopt;
   const SymmetricSolver solver = solver_of(all);
   PhaseTable table;
@@ -90,11 +74,6 @@ std::optional<PhaseTable> table_of(const std::vector<PhasedRecord>& records, Eig
   table.square = all.square;
   table.explained = explained(all, table.angle_rad);
   table.angle_error = std::sqrt(table.left() / table.samples * solver.inverse().diagonal().mean());
-  for (std::size_t p = 0; p < kRampParts; ++p) {
-    const Sums others = all_but(parts, p);
-    table.without[p] = solver_of(others).solve(others.moment);
-    table.predicted += explained(parts[p], table.without[p]);
-  }
   return table;
 }
 
@@ -118,7 +97,7 @@ std::optional<PhaseTable> fit_phase_table(const std::vector<PhasedRecord>& recor
 }
 
 double explained_by_table(const std::vector<PhasedRecord>& records, Eigen::Index steps) {
-  const Sums all = all_but(sums_by_part(records, steps), kRampParts);
+  const Sums all = sums_of(records, steps);
   return explained(all, solver_of(all).solve(all.moment));
 }
 

@@ -5,7 +5,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <functional>
@@ -17,13 +16,7 @@
 
 namespace ifog {
 
-inline constexpr std::size_t kRampParts = 4;   // held out in turn
 inline constexpr double kSlowSamples = 512.0;  // length of the running mean that removes the slow part
-
-// Which of them a sample is in; each is made of four pieces, spread over the record.
-inline std::size_t ramp_part(std::size_t sample, std::size_t samples) {
-  return sample * 4 * kRampParts / samples % kRampParts;
-}
 
 // A record with the phase of its ramp at each sample, in cycles of which whole ones do not count; NaN: unknown.
 struct PhasedRecord {
@@ -42,11 +35,9 @@ struct PhaseStep {
 // the cycle ends: a flyback is not exactly 2 pi, so that it need not be zero.
 struct PhaseTable {
   Eigen::VectorXd angle_rad;
-  std::array<Eigen::VectorXd, kRampParts> without{};  // fitted to the other parts
-  double angle_error = 0.0;                           // standard deviation of an angle
+  double angle_error = 0.0;  // standard deviation of an angle
   double samples = 0.0;
   double square = 0.0, explained = 0.0;  // of the errors, (rad/s)^2
-  double predicted = 0.0;                // what tables without each part explain of that part, all together
 
   [[nodiscard]] double left() const { return std::max(square - explained, 1e-12 * square); }
   // Twice the log-likelihood that the table gains in white noise.
@@ -85,8 +76,9 @@ void each_phase_step(const PhasedRecord& of, Use&& use) {
   }
 }
 
-// With enough steps for the table's shape and no more, by the Bayesian information criterion; nothing where
-// the records are too short for any.
+// With enough steps for the table's shape and no more, by the Bayesian information criterion, and a hundred
+// samples for each of them, by which a table takes half a per cent of noise for its own; nothing where the
+// records are too short for any.
 std::optional<PhaseTable> fit_phase_table(const std::vector<PhasedRecord>& records);
 
 // What a table of so many steps explains of the errors, (rad/s)^2.

@@ -70,20 +70,17 @@ std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::s
                         return counts[i] / period;
                       }});
   const std::optional<PhaseTable> table = fit_phase_table(phased);
-  if (!table) return std::nullopt;
+  if (!table || table->score() <= 0.0) return std::nullopt;
   RampFit fit;
   fit.found.likelihood_ratio = table->ratio();
   fit.found.p_value =
       chi_squared_above(std::max(0.0, table->ratio()), static_cast<double>(table->angle_rad.size()));
-  if (fit.found.p_value > significance || table->predicted <= 0.0) return std::nullopt;
+  if (fit.found.p_value > significance) return std::nullopt;
   fit.found.effect = table_effect(channel, period, *table);
   for (const PhasedRecord& record : phased) {
-    const std::size_t n = record.record->time_s.size();
-    Samples& correction = fit.correction.emplace_back(n, 0.0);
-    Samples& held_out = fit.held_out.emplace_back(n, 0.0);
+    Samples& correction = fit.correction.emplace_back(record.record->time_s.size(), 0.0);
     each_phase_step(record, [&](std::size_t i, const PhaseStep& step) {
       correction[i] = ramp_rate(table->angle_rad, step);
-      held_out[i] = ramp_rate(table->without[ramp_part(i, n)], step);
     });
   }
   return fit;

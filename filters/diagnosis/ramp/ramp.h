@@ -24,12 +24,11 @@ struct RampFit {
   // The effect is an angle lookup, whose table's ends may differ: the flyback is not exactly 2 pi. Its
   // likelihood ratio is that in white noise.
   FoundEffect found;
-  std::vector<Samples> correction;  // by record and sample, rad/s, of the fit to all
-  std::vector<Samples> held_out;    // each part from the fit to the other parts
+  std::vector<Samples> correction;  // by record and sample, rad/s
 };
 
-// Fits the ramp of one channel. Nothing if the table does not predict the parts held out of its fit, or if chance
-// would do as well more often than `significance`.
+// Fits the ramp of one channel. Nothing if the table does not gain what its angles cost, or if chance would do as
+// well more often than `significance`.
 std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::string& channel,
                                 double significance);
 

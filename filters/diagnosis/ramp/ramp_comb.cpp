@@ -207,7 +207,6 @@ UnbrokenPart unbroken_part(const Record& record) {
   Stretch where = longest_without_hole(record, usual_step(record.time_s));
   where.end = std::min(where.end, where.begin + kMostSamples);
   if (where.end - where.begin < kLeastSamples) return part;
-  part.first = where.begin;
   part.record = part_of(record, {where.begin, where.end});
   double angle = 0.0;
   part.angle_rad.push_back(angle);

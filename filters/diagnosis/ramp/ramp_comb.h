@@ -14,7 +14,6 @@ namespace ifog {
 // A part of a record without a hole, with the angle that the sensor has measured in it.
 struct UnbrokenPart {
   Record record;                  // of these samples; none where there are too few
-  std::size_t first = 0;          // sample of the whole record
   std::vector<double> angle_rad;  // turned since the first sample, by the rate as measured
 
   [[nodiscard]] std::size_t size() const { return angle_rad.size(); }

@@ -133,24 +133,21 @@ double rms(const std::vector<double>& angle) {
   return std::sqrt(square / static_cast<double>(angle.size()));
 }
 
-// Runs the tracker over the records as the daemon would. use(record, sample, correction).
-template <class Use>
-void run_over(const std::vector<Record>& records, const RampSettings& settings, Use&& use) {
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const Record& record = records[r];
-    RampTracker tracker(settings);
-    const double usual_s = usual_step(record.time_s);
-    for (std::size_t i = 0; i < record.time_s.size(); ++i) {
-      const double dt = i == 0 ? usual_s : record.time_s[i] - record.time_s[i - 1];
-      double error = record.rate_radps[i];
-      if (!record.reference_radps.empty()) error -= record.reference_radps[i];
-      use(r, i,
-          tracker.step({.measured_radps = record.rate_radps[i],
-                        .rest_radps = error,
-                        .dt_s = dt,
-                        .missed_s = dt > 1.5 * usual_s ? dt - usual_s : 0.0}));
-    }
+// What the tracker makes of a record as the daemon would, by sample.
+Samples tracked(const Record& record, const RampSettings& settings) {
+  RampTracker tracker(settings);
+  const double usual_s = usual_step(record.time_s);
+  Samples correction(record.time_s.size());
+  for (std::size_t i = 0; i < correction.size(); ++i) {
+    const double dt = i == 0 ? usual_s : record.time_s[i] - record.time_s[i - 1];
+    double error = record.rate_radps[i];
+    if (!record.reference_radps.empty()) error -= record.reference_radps[i];
+    correction[i] = tracker.step({.measured_radps = record.rate_radps[i],
+                                  .rest_radps = error,
+                                  .dt_s = dt,
+                                  .missed_s = dt > 1.5 * usual_s ? dt - usual_s : 0.0});
   }
+  return correction;
 }
 
 Effect effect_of(const RampComb& comb, const RampSettings& settings, const Phase& phase) {
@@ -172,30 +169,13 @@ Effect effect_of(const RampComb& comb, const RampSettings& settings, const Phase
   return effect;
 }
 
-// Corrects each part of record `fitted` by the table of the other parts.
-void correct_all(const std::vector<Record>& records, std::size_t fitted, const UnbrokenPart& part,
-                 const RampComb& comb, const RampSettings& settings, RampFit& fit) {
-  for (const Record& record : records) fit.correction.emplace_back(record.time_s.size(), 0.0);
-  run_over(records, settings,
-           [&](std::size_t r, std::size_t i, double ramp) { fit.correction[r][i] = ramp; });
-  fit.held_out = fit.correction;
-  for (std::size_t p = 0; p < kRampParts; ++p) {
-    RampSettings without = settings;
-    without.angle_rad = cycle_of(comb.table.without[p]);
-    run_over({records[fitted]}, without, [&](std::size_t, std::size_t i, double ramp) {
-      if (i < part.first || i >= part.first + part.size()) return;
-      if (ramp_part(i - part.first, part.size()) == p) fit.held_out[fitted][i] = ramp;
-    });
-  }
-}
-
-// Whether the errors are smaller without what the held-out tables make of them.
+// Whether the errors are smaller without what the tracker makes of them.
 bool helps(const std::vector<Record>& records, const RampFit& fit) {
   double before = 0.0, after = 0.0;
   for (std::size_t r = 0; r < records.size(); ++r) {
     Samples error = error_of(records[r]);
     before += variance_of(error) * static_cast<double>(error.size());
-    for (std::size_t i = 0; i < error.size(); ++i) error[i] -= fit.held_out[r][i];
+    for (std::size_t i = 0; i < error.size(); ++i) error[i] -= fit.correction[r][i];
     after += variance_of(error) * static_cast<double>(error.size());
   }
   return after < before;
@@ -208,11 +188,10 @@ double chance_of(const RampComb& comb) {
 }
 
 // With the ramp's table and what the tracker makes of it; nothing where it does not help.
-std::optional<RampFit> fit_of(const std::vector<Record>& records, std::size_t at, const UnbrokenPart& part,
+std::optional<RampFit> fit_of(const std::vector<Record>& records, const UnbrokenPart& part,
                               const RampComb& comb) {
   const PhaseTable& table = comb.table;
-  if (table.predicted <= 0.0 || comb.over_fixed < kOverOthers || comb.over_line < kOverOthers)
-    return std::nullopt;
+  if (comb.over_fixed < kOverOthers || comb.over_line < kOverOthers) return std::nullopt;
   const Phase phase = phase_of(part, comb);
   const RampSettings settings{comb.cycles_per_rad, cycle_of(table.angle_rad),
                               std::sqrt(table.left() / table.samples * part.sample_s()), phase.walk};
@@ -220,7 +199,7 @@ std::optional<RampFit> fit_of(const std::vector<Record>& records, std::size_t at
     return std::nullopt;
   RampFit fit;
   fit.found = {effect_of(comb, settings, phase), chance_of(comb), 0.0, table.ratio()};
-  correct_all(records, at, part, comb, settings, fit);
+  for (const Record& record : records) fit.correction.push_back(tracked(record, settings));
   return helps(records, fit) ? std::optional(std::move(fit)) : std::nullopt;
 }
 
@@ -232,11 +211,11 @@ RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance
     std::optional<RampComb> found = find_ramp_comb(turned);
     return found && chance_of(*found) <= significance ? found : std::nullopt;
   };
-  for (std::size_t r = 0; r < records.size(); ++r) {
-    const UnbrokenPart part = unbroken_part(records[r]);
+  for (const Record& record : records) {
+    const UnbrokenPart part = unbroken_part(record);
     std::optional<RampComb> comb = comb_of(part);
     if (comb)
-      if (auto fit = fit_of(records, r, part, *comb)) return {std::move(fit), ""};
+      if (auto fit = fit_of(records, part, *comb)) return {std::move(fit), ""};
     if (!comb) comb = comb_of(evenly_turned(part));
     if (!comb || !out.remark.empty()) continue;
     if (part.sample_s() * kQuickSensor_hz < 1.0 || comb->over_line > kOverOthers)

@@ -30,9 +30,8 @@ struct RebuiltRamp {
   std::string remark;          // where lines are found that may be a ramp's and are not corrected
 };
 
-// Nothing is found where the harmonics would do as well at fixed frequencies or near zero rate, where the table
-// does not predict the parts held out of its fit, or where by chance a comb would do as well more often than
-// `significance`.
+// Nothing is found where the harmonics would do as well at fixed frequencies or near zero rate, or where by chance
+// a comb would do as well more often than `significance`.
 RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance);
 
 }  // namespace ifog

@@ -101,32 +101,27 @@ void subtract_effects(const std::vector<Record>& records, const BlockData& data,
   const BlockGrid& grid = data.grid;
   Model model;
   add_to_model(diagnosis, "", model);
-  Model without_ramps = model;  // which `rest` has lost already
-  std::erase_if(without_ramps.effects, [](const Effect& effect) { return effect.angle; });
-  const bool ramps = without_ramps.effects.size() < model.effects.size();
   const Uncorrected uncorrected(data, found);
   Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(grid.size()));
   if (!found.chosen.empty())
     change = held_out_change(data, candidates_of(found.chosen), found.noise.shape, found.coefficients);
   for (std::size_t r = 0; r < errors.size(); ++r) {
     EvenError& error = errors[r];
-    const auto left_by = [&](const Model& by) {
-      return by.effects.empty()
-                 ? error.before
-                 : SharedSamples(on_even_grid(records[r], grid.sample_s, compensated_error(records[r], by)));
-    };
-    error.written = left_by(model);
-    const SharedSamples left = ramps ? left_by(without_ramps) : error.written;
+    error.written = error.before;
+    if (!model.effects.empty())
+      error.written = on_even_grid(records[r], grid.sample_s, compensated_error(records[r], model));
     error.after = error.rest;
-    error.held_out = error.rest_held_out;
-    if (left.is(error.before) && found.chosen.empty()) continue;
-    Samples &after = error.after.own(), &held_out = error.held_out.own();
+    error.held_out = error.written;
+    if (model.effects.empty() && found.chosen.empty()) continue;
+    Samples& after = error.after.own();
     for (std::size_t i = 0; i < after.size(); ++i) {
-      const double corrected = error.before[i] - left[i];
       const double time_s = error.start_s + static_cast<double>(i) * grid.sample_s;
-      after[i] -= corrected + uncorrected.at(r, i, time_s);
-      held_out[i] -= corrected + between_blocks(grid, grid.records[r], change, i);
+      after[i] -= error.before[i] - error.written[i] + uncorrected.at(r, i, time_s);
     }
+    if (found.chosen.empty()) continue;
+    Samples& held_out = error.held_out.own();
+    for (std::size_t i = 0; i < held_out.size(); ++i)
+      held_out[i] -= between_blocks(grid, grid.records[r], change, i);
   }
 }
 

@@ -79,7 +79,7 @@ TEST(RebuiltRamp, KAndTheTableAreThoseOfTheSensor) {
     phase = next;
     if (i < 2000) continue;  // acquiring
     ramp_square += ramp * ramp;
-    left_square += std::pow(ramp - found.fit->held_out[0][i], 2.0);
+    left_square += std::pow(ramp - found.fit->correction[0][i], 2.0);
   }
   EXPECT_LT(left_square, 0.025 * ramp_square);
 }
