@@ -100,10 +100,16 @@ TEST(MonitorView, FlagsAndLossesInWords) {
   health.frames_crc = 7;
   view.take(health);
   view.end_interval(1.0);
-  const std::string text = joined(view_lines("NOSE", view, {}));
+  std::string text = joined(view_lines("NOSE", view, {}));
   for (const char* part :
        {"at rest 1", "channel stale 1", "lost on LCM 3", "frames with a wrong checksum 7", "  rate  "})
     EXPECT_NE(text.find(part), std::string::npos) << part << " is not in\n" << text;
+  view.forget_losses();
+  health.frames_crc = 9;
+  view.take(health);
+  text = joined(view_lines("NOSE", view, {}));
+  EXPECT_EQ(text.find("lost on LCM"), std::string::npos) << text;
+  EXPECT_NE(text.find("frames with a wrong checksum 2"), std::string::npos) << text;
 }
 
 TEST(MonitorView, NoLineIsWiderThanTheScreen) {
@@ -113,17 +119,22 @@ TEST(MonitorView, NoLineIsWiderThanTheScreen) {
     view.end_interval(1.0);
   }
   view.take(status_message());
-  for (std::size_t width = 60; width < 200; ++width) {
-    const auto lines = view_lines("NOSE", view, {width, true});
-    ASSERT_GT(lines.size(), 8U);
-    for (const auto& [line, tone] : lines) {
-      EXPECT_LE(report::characters_in(line), std::max<std::size_t>(width, 95)) << line;
-      if (line.find("angle") != std::string::npos) {
-        EXPECT_LE(report::characters_in(line), width) << line;
+  for (std::size_t width = 60; width < 200; ++width)
+    for (const RateUnit unit :
+         {RateUnit::automatic, RateUnit::degree_per_hour, RateUnit::radian_per_second}) {
+      const auto lines = view_lines("NOSE", view, {width, true, unit});
+      ASSERT_GT(lines.size(), 8U);
+      for (const auto& [line, tone] : lines) {
+        EXPECT_LE(report::characters_in(line), std::max<std::size_t>(width, 95)) << line;
+        if (line.find("angle") != std::string::npos) {
+          EXPECT_LE(report::characters_in(line), width) << line;
+        }
+        EXPECT_EQ(line.find('\x1b'), std::string::npos);
       }
-      EXPECT_EQ(line.find('\x1b'), std::string::npos);
     }
-  }
+  const auto wide = view_lines("NOSE", view, {200, true, RateUnit::automatic});
+  EXPECT_NE(wide[1].text.find("▁"), std::string::npos);
+  EXPECT_NE(wide[1].text.find("█"), std::string::npos);
 }
 
 // Rates without the statuses that belong to them: what the last one said is not of now.

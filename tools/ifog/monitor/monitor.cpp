@@ -190,10 +190,12 @@ bool Monitor::run() {
   }
   close(stop);
   web_.reset();
+  look_.paused.reset();
   if (!options_.once && options_.web.empty() && seconds_since(shown) > 0.2)
     end_interval(seconds_since(shown));
   if (screen_) {
     screen_.reset();
+    look_.only.clear();
     redraw(0, lines({}));  // what was seen last stays on the terminal
   }
   if (json_) json_->finish();

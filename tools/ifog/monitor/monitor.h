@@ -56,6 +56,7 @@ class Monitor {
   [[nodiscard]] std::vector<ShownLine> lines(const LineStyle& style) const;
   [[nodiscard]] std::vector<std::string> waiting() const;
   [[nodiscard]] bool wanted(const std::string& name) const;
+  [[nodiscard]] std::string foot() const;
   [[nodiscard]] bool all_shown() const;
   [[nodiscard]] bool heard() const;
 
@@ -71,6 +72,9 @@ class Monitor {
   bool told_waiting_ = false;
   struct {
     LineStyle style{};
+    std::string only{};                                         // this sensor; empty: all
+    std::optional<std::map<std::string, SensorView>> paused{};  // as they stood then
+    bool help = false;
     std::size_t lines_drawn = 0;
   } look_;  // of the screen
   KnownHere known_;

@@ -68,13 +68,27 @@ std::vector<SensorView::Count> SensorView::flags() const {
   return out;
 }
 
-std::vector<SensorView::Count> SensorView::losses() const {
+std::vector<SensorView::Count> SensorView::all_losses() const {
   const status_t s = status_.message.value_or(status_t{});
   std::vector<Count> out{{"lost on LCM", way_.lost()}};
   for (const StatusCounter& each : kStatusCounters)
     if (*each.loss != '\0') out.push_back({each.loss, s.*each.count});
+  return out;
+}
+
+std::vector<SensorView::Count> SensorView::losses() const {
+  std::vector<Count> out = all_losses();
+  for (std::size_t i = 0; i < forgotten_.size(); ++i) {
+    // A daemon that was started again counts from nought.
+    if (out[i].count >= forgotten_[i]) out[i].count -= forgotten_[i];
+  }
   std::erase_if(out, [](const Count& each) { return each.count == 0; });
   return out;
+}
+
+void SensorView::forget_losses() {
+  forgotten_.clear();
+  for (const Count& each : all_losses()) forgotten_.push_back(each.count);
 }
 
 }  // namespace ifog::tools

@@ -38,6 +38,8 @@ class SensorView {
   void take(status_t message);
   // The figures are those since the last call from here on.
   void end_interval(double seconds);
+  // Losses are counted from here on.
+  void forget_losses();
 
   [[nodiscard]] std::int64_t messages() const { return messages_; }
   [[nodiscard]] bool judged() const { return judged_; }  // an interval has ended
@@ -73,6 +75,8 @@ class SensorView {
     double angle = 0.0;
     double raw_low = std::numeric_limits<double>::quiet_NaN(), raw_high = raw_low;
   };
+  [[nodiscard]] std::vector<Count> all_losses() const;
+
   std::int64_t messages_ = 0, in_interval_ = 0;
   bool came_ = false;  // anything, in the interval
   double silent_s_ = 0.0;
@@ -89,6 +93,7 @@ class SensorView {
     double age_s = 0.0;
     bool came = false;  // in the interval
   } status_;
+  std::vector<std::int64_t> forgotten_;
 };
 
 }  // namespace ifog::tools

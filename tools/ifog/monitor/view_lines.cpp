@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
@@ -12,6 +13,7 @@
 #include "msgs/state_name.h"
 #include "tools/ifog/console/options/hertz.h"
 #include "tools/ifog/field/books.h"
+#include "tools/ifog/monitor/spark_line.h"
 #include "tools/report/text.h"
 
 namespace ifog::tools {
@@ -27,10 +29,19 @@ struct Unit {
   int decimals;
 };
 
-// °/h below 0.1 °/s.
-Unit unit_for(double rate_radps) {
-  if (std::abs(rate_radps) / kDegree < 0.1) return {kDegreePerHour, "°/h", 4};
-  return {kDegree, "°/s", 5};
+Unit unit_for(double rate_radps, RateUnit wanted) {
+  constexpr Unit kHourly{kDegreePerHour, "°/h", 4}, kSecondly{kDegree, "°/s", 5}, kSi{1.0, "rad/s", 9};
+  switch (wanted) {
+    case RateUnit::degree_per_hour:
+      return kHourly;
+    case RateUnit::degree_per_second:
+      return kSecondly;
+    case RateUnit::radian_per_second:
+      return kSi;
+    case RateUnit::automatic:
+      break;
+  }
+  return std::abs(rate_radps) / kDegree < 0.1 ? kHourly : kSecondly;
 }
 
 // Beyond a tenth no crystal is off: a recording is played faster or slower than it was made.
@@ -40,7 +51,7 @@ std::string clock_text(double offset_ppm) {
 
 std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& style) {
   const AxisView& axis = sensor.axes()[a];
-  const Unit unit = unit_for(axis.rate_radps);
+  const Unit unit = unit_for(axis.rate_radps, style.unit);
   const auto number = [&](const char* sign, double radps) -> std::string {
     if (!std::isfinite(radps)) return "-";
     const std::string format = std::string("%") + sign + "." + std::to_string(unit.decimals) + "f";
@@ -57,7 +68,21 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
   std::string out = rate + noise + raw + angle;
   if (style.width != 0 && report::characters_in(out) > style.width) out = rate + noise + angle;
   if (style.width != 0 && report::characters_in(out) > style.width) out = rate + angle;
-  return out;
+  constexpr std::size_t kMostSpark = 60, kLeastSpark = 4;
+  if (style.width == 0) return out;
+  // How high the line is, in the rate's unit.
+  const auto scale = [&](const SparkLine& line) { return "  span " + number("", line.span); };
+  const std::size_t taken = report::characters_in(out) + 2;
+  if (taken + kLeastSpark > style.width) return out;
+  const std::size_t room = std::min(kMostSpark, style.width - taken);
+  std::vector<double> rates;
+  for (const SensorView::Second& each : sensor.history(a)) rates.push_back(each.rate_radps);
+  const SparkLine whole = spark_line(rates, room);
+  const std::size_t for_scale = report::characters_in(scale(whole));
+  if (!std::isfinite(whole.span) || taken + for_scale + kLeastSpark > style.width)
+    return out + "  " + whole.text;
+  const SparkLine line = spark_line(rates, std::min(room, style.width - taken - for_scale));
+  return out + "  " + line.text + scale(line);
 }
 
 // By name and date where its file is here, else by its identity.

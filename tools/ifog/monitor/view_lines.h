@@ -12,9 +12,17 @@
 
 namespace ifog::tools {
 
+enum class RateUnit {
+  automatic,  // °/h below 0.1 °/s, °/s above
+  degree_per_hour,
+  degree_per_second,
+  radian_per_second,
+};
+
 struct LineStyle {
   std::size_t width = 0;  // columns; 0: as wide as it takes
   bool details = true;    // latency, books, channels
+  RateUnit unit = RateUnit::automatic;
 };
 
 // What this computer's own files say of a sensor on LCM: its messages carry neither driver nor transport, and of the model
