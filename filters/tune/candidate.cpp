@@ -34,17 +34,17 @@ ModelCandidate::ModelCandidate(std::string state, double period_s)
     const std::size_t from = at + kPlus.size();
     at = std::min(state_.find(kPlus, from), state_.size());
     const std::string name = state_.substr(from, at - from);
-    auto term = make_noise_term(name, lines());
+    auto term = make_noise_term(name);
     good = term != nullptr;
     if (!good) break;
-    if (name == "harmonic") line_variances_.push_back(static_cast<std::size_t>(size_));
     size_ += term->size();
     terms_.push_back(std::move(term));
   }
   if (!good)
-    throw std::invalid_argument("state: " + in_quotes(state_) +
-                                ", expected random-walk, to which gauss-markov, ar(p), arma(p,q) with q < p "
-                                "<= 6 and harmonic may be added with ' + '");
+    throw std::invalid_argument(
+        "state: " + in_quotes(state_) +
+        ", expected random-walk, to which gauss-markov, ar(p) and arma(p,q) with q < p "
+        "<= 6 may be added with ' + '");
   // Refuses more states than a filter has, with the reason.
   std::vector<double> low(static_cast<std::size_t>(size_)), high(low);
   bounds(low, high);
@@ -65,16 +65,6 @@ void ModelCandidate::bounds(std::span<double> low, std::span<double> high) const
   }
 }
 
-std::vector<double> ModelCandidate::reach(std::size_t samples) const {
-  std::vector<double> out(static_cast<std::size_t>(size_), 1.0);
-  std::size_t at = kLevel;
-  for (const auto& term : terms_) {
-    term->reach(samples, std::span(out).subspan(at, static_cast<std::size_t>(term->size())));
-    at += static_cast<std::size_t>(term->size());
-  }
-  return out;
-}
-
 std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt19937_64& random) const {
   // Each part is given a share of the largest that fits under the spectrum.
   const auto share = [&] { return std::log(std::uniform_real_distribution<double>(0.02, 1.0)(random)); };
@@ -90,9 +80,7 @@ std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt
     term->draw_shape(spectrum, random, part);
     std::fill(shape.begin(), shape.end(), 0.0);
     term->add_density(part, spectrum, shape);
-    const double most = under(spectrum, shape);
-    // A line is not in the spectrum; the caller tries several.
-    part[0] = most < 1e300 ? std::log(most) + share() : 0.0;
+    part[0] = std::log(under(spectrum, shape)) + share();
     at += part.size();
   }
   for (std::size_t i = 0; i < theta.size(); ++i) theta[i] = std::clamp(theta[i], low[i], high[i]);
@@ -141,14 +129,9 @@ std::vector<CandidateFigure> ModelCandidate::figures(std::span<const double> the
 }
 
 std::vector<std::string> default_candidates() {
-  return {"random-walk",
-          "random-walk + gauss-markov",
-          "random-walk + ar(1)",
-          "random-walk + ar(2)",
-          "random-walk + ar(3)",
-          "random-walk + arma(2,1)",
-          "random-walk + arma(3,2)",
-          "random-walk + harmonic"};
+  return {
+      "random-walk",         "random-walk + gauss-markov", "random-walk + ar(1)",    "random-walk + ar(2)",
+      "random-walk + ar(3)", "random-walk + arma(2,1)",    "random-walk + arma(3,2)"};
 }
 
 }  // namespace ifog

@@ -21,25 +21,20 @@ namespace ifog {
 
 class ModelCandidate {
  public:
-  // "random-walk", then any of gauss-markov, ar(p), arma(p,q) with q < p, and harmonic, added with " + ". An
+  // "random-walk", then any of gauss-markov, ar(p), and arma(p,q) with q < p, added with " + ". An
   // ARMA(p,q) with q >= p plus white measurement noise is an ARMA(p,q) again, so its R could not be distinguished from
   // the data. Throws std::invalid_argument for another name and for more states than a filter has.
   ModelCandidate(std::string state, double period_s);
 
-  [[nodiscard]] const std::string& state() const { return state_; }           // FilterSettings::state
-  [[nodiscard]] int size() const { return size_; }                            // free parameters
-  [[nodiscard]] std::size_t lines() const { return line_variances_.size(); }  // harmonic terms
+  [[nodiscard]] const std::string& state() const { return state_; }  // FilterSettings::state
+  [[nodiscard]] int size() const { return size_; }                   // free parameters
 
   // theta: ln q a sample, ln R, then each term's; dimensionless, for data scaled to unit variance of
   // successive differences.
   void bounds(std::span<double> low, std::span<double> high) const;
-  // How far a first step may go in each parameter, where the spectrum does not tell.
-  [[nodiscard]] std::vector<double> reach(std::size_t samples) const;
-  // Where in theta the variances of the lines' steps stand.
-  [[nodiscard]] const std::vector<std::size_t>& line_variances() const { return line_variances_; }
   // A start that the spectrum allows, drawn at random.
   [[nodiscard]] std::vector<double> draw(const RecordSpectrum& spectrum, std::mt19937_64& random) const;
-  // Expected density at each of the spectrum's bins, without the lines, as in the spectrum.
+  // Expected density at each of the spectrum's bins.
   void density(std::span<const double> theta, const RecordSpectrum& spectrum, std::span<double> out) const;
   // Settings for data in rad/s whose scale (one unit of the normalised data) is `scale`.
   [[nodiscard]] FilterSettings settings(std::span<const double> theta, double scale) const;
@@ -52,7 +47,6 @@ class ModelCandidate {
   double period_s_;
   std::vector<std::unique_ptr<NoiseTerm>> terms_;
   int size_ = 0;
-  std::vector<std::size_t> line_variances_;
 };
 
 // What `ifog tune` tries when nobody says otherwise.

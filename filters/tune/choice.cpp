@@ -59,12 +59,8 @@ double memories_in_record(const FilterSettings& settings, double period_s, doubl
   model->discretise(period_s, transition, driving);
   // The level comes first and is a block of its own.
   double nearest = std::numeric_limits<double>::infinity();
-  // A line is undamped by its definition, no autoregression is.
-  constexpr double kUndamped = 1e-9;
-  for (const auto& pole : poles(transition.bottomRightCorner(n - 1, n - 1))) {
-    const double damping = 1.0 - std::abs(pole);
-    nearest = std::min(nearest, damping < kUndamped ? std::abs(1.0 - pole) : damping);
-  }
+  for (const auto& pole : poles(transition.bottomRightCorner(n - 1, n - 1)))
+    nearest = std::min(nearest, 1.0 - std::abs(pole));
   return nearest * samples;
 }
 

@@ -17,16 +17,12 @@ namespace {
 // well-scaled from its first one on.
 class Whitened {
  public:
-  Whitened(const RecordObjective& objective, const Eigen::MatrixXd& information,
-           const std::vector<double>& reach, std::vector<double> origin)
+  Whitened(const RecordObjective& objective, const Eigen::MatrixXd& information, std::vector<double> origin)
       : objective_(objective), origin_(std::move(origin)), low_(origin_.size()), high_(origin_.size()) {
     objective_.candidate().bounds(low_, high_);
     Eigen::MatrixXd full = information;
-    for (Eigen::Index i = 0; i < full.rows(); ++i) {
-      const double r = reach[static_cast<std::size_t>(i)];
-      // No step beyond the reach, however little the spectrum tells.
-      full(i, i) += 1.0 / (r * r);
-    }
+    // No step beyond one, however little the spectrum tells.
+    full.diagonal().array() += 1.0;
     const SymmetricEigen eigen = symmetric_eigen(full);
     directions_ = eigen.vectors * eigen.values.cwiseMax(1e-12).cwiseSqrt().cwiseInverse().asDiagonal();
   }
@@ -68,13 +64,13 @@ double RecordObjective::operator()(std::span<const double> theta) const {
 }
 
 double find_maximum(const RecordObjective& objective, const Eigen::MatrixXd& information,
-                    const std::vector<double>& reach, std::vector<double>& theta) {
+                    std::vector<double>& theta) {
   const auto n = static_cast<unsigned>(theta.size());
   double best = objective(theta);
   // Again from where it ended, as long as that gains: the scaling was that of the first start.
   constexpr double kGain = 0.05;
   for (int round = 0; round < 4; ++round) {
-    Whitened whitened(objective, information, reach, theta);
+    Whitened whitened(objective, information, theta);
     nlopt::opt search(nlopt::LN_BOBYQA, n);
     search.set_min_objective(&Whitened::call, &whitened);
     search.set_initial_step(1.0);
@@ -100,8 +96,7 @@ double find_maximum(const RecordObjective& objective, const Eigen::MatrixXd& inf
 }
 
 Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::MatrixXd& information,
-                              const std::vector<double>& reach, const std::vector<double>& theta,
-                              std::vector<bool>& known) {
+                              const std::vector<double>& theta, std::vector<bool>& known) {
   const std::size_t n = theta.size();
   std::vector<double> low(n), high(n), step(n);
   objective.candidate().bounds(low, high);
@@ -109,7 +104,7 @@ Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::Mat
   known.assign(n, true);
   for (std::size_t i = 0; i < n; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
-    step[i] = 0.25 / std::sqrt(information(row, row) + 1.0 / (reach[i] * reach[i]));
+    step[i] = 0.25 / std::sqrt(information(row, row) + 1.0);
     // A step that changes −ln L by about one half is of the size of the standard error, where the curvature
     // is wanted.
     for (int tries = 0; tries < 14; ++tries) {

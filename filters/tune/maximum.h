@@ -26,14 +26,13 @@ class RecordObjective {
 };
 
 // Moves theta to the optimum nearby and returns −ln L there. information: expected, at theta, for the size
-// and the direction of the first steps; with a zero row the parameter's own `reach` is its step.
+// and the direction of the first steps; with a zero row a step is one.
 double find_maximum(const RecordObjective& objective, const Eigen::MatrixXd& information,
-                    const std::vector<double>& reach, std::vector<double>& theta);
+                    std::vector<double>& theta);
 
 // Inverse of the curvature of −ln L. known: false for parameters at a bound or along which the data do not
 // tell, whose rows are zero.
 Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::MatrixXd& information,
-                              const std::vector<double>& reach, const std::vector<double>& theta,
-                              std::vector<bool>& known);
+                              const std::vector<double>& theta, std::vector<bool>& known);
 
 }  // namespace ifog

@@ -175,46 +175,6 @@ class ArmaTerm final : public NoiseTerm {
   int p_, q_;
 };
 
-// theta: ln variance of the steps of its two states, frequency in cycles a sample.
-class HarmonicTerm final : public NoiseTerm {
- public:
-  explicit HarmonicTerm(std::size_t line) : line_(line) {}
-  [[nodiscard]] int size() const override { return 2; }
-  void bounds(std::span<double> low, std::span<double> high) const override {
-    low[0] = -34.0;
-    high[0] = 4.0;
-    low[1] = 1e-6;
-    high[1] = 0.5;
-  }
-  // A tenth of what the record resolves.
-  void reach(std::size_t samples, std::span<double> out) const override {
-    out[0] = 1.0;
-    out[1] = 0.1 / static_cast<double>(samples);
-  }
-  void draw_shape(const RecordSpectrum& spectrum, Random& /*random*/,
-                  std::span<double> theta) const override {
-    theta[1] = spectrum.lines[line_].cycles;
-  }
-  void add_density(std::span<const double> /*theta*/, const RecordSpectrum& /*spectrum*/,
-                   std::span<double> /*out*/) const override {
-    // The line has been removed.
-  }
-  [[nodiscard]] std::vector<double> parameters(std::span<const double> theta,
-                                               double period_s) const override {
-    return {theta[1] / period_s, std::exp(theta[0]) / period_s};
-  }
-  [[nodiscard]] std::vector<CandidateFigure> figures(std::span<const double> theta, double scale,
-                                                     double period_s) const override {
-    const std::string number = line_ == 0 ? "" : "_" + std::to_string(line_ + 1);
-    return {{"line" + number + "_frequency", "Hz", theta[1] / period_s},
-            {"line" + number + "_random_walk", "rad/s^2/sqrt(Hz)",
-             std::exp(0.5 * theta[0]) * scale / std::sqrt(period_s)}};
-  }
-
- private:
-  std::size_t line_;
-};
-
 // "ar(2)" → 2, 0; "arma(3,1)" → 3, 1.
 bool orders(const std::string& term, int& p, int& q) {
   constexpr int kMost = static_cast<int>(RecordSpectrum::kOrders);
@@ -259,9 +219,8 @@ std::vector<double> partial_from_ar(std::vector<double> phi) {
   return partial;
 }
 
-std::unique_ptr<NoiseTerm> make_noise_term(const std::string& name, std::size_t line) {
+std::unique_ptr<NoiseTerm> make_noise_term(const std::string& name) {
   if (name == "gauss-markov") return std::make_unique<GaussMarkovTerm>();
-  if (name == "harmonic") return std::make_unique<HarmonicTerm>(line);
   int p = 0, q = 0;
   if (orders(name, p, q)) return std::make_unique<ArmaTerm>(p, q);
   return nullptr;

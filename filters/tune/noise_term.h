@@ -2,7 +2,6 @@
 // What a candidate adds to the wandering level: one process whose parameters are open.
 #pragma once
 
-#include <algorithm>
 #include <memory>
 #include <random>
 #include <span>
@@ -24,10 +23,6 @@ class NoiseTerm {
   virtual ~NoiseTerm() = default;
   [[nodiscard]] virtual int size() const = 0;  // free parameters; the first is ln of a variance
   virtual void bounds(std::span<double> low, std::span<double> high) const = 0;
-  // How far a first step may go in each parameter where the spectrum does not tell.
-  virtual void reach(std::size_t /*samples*/, std::span<double> out) const {
-    std::fill(out.begin(), out.end(), 1.0);
-  }
   // A shape drawn at random, where the spectrum suggests one; leaves the first parameter alone.
   virtual void draw_shape(const RecordSpectrum& spectrum, std::mt19937_64& random,
                           std::span<double> theta) const = 0;
@@ -41,9 +36,8 @@ class NoiseTerm {
                                                              double period_s) const = 0;
 };
 
-// "gauss-markov", "ar(p)", "arma(p,q)" with q < p <= 6, "harmonic": the `line`-th of the spectrum's lines.
-// Nothing for another name.
-std::unique_ptr<NoiseTerm> make_noise_term(const std::string& name, std::size_t line);
+// "gauss-markov", "ar(p)", "arma(p,q)" with q < p <= 6. Nothing for another name.
+std::unique_ptr<NoiseTerm> make_noise_term(const std::string& name);
 
 // Coefficients of a stationary AR(p) from partial autocorrelations in (−1, 1): Durbin and Levinson's
 // recursion, as Barndorff-Nielsen and Schou use it (J. Multivariate Analysis 3, 1973). And back.

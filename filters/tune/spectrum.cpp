@@ -7,7 +7,6 @@
 #include <numbers>
 
 #include "filters/linear/fourier.h"
-#include "filters/tune/lines.h"
 
 namespace ifog {
 namespace {
@@ -80,15 +79,12 @@ void smooth(RecordSpectrum& s) {
 
 }  // namespace
 
-RecordSpectrum spectrum_of(std::span<const std::vector<double>> axes, std::size_t lines) {
+RecordSpectrum spectrum_of(std::span<const std::vector<double>> axes) {
   RecordSpectrum s;
   s.samples = smooth_length(axes[0].size());
-  std::vector<std::vector<double>> filled;
-  for (const auto& axis : axes) filled.push_back(bridged(std::span(axis).first(s.samples)));
-  for (std::size_t i = 0; i < lines; ++i) s.lines.push_back(take_out_strongest_line(filled));
   std::vector<double> mean(s.samples, 0.0);
-  for (const auto& axis : filled) {
-    const std::vector<double> squares = cosine_squares(axis);
+  for (const auto& axis : axes) {
+    const std::vector<double> squares = cosine_squares(bridged(std::span(axis).first(s.samples)));
     for (std::size_t k = 0; k < s.samples; ++k) mean[k] += squares[k] / static_cast<double>(axes.size());
   }
   for (std::size_t k = 1; k < s.samples;) {

@@ -16,12 +16,6 @@
 
 namespace ifog {
 
-// A sinusoid that a record holds.
-struct TakenLine {
-  double cycles = 0.0;     // per sample
-  double amplitude = 0.0;  // mean square over axes, rooted
-};
-
 struct RecordSpectrum {
   static constexpr std::size_t kOrders = 6;  // of the largest ARMA part
   // One entry a bin.
@@ -31,15 +25,13 @@ struct RecordSpectrum {
   std::vector<double> walk;       // density of a random walk with steps of unit variance
   // cos and sin of 1 … kOrders times omega.
   std::array<std::vector<double>, kOrders> cosine, sine;
-  std::vector<double> coarse;    // the density averaged over neighbours until 16 squares are in it
-  std::size_t samples = 0;       // of the transform
-  std::vector<TakenLine> lines;  // removed beforehand, strongest first
+  std::vector<double> coarse;  // the density averaged over neighbours until 16 squares are in it
+  std::size_t samples = 0;     // of the transform
 
   [[nodiscard]] std::size_t bins() const { return omega.size(); }
 };
 
-// Axes as in tune(); where samples are missing the gaps are bridged by straight lines. `lines`: how many of
-// the strongest lines to take out first.
-[[nodiscard]] RecordSpectrum spectrum_of(std::span<const std::vector<double>> axes, std::size_t lines);
+// Axes as in tune(); where samples are missing the gaps are bridged by straight lines.
+[[nodiscard]] RecordSpectrum spectrum_of(std::span<const std::vector<double>> axes);
 
 }  // namespace ifog

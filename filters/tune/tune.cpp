@@ -4,7 +4,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <mutex>
 #include <numeric>
 #include <stdexcept>
@@ -103,43 +102,19 @@ struct Fit {
   Eigen::MatrixXd information;  // expected, at theta
 };
 
-// From one optimum of the spectrum the lines' wandering is tried at several values, of which the spectrum
-// without them knows nothing: from a line that keeps its phase to one that is another after a hundredth of
-// the record.
-std::vector<std::vector<double>> starts_from(const WhittleOptimum& optimum, const ModelCandidate& candidate,
-                                             const RecordSpectrum& spectrum) {
-  if (candidate.lines() == 0) return {optimum.theta};
-  std::vector<std::vector<double>> all;
-  for (const double share : {1e-6, 1e-3, 1.0, 100.0}) {
-    std::vector<double> theta = optimum.theta;
-    for (std::size_t i = 0; i < candidate.lines(); ++i) {
-      const double amplitude = std::max(spectrum.lines[i].amplitude, 1e-6);
-      theta[candidate.line_variances()[i]] =
-          std::log(share * amplitude * amplitude / static_cast<double>(spectrum.samples));
-    }
-    all.push_back(std::move(theta));
-  }
-  return all;
-}
-
 Fit fit(const ModelCandidate& candidate, const RecordSpectrum& spectrum, const RecordObjective& objective) {
   const std::size_t draws = kDraws * static_cast<std::size_t>(candidate.size() - 1);
   const std::vector<WhittleOptimum> optima = whittle_optima(candidate, spectrum, draws);
   std::vector<Fit> starts;
   for (std::size_t i = 0; i < std::min(optima.size(), kLooked); ++i) {
     if (optima[i].cost > optima[0].cost + kFar) break;
-    for (auto& theta : starts_from(optima[i], candidate, spectrum)) {
-      const double cost = objective(theta);
-      starts.push_back({std::move(theta), cost, {}});
-    }
+    starts.push_back({optima[i].theta, objective(optima[i].theta), {}});
   }
   std::sort(starts.begin(), starts.end(), [](const Fit& a, const Fit& b) { return a.cost < b.cost; });
   if (starts.size() > kFollowed) starts.resize(kFollowed);
   Fit best;
-  const std::vector<double> reach = candidate.reach(spectrum.samples);
   for (Fit& start : starts) {
-    start.cost =
-        find_maximum(objective, whittle_information(candidate, spectrum, start.theta), reach, start.theta);
+    start.cost = find_maximum(objective, whittle_information(candidate, spectrum, start.theta), start.theta);
     if (start.cost < best.cost) best = std::move(start);
   }
   best.information = whittle_information(candidate, spectrum, best.theta);
@@ -192,8 +167,7 @@ Fitted fit_model(const ModelCandidate& candidate, const Data& data, const Record
   model.log_likelihood = -found.cost - data.log_scales;
   model.bic = model.parameters * std::log(count) - 2.0 * model.log_likelihood;
   std::vector<bool> known;
-  const Eigen::MatrixXd errors =
-      covariance_at(objective, found.information, candidate.reach(spectrum.samples), found.theta, known);
+  const Eigen::MatrixXd errors = covariance_at(objective, found.information, found.theta, known);
   model.walk_is_bound = bound_hidden_walk(objective, found.theta);
   model.settings = candidate.settings(found.theta, data.scale);
   model.figures = figures_with_errors(candidate, found.theta, data.scale, errors, known);
@@ -209,7 +183,7 @@ Outcome held_out(const ModelCandidate& candidate, const Data& data, const Fitted
   const RecordObjective objective(candidate, first_half, data.period_s);
   std::vector<double> theta = fitted.theta;
   const std::size_t half = data.axes[0].size() / 2;
-  find_maximum(objective, 0.5 * fitted.information, candidate.reach(half), theta);
+  find_maximum(objective, 0.5 * fitted.information, theta);
   (void)bound_hidden_walk(objective, theta);
   return outcome_of(candidate.settings(theta, data.scale), axes, data.period_s, half);
 }
@@ -230,12 +204,8 @@ Tuning tune(std::span<const std::span<const double>> axes, double period_s, cons
   const Data data = scaled(axes, period_s);
   const std::vector<std::string> states = options.states.empty() ? default_candidates() : options.states;
   std::vector<ModelCandidate> candidates;
-  std::map<std::size_t, RecordSpectrum> spectra;  // by the number of lines that were subtracted
-  for (const std::string& state : states) {
-    candidates.emplace_back(state, period_s);
-    const std::size_t lines = candidates.back().lines();
-    if (!spectra.contains(lines)) spectra.emplace(lines, spectrum_of(data.axes, lines));
-  }
+  for (const std::string& state : states) candidates.emplace_back(state, period_s);
+  const RecordSpectrum spectrum = spectrum_of(data.axes);
   const std::size_t length = data.axes[0].size();
   const LikelihoodRecord record = record_of(data, length);
   // The largest first, so that no thread is left with one at the end.
@@ -248,7 +218,7 @@ Tuning tune(std::span<const std::span<const double>> axes, double period_s, cons
   std::size_t done = 0;
   share_out(order.size(), options.threads, [&](std::size_t item) {
     const std::size_t i = order[item];
-    fitted[i] = fit_model(candidates[i], data, spectra.at(candidates[i].lines()), record);
+    fitted[i] = fit_model(candidates[i], data, spectrum, record);
     const std::lock_guard lock(guard);
     if (options.progress) options.progress(++done, candidates.size());
   });

@@ -21,31 +21,24 @@ bool may_have_a_loop(const BlockData& data, std::size_t channel) {
          c.environment() && names_in(c.name).less.empty();
 }
 
-// The likeliest loop in place of the effects of the channel; the noise begins at the model's, which may have
-// swallowed the loop, and at one with hardly anything slow.
+// The likeliest loop in place of the effects of the channel; the noise begins at the model's.
 std::pair<Hysteresis, NoiseFit> likeliest_loop(const BlockData& data, const std::vector<Candidate>& beside,
                                                std::size_t channel, const NoiseShape& shape) {
   const FineChannel& source = data.channels[channel];
-  NoiseShape quiet = shape;
-  quiet.walk *= 0.01;
-  quiet.flicker *= 0.01;
   const Columns base = design(data, beside);
   Columns columns(base.rows(), base.cols() + 1);
   columns.leftCols(base.cols()) = base;
   Hysteresis loop;
   loop.channel = source.name;
-  NoiseFit best;
-  best.log_likelihood = -1e300;
+  double most = -1e300;
   for (const double share : kShares) {
     const double width = share * (source.high - source.low);
     columns.rightCols(1) = hysteresis_loop(data, channel, width);
-    for (const NoiseShape& start : {shape, quiet}) {
-      const double value = fit_whitened(data.grid, start, columns).log_likelihood;
-      if (value > best.log_likelihood) best = {start, value, 0.0}, loop.half_width = width;
-    }
+    const double value = fit_whitened(data.grid, shape, columns).log_likelihood;
+    if (value > most) most = value, loop.half_width = width;
   }
   columns.rightCols(1) = hysteresis_loop(data, channel, loop.half_width);
-  best = fit_noise(data.grid, columns, best.shape);
+  const NoiseFit best = fit_noise(data.grid, columns, shape);
   loop.coefficient = solve(data.grid, best.shape, columns).tail(1)[0];
   return {loop, best};
 }

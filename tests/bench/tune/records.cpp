@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <complex>
-#include <numbers>
 #include <random>
 
 namespace ifog::bench {
@@ -76,20 +75,6 @@ std::vector<double> gauss_markov(Source& source, double sigma, std::size_t sampl
   return out;
 }
 
-std::vector<double> line(Source& source, double amplitude, std::size_t samples) {
-  const double cycles = source.between(0.01, 0.45);
-  const double wander = amplitude * source.about(1e-5, 1e-2);
-  double in_phase = amplitude * source.normal(), quadrature = amplitude * source.normal();
-  std::vector<double> out;
-  for (std::size_t k = 0; k < samples; ++k) {
-    const double turn = 2.0 * std::numbers::pi * cycles * static_cast<double>(k);
-    out.push_back(in_phase * std::cos(turn) + quadrature * std::sin(turn));
-    in_phase += wander * source.normal();
-    quadrature += wander * source.normal();
-  }
-  return out;
-}
-
 }  // namespace
 
 MadeRecord make_record(std::size_t number, std::uint64_t seed, std::size_t samples) {
@@ -99,8 +84,7 @@ MadeRecord make_record(std::size_t number, std::uint64_t seed, std::size_t sampl
                                       "random-walk + ar(3)",
                                       "random-walk + arma(2,1)",
                                       "random-walk + arma(3,2)",
-                                      "random-walk + gauss-markov",
-                                      "random-walk + harmonic"};
+                                      "random-walk + gauss-markov"};
   Source source(seed * 1000003 + number);
   const std::size_t kind = number % kStates.size();
   const double sigma = source.about(0.3, 3.0);
@@ -109,7 +93,6 @@ MadeRecord make_record(std::size_t number, std::uint64_t seed, std::size_t sampl
   if (kind == 4) colour = arma(source, 2, 1, sigma, samples);
   if (kind == 5) colour = arma(source, 3, 2, sigma, samples);
   if (kind == 6) colour = gauss_markov(source, sigma, samples);
-  if (kind == 7) colour = line(source, sigma, samples);
   const double step = std::sqrt(source.about(1e-10, 1e-3));
   MadeRecord made{kStates[kind], {}};
   double level = 10.0 * source.normal();

@@ -70,17 +70,11 @@ double best_of_many(const ifog::bench::MadeRecord& made, std::uint64_t seed) {
     theta[1] = between(-5.0, 1.0);
     for (std::size_t i = 2; i < n; ++i) theta[i] = i == 2 ? between(-8.0, 1.0) : between(-2.0, 2.0);
     if (made.state == "random-walk + gauss-markov") theta[3] = between(0.0, 7.0);
-    if (made.state == "random-walk + harmonic") {
-      theta[2] = between(-25.0, 0.0);
-      theta[3] = between(0.005, 0.495);
-    }
     nlopt::opt search(nlopt::LN_BOBYQA, static_cast<unsigned>(n));
     search.set_lower_bounds(low);
     search.set_upper_bounds(high);
     search.set_min_objective(&Search::call, &objective);
-    std::vector<double> step(n, 1.0);
-    if (made.state == "random-walk + harmonic") step[3] = 1e-3;
-    search.set_initial_step(step);
+    search.set_initial_step(1.0);
     search.set_ftol_abs(1e-4);
     search.set_maxeval(60 * static_cast<int>(n));
     double cost = 0.0;

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <random>
 #include <vector>
 
@@ -113,8 +112,6 @@ TEST(TuneChoice, TheRecordOverTheMemoryOfTheNoise) {
   EXPECT_NEAR(memories("random-walk + gauss-markov", {0.5, 1.0}), 1e4 * -std::expm1(-kPeriod / 0.5), 1e-6);
   // Poles r exp(±iw).
   EXPECT_NEAR(memories("random-walk + ar(2)", {2.0 * 0.98 * std::cos(0.3), -0.98 * 0.98, 1.0}), 200.0, 1e-5);
-  EXPECT_NEAR(memories("random-walk + harmonic", {2.0, 1.0}),
-              2e4 * std::sin(std::numbers::pi * 2.0 * kPeriod), 1e-4);
 }
 
 // A record of white noise does not show that its level stands still.

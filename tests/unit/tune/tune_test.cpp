@@ -194,7 +194,7 @@ TEST(Tune, SaysWhatTheModelWillDo) {
 TEST(Tune, WhittlesLikelihoodOfARandomWalkIsExact) {
   const std::vector<double> walk = random_walk(4, 1500, 1e-3, 1.0, 0.3);
   const std::vector<std::vector<double>> axes{walk};
-  const ifog::RecordSpectrum spectrum = ifog::spectrum_of(axes, 0);
+  const ifog::RecordSpectrum spectrum = ifog::spectrum_of(axes);
   ASSERT_EQ(spectrum.samples, 1500U);
   double cost = 0.0;
   const double n = 1500.0;
