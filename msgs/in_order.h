@@ -23,9 +23,9 @@ class InOrder {
     const std::int64_t by = message.seq - last_;
     const bool restarted = started_ && by <= -kRestart;
     if (restarted) flush(sink);
-    const bool told =
+    const bool continues =
         (message.flags & rate_t::FLAG_GAP) != 0 || by == std::max<std::int64_t>(1, message.merged);
-    if (!started_ || restarted || (started_ && by <= 0) || (told && held_.empty()))
+    if (!started_ || restarted || (started_ && by <= 0) || (continues && held_.empty()))
       return hand_on(message, sink);
     const std::int64_t seq = message.seq;
     held_.emplace(seq, std::move(message));

@@ -67,7 +67,7 @@ std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const
   if (seen_.empty()) {
     seen_.resize(all);
     for (std::size_t place = 0; place < outside_.size(); ++place)
-      seen_[all - outside_.size() + place].told = absent_[place];
+      seen_[all - outside_.size() + place].reported = absent_[place];
   }
   for (std::size_t c = 0; c < all; ++c) {
     const bool from_frame = c + outside_.size() < all;
@@ -76,7 +76,7 @@ std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const
         from_frame ? of_frame(status.channel_name[c], configured_) : outside_[place];
     const ChannelFault fault = from_frame ? ChannelFault{} : outside.fault(static_cast<int>(place));
     Seen& seen = seen_[c];
-    if (fault.kind == ChannelFault::Kind::clock_behind && !std::exchange(seen.behind_told, true))
+    if (fault.kind == ChannelFault::Kind::clock_behind && !std::exchange(seen.behind_reported, true))
       out.push_back({false, describe(channel, fault)});
     seen.looked_s += 1.0;
     const bool faulty =
@@ -94,9 +94,9 @@ std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const
                             : channel.source == ChannelConfig::Source::file && seen.faulty_s >= kLasting_s &&
                                   age_s > kLasting_s;
     // What was reported of a channel without a value stands until one arrives.
-    const bool missing = old || awaited || gone || (never && seen.told);
-    if (missing == seen.told) continue;
-    seen.told = missing;
+    const bool missing = old || awaited || gone || (never && seen.reported);
+    if (missing == seen.reported) continue;
+    seen.reported = missing;
     if (missing)
       out.push_back({false, describe(channel, fault) +
                                 (never ? "; the channel has no value yet" : "; the last value is held")});

@@ -30,7 +30,7 @@ class ChannelWatch {
  private:
   struct Seen {
     double looked_s = 0.0, faulty_s = 0.0;  // since the sensor has sent, and since there is a known reason
-    bool told = false, behind_told = false;
+    bool reported = false, behind_reported = false;
   };
 
   [[nodiscard]] bool is_configured(const std::string& name) const;

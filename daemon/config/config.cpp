@@ -80,7 +80,7 @@ RealtimeConfig read_realtime(const toml::table& table, const std::string& where,
 RecordConfig read_record(const toml::table& table, const std::string& where, ReadingContext& context) {
   TableReader in(table, where, context.file, context.errors);
   RecordConfig out;
-  const std::size_t told = context.errors.size();
+  const std::size_t errors_before = context.errors.size();
   out.folder = context.absolute(in.required_text("folder", "a folder, \"/var/lib/ifogd/record\""));
   take(in.integer("bytes", 1'000'000, std::numeric_limits<std::int64_t>::max()), out.bytes);
   take(in.number("days", {1e-3, 1e5}), out.days);
@@ -89,7 +89,7 @@ RecordConfig read_record(const toml::table& table, const std::string& where, Rea
   take(in.integer("buffer_bytes", 262'144, 1'000'000'000), out.buffer_bytes);
   // With fewer than four files, removing the oldest would remove most of what there is. A number that is
   // wrong by itself has been reported.
-  if (context.errors.size() == told && out.bytes / 4 < out.file_bytes)
+  if (context.errors.size() == errors_before && out.bytes / 4 < out.file_bytes)
     in.complain(in.has("bytes") ? "bytes" : "file_bytes",
                 ": bytes = " + std::to_string(out.bytes) + " with file_bytes = " +
                     std::to_string(out.file_bytes) + ": expected room for at least four files");
@@ -273,11 +273,11 @@ Config parse(const std::string& text, const std::string& path, bool recorded) {
     out.sensors.push_back(read_sensor(*sensor, context));
     const SensorConfig& read = out.sensors.back();
     // By LCM channel, which has capitals only; a sensor takes three, and `a_status` has the second of `a`.
-    std::string taken;
+    std::string claimed;
     for (const std::string_view ending : {std::string_view(), kStatusEnding, kImuEnding})
       if (const std::string channel = read.lcm_channel() + std::string(ending);
-          !channels.insert(channel).second && taken.empty())
-        taken = channel;
+          !channels.insert(channel).second && claimed.empty())
+        claimed = channel;
     for (const PublishedType& publish : read.publish)
       if (!publish.channel.empty() && !channels.insert(publish.channel).second)
         context.errors.push_back(path + ":" +
@@ -288,10 +288,10 @@ Config parse(const std::string& text, const std::string& path, bool recorded) {
       TableReader(*sensor, "sensor", path, context.errors)
           .complain("name", " = " + in_quotes(read.name) +
                                 ": expected one that does not end in _status or _imu, as other channels do");
-    else if (!read.name.empty() && !taken.empty())
+    else if (!read.name.empty() && !claimed.empty())
       TableReader(*sensor, "sensor", path, context.errors)
           .complain("name",
-                    " = " + in_quotes(read.name) + ": another sensor publishes on " + taken + " already");
+                    " = " + in_quotes(read.name) + ": another sensor publishes on " + claimed + " already");
   }
   if (!in.has("sensor")) context.errors.push_back(path + ": no [[sensor]]: expected at least one");
   in.refuse_the_rest();

@@ -27,15 +27,15 @@ SerialSettings read_serial(TableReader& in) {
 }
 
 // What concerns more keys than one is found by the transport itself; a single wrong key has been reported before.
-void check_network(TableReader& in, const std::string& complaint, std::size_t told,
+void check_network(TableReader& in, const std::string& complaint, std::size_t errors_before,
                    const ReadingContext& context) {
-  if (complaint.empty() || context.errors.size() != told) return;
+  if (complaint.empty() || context.errors.size() != errors_before) return;
   const std::string key = complaint.substr(0, complaint.find_first_of(" :"));
   in.complain(key, complaint.substr(key.size()));
 }
 
 UdpSettings read_udp(TableReader& in, const ReadingContext& context) {
-  const std::size_t told = context.errors.size();
+  const std::size_t errors_before = context.errors.size();
   UdpSettings out;
   take(in.required_integer("port", 1, 65535), out.port);
   take(in.text("bind"), out.bind);
@@ -43,16 +43,16 @@ UdpSettings read_udp(TableReader& in, const ReadingContext& context) {
   take(in.text("interface"), out.interface);
   take(in.text("host"), out.host);
   take(in.integer("host_port", 1, 65535), out.host_port);
-  check_network(in, udp_complaint(out), told, context);
+  check_network(in, udp_complaint(out), errors_before, context);
   return out;
 }
 
 TcpSettings read_tcp(TableReader& in, const ReadingContext& context) {
-  const std::size_t told = context.errors.size();
+  const std::size_t errors_before = context.errors.size();
   TcpSettings out;
   out.host = in.required_text("host", "the sensor's numeric address, \"192.168.1.20\"");
   take(in.required_integer("port", 1, 65535), out.port);
-  check_network(in, tcp_complaint(out), told, context);
+  check_network(in, tcp_complaint(out), errors_before, context);
   return out;
 }
 

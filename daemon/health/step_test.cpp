@@ -50,13 +50,13 @@ void StepTest::forget() noexcept {
 
 void StepTest::extend(Window& window, const LevelNoise::Innovation& innovation) noexcept {
   double left = 1.0;
-  for (std::size_t i = 0; i < LevelNoise::kStates; ++i) left -= window.taken[i] *= innovation.keep[i];
+  for (std::size_t i = 0; i < LevelNoise::kStates; ++i) left -= window.absorbed[i] *= innovation.keep[i];
   const double weight = left / innovation.scale;
   window.sum += weight * innovation.value;
   window.squares += weight * weight;
   window.neighbours += weight * window.weight;
   window.weight = weight;
-  for (std::size_t i = 0; i < LevelNoise::kStates; ++i) window.taken[i] += innovation.gain[i] * left;
+  for (std::size_t i = 0; i < LevelNoise::kStates; ++i) window.absorbed[i] += innovation.gain[i] * left;
 }
 
 // How many false alarms this would be one of, as a share of those allowed.

@@ -46,7 +46,7 @@ class StepTest {
 
  private:
   struct Window {
-    LevelNoise::Vector taken{};  // of a step of one
+    LevelNoise::Vector absorbed{};  // by each state, of a step of one
     double sum = 0.0, squares = 0.0, neighbours = 0.0, weight = 0.0;
   };
   // Variance of the sums over windows of one length, relative to that of white innovations.

@@ -88,9 +88,9 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
 
 // As the reader has it now, whether the filter answers or not. A repeated frame is no sample.
 void StatusReport::look_for_samples(const ReaderCounters& reader) {
-  const std::uint64_t taken = reader.samples.value(), decoded = taken + reader.repeated.value();
+  const std::uint64_t accepted = reader.samples.value(), decoded = accepted + reader.repeated.value();
   const bool came = std::exchange(samples_.decoded, decoded) != decoded;
-  samples_.news = std::exchange(samples_.taken, taken) != taken;
+  samples_.news = std::exchange(samples_.accepted, accepted) != accepted;
   if (samples_.news) samples_.last_ns = monotonic_ns();
   samples_.seconds += samples_.news ? 1 : 0;
   samples_.axes_seen = reader.axes_seen.load(std::memory_order_relaxed);

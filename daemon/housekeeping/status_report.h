@@ -60,7 +60,7 @@ class StatusReport {
   SensorWatch watch_;
   // As the last update() found them.
   struct Samples {
-    std::uint64_t decoded = 0, taken = 0;
+    std::uint64_t decoded = 0, accepted = 0;
     std::uint32_t axes_seen = 0;
     bool news = false;                           // there were new ones
     int seconds = 0;                             // updates that found new ones

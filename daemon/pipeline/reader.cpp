@@ -41,12 +41,12 @@ void Reader::take(const ifog_sample& sample) noexcept {
   }
   const IncrementerCounts before = incrementer_.counts();
   Increment& increment = links_.queue.next();
-  const bool taken = incrementer_.next(reading_, increment);
+  const bool complete = incrementer_.next(reading_, increment);
   now_.samples = incrementer_.counts().samples;
   now_.repeated = incrementer_.counts().repeated;
   // Before the filter can have it: what that has received must be in these books.
   links_.books.write(now_);
-  if (!taken) return;
+  if (!complete) return;
   report(increment, before);
   pushed_ += increment.samples;
   links_.queue.push();

@@ -71,9 +71,9 @@ std::string NoiseMemory::keep(const LearnedNoise& learned, std::int64_t now_ns, 
   try {
     write_state_file(path_, kept_noise_text(kept_));
   } catch (const std::exception& error) {
-    const bool told = failed_;
+    const bool reported = failed_;
     failed_ = true;
-    return told ? "" : std::string("learned noise is not kept: ") + error.what();
+    return reported ? "" : std::string("learned noise is not kept: ") + error.what();
   }
   written_samples_ = learned.samples;
   failed_ = false;

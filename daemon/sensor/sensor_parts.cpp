@@ -215,8 +215,8 @@ std::optional<std::int64_t> powered_ns(const SensorConfig& sensor) {
 
 std::string boot_id() {
   std::string out;
-  if (const char* const told = std::getenv("IFOGD_BOOT_ID"))
-    out = told;
+  if (const char* const given = std::getenv("IFOGD_BOOT_ID"))
+    out = given;
   else
     std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), out);
   // As one has it with dashes, the other without.

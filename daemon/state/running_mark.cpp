@@ -161,11 +161,11 @@ bool RunningMark::serve() {
     const ssize_t n = ::recv(fd, &letter, 1, MSG_DONTWAIT);
     if (n > 0) question = letter;
     asked = asked || question == static_cast<char>(DaemonQuestion::reload);
-    const bool told = question == static_cast<char>(DaemonQuestion::status) && !statuses_.empty();
-    if (told) reply(fd, statuses_);
-    const bool gone = !told && (n == 0 || (n < 0 && errno != EAGAIN));
+    const bool answered = question == static_cast<char>(DaemonQuestion::status) && !statuses_.empty();
+    if (answered) reply(fd, statuses_);
+    const bool gone = !answered && (n == 0 || (n < 0 && errno != EAGAIN));
     if (gone) ::close(fd);
-    return told || gone;
+    return answered || gone;
   });
   return asked;
 }

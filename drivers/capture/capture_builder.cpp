@@ -61,21 +61,21 @@ void CaptureBuilder::go_on_as(const ifog_description& description) {
   times_.go_on_as(description);
 }
 
-void CaptureBuilder::add_rates(const ifog_sample& sample, const SampleTimes::Taken& taken) {
+void CaptureBuilder::add_rates(const ifog_sample& sample, const SampleTimes::Stamped& stamped) {
   for (std::uint32_t i = 0; i < description_.axes; ++i) {
     double rate = kMissing;
     if ((sample.valid_axes & 1U << i) != 0) {
       if (description_.kind == IFOG_RATE) {
         rate = sample.value[i];
       } else if (description_.kind == IFOG_DELTA_ANGLE) {
-        rate = sample.value[i] / taken.period_s;
+        rate = sample.value[i] / stamped.period_s;
       } else if ((last_.valid_axes & 1U << i) != 0) {
         const double turned = sample.value[i] - last_.value[i];
         const double wrap = description_.angle_wrap_rad;
         const std::vector<double>& before = capture_.rate_radps[i];
         const double rate_before = before.empty() || std::isnan(before.back()) ? 0.0 : before.back();
-        const double usual = description_.nominal_rate_hz > 0.0 ? period_of(description_) : taken.period_s;
-        const double elapsed = taken.elapsed_s;
+        const double usual = description_.nominal_rate_hz > 0.0 ? period_of(description_) : stamped.period_s;
+        const double elapsed = stamped.elapsed_s;
         if (elapsed <= kGap * usual || turn_is_known(rate_before, elapsed, wrap))
           rate = (wrap > 0.0 ? std::remainder(turned, wrap) : turned) / elapsed;
       }
@@ -108,12 +108,12 @@ void CaptureBuilder::hold_to_what_can_be(const ifog_sample& sample) {
 }
 
 void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outside) {
-  const std::optional<SampleTimes::Taken> taken = times_.next(sample);
-  if (!taken) return;
+  const std::optional<SampleTimes::Stamped> stamped = times_.next(sample);
+  if (!stamped) return;
   capture_.origin = times_.origin();
-  capture_.time_s.push_back(taken->since_s);
-  if (taken->anew) last_.valid_axes = 0;  // no difference of angles over it
-  add_rates(sample, *taken);
+  capture_.time_s.push_back(stamped->since_s);
+  if (stamped->restarted) last_.valid_axes = 0;  // no difference of angles over it
+  add_rates(sample, *stamped);
   for (std::uint32_t i = 0; i < description_.environments; ++i)
     capture_.channels[i].values.push_back(
         believable(i, (sample.environment_fresh & 1U << i) != 0 ? sample.environment[i] : kMissing));

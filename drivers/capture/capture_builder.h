@@ -54,7 +54,7 @@ class CaptureBuilder {
 
  private:
   double believable(std::size_t channel, double value);
-  void add_rates(const ifog_sample& sample, const SampleTimes::Taken& taken);
+  void add_rates(const ifog_sample& sample, const SampleTimes::Stamped& stamped);
   void hold_to_what_can_be(const ifog_sample& sample);
 
   ifog_description description_;

@@ -174,10 +174,10 @@ int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
 }
 
 int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_goes_on) {
-  const std::array<std::uint64_t, 3> told{file_.entries, static_cast<std::uint64_t>(wall_ns),
-                                          run_goes_on ? 1U : 0U};
-  std::array<std::uint8_t, sizeof told> bytes{};
-  std::memcpy(bytes.data(), told.data(), sizeof told);
+  const std::array<std::uint64_t, 3> summary{file_.entries, static_cast<std::uint64_t>(wall_ns),
+                                             run_goes_on ? 1U : 0U};
+  std::array<std::uint8_t, sizeof summary> bytes{};
+  std::memcpy(bytes.data(), summary.data(), sizeof summary);
   // Without it the file is as one that was being written when its writer was killed: whole to its last block.
   int error = write(BlockType::end, bytes);
   if (error == ENOENT) {

@@ -35,7 +35,7 @@ struct BlockHead {
 };
 
 // The 260 kB that deflating needs are kept from block to block: allocated for each, every processor that
-// runs a thread of the process would be told of the pages that go.
+// runs a thread of the process would be interrupted for the pages that go.
 class Deflater {
  public:
   Deflater();  // throws std::bad_alloc

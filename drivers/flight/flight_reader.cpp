@@ -127,18 +127,18 @@ void FlightReader::take_block() {
     rest_ = content_;
     return;
   }
-  std::uint64_t told = 0;
-  if (content_.size() >= sizeof told) std::memcpy(&told, content_.data(), sizeof told);
+  std::uint64_t stated = 0;
+  if (content_.size() >= sizeof stated) std::memcpy(&stated, content_.data(), sizeof stated);
   file_.closed = true;
   std::uint64_t goes_on = 0;
-  if (content_.size() >= sizeof told + sizeof file_.closed_ns + sizeof goes_on)
-    std::memcpy(&goes_on, content_.data() + sizeof told + sizeof file_.closed_ns, sizeof goes_on);
+  if (content_.size() >= sizeof stated + sizeof file_.closed_ns + sizeof goes_on)
+    std::memcpy(&goes_on, content_.data() + sizeof stated + sizeof file_.closed_ns, sizeof goes_on);
   file_.run_goes_on = goes_on != 0;
   file_.closed_ns = INT64_MIN;
-  if (content_.size() >= sizeof told + sizeof file_.closed_ns)
-    std::memcpy(&file_.closed_ns, content_.data() + sizeof told, sizeof file_.closed_ns);
-  if (told > file_.entries) {
-    counts_.missing_entries += told - file_.entries;
+  if (content_.size() >= sizeof stated + sizeof file_.closed_ns)
+    std::memcpy(&file_.closed_ns, content_.data() + sizeof stated, sizeof file_.closed_ns);
+  if (stated > file_.entries) {
+    counts_.missing_entries += stated - file_.entries;
     file_.whole = false;
   }
 }

@@ -80,10 +80,10 @@ int DiskFolder::keep_to_oneself() {
   }, now{};
   const bool same =
       lock_fd_ >= 0 && ::fstat(lock_fd_, &held) == 0 && ::fstat(fd, &now) == 0 && same_file(held, now);
-  const bool taken = !same && ::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
-  if (same || taken) {
+  const bool locked = !same && ::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+  if (same || locked) {
     ::close(fd);
-    return taken ? EBUSY : 0;
+    return locked ? EBUSY : 0;
   }
   let_go();
   lock_fd_ = fd;

@@ -86,9 +86,9 @@ class DriverInstance {
         if (self.at_once == 0) {
           self.sink(*sample);
         } else {
-          ifog_sample told = *sample;
-          told.at_once = self.at_once;
-          self.sink(told);
+          ifog_sample complete = *sample;
+          complete.at_once = self.at_once;
+          self.sink(complete);
         }
       } catch (...) {
         self.thrown = std::current_exception();

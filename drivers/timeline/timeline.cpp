@@ -201,9 +201,10 @@ bool Timeline::by_clock(const Frame& frame, const Look& now, Step& step) noexcep
   if (!clock_is_wrong(now)) {
     step.dt_s = now.passed_s;
     if (!now.counted && !pace_.known()) return true;
-    const Ticks::Step told = ticks_.take(nanoseconds(now.passed_s), now.counted ? samples_by_clock(now) : 0);
-    step.samples = told.samples;
-    step.dt_s = told.dt_s;
+    const Ticks::Step by_ticks =
+        ticks_.take(nanoseconds(now.passed_s), now.counted ? samples_by_clock(now) : 0);
+    step.samples = by_ticks.samples;
+    step.dt_s = by_ticks.dt_s;
     step.untold = step.samples > 1 && !now.timed && (!now.counted || step.samples > modulus_);
     return true;
   }

@@ -83,8 +83,8 @@ WallLess wall_less_unslewed() noexcept {
 }
 
 const WallLess& at_start() noexcept {
-  static const WallLess taken = wall_less_unslewed();
-  return taken;
+  static const WallLess at_start_of_process = wall_less_unslewed();
+  return at_start_of_process;
 }
 std::int64_t epoch_ns() noexcept { return at_start().ns; }
 

@@ -12,11 +12,6 @@
 namespace ifog::report {
 namespace {
 
-std::string padded(std::string s, std::size_t width) {
-  if (const std::size_t characters = characters_in(s); characters < width) s.append(width - characters, ' ');
-  return s;
-}
-
 std::string value_and_error(double value, double error) {
   // As many digits as the error has to say: two of its own.
   const int digits =

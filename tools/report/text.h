@@ -17,6 +17,13 @@ inline std::size_t characters_in(std::string_view text) {
       std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
+// With blanks behind it, to this many characters.
+inline std::string padded(std::string text, std::size_t width) {
+  if (const std::size_t characters = characters_in(text); characters < width)
+    text.append(width - characters, ' ');
+  return text;
+}
+
 // For HTML and XML, whatever the text holds.
 std::string escaped(std::string_view text);
 

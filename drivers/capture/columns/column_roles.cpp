@@ -169,8 +169,8 @@ void add_others(const TableSample& table, const std::vector<RateCandidate>& rate
                 std::vector<CsvColumn>& columns) {
   const auto add = [&](const std::string& name, std::size_t place, const std::string& unit) {
     const std::string header = table.header_of(place);
-    const auto taken = [&](const CsvColumn& c) { return c.name == name || c.header == header; };
-    if (!name.empty() && std::none_of(columns.begin(), columns.end(), taken))
+    const auto listed = [&](const CsvColumn& c) { return c.name == name || c.header == header; };
+    if (!name.empty() && std::none_of(columns.begin(), columns.end(), listed))
       columns.push_back({name, header, unit});
   };
   for (const auto& choice : choices_of(sensors_of(table, true)))

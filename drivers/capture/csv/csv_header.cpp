@@ -46,7 +46,7 @@ std::string the_gyro(const std::set<std::string>& names) {
   return found;
 }
 
-// The options of each reading, where none of them is taken.
+// The options of each reading, where none of them is chosen.
 std::string options_in_words(const Readings& readings) {
   std::string text;
   for (const TableReading& way : readings.ways)

@@ -25,9 +25,9 @@ std::string reason() { return std::generic_category().message(errno); }
 
 int opened(const std::string& path, int flags = 0) {
   if (path != "-") return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | flags);
-  // What one reader has taken no other will find.
-  static std::atomic_flag taken = ATOMIC_FLAG_INIT;
-  if (taken.test_and_set())
+  // What one reader has consumed no other will find.
+  static std::atomic_flag in_use = ATOMIC_FLAG_INIT;
+  if (in_use.test_and_set())
     throw std::runtime_error("-: standard input is read already, expected it once among the inputs");
   return fcntl(STDIN_FILENO, F_DUPFD_CLOEXEC, 3);
 }
@@ -131,7 +131,7 @@ bool InputFile::open_next() {
   if (more_.empty()) return false;
   const std::string path = std::move(more_.front());
   more_.pop_front();
-  // Others may write into a recorder's folder: neither a link nor what has other names is taken from it.
+  // Others may write into a recorder's folder: neither a link nor a file with several names is read from it.
   int fd = opened(path, O_NOFOLLOW | O_NONBLOCK);
   // It may have been ended meanwhile.
   if (fd < 0 && errno == ENOENT && path.ends_with(kOpenEnding))
@@ -153,8 +153,8 @@ std::size_t InputFile::unpack(char* to, std::size_t most) {
     const auto wanted = static_cast<unsigned>(std::min<std::size_t>(most - done, 1U << 30U));
     const int n = gzread(file_.get(), to + done, wanted);
     if (n > 0) done += static_cast<std::size_t>(n);
-    if (told_ && total_ > 0)
-      told_(behind_ + static_cast<std::size_t>(std::max<z_off_t>(0, gzoffset(file_.get()))), total_);
+    if (report_ && total_ > 0)
+      report_(behind_ + static_cast<std::size_t>(std::max<z_off_t>(0, gzoffset(file_.get()))), total_);
     if (n > 0 && most_ > 0 && (unpacked_ += static_cast<std::size_t>(n)) > most_ + rows_)
       throw std::runtime_error(path_ + ": grows to more than " + std::to_string(most_ >> 20U) + " MiB, " +
                                std::to_string(kMostGrowth) +

@@ -53,13 +53,13 @@ class InputFile {
   // All of the rest.
   std::string bytes();
 
-  // From here on `told` is called with the bytes of the file on the disk that have been read, and their total; 0 if
+  // From here on `report` is called with the bytes of the file on the disk that have been read, and their total; 0 if
   // the total is unknown.
-  using Told = std::function<void(std::size_t done, std::size_t total)>;
-  void tell(Told told) { told_ = std::move(told); }
+  using Report = std::function<void(std::size_t done, std::size_t total)>;
+  void report_to(Report report) { report_ = std::move(report); }
   // For a reader that does not use read().
-  void told(std::size_t done, std::size_t total) const {
-    if (told_) told_(done, total);
+  void report(std::size_t done, std::size_t total) const {
+    if (report_) report_(done, total);
   }
 
   // From here on `heard` is called with all bytes that read() and bytes() return.
@@ -85,7 +85,7 @@ class InputFile {
   std::string held_;              // at hand: the head, or all of a given text
   std::size_t taken_ = 0;
   bool reopens_ = false, ends_early_ = false;
-  Told told_;
+  Report report_;
   Heard heard_;
   std::size_t total_ = 0, behind_ = 0;  // bytes of all files, and of those that were read to their end
   std::size_t unpacked_ = 0, rows_ = 0, most_ = 0;  // most_ 0: as much as comes

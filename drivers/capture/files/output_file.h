@@ -30,6 +30,7 @@ class OutputFile {
   void write(std::string_view bytes);
   void finish();
 
+  // What is written to it is not packed, whatever the file is called.
   [[nodiscard]] int descriptor() const { return fd_; }
 
  private:

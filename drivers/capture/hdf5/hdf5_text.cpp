@@ -231,7 +231,7 @@ class Hdf5Text {
       if (n <= 0) break;
       done += static_cast<std::size_t>(n);
     }
-    file_.told(said_->rows_done, said_->rows);
+    file_.report(said_->rows_done, said_->rows);
     if (done == most || reader_ <= 0) return done;
     int status = 0;
     while (waitpid(reader_, &status, 0) < 0 && errno == EINTR) continue;

@@ -98,7 +98,7 @@ double SampleTimes::seconds(const ifog_sample& sample) const {
 }
 
 // The sample's clock is set so that it comes as much later than the one before as it arrived later.
-void SampleTimes::begin_anew(const ifog_sample& sample) {
+void SampleTimes::begin_again(const ifog_sample& sample) {
   broken_ = false;
   const double later_s = static_cast<double>(sample.arrival_ns - arrivals_.last_ns) * 1e-9;
   const double rate_hz = description_.nominal_rate_hz;
@@ -124,32 +124,30 @@ double SampleTimes::spread(const ifog_sample& sample, const Timeline::Step& step
   if (step.gap || step.clock_moved || std::abs(late_s) < kResolution_s) return arrived_s;
   // Each by itself: its arrival, without a leap to where the first ones were behind it, or before it where
   // more come than the rate says.
-  if (!arrivals_.bunched && taken_ >= kShows)
+  if (!arrivals_.bunched && accepted_ >= kShows)
     return std::clamp(arrived_s, last_s_ + elapsed_s / kMost,
                       last_s_ + kMost * std::max(period_s, elapsed_s));
   return last_s_ + std::clamp(period_s + kFollows * late_s, kLeast * period_s, kMost * period_s);
 }
 
 void SampleTimes::refuse(double now) const {
-  const auto told = [this](double time_s) {
-    std::string text;
-    append_time(text, origin_, time_s);
-    return text;
-  };
-  throw std::runtime_error("sample " + std::to_string(taken_ + 1) + ": its time is " + told(now) + " s by " +
-                           (clock_ == Clock::device    ? "the device's clock"
-                            : clock_ == Clock::counter ? "its counter"
-                                                       : "its arrival") +
-                           ", expected more than the " + told(last_s_) + " s of the sample before");
+  std::string text = "sample " + std::to_string(accepted_ + 1) + ": its time is ";
+  append_time(text, origin_, now);
+  text += clock_ == Clock::device    ? " s by the device's clock"
+          : clock_ == Clock::counter ? " s by its counter"
+                                     : " s by its arrival";
+  text += ", expected more than the ";
+  append_time(text, origin_, last_s_);
+  throw std::runtime_error(text + " s of the sample before");
 }
 
-std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
-  const bool first = taken_ == 0;
+std::optional<SampleTimes::Stamped> SampleTimes::next(const ifog_sample& sample) {
+  const bool first = accepted_ == 0;
   if (clock_ == Clock::undecided) choose_clock(sample);
   if (first) count_from(sample);
-  bool anew = broken_ && !first;
+  bool restarted = broken_ && !first;
   Timeline::Step step;
-  if (first || anew)
+  if (first || restarted)
     step.time_ns = timeline_.first(frame_of(sample));
   else
     step = timeline_.next(frame_of(sample));
@@ -157,26 +155,26 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
     ++(timeline_.two_devices() ? counts_.mixed : counts_.repeated);
     return std::nullopt;
   }
-  const std::uint64_t steps = first || anew ? 0 : step.samples;
-  const bool timed_anew =
+  const std::uint64_t steps = first || restarted ? 0 : step.samples;
+  const bool clock_restarted =
       step.restarted && (restarts_ || clock_ != Clock::device || sample.device_wrap_ns > 0);
   count_ += steps;
   if (steps > 1) counts_.missing += steps - 1;
   if (steps > 1 && step.untold) counts_.untold += steps - 1;
-  if (timed_anew) ++counts_.restarts;
+  if (clock_restarted) ++counts_.restarts;
   device_ns_ = step.time_ns;
-  anew = anew || (timed_anew && clock_ == Clock::device);
-  if (anew) begin_anew(sample);
+  restarted = restarted || (clock_restarted && clock_ == Clock::device);
+  if (restarted) begin_again(sample);
   broken_ = false;
   if (step.clock_set) ++counts_.clock_sets;
   // Where the device's clock has stood still while it measured, by the sum of its steps; where it was set
   // while the device counted on, by the counter.
-  if (!first && !anew && clock_ == Clock::device && (timeline_.clock_stood() || step.by_count))
+  if (!first && !restarted && clock_ == Clock::device && (timeline_.clock_stood() || step.by_count))
     offset_s_ += last_s_ + step.dt_s - seconds(sample);
   double now = seconds(sample);
   const bool by_arrival =
       clock_ == Clock::arrival && !arrivals_.zero_of_stamps_ns && description_.nominal_rate_hz > 0.0;
-  if (!first && !anew && by_arrival && sample.arrival_ns >= arrivals_.last_ns)
+  if (!first && !restarted && by_arrival && sample.arrival_ns >= arrivals_.last_ns)
     now = spread(sample, step, now);
   if (!first && now <= last_s_) {
     if (!restarts_) refuse(now);
@@ -184,21 +182,21 @@ std::optional<SampleTimes::Taken> SampleTimes::next(const ifog_sample& sample) {
       ++counts_.repeated;
       return std::nullopt;
     }
-    anew = true;
-    begin_anew(sample);
+    restarted = true;
+    begin_again(sample);
     now = seconds(sample);
   }
-  Taken taken;
-  taken.since_s = now;
-  taken.elapsed_s = first ? std::numeric_limits<double>::quiet_NaN() : now - last_s_;
-  taken.anew = anew;
-  taken.period_s = taken.elapsed_s / static_cast<double>(std::max<std::uint64_t>(steps, 1));
-  if ((first || anew || arrivals_.bunched) && description_.nominal_rate_hz > 0.0)
-    taken.period_s = 1.0 / description_.nominal_rate_hz;
+  Stamped stamped;
+  stamped.since_s = now;
+  stamped.elapsed_s = first ? std::numeric_limits<double>::quiet_NaN() : now - last_s_;
+  stamped.restarted = restarted;
+  stamped.period_s = stamped.elapsed_s / static_cast<double>(std::max<std::uint64_t>(steps, 1));
+  if ((first || restarted || arrivals_.bunched) && description_.nominal_rate_hz > 0.0)
+    stamped.period_s = 1.0 / description_.nominal_rate_hz;
   last_s_ = now;
   arrivals_.last_ns = sample.arrival_ns;
-  ++taken_;
-  return taken;
+  ++accepted_;
+  return stamped;
 }
 
 }  // namespace ifog

@@ -36,15 +36,15 @@ class SampleTimes {
  public:
   explicit SampleTimes(const ifog_description& description);
 
-  struct Taken {
+  struct Stamped {
     double since_s = 0.0;    // since origin()
     double elapsed_s = 0.0;  // since the sample before; NaN of the first
     double period_s = 0.0;   // of the sample itself, also behind a gap
-    bool anew = false;       // the device or the recording restarted before this sample
+    bool restarted = false;  // the device or the recording restarted before this sample
   };
   // nullopt: a duplicate, or overtaken by a later one. Throws std::runtime_error with one line when time
   // does not go on (the sample's number, both times, the cause), or where there is none.
-  std::optional<Taken> next(const ifog_sample& sample);
+  std::optional<Stamped> next(const ifog_sample& sample);
 
   // The next sample does not continue those before: its clock and counter may have restarted. The arrival
   // times, which must be known, say how much later it is.
@@ -70,7 +70,7 @@ class SampleTimes {
   [[nodiscard]] Timeline::Frame frame_of(const ifog_sample& sample) const;
   [[nodiscard]] double seconds(const ifog_sample& sample) const;
   [[nodiscard]] double spread(const ifog_sample& sample, const Timeline::Step& step, double arrived_s);
-  void begin_anew(const ifog_sample& sample);
+  void begin_again(const ifog_sample& sample);
   void refuse(double now) const;
 
   ifog_description description_;
@@ -85,7 +85,7 @@ class SampleTimes {
     bool bunched = false;  // several samples have one time of arrival, or times that scatter
     std::optional<std::int64_t> zero_of_stamps_ns;
   } arrivals_;
-  std::size_t taken_ = 0;
+  std::size_t accepted_ = 0;
   SampleCounts counts_;
   double last_s_ = 0.0;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity

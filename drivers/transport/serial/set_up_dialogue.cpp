@@ -26,18 +26,18 @@ SetUpDialogue::SetUpDialogue(const std::vector<std::string>& lines) {
   for (const std::string& line : lines) {
     const std::size_t arrow = line.find(kArrow);
     const std::string sent = line.substr(0, arrow);
-    const bool told = arrow != std::string::npos;
-    lines_.push_back({sent, plain(told ? line.substr(arrow + kArrow.size()) : sent.substr(1)),
-                      !told && sent.front() == '?'});
+    const bool answered = arrow != std::string::npos;
+    lines_.push_back({sent, plain(answered ? line.substr(arrow + kArrow.size()) : sent.substr(1)),
+                      !answered && sent.front() == '?'});
   }
 }
 
 std::string SetUpDialogue::complaint(std::string_view line) {
   const bool printable = std::all_of(line.begin(), line.end(), [](char c) { return c >= ' ' && c <= '~'; });
   const std::size_t arrow = line.find(kArrow);
-  const bool told = arrow != std::string_view::npos && arrow > 0 && arrow + kArrow.size() < line.size();
+  const bool answered = arrow != std::string_view::npos && arrow > 0 && arrow + kArrow.size() < line.size();
   const bool known = line.size() > 1 && (line.front() == '=' || line.front() == '?');
-  if (printable && line.size() <= kMostCharacters && (told || (known && arrow == std::string_view::npos)))
+  if (printable && line.size() <= kMostCharacters && (answered || (known && arrow == std::string_view::npos)))
     return "";
   return R"(expected "=COMMAND", "?QUERY" or "WORDS -> ANSWER" of at most 1000 characters of ASCII)";
 }

@@ -76,6 +76,7 @@ class Checks:
                 (folder / ("out" + ending)).unlink()
         kvh = ["--driver", "kvh1750"]
         refused(2, "replay", self.one, "--speed", 0, "--to", f"file:{folder / 'sent.csv'}", *kvh, says=["--to", "expected a name ending in .bin"])
+        refused(2, "replay", self.one, "--speed", 0, "--to", f"file:{folder / 'sent.bin.gz'}", *kvh, says=["--to", "expected a name without .gz"])
         ifog("replay", self.one, "--speed", 0, "--to", f"file:{folder / 'sent.out'}", *kvh)
         assert [each.name for each in folder.iterdir()] == ["sent.out"]
 

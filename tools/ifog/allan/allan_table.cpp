@@ -8,6 +8,7 @@
 #include "filters/units/told_time.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/console/say.h"
+#include "tools/report/text.h"
 
 namespace ifog::tools {
 namespace {
@@ -24,12 +25,8 @@ std::string coefficient_cell(const AllanRecord& record, const NamedCoefficient& 
   return formatted("%.4g ± %.2g", c.value * named.factor, c.std_error * named.factor);
 }
 
-// Wide enough for the longest; ± takes two bytes.
-void print_padded(const std::string& text, int width) {
-  const auto shown = std::count_if(text.begin(), text.end(),
-                                   [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
-  say("%s%*s", text.c_str(), std::max(0, width - static_cast<int>(shown)), "");
-}
+// Wide enough for the longest.
+void print_cell(const std::string& text) { say("%s", report::padded(text, 20).c_str()); }
 
 }  // namespace
 
@@ -39,12 +36,11 @@ void print_comparison(const std::vector<AllanRecord>& records) {
   const int width = static_cast<int>(longest) + 2;
   say("\n%-*s", width, "");
   for (const NamedCoefficient& named : named_coefficients())
-    print_padded(std::string(named.letter) + " " + named.unit, 20);
+    print_cell(std::string(named.letter) + " " + named.unit);
   say("lowest deviation °/h\n");
   for (const AllanRecord& record : records) {
     say("%-*s", width, record_name(record).c_str());
-    for (const NamedCoefficient& named : named_coefficients())
-      print_padded(coefficient_cell(record, named), 20);
+    for (const NamedCoefficient& named : named_coefficients()) print_cell(coefficient_cell(record, named));
     std::size_t lowest = 0;
     for (std::size_t i = 1; i < record.points.size(); ++i)
       if (record.points[i].variance < record.points[lowest].variance) lowest = i;

@@ -14,9 +14,9 @@ class ReadingProgress {
   // The file must outlive this.
   explicit ReadingProgress(InputFile& file, const char* what = "reading")
       : file_(file), progress_(what + (" " + std::filesystem::path(file.path()).filename().string()), 0) {
-    file_.tell(progress_.teller());
+    file_.report_to(progress_.teller());
   }
-  ~ReadingProgress() { file_.tell({}); }
+  ~ReadingProgress() { file_.report_to({}); }
   ReadingProgress(const ReadingProgress&) = delete;
   ReadingProgress& operator=(const ReadingProgress&) = delete;
 

@@ -13,7 +13,7 @@
 #include "filters/settings/filter_table.h"
 #include "tools/ifog/captures/configured_files.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/installed.h"
+#include "tools/ifog/field/field.h"
 
 namespace ifog::tools {
 namespace {

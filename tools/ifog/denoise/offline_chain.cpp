@@ -90,7 +90,7 @@ OfflineTimes::OfflineTimes(const ifog_description& description, const OfflineSin
 }
 
 void OfflineTimes::come(const ifog_sample& sample) {
-  if (const std::optional<SampleTimes::Taken> taken = times_.next(sample)) now_s_ = taken->since_s;
+  if (const std::optional<SampleTimes::Stamped> stamped = times_.next(sample)) now_s_ = stamped->since_s;
   if (!std::exchange(begun_, true)) sink_.count_from(times_.origin());
 }
 

@@ -19,7 +19,6 @@
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/ifog/captures/configured_files.h"
-#include "tools/ifog/console/installed.h"
 #include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {

@@ -10,6 +10,10 @@
 
 namespace ifog::tools {
 
+// Of the installed service.
+inline constexpr const char* kServiceConfig = "/etc/ifogd/ifogd.toml";
+inline constexpr const char* kServiceState = "/var/lib/ifogd";
+
 struct FieldOptions {
   std::string config;  // --config; "": where the service has it, if it is there
   std::string state;   // --state; "": as configured, else STATE_DIRECTORY, else where the service has it

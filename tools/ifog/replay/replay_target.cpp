@@ -17,6 +17,7 @@
 #include <system_error>
 
 #include "drivers/capture/candump/candump.h"
+#include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/can/can_socket.h"
@@ -128,6 +129,9 @@ ReplayDestination ReplayDestination::parse(const std::string& text) {
     if (text.starts_with(prefix) && text.size() > std::string(prefix).size()) {
       ReplayDestination out{kind, text.substr(std::string(prefix).size())};
       if (kind == Kind::udp || kind == Kind::tcp) read_host_and_port(out.name);
+      if (kind == Kind::file && is_packed_name(out.name))
+        throw std::runtime_error("--to is " + in_quotes(text) +
+                                 ", expected a name without .gz: nothing is packed");
       return out;
     }
   throw std::runtime_error(
