@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "filters/allan/scattered_stamps.h"
+#include "filters/distributions/median.h"
 
 namespace ifog {
 namespace {
@@ -53,12 +54,6 @@ void for_each_step(const SeriesView& time_s, Use use) {
     const Steps steps(time_s.piece(low, high - low, room), low, samples);
     for (std::size_t i = begin; i < end; ++i) use(steps, i);
   }
-}
-
-double middle_of(std::vector<double>& values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 // found(i, lost, step) for each hole behind sample i; of stamps that scatter, their mean square.
@@ -188,7 +183,7 @@ SampleClock sample_clock(const SeriesView& time_s) {
   // The median of a hundred thousand steps is as good as that of all.
   std::vector<double> some = some_steps(time_s, count / 100'000 + 1);
   const Extremes steps = extremes_of(time_s);
-  double period = middle_of(some);
+  double period = median(some);
   if (!(period > 0.0)) throw std::invalid_argument("time does not increase");
 
   SampleClock clock;
@@ -201,7 +196,7 @@ SampleClock sample_clock(const SeriesView& time_s) {
       period = steps.gapless(period) ? (time_s.at(count) - time_s.at(0)) / static_cast<double>(count)
                                      : mean_period(time_s, period, false).period_s;
     for (double& step : some) step = std::abs(step - period);
-    clock.scatter = 1.4826 * middle_of(some) / (std::numbers::sqrt2 * period);  // as of Gaussians
+    clock.scatter = 1.4826 * median(some) / (std::numbers::sqrt2 * period);  // as of Gaussians
     if (clock.scatters()) period = scattered_period(time_s, period);
   }
   clock.period_s = period;

@@ -203,7 +203,6 @@ class Run {
     Findings findings = findings_of(data_, reconstructed_, found_, joint_, options_.axis);
     result_.effects = std::move(findings.effects);
     result_.indistinguishable = std::move(findings.pairs);
-    result_.others = std::move(findings.others);
     result_.noise_posterior = joint_.noise;
     for (FoundEffect& each : sample_effects(ramps_, zone_, lines_, errors_, options_.axis))
       result_.effects.push_back(std::move(each));

@@ -38,12 +38,6 @@ struct Hysteresis {
   double likelihood_ratio = 0.0;
 };
 
-// All effects, with one of them replaced by an alternative that fits as well.
-struct OtherExplanation {
-  std::vector<Effect> effects;
-  double weight = 0.0;  // likelihood relative to that of the effects reported
-};
-
 struct FoundEffect {
   Effect effect;
   double p_value = 1.0;  // after correction for the number of tries
@@ -72,8 +66,7 @@ struct Unexplained {
 // Heading error of the next capture, corrected by the model: the bias is taken over the first `aligned_s`
 // seconds at rest and held, and the angle is integrated from then on. Promised is the root of the error's
 // expected square: the noise, as uncertain as the record leaves it; the errors of the effects' parameters,
-// time constants included; the other explanations that the record does not rule out; effects outside the
-// range they were fitted on; and effects that are known but not corrected online, a line at any phase and a
+// time constants included; effects outside the range they were fitted on; and effects that are known but not corrected online, a line at any phase and a
 // ramp going on. Not in it: what the diagnosis did not see, and steps, which nothing announces.
 struct HeadingPrediction {
   double aligned_s = 0.0;
@@ -132,7 +125,6 @@ struct Diagnosis {
   std::optional<Hysteresis> hysteresis;
   HeadingPrediction heading;  // if the channels run as they did in the longest record
   NoisePosterior noise_posterior;
-  std::vector<OtherExplanation> others;
   std::vector<ReferenceDelay> reference_delays;  // of the records that have one
   std::vector<ChannelDelay> channel_delays;
   std::vector<std::string> remarks;  // anything else a person should know, one sentence each

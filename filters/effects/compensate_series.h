@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "filters/distributions/median.h"
 #include "filters/effects/compensator.h"
 #include "filters/series/series_view.h"
 
@@ -27,9 +28,7 @@ inline double usual_step(std::span<const double> time_s) {
   steps.reserve(time_s.size());
   for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
   if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
+  return median(std::move(steps));
 }
 
 // Calls use(sample, output) for every sample in turn. The first sample covers as much time as the second.

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <vector>
 
+#include "filters/distributions/median.h"
 #include "filters/rest/runs.h"
 #include "filters/units/told_time.h"
 
@@ -66,7 +66,7 @@ class Yardstick {
         smallest_step = std::min(smallest_step, middle.step);
     });
     if (some.size() < 3) return;
-    all_ = kOfMedian * middle_of(some);
+    all_ = kOfMedian * median(some);
     // Most neighbours of a coarse sensor are the same, but for the rounding of their digits.
     least_ = std::max(kRounding * largest_, std::isfinite(smallest_step) ? 0.5 * smallest_step : 0.0);
   }
@@ -105,7 +105,7 @@ class Yardstick {
         here.push_back({std::max(part.begin + 1, begin) - 1, std::min(part.end, end + 1)});
     std::vector<double> away;
     for_each_middle(rate_, here, [&](std::size_t, const Middle& middle) { away.push_back(middle.away); });
-    known = {block, away.size() >= kLeast ? kOfMedian * middle_of(away) : 0.0};
+    known = {block, away.size() >= kLeast ? kOfMedian * median(away) : 0.0};
     return known.deviation;
   }
 
@@ -151,14 +151,11 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
 std::string in_words(const Glitches& glitches, const std::function<double(std::size_t)>& time_s) {
   if (glitches.count == 0) return "";
   const bool one = glitches.count == 1;
-  std::array<char, 240> text{};
-  std::snprintf(text.data(), text.size(),
-                "%zu sample%s away and back (%sat %s s, up to %.2g times the noise): %s", glitches.count,
-                one ? " leaps" : "s leap", one ? "" : "the first ", told_time(time_s(glitches.first)).c_str(),
-                glitches.most_times,
-                glitches.few.empty() ? "more than one in a thousand, which these figures take for noise"
-                                     : "a fault of the logger or the line, dropped");
-  return text.data();
+  return formatted("%zu sample%s away and back (%sat %s s, up to %.2g times the noise): %s", glitches.count,
+                   one ? " leaps" : "s leap", one ? "" : "the first ",
+                   told_time(time_s(glitches.first)).c_str(), glitches.most_times,
+                   glitches.few.empty() ? "more than one in a thousand, which these figures take for noise"
+                                        : "a fault of the logger or the line, dropped");
 }
 
 }  // namespace ifog

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
+#include "filters/distributions/median.h"
 #include "filters/rest/held.h"
 #include "filters/rest/runs.h"
 #include "filters/units/told_time.h"
@@ -185,7 +185,7 @@ double deviation_by(const std::vector<double>& root, std::size_t together) {
   for (std::size_t i = 0; i + 2 * together < sums.size(); ++i)
     steps.push_back(std::abs(sums[i + 2 * together] - 2.0 * sums[i + together] + sums[i]));
   constexpr double kNormal = 0.6745 * 1.4142;
-  return middle_of(steps) / kNormal / std::sqrt(static_cast<double>(together));
+  return median(steps) / kNormal / std::sqrt(static_cast<double>(together));
 }
 
 Loudness loudness_of(const Octave& octave) {
@@ -203,7 +203,7 @@ Loudness loudness_of(const Octave& octave) {
     if (const double here = count_of(octave, t * out.cells_each, (t + 1) * out.cells_each); here > 0.0)
       counts.push_back(here);
   // The usual number of values at a time without a hole.
-  const double usual = middle_of(counts);
+  const double usual = median(counts);
   for (std::size_t t = 0; t < times; ++t) {
     const std::size_t begin = t * out.cells_each, end = begin + out.cells_each;
     if (count_of(octave, begin, end) < 0.5 * usual) continue;
@@ -216,7 +216,7 @@ Loudness loudness_of(const Octave& octave) {
   // The mean magnitude of n normal variables has the relative variance (pi / 2 - 1) / n, its root a
   // quarter.
   const double each = 0.25 * (0.5708 + 2.0 * (1.0 - share)) / share;
-  const double least = std::sqrt(each / usual * (usual < kParted ? 1.0 : kOfMiddle)) * middle_of(out.root);
+  const double least = std::sqrt(each / usual * (usual < kParted ? 1.0 : kOfMiddle)) * median(out.root);
   if (!(least > 0.0)) return {};
   out.deviation = least;
   for (const std::size_t together : {1U, 2U, 4U})
@@ -365,23 +365,16 @@ std::string in_words(std::span<const NoiseChange> changes) {
   std::string words = "the noise is not the same along the record:";
   for (std::size_t i = 0; i < changes.size(); ++i) {
     const NoiseChange& change = changes[i];
-    std::array<char, 160> text{};
     const std::string from = told_time(change.from_s), to = told_time(change.to_s);
     words += i > 0 ? "," : "";
     if (!(change.times > 0.0)) {
-      std::snprintf(text.data(), text.size(), " it stands still in %s … %s s", from.c_str(), to.c_str());
-      words += text.data();
+      words += " it stands still in " + from + " … " + to + " s";
       continue;
     }
-    std::snprintf(text.data(), text.size(), " %.2g times the noise in %s … %s s", change.times, from.c_str(),
-                  to.c_str());
-    words += text.data();
-    if (change.range_hz.low > 0.0)
-      std::snprintf(text.data(), text.size(), " (%.2g to %.3g Hz)", change.range_hz.low,
-                    change.range_hz.high);
-    else
-      std::snprintf(text.data(), text.size(), " (below %.3g Hz)", change.range_hz.high);
-    words += text.data();
+    words += formatted(" %.2g times the noise in ", change.times) + from + " … " + to + " s";
+    words += change.range_hz.low > 0.0
+                 ? formatted(" (%.2g to %.3g Hz)", change.range_hz.low, change.range_hz.high)
+                 : formatted(" (below %.3g Hz)", change.range_hz.high);
   }
   return words + "; the figures are of the whole record, choose a part by --from and --to";
 }

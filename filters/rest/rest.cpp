@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 
@@ -288,12 +287,10 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
 
 std::string in_words(const Rest& rest, double period_s, double first_s) {
   if (rest.turned + rest.shaken == 0) return {};
-  std::array<char, 160> text{};
   const auto seconds = [&](std::size_t n) { return static_cast<double>(n) * period_s; };
-  std::snprintf(text.data(), text.size(), "moving in %.4g of %.4g s (turned %.4g s, shaken %.4g s), at rest",
-                seconds(rest.turned + rest.shaken), seconds(rest.samples), seconds(rest.turned),
-                seconds(rest.shaken));
-  std::string words = text.data();
+  std::string words = formatted("moving in %.4g of %.4g s (turned %.4g s, shaken %.4g s), at rest",
+                                seconds(rest.turned + rest.shaken), seconds(rest.samples),
+                                seconds(rest.turned), seconds(rest.shaken));
   constexpr std::size_t kShown = 4;
   std::vector<Stretch> longest = rest.at_rest;
   std::stable_sort(longest.begin(), longest.end(),
@@ -313,14 +310,11 @@ std::string in_words(const Rest& rest, double period_s, double first_s) {
 
 std::string slow_turns_in_words(const Rest& rest, double period_s, double first_s) {
   if (rest.slow_turns.count == 0) return {};
-  std::array<char, 240> text{};
-  std::snprintf(
-      text.data(), text.size(),
+  return formatted(
       "the rate leaps by up to %.3g °/h, %zu times, first at %s s: slow turns (a rate table's dwells?) "
       "or a bias that jumps; the noise terms, K above all, take them for noise",
       rest.slow_turns.largest_radps / kDegreePerHour, rest.slow_turns.count,
       told_time(first_s + static_cast<double>(rest.slow_turns.first) * period_s).c_str());
-  return text.data();
 }
 
 void require_rest(const Rest& rest, double period_s, double first_s) {

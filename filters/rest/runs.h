@@ -1,14 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Equal values in a row, and the median of some.
+// Equal values in a row.
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <limits>
 #include <span>
-#include <vector>
 
 #include "filters/allan/stretches.h"
 #include "filters/series/series_view.h"
@@ -40,12 +37,6 @@ void for_each_run(const SeriesView& series, std::span<const Stretch> parts, Use 
     });
     if (run.length > 0) use(run);
   }
-}
-
-inline double middle_of(std::vector<double> values) {
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 }  // namespace ifog

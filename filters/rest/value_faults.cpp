@@ -2,14 +2,13 @@
 #include "filters/rest/value_faults.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <numbers>
 #include <numeric>
 
 #include "filters/rest/runs.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -18,11 +17,7 @@ constexpr std::size_t kMostSamples = 1'000'000, kFewSamples = 256;
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kMostBias_radps = 5.0 * kDegree, kMostNoise_radps = 0.2 * kDegree;
 
-std::string six(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.6g", value);
-  return text.data();
-}
+std::string six(double value) { return formatted("%.6g", value); }
 
 // The values of the stretches, one after the other.
 std::vector<double> values_of(const SeriesView& rate, std::span<const Stretch> parts) {

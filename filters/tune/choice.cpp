@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <memory>
 
 #include "filters/state_models/poles.h"
 #include "filters/state_models/state_model.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -21,21 +21,17 @@ constexpr double kWorse = 1.01;
 
 // Empty: nothing.
 std::string reason_against(const TunedModel& model, const TunedModel& walk, double period_s, double samples) {
-  char text[160];
-  if (const double told = memories_in_record(model.settings, period_s, samples); told < kToldFromAWalk) {
-    std::snprintf(text, sizeof text,
-                  "its colour lasts %.2g of the record, too long to be distinguished from a walk or a line",
-                  1.0 / told);
-    return text;
-  }
+  if (const double told = memories_in_record(model.settings, period_s, samples); told < kToldFromAWalk)
+    return formatted(
+        "its colour lasts %.2g of the record, too long to be distinguished from a walk or a line",
+        1.0 / told);
   if (!model.held_out || !walk.held_out) return "";
   const double worse = prediction_against(*model.held_out, *walk.held_out);
   if (worse <= kWorse) return "";
-  std::snprintf(text, sizeof text,
-                "its published rate predicts the second half worse than the random walk's: %.3g times the "
-                "mean square error",
-                worse);
-  return text;
+  return formatted(
+      "its published rate predicts the second half worse than the random walk's: %.3g times the "
+      "mean square error",
+      worse);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
@@ -16,6 +15,7 @@
 #include "filters/allan/noise/noise_likelihood.h"
 #include "filters/linear/normal_equations.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -363,14 +363,12 @@ NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
 std::string markov_in_words(const NoiseCoefficients& found) {
   if (!found.markov || !found.markov->present) return "";
   const MarkovNoise& markov = *found.markov;
-  std::array<char, 400> text{};
-  std::snprintf(text.data(), text.size(),
-                "the bias is correlated (first-order Gauss-Markov noise): %.3g °/h, correlation time %.3g s "
-                "(95 %%: %.3g … %.3g s); it is a random walk, of K %.3g °/h/√h, up to %.2g s only: at longer "
-                "times the deviation is below the walk's",
-                markov.sigma_radps / kDegreePerHour, markov.correlation_s, markov.lower_s, markov.upper_s,
-                markov.walk / kDegreePerHourPerRootHour, markov.walk_until_s);
-  return text.data();
+  return formatted(
+      "the bias is correlated (first-order Gauss-Markov noise): %.3g °/h, correlation time %.3g s "
+      "(95 %%: %.3g … %.3g s); it is a random walk, of K %.3g °/h/√h, up to %.2g s only: at longer "
+      "times the deviation is below the walk's",
+      markov.sigma_radps / kDegreePerHour, markov.correlation_s, markov.lower_s, markov.upper_s,
+      markov.walk / kDegreePerHourPerRootHour, markov.walk_until_s);
 }
 
 double modelled_deviation(const NoiseCoefficients& found, double tau_s) {

@@ -6,6 +6,7 @@
 
 #include "filters/allan/noise/noise_spectrum.h"
 #include "filters/distributions/chi_squared.h"
+#include "filters/distributions/median.h"
 
 namespace ifog {
 namespace {
@@ -15,12 +16,6 @@ constexpr std::size_t kNearby = 12;  // bins on either side that say what is usu
 constexpr std::size_t kFewest = 4;   // of them
 constexpr double kChance = 1e-6;
 constexpr double kMargin = 1.1;  // a smooth spectrum bends, too
-
-double median(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // Logarithm of what the neighbours let expect: the mean of both sides' medians follows a slope.
 double usual(const std::vector<double>& level, std::size_t i) {

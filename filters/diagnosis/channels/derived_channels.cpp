@@ -8,8 +8,8 @@
 #include <optional>
 #include <utility>
 
-#include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -136,7 +136,8 @@ OwnedRecords with_unwrapped_angles(OwnedRecords given) {
       if (outside > 0)
         given.remarks.push_back(
             mine.name + given.of_several(record) +
-            printed(" is outside the turn in %zu sample(s), first %.6g: no angle, dropped", outside, first));
+            formatted(" is outside the turn in %zu sample(s), first %.6g: no angle, dropped", outside,
+                      first));
     }
   }
   return given;

@@ -3,9 +3,9 @@
 
 #include <cmath>
 
-#include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 #include "filters/series/finite_sum.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -58,8 +58,8 @@ std::string rotation_in_words(const BlockData& data, std::size_t c) {
   const bool change = by_change.gain > by_value.gain;
   const Likeness& best = change ? by_change : by_value;
   if (best.gain < kCertainMotion || best.share < kOfRate) return "";
-  return printed("%.0f %% of the changes of the rate go with the %s of ", 100.0 * best.share,
-                 change ? "change" : "value") +
+  return formatted("%.0f %% of the changes of the rate go with the %s of ", 100.0 * best.share,
+                   change ? "change" : "value") +
          data.channels[c].name + ", as a sway or a ride does: that is rotation and stays in the rate";
 }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/diagnosis/record/words.h"
+#include "filters/distributions/median.h"
 
 namespace ifog {
 namespace {

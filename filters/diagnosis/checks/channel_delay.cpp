@@ -6,9 +6,9 @@
 #include <cmath>
 #include <cstdint>
 
-#include "filters/diagnosis/record/words.h"
 #include "filters/diagnosis/regression/design.h"
 #include "filters/diagnosis/regression/noise_fit.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -94,7 +94,7 @@ std::vector<ChannelDelay> delayed_channels(const BlockData& data, const std::vec
 
 std::string delay_in_words(const ChannelDelay& delay) {
   return delay.channel +
-         printed(
+         formatted(
              " seems logged %.3g s %s (+-%.2g): its effects are sought and corrected as it was logged; "
              "mend it in the logger",
              std::abs(delay.delay_s), delay.delay_s < 0.0 ? "early" : "late", delay.std_error_s);

@@ -10,9 +10,9 @@
 
 #include "filters/allan/stretches.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/diagnosis/record/words.h"
 #include "filters/effects/plausible_reading.h"
 #include "filters/rest/cleaned_rate.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -127,9 +127,9 @@ RepairedChannel repaired_channel(const Record& record, const RecordChannel& chan
   if (samples == 0 || static_cast<double>(samples) > kMostFaults * static_cast<double>(readings)) return {};
   return {interpolated(record, column, fault),
           channel.name + where +
-              printed(" leaps away and back %zu time(s), for %zu sample(s) in all, first to %.6g: treated "
-                      "as faults of logging, interpolated for up to a minute",
-                      times, samples, column[first])};
+              formatted(" leaps away and back %zu time(s), for %zu sample(s) in all, first to %.6g: treated "
+                        "as faults of logging, interpolated for up to a minute",
+                        times, samples, column[first])};
 }
 
 }  // namespace

@@ -5,7 +5,7 @@
 
 #include "filters/allan/row_times.h"
 #include "filters/diagnosis/record/blocks.h"
-#include "filters/diagnosis/record/words.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -29,7 +29,7 @@ bool keeps_a_beat(std::span<const double> time_s, const SampleClock& clock) {
 }
 
 std::string in_words(const Record& record, const SampleClock& clock) {
-  return record.name + printed(
+  return record.name + formatted(
                            ": the time stamps are up to %.3g ms off an even clock of %.6g Hz, so samples "
                            "are placed by that clock, which restarts behind each hole",
                            1e3 * clock.worst_jitter_s, 1.0 / clock.period_s);

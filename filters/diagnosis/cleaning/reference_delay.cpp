@@ -20,8 +20,9 @@
 #include "filters/diagnosis/cleaning/series_fit.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/diagnosis/record/words.h"
+#include "filters/distributions/median.h"
 #include "filters/linear/fourier.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -241,8 +242,8 @@ Samples moved_reference(const Record& record, double delay_s) {
 
 std::string in_words(const ReferenceDelay& delay, const std::string& name) {
   const double late = delay.delay_s;
-  return name + printed(" logged %.4g s %s (+-%.2g): shifted", std::abs(late),
-                        late > 0.0 ? "late" : "early, or the rate late", delay.std_error_s);
+  return name + formatted(" logged %.4g s %s (+-%.2g): shifted", std::abs(late),
+                          late > 0.0 ? "late" : "early, or the rate late", delay.std_error_s);
 }
 
 }  // namespace

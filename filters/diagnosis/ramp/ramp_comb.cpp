@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "filters/diagnosis/record/fitted_part.h"
-#include "filters/diagnosis/record/words.h"
+#include "filters/distributions/median.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/linear/fourier.h"
 

@@ -8,11 +8,11 @@
 
 #include "filters/diagnosis/ramp/ramp_comb.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/diagnosis/record/words.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/compensate_series.h"
 #include "filters/effects/meaning.h"
 #include "filters/effects/ramp_tracker.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 
@@ -61,7 +61,7 @@ constexpr double kMostWalk = 0.002;  // cycles/sqrt(s)
 // Sentence about the spectral lines of a comb that is not corrected.
 std::string lines_in_words(const RampComb& comb, const UnbrokenPart& part) {
   const double hz = comb.cycles_per_rad * std::abs(part.mean_turn_rad()) / part.sample_s();
-  return "lines at " + printed("%.4g", hz) +
+  return "lines at " + formatted("%.4g", hz) +
          " Hz or multiples of it may be a machine's. A feedback ramp (phase modulator, 2 pi reset) that was "
          "not logged would make such, with " +
          std::to_string(std::lround(comb.cycles_per_rad)) +

@@ -12,9 +12,10 @@
 
 #include "filters/allan/stretches.h"
 #include "filters/diagnosis/record/step_means.h"
-#include "filters/diagnosis/record/words.h"
+#include "filters/distributions/median.h"
 #include "filters/effects/meaning.h"
 #include "filters/series/mapped_file.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -34,7 +35,7 @@ std::string too_few(const std::vector<Record>& records, std::size_t blocks, doub
       if (std::isfinite(record.rate_radps[i]) &&
           (record.reference_radps.empty() || std::isfinite(record.reference_radps[i])))
         ++samples;
-  return printed(
+  return formatted(
       "%zu samples with a rate (and a reference, if there is one) in %zu blocks of %.3g s that are at least "
       "half full: expected at least %zu of each. A long hole: diagnose each side by itself (--from, --to, or "
       "captures of their own). Rows with empty cells: drop them",

@@ -8,7 +8,7 @@
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
-#include "filters/diagnosis/record/words.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 
@@ -103,10 +103,10 @@ std::string grown_in_words(const Diagnosis& diagnosis, double samples) {
     const double count = count_of(figure, diagnosis, samples);
     if (growth <= kGrown) continue;
     sentence += (sentence.empty() ? "" : "; ") +
-                (figure.means_s > 0.0 ? printed("%.3g s means grow %.3g times", figure.means_s, growth)
-                                      : printed("single samples grow %.3g times", growth));
+                (figure.means_s > 0.0 ? formatted("%.3g s means grow %.3g times", figure.means_s, growth)
+                                      : formatted("single samples grow %.3g times", growth));
     by_chance &= count < kMany;
-    if (count < kMany) sentence += printed(", but there are %.0f of them", count);
+    if (count < kMany) sentence += formatted(", but there are %.0f of them", count);
   }
   if (sentence.empty()) return "";
   return sentence +

@@ -8,22 +8,18 @@
 #include <numbers>
 
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/diagnosis/record/words.h"
 #include "filters/diagnosis/search/scan.h"
 #include "filters/effects/curve_reach.h"
 #include "filters/effects/meaning.h"
 #include "filters/model_file/channel_names.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
 
-// The joint fit is linear in the logarithm of a time constant: further it is not to be trusted.
-constexpr double kFarthest = 0.3;
 // Standard errors a curvature has to be from zero before it is followed beyond the range that showed it.
 constexpr double kWellKnown = 5.0;
 constexpr int kHighestFollowed = 3;  // higher powers stand for a law that is none
-// Another explanation that loses more than this, twice the log-likelihood, weighs less than 1 %.
-constexpr double kNoRival = 9.2;
 
 std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& values) {
   std::vector<double> used;
@@ -56,7 +52,7 @@ std::string capture_that_separates(const BlockData& data, const Candidate& one, 
   if (memory) {
     const double tau = std::max(one.time_constant_s, other.time_constant_s);
     return "a capture in which " + name + " changes and then rests for several times " +
-           printed("%.3g s", tau) + ", at different speeds";
+           formatted("%.3g s", tau) + ", at different speeds";
   }
   const double reference = reference_of(name);
   return "a capture over a wider range of " + name + ", on both sides of " +
@@ -80,19 +76,7 @@ std::vector<Effect> effects_of(const BlockData& data, const std::vector<Candidat
 JointFit settle(const BlockData& reconstructed, SearchResult& found) {
   JointFit joint = joint_fit(reconstructed, candidates_of(found.chosen), found.coefficients, found.noise);
   const Eigen::Index linear = found.coefficients.size();
-  for (std::size_t j = 0; j < joint.searched.size(); ++j) {
-    Candidate& candidate = found.chosen[joint.searched[j]].candidate;
-    const double near =
-        std::clamp(joint.values[linear + static_cast<Eigen::Index>(j)], -kFarthest, kFarthest);
-    const bool second = j > 0 && joint.searched[j - 1] == joint.searched[j];
-    if (!candidate.is_transition())
-      candidate.time_constant_s *= std::exp(near);
-    else if (second)
-      candidate.centre += near * candidate.half_width;
-    else
-      candidate.half_width *= std::exp(near);
-  }
-  // The joint fit is straight in what was searched; the coefficients that belong to where it led are not.
+  // The joint fit is straight in what was searched; the coefficients that belong to what the search found are not.
   joint.of_coefficients = joint.covariance.topLeftCorner(linear, linear);
   if (!joint.searched.empty()) {
     const JointFit there = joint_fit_at(reconstructed, candidates_of(found.chosen), found.noise);
@@ -191,17 +175,13 @@ void add_alternatives(const BlockData& data, const BlockData& reconstructed, con
     instead[alternative.of] = alternative.candidate;
     const Eigen::VectorXd fitted =
         solve(reconstructed.grid, found.noise.shape, design(reconstructed, instead));
-    OtherExplanation other{effects_of(reconstructed, instead, fitted, axis),
-                           std::exp(-0.5 * std::max(0.0, alternative.loss))};
     Indistinguishable pair;
-    pair.effects = {findings.effects[alternative.of].effect, other.effects[alternative.of]};
+    pair.effects = {findings.effects[alternative.of].effect,
+                    effects_of(reconstructed, instead, fitted, axis)[alternative.of]};
     pair.correlation = alternative.correlation;
     pair.separate_by =
         capture_that_separates(data, found.chosen[alternative.of].candidate, alternative.candidate);
     findings.pairs.push_back(std::move(pair));
-    // What stands in for rotation says nothing of the error.
-    const bool shown = found.chosen[alternative.of].candidate.shown();
-    if (alternative.loss < kNoRival && !shown) findings.others.push_back(std::move(other));
   }
 }
 

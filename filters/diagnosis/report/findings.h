@@ -17,7 +17,6 @@ struct Findings {
   std::vector<FoundEffect> effects;      // as in `chosen`
   std::vector<Eigen::VectorXd> parts;    // rad/s by block, of each
   std::vector<Indistinguishable> pairs;  // of them
-  std::vector<OtherExplanation> others;  // with the effects' parameters fitted again
 };
 
 // Coefficients, time constants and their errors from `joint`. reconstructed: the reconstructed channels.

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/report/left_out.h"
 
+#include "filters/units/told_time.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <set>
-
-#include "filters/diagnosis/record/words.h"
 
 namespace ifog {
 namespace {
@@ -31,8 +31,8 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
   std::string words;
   for (const Effect& effect : effects) words += (words.empty() ? "" : " and ") + named(effect);
   words += std::isfinite(denied.share)
-               ? printed(": of what the other captures predict %.2g ± %.2g is there in ", denied.share,
-                         denied.share_error) +
+               ? formatted(": of what the other captures predict %.2g ± %.2g is there in ", denied.share,
+                           denied.share_error) +
                      records[denied.record].name
                : ": nothing of it is seen in " + records[denied.record].name + ", where as much moved";
   return words + ", so that is no effect of this channel but of something that ran with it, dropped";
@@ -43,7 +43,7 @@ std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t ca
   if (diagnosis.unexplained.fraction <= kMuch ||
       std::none_of(diagnosis.effects.begin(), diagnosis.effects.end(), traced))
     return "";
-  const std::string share = printed(
+  const std::string share = formatted(
       "besides what was traced %.0f %% of the error is unexplained: what was not logged may be the cause of "
       "both, and a channel named here only run along with it",
       100.0 * diagnosis.unexplained.fraction);

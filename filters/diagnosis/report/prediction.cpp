@@ -72,8 +72,7 @@ BlockData held_in_range(BlockData data, const std::vector<ChannelRange>& ranges,
 // One set of effects on one capture: what they are there, and how that changes with each parameter.
 struct Effects {
   Columns gradient;          // by parameter, in the order of the model's covariance; zero where not corrected
-  Eigen::VectorXd total;     // rad/s, of those corrected, with the channels as they are
-  Eigen::VectorXd left;      // of that, beyond the correction
+  Eigen::VectorXd left;      // rad/s, of those corrected, beyond the correction
   Eigen::VectorXd going_on;  // not corrected, but there
   std::vector<Effect> lines;  // not corrected, phase unknown
 };
@@ -87,7 +86,6 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
   std::size_t parameters = 0;
   for (const Effect& effect : effects) parameters += effect.parameters.size();
   Effects on{Columns::Zero(n, static_cast<Eigen::Index>(parameters)),
-             Eigen::VectorXd::Zero(n),
              Eigen::VectorXd::Zero(n),
              Eigen::VectorXd::Zero(n),
              {}};
@@ -109,7 +107,6 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
       continue;
     }
     on.gradient.col(at) = column;
-    on.total += coefficient * column;
     if (candidate->form == Form::kRateRamp) {
       on.left += coefficient * (column.array() - 2.0 * *ramp_s).cwiseMax(0.0).matrix();
       continue;
@@ -196,12 +193,6 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
     if (range.channel == kTimeRange) ramp_s = range.high - range.low;
   Effects on = effects_on(data, held, followed, ramp_s, mine);
   if (diagnosis.hysteresis) add_loop(data, *diagnosis.hysteresis, on.left);
-  std::vector<Effects> others;
-  double all = 1.0;
-  for (const OtherExplanation& other : diagnosis.others) {
-    others.push_back(effects_on(data, held, followed, ramp_s, other.effects));
-    all += other.weight;
-  }
   const auto n = static_cast<Eigen::Index>(on.gradient.cols());
   const bool with_covariance = n > 0 && diagnosis.covariance.size() == static_cast<std::size_t>(n * n);
   for (const double horizon : after_s) {
@@ -215,10 +206,6 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
     }
     square += std::pow(along(weights, on.left), 2) + std::pow(along(weights, on.going_on), 2);
     for (const Effect& line : on.lines) square += line_square(weights, line);
-    for (std::size_t i = 0; i < others.size(); ++i) {
-      const double apart = along(weights, others[i].total + others[i].going_on - on.total - on.going_on);
-      square += diagnosis.others[i].weight / all * apart * apart;
-    }
     prediction.sigma_rad.push_back(std::sqrt(square));
   }
   return prediction;

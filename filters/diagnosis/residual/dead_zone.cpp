@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/diagnosis/record/words.h"
 #include "filters/diagnosis/search/scan.h"
+#include "filters/distributions/median.h"
 
 namespace ifog {
 namespace {

@@ -9,8 +9,8 @@
 #include <numbers>
 #include <vector>
 
-#include "filters/diagnosis/record/words.h"
 #include "filters/diagnosis/residual/periodogram.h"
+#include "filters/distributions/median.h"
 
 namespace ifog {
 namespace {

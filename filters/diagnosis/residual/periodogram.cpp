@@ -6,7 +6,7 @@
 #include <complex>
 #include <numbers>
 
-#include "filters/diagnosis/record/words.h"
+#include "filters/distributions/median.h"
 #include "filters/linear/fourier.h"
 #include "filters/series/finite_sum.h"
 

@@ -10,8 +10,8 @@
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
-#include "filters/diagnosis/record/words.h"
 #include "filters/distributions/chi_squared.h"
+#include "filters/distributions/median.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -106,7 +106,7 @@ SlowRest slow_rest(std::span<const double> left, double period_s) {
 void describe_peak(const SpectralLine& peak, Unexplained& found) {
   found.kind = "line";
   found.frequency_hz = peak.frequency_hz;
-  found.hint = printed(
+  found.hint = formatted(
       "a peak at %.4g Hz, %.2g Hz wide, that is no line of one frequency and phase: a resonance of the "
       "mounting, or a line that moves. Log an accelerometer on the mounting and the loop's own signals.",
       peak.frequency_hz, peak.width_hz);
@@ -130,7 +130,7 @@ bool describe_bursts(const std::vector<double>& energy, std::size_t piece, doubl
   }
   if (bursts == 0 || bursts * 10 >= measured) return false;
   found.kind = "bursts";
-  found.hint = printed(
+  found.hint = formatted(
       "%zu bursts, the first at %s s, the strongest at %s s: knocks, radio keying or supply dips. Log an "
       "accelerometer and the supply at the sensor's own rate.",
       times.size(), told_time(times.front()).c_str(), told_time(time_of(strongest)).c_str());
@@ -141,7 +141,7 @@ bool describe_bursts(const std::vector<double>& energy, std::size_t piece, doubl
 
 void describe_noise_change(const NoiseChange& change, Unexplained& found) {
   found.kind = "changing_variance";
-  found.hint = printed(
+  found.hint = formatted(
       "the noise is not the same all along the record (%.2g times in %s … %s s): vibration, light level or "
       "electronics. Log vibration, optical power and the supply.",
       change.times, told_time(change.from_s).c_str(), told_time(change.to_s).c_str());
@@ -150,7 +150,7 @@ void describe_noise_change(const NoiseChange& change, Unexplained& found) {
 void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
   if (slow.over_s > 0.0) {
     found.kind = "slow";
-    found.hint = printed(
+    found.hint = formatted(
         "slow drift that follows none of the channels given: %.0f %% of what %.3g s means scatter. The "
         "sensor's own random walk or flicker, an effect of a form that is not known here (hysteresis), or an "
         "environment that was not logged. Log the temperature at the coil and at the electronics, and the "
@@ -222,7 +222,7 @@ void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {
   found.kind = "hysteresis";
   found.frequency_hz = 0.0;
   found.times_s.clear();
-  found.hint = printed(
+  found.hint = formatted(
       "part of the bias depends on which way %s came: a loop %.3g %s wide and %.3g °/h high. No form of the "
       "model describes it and nothing of it is corrected. Let it run up and down between the same values, "
       "and look at the mounting of the coil and at its potting.",

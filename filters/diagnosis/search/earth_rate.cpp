@@ -6,9 +6,9 @@
 
 #include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -105,8 +105,8 @@ std::string earth_rate_in_words(const BlockData& data, const EarthRateOptions& o
     if (!each.is_earth_rate() || order_of(data, each) != 1) continue;
     const std::string& name = data.channels[each.channel].name;
     const double scale = gravity_in(name) / kDegreePerHour;
-    words += (words.empty() ? "" : " and ") + printed("%.3g °/h per g of ", coefficient * scale) + name +
-             printed(" (at most %.3g)", largest_earth_rate(name, options) * scale);
+    words += (words.empty() ? "" : " and ") + formatted("%.3g °/h per g of ", coefficient * scale) + name +
+             formatted(" (at most %.3g)", largest_earth_rate(name, options) * scale);
   }
   if (words.empty()) return "";
   return words + " is what the Earth's rate makes in a gyro that is turned or tilts: that is rotation, " +

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "filters/diagnosis/channels/motion.h"
-#include "filters/diagnosis/record/words.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -118,9 +118,9 @@ std::string proxies_in_words(const BlockData& data, const SearchResult& found) {
     const FineChannel& channel = data.channels[each.channel];
     const Bound bound = bound_of(grade, channel).value_or(Bound{0.0, grade.name});
     words += (words.empty() ? "" : "; ") + channel.name +
-             printed(" explains the bias by %.3g °/h per %s, %s has at most %.3g",
-                     size_of(data, each, coefficient) / kDegreePerHour, unit_of(channel.name).c_str(),
-                     bound.of, bound.most / kDegreePerHour);
+             formatted(" explains the bias by %.3g °/h per %s, %s has at most %.3g",
+                       size_of(data, each, coefficient) / kDegreePerHour, unit_of(channel.name).c_str(),
+                       bound.of, bound.most / kDegreePerHour);
   }
   if (words.empty()) return words;
   return words +
