@@ -212,7 +212,7 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
   for (std::size_t a = 0; a < kMaxAxes; ++a)
     if (found->noise[a] > 0.0) share[a] = found->noise[a] / filter_.measurement_noise;
   shares_.noise = share;
-  begin(found->ratio, found->samples);
+  begin(found->ratio, start_up_.samples());
 } catch (const std::exception&) {
   // No memory for a filter: the rate stays as measured, and says so.
 }

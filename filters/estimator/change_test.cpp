@@ -72,7 +72,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   c.weight = keep * c.weight + now.mask;
   // How many innovations of full weight the sum is worth: its variance over R.
   const Lanes n = (c.weight * (2.0 * h - c.weight) * c.worth).max(1.0);
-  Lanes evidence = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
+  Lanes evidence = common.rest_evidence - 0.5 * (mine.min(kMostSquare) + g.log_factor) * now.mask;
   Lanes& likely = c.divisor.setOnes();
   if (coloured_) {
     c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
@@ -94,13 +94,10 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
 }
 
 std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Sample& now, const Lanes& colour,
-                                            double rarity, double lag) noexcept {
-  Common common;
-  common.cap = 2.0 * rarity;
-  const double most_deviations = common.cap < kMostSquare ? std::sqrt(common.cap) : kMostDeviations;
-  common.clipped = (now.innovation * now.inverse.sqrt()).max(-most_deviations).min(most_deviations);
-  common.squares = now.surprise.min(kFarSquare);
-  common.rest_evidence = 0.5 * (now.surprise.min(common.cap) + now.log_rest_factor) * now.mask;
+                                            double lag) noexcept {
+  const Lanes capped = now.surprise.min(kMostSquare);
+  const Common common{(now.innovation * now.inverse.sqrt()).max(-kMostDeviations).min(kMostDeviations),
+                      0.5 * (capped + logarithm(now.rest_factor)) * now.mask, now.surprise.min(kFarSquare)};
   coloured_ = greatest(colour) > kColoured;
   age_ += 1.0;
   unseen_.setZero();
@@ -122,7 +119,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   }
   // Tails and colour make large innovations come together.
   seen_ = std::min(seen_ + 1.0, kTailMemory);
-  const Lanes capped = now.surprise.min(common.cap), unlikely = (fourth_ * (1.0 / 3.0)).max(1.0) * widest_;
+  const Lanes unlikely = (fourth_ * (1.0 / 3.0)).max(1.0) * widest_;
   const Lanes larger = 0.5 * (1.0 - 1.0 / kShakingVariance) * capped - std::numbers::ln2;
   shaking_ = (shaking_ + now.mask * larger / unlikely).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;

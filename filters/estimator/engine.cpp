@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filters/random/log_exp.h"
-
 namespace ifog {
 namespace {
 
@@ -24,6 +22,7 @@ constexpr double kMostPaid = 0.5;
 Engine::Engine(const FilterSettings& settings, const KnownNoise& known, std::unique_ptr<RestFilter> rest,
                int axes, double period_s)
     : settings_(settings),
+      smooths_(settings.wideband == "noise"),
       axes_(static_cast<std::size_t>(axes)),
       period_s_(period_s),
       rest_(std::move(rest)),
@@ -132,13 +131,9 @@ void Engine::begin_axes(const Step& s) noexcept {
 
 void Engine::weigh(Step& s) noexcept {
   Sample& m = s.sample;
-  const bool smooths = settings_.wideband == "noise";
-  const double projected = rest_->measurement_variance() / noise_.mean_known();
-  m.rest_factor = 1.0 + projected / s.noise_scale;
-  m.log_rest_factor = logarithm(m.rest_factor);
-  m.rest_gain = std::min(1.0, projected / (projected + s.noise_scale));
+  m.rest_factor = 1.0 + rest_->measurement_variance() / (noise_.mean_known() * s.noise_scale);
   m.scale = noise_.each(&Noise::tested) * s.noise_scale;
-  if (smooths) m.scale *= noise_.each(&Noise::heard);
+  if (smooths_) m.scale *= noise_.each(&Noise::heard);
   m.innovation = m.mask * (m.rate - rest_->measurement());
   m.inverse = m.mask / m.scale;
   const Lanes covered = to_lanes(s.in.covered_s);
@@ -157,8 +152,9 @@ void Engine::follow(Step& s) noexcept {
   // What shaking makes is no outlier among the like. Where nothing follows the motion nothing tells an outlier
   // from it.
   const Lanes allowed = f.moving ? noise_.each(&Noise::shaken) : Lanes::Ones();
-  switch (f.moving && f.mix.raw() ? Outliers::Verdict::usual
-                                  : f.outliers.take(f.trackers, s.sample, allowed, f.moving, f.lag())) {
+  switch (f.moving && f.mix.raw()
+              ? Outliers::Verdict::usual
+              : f.outliers.take(f.trackers, s.sample, allowed, f.moving, !smooths_, f.lag())) {
     case Outliers::Verdict::waits:
       s.out.flags |= kGated;
       ++health_.gated;
@@ -197,8 +193,8 @@ void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
   s.sample.short_rad = f.ledger.take_short_at_rest();
   std::optional<std::size_t> found =
-      f.change.take(f.trackers, s.sample, noise_.each(&Noise::colour), f.outliers.rarity(), f.lag());
-  if (found == ChangeTest::kShaking && settings_.wideband == "noise") found.reset();
+      f.change.take(f.trackers, s.sample, noise_.each(&Noise::colour), f.lag());
+  if (found == ChangeTest::kShaking && smooths_) found.reset();
   f.trackers.correct(s.sample.rate, s.sample.mask);
   if (found) {
     begin_manoeuvre(s, *found);
@@ -258,10 +254,9 @@ void Engine::take(Step& s, bool learn) noexcept {
       measured.rate += m.innovation.max(-most).min(most) - m.innovation;
     }
     // The mean of all axes, whichever are measured: one gain is for all.
-    const bool smooths = settings_.wideband == "noise";
     measured.share = noise_.share();
-    if (smooths) measured.share *= noise_.each(&Noise::heard);
-    const double more = smooths ? noise_.mean(measured.share) : 1.0;
+    if (smooths_) measured.share *= noise_.each(&Noise::heard);
+    const double more = smooths_ ? noise_.mean(measured.share) : 1.0;
     measured.share *= 1.0 / more;
     measured.noise_scale *= more * noise_.mean_known() / settings_.measurement_noise;
   }
@@ -310,8 +305,9 @@ void Engine::publish_rest(Step& s) noexcept {
 void Engine::publish_mix(Step& s) noexcept {
   // A measurement's variance as it is heard: what is louder may be noise.
   const Lanes heard = noise_.each(&Noise::known) * noise_.each(&Noise::louder) * s.noise_scale;
-  const Mix::Published mix = follow_.mix.publish(
-      follow_.trackers, rest_->rate(), rest_->variance() * noise_.share(), s.sample.scale.max(heard));
+  const Mix::Published mix =
+      follow_.mix.publish(follow_.trackers, rest_->rate(), rest_->variance() * noise_.share(),
+                          s.sample.scale.max(heard), follow_.lag());
   s.rate = mix.rate;
   s.variance = mix.variance;
   s.gain = mix.gain + follow_.mix.rest_weight() * rest_->gain();
@@ -331,10 +327,11 @@ void Engine::pay(Step& s) noexcept {
     if (settled && !f.settled) f.change.forget_angle();
     f.settled = settled;
   }
-  ledger.book((s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s, s.outlier   ? kDoubt
-                                                                             : f.moving  ? kDebt
-                                                                             : f.settled ? kCarried
-                                                                                         : kTail);
+  const Lanes fell_short = (s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s;
+  // In a manoeuvre as much of it is the filter's at rest as that takes part.
+  const double rests = s.outlier ? 0.0 : f.moving ? f.mix.rest_weight() : 1.0;
+  ledger.book((1.0 - rests) * fell_short, s.outlier ? kDoubt : kDebt);
+  ledger.book(rests * fell_short, f.settled ? kCarried : kTail);
   if (f.moving) ledger.pace(f.mix.length(f.trackers, follow_.lag()));
   // What a gap hides is no angle.
   const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));

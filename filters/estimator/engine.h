@@ -112,6 +112,7 @@ class Engine {
   [[nodiscard]] bool rests(const Step& s) const noexcept;
 
   FilterSettings settings_;
+  bool smooths_;  // what exceeds the known noise is noise
   std::size_t axes_;
   double period_s_;
   std::unique_ptr<RestFilter> rest_;

@@ -32,13 +32,16 @@ void check(const FilterSettings& settings, int axes, double nominal_period_s) {
   require_in_range(settings);
 }
 
-// Innovations whose random weights make chance of the gain 3 % and of the error 0.1 %.
-constexpr int kSteadyWindow = 1000;
+// Innovations whose random weights make chance of the gain 3 % and of the error 0.1 %. Noise of skewness g puts the
+// rate off by g / N of its standard deviation, which is less than what the noise leaves if N is the filter's memory.
+constexpr double kSteadyWindow = 1000.0;
 
-FilterSettings in_force(FilterSettings settings) {
+FilterSettings in_force(FilterSettings settings, double period_s) {
   if (!settings.plain) {
+    const double memory = std::sqrt(settings.measurement_noise / (settings.process_noise * period_s));
     if (settings.steady_gain && settings.follow_manoeuvres)
-      settings.window = std::max(settings.window, kSteadyWindow);
+      settings.window = std::max(settings.window,
+                                 static_cast<int>(std::clamp(memory, kSteadyWindow, 100.0 * kSteadyWindow)));
     return settings;
   }
   settings.follow_manoeuvres = settings.conserve_angle = settings.steady_gain = settings.guard = false;
@@ -50,7 +53,7 @@ FilterSettings in_force(FilterSettings settings) {
 
 Estimator::Estimator(const FilterSettings& told, int axes, double nominal_period_s, const KnownNoise& known) {
   check(told, axes, nominal_period_s);
-  const FilterSettings settings = in_force(told);
+  const FilterSettings settings = in_force(told, nominal_period_s);
   auto rest = std::make_unique<RestFilter>(
       make_state_model(settings.state, settings.state_parameters, nominal_period_s), make_rule(settings),
       settings.process_noise, settings.measurement_noise);

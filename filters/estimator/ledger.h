@@ -69,7 +69,11 @@ class Ledger {
     late_pace_ = std::max(kQuickest, samples);
   }
   // Samples that the followers of a manoeuvre look back on.
-  void pace(double followers) noexcept { pace_ = std::max(kQuickest, 0.5 * followers); }
+  void pace(double followers) noexcept { pace_ = pace_of(followers); }
+  // Samples over which their debt is paid.
+  [[nodiscard]] static double pace_of(double followers) noexcept {
+    return std::max(kQuickest, 0.5 * followers);
+  }
   [[nodiscard]] Lanes owed() const noexcept { return debt_ + late_ + tail_ + doubt_; }
 
  private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "filters/estimator/ledger.h"
 #include "filters/estimator/noise.h"
 #include "filters/random/log_exp.h"
 
@@ -15,8 +16,9 @@ namespace {
 constexpr double kPrior = 2.0;
 // Share of the difference of two neighbours' variances that white noise makes in their difference.
 constexpr double kCommon = 0.65;
-// Twice the correlation of neighbours' errors, and what payments for the angle add.
-constexpr double kCorrelated = 2.8, kPaid = 1.27;
+// Twice the correlation of neighbours' errors, 1.26 to 1.45 of the longer one's variance; and the variance, of R / n, that
+// it adds to pay over n samples what noise made the rate fall short of.
+constexpr double kCorrelated = 2.8, kPaid = 0.75;
 
 // More than an output filter makes of white noise, so that what was given says that it is no motion.
 constexpr double kStronglyColoured = 8.0;
@@ -57,24 +59,23 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   std::array<Lanes, Trackers::kMost> risk;
   risk.fill(Lanes::Zero());
   Lanes mean = Lanes::Zero();
-  double all = 0.0, output = 0.0;
+  double output = 0.0;
   for (std::size_t j = 0; j < size; ++j) {
     const Trackers::Gains& g = trackers.gains(j);
     const double gain = trackers.predicts(j) ? g.rate : 1.0;
     const Lanes left = (1.0 - gain) * (now.rate - trackers.rate(j));
     risk[j] = left * left * now.inverse + 2.0 * gain;
     mean += weight_[j] * risk[j];
-    all += weight_[j];
     output += weight_[j] * (trackers.predicts(j) ? g.output : 1.0);
   }
-  mean = all > 1e-9 ? (mean / all).eval() : risk[0];
+  mean /= 1.0 - rest_weight_;
+  output /= 1.0 - rest_weight_;
   // No follower of a motion in white noise does better than this. In coloured noise it follows the noise, and strongly
   // coloured noise nearly as the raw measurement does.
-  if (all > 1e-9) output /= all;
   mean = (colour > kColoured).select(mean.max(1.0 + output), mean);
   mean = (colour > kStronglyColoured).select(mean.max(2.0 - (1.0 - output) / colour), mean);
-  const Lanes left = (1.0 - now.rest_gain) * now.innovation;
-  const Lanes rest = left * left * now.inverse + 2.0 * now.rest_gain;
+  const double kept = 1.0 / now.rest_factor;
+  const Lanes left = kept * now.innovation, rest = left * left * now.inverse + 2.0 * (1.0 - kept);
   const Lanes ahead = (0.5 * (mean - rest)).max(-kMostNats).min(kMostNats) / colour.sqrt();
   rest_ratio_ = (now.mask > 0.0).select((rest_ratio_ + ahead).min(kMostNats), rest_ratio_);
   rest_age_ += 1.0;
@@ -97,7 +98,8 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   }
   for (std::size_t j = 2; j < size; ++j) compare(j);
   for (std::size_t j = 1; j < size; ++j) {
-    compared_[j] = std::min(compared_[j] + 1.0, 6.0 * trackers.length(j));
+    // Chance of their difference is an eighth of R at most.
+    compared_[j] = std::min(compared_[j] + 1.0, std::max(2.0 * kRestMemory, trackers.horizon(j)));
     const Lanes apart = trackers.rate(j) - trackers.rate(j - 1);
     const double common = kCommon * std::max(0.0, trackers.gains(j - 1).output - trackers.gains(j).output);
     bias_[j] += now.mask * (apart * apart - common * now.scale - bias_[j]) * (1.0 / compared_[j]);
@@ -105,7 +107,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
 }
 
 Mix::Published Mix::publish(const Trackers& trackers, const Lanes& rest, const Lanes& rest_variance,
-                            const Lanes& scale) const noexcept {
+                            const Lanes& scale, double lag) const noexcept {
   Lanes moving = Lanes::Zero(), bias = Lanes::Zero(), noise = Lanes::Zero();
   double shorter = 0.0, gain = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
@@ -123,13 +125,11 @@ Mix::Published Mix::publish(const Trackers& trackers, const Lanes& rest, const L
   out.gain = gain;
   out.rate = rest_weight_ * rest + moving;
   const double share = 1.0 - rest_weight_;
-  out.variance = kPaid * noise * scale + bias.max(0.0);
-  if (share > 1e-9) {
-    const Lanes apart = rest - moving / share;
-    out.variance += rest_weight_ * (rest_variance + share * apart * apart);
-  } else {
-    out.variance += rest_variance;
-  }
+  const double falls_short = shorter - gain;
+  const double paid = kPaid * falls_short * falls_short / Ledger::pace_of(length(trackers, lag));
+  out.variance = (noise + paid) * scale + bias.max(0.0);
+  const Lanes apart = rest - moving / share;
+  out.variance += rest_weight_ * (rest_variance + share * apart * apart);
   return out;
 }
 

@@ -38,9 +38,9 @@ class Mix {
   }
   // Corrects the trackers. coloured: 1 where R is above what third differences say.
   void take(Trackers& trackers, const Sample& now, const Lanes& colour) noexcept;
-  // rest, rest_variance: of the filter at rest; scale: R.
+  // rest, rest_variance, lag: of the filter at rest; scale: R.
   [[nodiscard]] Published publish(const Trackers& trackers, const Lanes& rest, const Lanes& rest_variance,
-                                  const Lanes& scale) const noexcept;
+                                  const Lanes& scale, double lag) const noexcept;
   // The filter at rest is surely wrong: it has to begin again from the mix.
   [[nodiscard]] bool rest_failed() const noexcept { return least(rest_ratio_) < -kFailed; }
   void begin_rest() noexcept;

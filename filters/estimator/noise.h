@@ -56,9 +56,7 @@ class Noise {
   }
   [[nodiscard]] double known() const noexcept { return known_; }
   // R for tests of motion: a rate halfway between two steps of the converter has d^2 / 4 about its mean.
-  [[nodiscard]] double tested() const noexcept {
-    return std::isfinite(digit_) ? std::max(known_, 0.25 * digit_ * digit_) : known_;
-  }
+  [[nodiscard]] double tested() const noexcept { return std::max(known_, 0.25 * digit() * digit()); }
   // By which third differences are now above their usual level: 1 unless by more than chance.
   [[nodiscard]] double louder() const noexcept {
     return taken_ > kFast && fast_ > kSurelyLouder * usual() ? heard() : 1.0;
@@ -72,16 +70,13 @@ class Noise {
   // Variance of a mean of coarse steps d, averaged over the true level: that of the sawtooth's first harmonic,
   // d / pi exp(-2 pi^2 R / d^2) (Widrow and Kollar, "Quantization Noise", 2008).
   [[nodiscard]] double rounding() const noexcept {
-    if (!std::isfinite(digit_)) return 0.0;
     // R that was learned includes the steps' own d^2 / 12; one that is less than that is of the sensor alone.
-    const double d2 = digit_ * digit_, own = of_steps(), white = known_ > 1.2 * own ? known_ - own : known_;
+    const double d2 = digit() * digit(), own = of_steps(), white = known_ > 1.2 * own ? known_ - own : known_;
     const double pi_squared = std::numbers::pi * std::numbers::pi, exponent = 4.0 * pi_squared * white / d2;
     return exponent < 600.0 ? d2 / (2.0 * pi_squared) * exponential(-exponent) : 0.0;
   }
   // Variance of one of the converter's steps.
-  [[nodiscard]] double of_steps() const noexcept {
-    return std::isfinite(digit_) ? digit_ * digit_ / 12.0 : 0.0;
-  }
+  [[nodiscard]] double of_steps() const noexcept { return digit() * digit() / 12.0; }
 
  private:
   // The cube root of a mean square of n degrees of freedom is nearly normal about 1 - 2 / 9n with variance 2 / 9n
@@ -94,6 +89,8 @@ class Noise {
     }
     colour_ = usual() < least_ * known_ ? known_ / usual() : 1.0;
   }
+  // The converter's step, rad/s; 0 until the rate has changed.
+  [[nodiscard]] double digit() const noexcept { return std::isfinite(digit_) ? digit_ : 0.0; }
   // R by third differences. A converter at rest between two changes of its last digit shows none.
   [[nodiscard]] double usual() const noexcept { return std::max({slow_, 1e-9 * known_, of_steps()}); }
   static constexpr double kThird = 20.0;                 // 1 + 9 + 9 + 1

@@ -19,10 +19,10 @@ class Outliers {
  public:
   enum class Verdict { usual, waits, jump };
 
-  // allowed: by which R may be exceeded, by axis; lag: of the filter at rest, samples. Before
-  // Trackers::correct().
+  // allowed: by which R may be exceeded, by axis; scattered: measurements may be a jump that are no nearer to each other
+  // than to the old rate; lag: of the filter at rest, samples. Before Trackers::correct().
   [[nodiscard]] Verdict take(const Trackers& trackers, const Sample& now, const Lanes& allowed, bool moving,
-                             double lag) noexcept {
+                             bool scattered, double lag) noexcept {
     // Behind a gap nothing predicts.
     if (greatest(now.mask * trackers.since()) > kShortGap) {
       run_ = 0;
@@ -55,19 +55,20 @@ class Outliers {
     axis_ = axis;
     waited_ = 0;
     ++run_;
-    // Twice the evidence is no noise's, however far apart they are.
+    // Twice the evidence is no noise's that is known, however far apart they are.
     const double evidence = static_cast<double>(run_) * rarity();
-    const bool near = moving || nearness_ >= 0.5 * logarithm(lag) || evidence > 2.0 * kEvidence;
+    const bool near =
+        moving || nearness_ >= 0.5 * logarithm(lag) || (scattered && evidence > 2.0 * kEvidence);
     return evidence > kEvidence && near ? Verdict::jump : Verdict::waits;
-  }
-  // Nats by which an outlier at rest is rare.
-  [[nodiscard]] double rarity() const noexcept {
-    return share_ < kRare * kRare ? kMostNats : std::min(kMostNats, -logarithm(share_));
   }
   [[nodiscard]] std::size_t run() const noexcept { return run_; }
   void end_run() noexcept { run_ = 0; }
 
  private:
+  // Nats by which an outlier at rest is rare.
+  [[nodiscard]] double rarity() const noexcept {
+    return std::min(kMostNats, -logarithm(std::max(share_, 1e-6)));
+  }
   // The smallest square of an innovation over its variance that any filter has.
   [[nodiscard]] static Lanes least_surprise(const Trackers& trackers, const Sample& now) noexcept {
     Lanes least = now.surprise;
@@ -80,10 +81,12 @@ class Outliers {
     return least;
   }
 
-  static constexpr double kRare = 1e-3;  // share of all measurements
+  // Share of all measurements. So many, taken in clipped, cost the filter at rest half a per cent of its variance; left
+  // out on one side only they would put its rate off.
+  static constexpr double kRare = 2e-4;
 
   Lanes last_ = Lanes::Zero();  // of the run
-  double seen_ = 0.0, share_ = 1e-8, nearness_ = 0.0, squares_ = 0.0;
+  double seen_ = 0.0, share_ = 0.0, nearness_ = 0.0, squares_ = 0.0;
   std::size_t run_ = 0;
   int waited_ = 0;         // samples of other axes since
   Eigen::Index axis_ = 0;  // of the run's last measurement

@@ -50,8 +50,7 @@ struct Sample {
   Lanes surprise = Lanes::Zero();    // square of the innovation over its predicted variance
   Lanes covered_s = Lanes::Zero();
   Lanes short_rad = Lanes::Zero();  // angle that the filter at rest has fallen short of before it
-  double rest_factor = 1.0, log_rest_factor = 0.0;  // variance of the filter's innovations over R
-  double rest_gain = 0.0;
+  double rest_factor = 1.0;         // variance of the filter's innovations over R
 };
 
 [[nodiscard]] inline double greatest(const Lanes& lanes) noexcept { return lanes.maxCoeff(); }

@@ -164,7 +164,7 @@ double Walk::white_noise(const Allan& allan, std::size_t trial, std::size_t firs
 std::optional<Walk::Found> Walk::judge() noexcept {
   const std::size_t trial = likeliest(lately_, 0.0);
   bool noise = true;
-  Found found{{}, ratio_, true, in_stretch_};
+  Found found{{}, ratio_, true};
   for (std::size_t a = 0; noise && a < kMaxAxes; ++a) {
     const Allan& allan = lately_[a];
     if (allan.counts[0] < 0.25 * kIndependent * stretch_) continue;

@@ -31,7 +31,6 @@ class Walk {
     Axes noise{};        // R of each axis in the last stretch, per sample, (rad/s)^2; 0: not known
     double ratio = 0.0;  // q dt / R
     bool white = false;  // from one sample on; else from eight on, and the noise is coloured
-    double samples = 0.0;
   };
 
   // Samples of a stretch at rest: octaves up to 256 samples, and R to 2 %.

@@ -32,8 +32,7 @@ class IrweAkfg final : public Rule {
         squares_(window_),
         kept_(window_ * draws_),
         scratch_(window_),
-        weight_sums_(draws_),
-        weighted_sums_(draws_),
+        sums_(draws_),
         estimate_(noise_) {}
 
   double innovation_covariance(const RuleInput& in) noexcept override {
@@ -59,8 +58,7 @@ class IrweAkfg final : public Rule {
     filled_ = 0;
     next_ = 0;
     estimate_ = noise_;
-    for (double& sum : weight_sums_) sum = 0.0;
-    for (double& sum : weighted_sums_) sum = 0.0;
+    for (Sums& sums : sums_) sums = {};
   }
 
  private:
@@ -71,39 +69,26 @@ class IrweAkfg final : public Rule {
       for (std::size_t b = 0; b < draws_; ++b) {
         double& weight = kept_[b * window_ + next_];
         if (filled_ == window_) {
-          weight_sums_[b] -= weight;
-          weighted_sums_[b] -= weight * leaving;
+          sums_[b].weight -= weight;
+          sums_[b].weighted -= weight * leaving;
         }
         weight = deviates_.at(sequence, static_cast<std::uint32_t>(b));
-        weight_sums_[b] += weight;
-        weighted_sums_[b] += weight * square;
+        sums_[b].weight += weight;
+        sums_[b].weighted += weight * square;
+        sums_[b].round_weight += weight;
+        sums_[b].round_weighted += weight * square;
       }
     }
     if (filled_ < window_) ++filled_;
     if (++next_ == window_) {
       next_ = 0;
-      resum();
-    }
-  }
-
-  // Once a window the running sums are taken afresh, so that rounding cannot gather in them.
-  void resum() noexcept {
-    if (fresh_) return;
-    for (std::size_t b = 0; b < draws_; ++b) {
-      double weights = 0.0;
-      double weighted = 0.0;
-      for (std::size_t i = 0; i < window_; ++i) {
-        weights += kept_[b * window_ + i];
-        weighted += kept_[b * window_ + i] * squares_[i];
-      }
-      weight_sums_[b] = weights;
-      weighted_sums_[b] = weighted;
+      for (Sums& sums : sums_) sums = {sums.round_weight, sums.round_weighted};
     }
   }
 
   double kept_average() const noexcept {
     double sum = 0.0;
-    for (std::size_t b = 0; b < draws_; ++b) sum += weighted_sums_[b] / weight_sums_[b];
+    for (const Sums& sums : sums_) sum += sums.weighted / sums.weight;
     return sum / static_cast<double>(draws_);
   }
 
@@ -141,7 +126,12 @@ class IrweAkfg final : public Rule {
   std::vector<double> squares_;  // ring of the mean squared innovation over axes, at the nominal period
   std::vector<double> kept_;     // [draw][place in the ring]
   std::vector<double> scratch_;
-  std::vector<double> weight_sums_, weighted_sums_;
+  // Of the window, by draw, and of this round of the ring alone: at its end that is the window, and it replaces the
+  // running sums, so that rounding cannot gather in them.
+  struct Sums {
+    double weight = 0.0, weighted = 0.0, round_weight = 0.0, round_weighted = 0.0;
+  };
+  std::vector<Sums> sums_;
   std::size_t next_ = 0, filled_ = 0;
   double estimate_;
 };

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mean of the last N values in O(1) a step. The running sum is taken afresh once a window, so that rounding
-// cannot gather in it.
+// Mean of the last N values in O(1) a step. At the end of each round of the ring the sum of that round alone replaces
+// the running sum, so that rounding cannot gather in it.
 #pragma once
 
 #include <cstddef>
-#include <numeric>
 #include <span>
 #include <vector>
 
@@ -18,23 +17,25 @@ class Window {
     if (full()) sum_ -= values_[next_];
     values_[next_] = value;
     sum_ += value;
+    round_sum_ += value;
     if (!full()) ++filled_;
     if (++next_ == values_.size()) {
       next_ = 0;
-      sum_ = std::accumulate(values_.begin(), values_.end(), 0.0);
+      sum_ = round_sum_;
+      round_sum_ = 0.0;
     }
   }
   [[nodiscard]] bool full() const noexcept { return filled_ == values_.size(); }
   [[nodiscard]] double mean() const noexcept { return sum_ / static_cast<double>(filled_); }
   void clear() noexcept {
     next_ = filled_ = 0;
-    sum_ = 0.0;
+    sum_ = round_sum_ = 0.0;
   }
 
  private:
   std::vector<double> values_;
   std::size_t next_ = 0, filled_ = 0;
-  double sum_ = 0.0;
+  double sum_ = 0.0, round_sum_ = 0.0;
 };
 
 // Axes share R, so each step's evidence is the mean over them.

@@ -128,8 +128,8 @@ TEST(Motion, ThatIsUnderWayAtTheFirstSampleIsNoColour) {
   }
   EXPECT_LT(worst_off, 1.0);
   // Noise alone turns, over the lag of some 70 samples that the filter at rest has, by 70 / sqrt(70) sigma
-  // samples.
-  EXPECT_LT(worst_angle, 3.0 * std::sqrt(70.0));
+  // samples, and by half as much again with what is not settled: of forty the worst is at three of these.
+  EXPECT_LT(worst_angle, 4.5 * std::sqrt(70.0));
 }
 
 // The same where neighbours have half of their noise in common, which no tracker foresees: that it moves is
