@@ -23,19 +23,17 @@ Engine::Engine(const FilterSettings& settings, const KnownNoise& known, std::uni
                int axes, double period_s)
     : settings_(settings),
       smooths_(settings.wideband == "noise"),
+      follows_(settings.follow_manoeuvres && rest->rate_alone()),
       axes_(static_cast<std::size_t>(axes)),
       period_s_(period_s),
       rest_(std::move(rest)),
       noise_(settings, known, axes_, period_s),
-      follow_(axes_, period_s) {
-  follow_.moving = settings.follow_manoeuvres && rest_->rate_alone();
-}
+      follow_(axes_, period_s, follows_) {}
 
 void Engine::restart() noexcept {
   rest_->restart();
   const Lanes owed = follow_.ledger.owed();
-  follow_ = Follower(axes_, period_s_);
-  follow_.moving = settings_.follow_manoeuvres && rest_->rate_alone();
+  follow_ = Follower(axes_, period_s_, follows_);
   if (owed.abs().sum() > 0.0) follow_.ledger.owe(owed);
   noise_.break_off();
   started_ = 0;
@@ -75,9 +73,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
     publish_rest(s);
   }
   if (settings_.guard) guard(s);
-  if (follow_.moving && follow_.failed_nats >= kEvidence && settings_.follow_manoeuvres &&
-      follow_.mix.rest_weight() < 0.5)
-    out.flags |= kManoeuvre;
+  if (follow_.in_manoeuvre()) out.flags |= kManoeuvre;
   if (rests(s)) out.flags |= kAtRest;
   learn(s);
   unmeasured_.take(s.sample, s.rate, s.variance, s.gain, grown * noise_.walk_share(), started_,
@@ -104,11 +100,11 @@ void Engine::screen(Step& s) noexcept {
 // The first measurement of an axis sets its state.
 void Engine::begin_axes(const Step& s) noexcept {
   Follower& f = follow_;
-  const bool follows = settings_.follow_manoeuvres && rest_->rate_alone();
   // What the rate did in a gap nobody knows: the filter at rest has to stand by what is measured now.
-  if (follows && !f.moving && s.sample.valid != 0 && s.dt_s > kShortGap * period_s_) {
+  if (follows_ && !f.moving && s.sample.valid != 0 && s.dt_s > kShortGap * period_s_) {
     f.moving = true;
     f.failed_nats = 0.0;
+    f.ledger.admit();
     f.mix.begin_from_rest();
     f.change.begin();
   }
@@ -117,7 +113,7 @@ void Engine::begin_axes(const Step& s) noexcept {
   rest_->shift_to(s.sample.rate, first);
   f.trackers.seed(s.sample.rate, mask_of(first));
   // An axis that comes late is one that begins, and all share one gain.
-  if (follows && started_ != 0) {
+  if (follows_ && started_ != 0) {
     rest_->set_variance(noise_.mean_known());
     f.since_moved = 0.0;
     f.moving = true;
@@ -168,9 +164,9 @@ void Engine::follow(Step& s) noexcept {
       jump(s);
       break;
     case Outliers::Verdict::usual:
-      if (follow_.outliers.run() > 0) break;
+      if (f.outliers.run() > 0) break;
       // In a manoeuvre an outlier may be rotation.
-      follow_.moving ? follow_.ledger.admit() : follow_.ledger.dismiss();
+      f.in_manoeuvre() ? f.ledger.admit() : f.ledger.dismiss();
       break;
   }
   follow_.moving ? follow_manoeuvre(s) : follow_rest(s);
@@ -375,8 +371,8 @@ void Engine::publish(const Step& s) noexcept {
   }
   health_.floor_hits = rest_->rule().floor_hits();
   if (s.in.sequence % kLagEvery == 0 || follow_.settled_lag == 0.0) refresh_lag();
-  health_.group_delay_s = period_s_ * follow_.settled_lag *
-                          (follow_.moving && settings_.follow_manoeuvres ? follow_.mix.rest_weight() : 1.0);
+  health_.group_delay_s =
+      period_s_ * follow_.settled_lag * (follow_.moving ? follow_.mix.rest_weight() : 1.0);
 }
 
 // The lag of the filter at rest once it has settled.

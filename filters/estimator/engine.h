@@ -44,11 +44,16 @@ class Grades {
 // The two ways in which the rate is followed, and the state that belongs to them.
 class Follower {
  public:
-  Follower(std::size_t axes, double period_s) noexcept : trackers(axes), change(trackers), ledger(period_s) {}
+  Follower(std::size_t axes, double period_s, bool begins_moving) noexcept
+      : trackers(axes), change(trackers), ledger(period_s), moving(begins_moving) {}
 
   // Lag of the filter at rest, samples; after a move at most the number of samples received since.
   [[nodiscard]] double lag() const noexcept {
     return std::max(1.0, std::min(settled_lag, since_moved + 1.0));
+  }
+
+  [[nodiscard]] bool in_manoeuvre() const noexcept {
+    return moving && failed_nats >= kEvidence && mix.rest_weight() < 0.5;
   }
 
   Trackers trackers;
@@ -56,7 +61,7 @@ class Follower {
   Outliers outliers;
   Mix mix;
   Ledger ledger;
-  bool moving = true;  // nobody knows at the beginning: rest has to be found
+  bool moving;  // nobody knows at the beginning: rest has to be found
   // Nats by which the filter at rest has failed since nothing was known. A start at rest looks like a motion, and is
   // called one only once chance does not explain them.
   double failed_nats = 0.0;
@@ -113,6 +118,7 @@ class Engine {
 
   FilterSettings settings_;
   bool smooths_;  // what exceeds the known noise is noise
+  bool follows_;  // motion, beside the filter at rest
   std::size_t axes_;
   double period_s_;
   std::unique_ptr<RestFilter> rest_;

@@ -57,7 +57,6 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   const std::size_t size = trackers.size();
   seen_ = seen_.max(now.mask);
   std::array<Lanes, Trackers::kMost> risk;
-  risk.fill(Lanes::Zero());
   Lanes mean = Lanes::Zero();
   double output = 0.0;
   for (std::size_t j = 0; j < size; ++j) {
@@ -76,7 +75,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   mean = (colour > kStronglyColoured).select(mean.max(2.0 - (1.0 - output) / colour), mean);
   const double kept = 1.0 / now.rest_factor;
   const Lanes left = kept * now.innovation, rest = left * left * now.inverse + 2.0 * (1.0 - kept);
-  const Lanes ahead = (0.5 * (mean - rest)).max(-kMostNats).min(kMostNats) / colour.sqrt();
+  const Lanes ahead = (0.5 * (mean - rest)).max(-kMostNats).min(kMostNats);
   rest_ratio_ = (now.mask > 0.0).select((rest_ratio_ + ahead).min(kMostNats), rest_ratio_);
   rest_age_ += 1.0;
   // Whether the raw measurement is better is asked at once, as broadband motion stays no longer; among trackers
