@@ -32,16 +32,19 @@ void check(const FilterSettings& settings, int axes, double nominal_period_s) {
   require_in_range(settings);
 }
 
-// Innovations whose random weights make chance of the gain 3 % and of the error 0.1 %. Noise of skewness g puts the
-// rate off by g / N of its standard deviation, which is less than what the noise leaves if N is the filter's memory.
-constexpr double kSteadyWindow = 1000.0;
+// Innovations whose random weights make chance of the gain 3 % and of the error 0.1 %. Beyond, a gain that goes with
+// the innovation puts the rate off by g / N standard deviations in noise of skewness g, and the noise leaves
+// (q dt / R)^(1/4) of them: of that g = 2, an exponential's, is a tenth where N is 20 (R / q dt)^(1/4). 120 kB
+// a sensor are the most.
+constexpr double kSteadyWindow = 1000.0, kSkewed = 20.0, kLongestWindow = 5 * kSteadyWindow;
 
 FilterSettings in_force(FilterSettings settings, double period_s) {
   if (!settings.plain) {
-    const double memory = std::sqrt(settings.measurement_noise / (settings.process_noise * period_s));
+    const double leaves =
+        std::sqrt(std::sqrt(settings.process_noise * period_s / settings.measurement_noise));
     if (settings.steady_gain && settings.follow_manoeuvres)
-      settings.window = std::max(settings.window,
-                                 static_cast<int>(std::clamp(memory, kSteadyWindow, 100.0 * kSteadyWindow)));
+      settings.window = std::max(
+          settings.window, static_cast<int>(std::clamp(kSkewed / leaves, kSteadyWindow, kLongestWindow)));
     return settings;
   }
   settings.follow_manoeuvres = settings.conserve_angle = settings.steady_gain = settings.guard = false;
