@@ -32,16 +32,13 @@ void check(const FilterSettings& settings, int axes, double nominal_period_s) {
   require_in_range(settings);
 }
 
-// Innovations whose random weights make chance of the gain 3 % and of the error 0.1 %. Beyond, a gain that goes with
-// the innovation puts the rate off by g / N standard deviations in noise of skewness g, and the noise leaves
-// (q dt / R)^(1/4) of them: of that g = 2, an exponential's, is a tenth where N is 20 (R / q dt)^(1/4). 120 kB
-// a sensor are the most.
-constexpr double kSteadyWindow = 1000.0, kSkewed = 20.0, kLongestWindow = 5 * kSteadyWindow;
+// Innovations whose random weights make chance of the gain 3 % and of the error 0.1 %. Beyond, noise of skewness g puts
+// the rate off by g / N deviations, a tenth of the (q dt / R)^(1/4) that noise leaves where g = 2 and N is 20 over that.
+constexpr double kSteadyWindow = 1000.0, kSkewed = 20.0, kLongestWindow = 5 * kSteadyWindow;  // 120 kB
 
 FilterSettings in_force(FilterSettings settings, double period_s) {
   if (!settings.plain) {
-    const double leaves =
-        std::sqrt(std::sqrt(settings.process_noise * period_s / settings.measurement_noise));
+    const double leaves = std::pow(settings.process_noise * period_s / settings.measurement_noise, 0.25);
     if (settings.steady_gain && settings.follow_manoeuvres)
       settings.window = std::max(
           settings.window, static_cast<int>(std::clamp(kSkewed / leaves, kSteadyWindow, kLongestWindow)));

@@ -17,6 +17,8 @@
 namespace ifog {
 namespace {
 
+// The joint fit is linear in the logarithm of a time constant: further it is not to be trusted.
+constexpr double kFarthest = 0.3;
 // Standard errors a curvature has to be from zero before it is followed beyond the range that showed it.
 constexpr double kWellKnown = 5.0;
 constexpr int kHighestFollowed = 3;  // higher powers stand for a law that is none
@@ -76,7 +78,19 @@ std::vector<Effect> effects_of(const BlockData& data, const std::vector<Candidat
 JointFit settle(const BlockData& reconstructed, SearchResult& found) {
   JointFit joint = joint_fit(reconstructed, candidates_of(found.chosen), found.coefficients, found.noise);
   const Eigen::Index linear = found.coefficients.size();
-  // The joint fit is straight in what was searched; the coefficients that belong to what the search found are not.
+  for (std::size_t j = 0; j < joint.searched.size(); ++j) {
+    Candidate& candidate = found.chosen[joint.searched[j]].candidate;
+    const double near =
+        std::clamp(joint.values[linear + static_cast<Eigen::Index>(j)], -kFarthest, kFarthest);
+    const bool second = j > 0 && joint.searched[j - 1] == joint.searched[j];
+    if (!candidate.is_transition())
+      candidate.time_constant_s *= std::exp(near);
+    else if (second)
+      candidate.centre += near * candidate.half_width;
+    else
+      candidate.half_width *= std::exp(near);
+  }
+  // The joint fit is straight in what was searched; the coefficients that belong to where it led are not.
   joint.of_coefficients = joint.covariance.topLeftCorner(linear, linear);
   if (!joint.searched.empty()) {
     const JointFit there = joint_fit_at(reconstructed, candidates_of(found.chosen), found.noise);
