@@ -72,7 +72,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   c.weight = keep * c.weight + now.mask;
   // How many innovations of full weight the sum is worth: its variance over R.
   const Lanes n = (c.weight * (2.0 * h - c.weight) * c.worth).max(1.0);
-  Lanes evidence = common.rest_evidence - 0.5 * (mine.min(kMostSquare) + g.log_factor) * now.mask;
+  Lanes evidence = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
   Lanes& likely = c.divisor.setOnes();
   if (coloured_) {
     c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
@@ -94,10 +94,11 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
 }
 
 std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Sample& now, const Lanes& colour,
-                                            double lag) noexcept {
-  const Lanes capped = now.surprise.min(kMostSquare);
+                                            double rarity, double lag) noexcept {
+  const Lanes capped = now.surprise.min(2.0 * rarity);
   const Common common{(now.innovation * now.inverse.sqrt()).max(-kMostDeviations).min(kMostDeviations),
-                      0.5 * (capped + logarithm(now.rest_factor)) * now.mask, now.surprise.min(kFarSquare)};
+                      0.5 * (capped + logarithm(now.rest_factor)) * now.mask, now.surprise.min(kFarSquare),
+                      2.0 * rarity};
   coloured_ = greatest(colour) > kColoured;
   age_ += 1.0;
   unseen_.setZero();

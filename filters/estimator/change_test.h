@@ -26,10 +26,10 @@ class ChangeTest {
   // Index of "no tracker: the measurements are larger than the known noise".
   static constexpr std::size_t kShaking = Trackers::kMost;
 
-  // colour: Noise::colour() of each axis; lag: of the filter at rest, samples. The tracker that foresees the change,
-  // kShaking, or nothing. Before Trackers::correct().
+  // colour: Noise::colour() of each axis; rarity: Outliers::rarity(); lag: of the filter at rest, samples. The tracker
+  // that foresees the change, kShaking, or nothing. Before Trackers::correct().
   std::optional<std::size_t> take(const Trackers& trackers, const Sample& now, const Lanes& colour,
-                                  double lag) noexcept;
+                                  double rarity, double lag) noexcept;
   // A manoeuvre was found, or begins with the filter: what is known of the noise stays.
   void begin() noexcept;
   [[nodiscard]] bool suspected() const noexcept { return suspected_; }
@@ -54,6 +54,7 @@ class ChangeTest {
   };
   struct Common {
     Lanes clipped, rest_evidence, squares;
+    double cap;
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
                const Lanes& colour) noexcept;

@@ -189,7 +189,7 @@ void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
   s.sample.short_rad = f.ledger.take_short_at_rest();
   std::optional<std::size_t> found =
-      f.change.take(f.trackers, s.sample, noise_.each(&Noise::colour), f.lag());
+      f.change.take(f.trackers, s.sample, noise_.each(&Noise::colour), f.outliers.rarity(), f.lag());
   if (found == ChangeTest::kShaking && smooths_) found.reset();
   f.trackers.correct(s.sample.rate, s.sample.mask);
   if (found) {

@@ -61,14 +61,12 @@ class Outliers {
         moving || nearness_ >= 0.5 * logarithm(lag) || (scattered && evidence > 2.0 * kEvidence);
     return evidence > kEvidence && near ? Verdict::jump : Verdict::waits;
   }
+  // Nats by which an outlier at rest is rare: it counts for no more, as two come together by chance.
+  [[nodiscard]] double rarity() const noexcept { return std::min(kMostNats, -logarithm(share_ + 1e-6)); }
   [[nodiscard]] std::size_t run() const noexcept { return run_; }
   void end_run() noexcept { run_ = 0; }
 
  private:
-  // Nats by which an outlier at rest is rare.
-  [[nodiscard]] double rarity() const noexcept {
-    return std::min(kMostNats, -logarithm(std::max(share_, 1e-6)));
-  }
   // The smallest square of an innovation over its variance that any filter has.
   [[nodiscard]] static Lanes least_surprise(const Trackers& trackers, const Sample& now) noexcept {
     Lanes least = now.surprise;
