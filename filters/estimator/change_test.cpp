@@ -80,7 +80,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     // Until it is learned the width is the widest that the known noise allows with its third differences.
     const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
     const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
-    likely = (colour > kColoured).select(wide.max(1.0), likely);
+    likely = (colour > kColoured).select((wide / common.louder).max(1.0), likely);
     widest_ = widest_.max(likely);
     evidence /= likely;
   }
@@ -98,7 +98,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   const Lanes capped = now.surprise.min(2.0 * rarity);
   const Common common{(now.innovation * now.inverse.sqrt()).max(-kMostDeviations).min(kMostDeviations),
                       0.5 * (capped + logarithm(now.rest_factor)) * now.mask, now.surprise.min(kFarSquare),
-                      2.0 * rarity};
+                      (second_ / kOtherNoise).max(1.0), 2.0 * rarity};
   coloured_ = greatest(colour) > kColoured;
   age_ += 1.0;
   unseen_.setZero();
@@ -118,12 +118,13 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
       found = j;
     }
   }
-  // Tails and colour make large innovations come together.
+  // Tails and colour make large innovations come together. What makes all of them larger than the known noise is neither.
   seen_ = std::min(seen_ + 1.0, kTailMemory);
-  const Lanes unlikely = (fourth_ * (1.0 / 3.0)).max(1.0) * widest_;
+  const Lanes unlikely = (fourth_ / (3.0 * common.louder.square())).max(1.0) * widest_;
   const Lanes larger = 0.5 * (1.0 - 1.0 / kShakingVariance) * capped - std::numbers::ln2;
   shaking_ = (shaking_ + now.mask * larger / unlikely).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
+  second_ += now.mask * (capped - second_) / seen_;
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;
   return found;
 }

@@ -53,7 +53,7 @@ class ChangeTest {
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {
-    Lanes clipped, rest_evidence, squares;
+    Lanes clipped, rest_evidence, squares, louder;  // the latter: than the known noise may be, in variance
     double cap;
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
@@ -63,7 +63,8 @@ class ChangeTest {
 
   std::array<Contest, Trackers::kMost> contest_{};
   std::array<Lanes, Trackers::kMost> short_;
-  Lanes shaking_ = Lanes::Zero(), fourth_ = Lanes::Constant(3.0);
+  Lanes shaking_ = Lanes::Zero();
+  Lanes second_ = Lanes::Ones(), fourth_ = Lanes::Constant(3.0);  // moments of the innovations
   Lanes unseen_ = Lanes::Zero(), widest_ = Lanes::Ones();
   double seen_ = 64.0, age_ = 0.0;  // the latter: samples of rest
   bool suspected_ = false, coloured_ = false;

@@ -6,8 +6,6 @@
 namespace ifog {
 namespace {
 
-// Known noise is replaced where a stretch differs by this factor.
-constexpr double kOtherNoise = 2.0;
 // Louder noise than is known has to be white for so long, and for two stretches.
 constexpr double kLouder_s = 60.0;
 

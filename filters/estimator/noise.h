@@ -22,8 +22,8 @@
 
 namespace ifog {
 
-// Noise is coloured if Noise::colour() is above this.
-inline constexpr double kColoured = 1.1;
+inline constexpr double kColoured = 1.1;    // noise is coloured if Noise::colour() is above this
+inline constexpr double kOtherNoise = 2.0;  // known noise is replaced where a stretch differs by this factor
 
 class Noise {
  public:

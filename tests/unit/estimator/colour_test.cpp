@@ -3,8 +3,12 @@
 // not find any in it, and must still find a real one.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <filesystem>
 #include <numbers>
+#include <span>
 
+#include "drivers/capture/capture.h"
 #include "tests/unit/estimator/drive.h"
 
 namespace {
@@ -39,6 +43,12 @@ double spread(const std::vector<double>& values, std::size_t from) {
   return std::sqrt(mean_square_error(values, std::vector<double>(values.size(), 0.0), from));
 }
 
+std::size_t moving(const Filtered& got, std::size_t from, std::size_t until) {
+  const auto flags = std::span(got.flags).subspan(from, until - from);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(flags, [](std::uint32_t each) { return (each & ifog::kManoeuvre) != 0; }));
+}
+
 class ColouredNoise : public testing::TestWithParam<Colour> {};
 
 TEST_P(ColouredNoise, IsNotTakenForManoeuvres) {
@@ -50,10 +60,7 @@ TEST_P(ColouredNoise, IsNotTakenForManoeuvres) {
     const Filtered followed = run(settings, measured);
     settings.follow_manoeuvres = false;
     const Filtered plain = run(settings, measured);
-    std::size_t moving = 0;
-    for (std::size_t i = kLearned; i < followed.flags.size(); ++i)
-      moving += (followed.flags[i] & ifog::kManoeuvre) != 0 ? 1U : 0U;
-    EXPECT_EQ(moving, 0U) << "seed " << seed;
+    EXPECT_EQ(moving(followed, kLearned, kLength), 0U) << "seed " << seed;
     EXPECT_LT(spread(followed.denoised, kLearned), 1.15 * spread(plain.denoised, kLearned))
         << "seed " << seed;
   }
@@ -84,10 +91,7 @@ TEST(StronglyColouredNoise, IsNotFollowedForEver) {
     for (std::size_t i = change; i < measured.size(); ++i) owed_anyway += unchanged.denoised[i] - measured[i];
     for (std::size_t i = change; i < measured.size(); ++i) measured[i] += 40.0;
     const Filtered got = run(told(1e-6), measured);
-    std::size_t moving = 0;
-    for (std::size_t i = kLearned; i < change; ++i)
-      moving += (got.flags[i] & ifog::kManoeuvre) != 0 ? 1U : 0U;
-    EXPECT_EQ(moving, 0U) << "correlation " << correlation;
+    EXPECT_EQ(moving(got, kLearned, change), 0U) << "correlation " << correlation;
     const std::vector<double> before(got.denoised.begin(),
                                      got.denoised.begin() + static_cast<std::ptrdiff_t>(change));
     EXPECT_LT(spread(before, kLearned), 1.2 * plain) << "correlation " << correlation;
@@ -107,18 +111,16 @@ TEST(StronglyColouredNoise, IsNotFollowedForEver) {
 TEST(StronglyColouredNoise, IsNotFollowedOnceAMotionIsOver) {
   constexpr int kFrom = 40'000, kUntil = 44'000, kLength = 100'000;
   for (const double correlation : {0.8, 0.9, 0.95}) {
-    double moving = 0.0;
-    constexpr int kSeeds = 4;
-    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+    std::size_t follows = 0;
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       std::vector<double> measured = coloured({"", correlation, 0.0, 0.0}, 10 + seed, kLength);
       for (std::size_t i = kFrom; i < kUntil; ++i)
         measured[i] += 30.0 * std::sin(2 * std::numbers::pi * static_cast<double>(i - kFrom) / 2000.0);
       const Filtered got = run(told(1e-3), measured);
       EXPECT_GE(got.health.manoeuvres, 1U);
-      for (std::size_t i = kUntil; i < measured.size(); ++i)
-        moving += (got.flags[i] & ifog::kManoeuvre) != 0 ? 1.0 / (kSeeds * (kLength - kUntil)) : 0.0;
+      follows += moving(got, kUntil, kLength);
     }
-    EXPECT_LT(moving, 0.2) << "correlation " << correlation;
+    EXPECT_LT(follows, 4U * (kLength - kUntil) / 5U) << "correlation " << correlation;
   }
 }
 
@@ -127,15 +129,7 @@ TEST(StronglyColouredNoise, IsNotFollowedOnceAMotionIsOver) {
 TEST(StronglyColouredNoise, ThatBeginsLikeAMotionIsNotFollowedForEver) {
   for (const auto& [correlation, seeds] : {std::pair{0.9, 40U}, {0.98, 180U}}) {
     for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-      std::mt19937_64 random(seed);
-      std::normal_distribution<double> normal;
-      std::vector<double> measured;
-      double walk = 0.0, noise = normal(random);
-      for (int i = 0; i < 8000; ++i) {
-        walk += 1e-3 * normal(random);
-        noise = correlation * noise + std::sqrt(1.0 - correlation * correlation) * normal(random);
-        measured.push_back(walk + noise);
-      }
+      const std::vector<double> measured = coloured({"", correlation, 0.0, 0.0}, seed, 8000);
       EXPECT_EQ(run(told(1e-6), measured).flags.back() & ifog::kManoeuvre, 0U)
           << "correlation " << correlation << ", seed " << seed;
     }
@@ -144,18 +138,28 @@ TEST(StronglyColouredNoise, ThatBeginsLikeAMotionIsNotFollowedForEver) {
 
 // But a motion is one before the noise is known from rest, too.
 TEST(SmallMotion, IsNotTakenForTheNoiseThatWasTold) {
-  for (const double noise : {1.0}) {
-    for (const double amplitude : {3.0, 10.0}) {
-      for (const double period : {50.0, 100.0, 400.0}) {
-        const Record r = record(3, 12'000, 1e-6, [&](int i) {
-          return i < 3000 ? 0.0 : amplitude * std::sin(2 * std::numbers::pi * i / period);
-        });
-        const Filtered got = run(told(1e-6, noise), r.measured);
-        EXPECT_LT(std::sqrt(mean_square_error(got.denoised, r.truth, 6000)), 1.0)
-            << "noise " << noise << ", " << amplitude << " sigma over " << period << " samples";
-      }
+  for (const double amplitude : {3.0, 10.0}) {
+    for (const double period : {50.0, 100.0, 400.0}) {
+      const Record r = record(3, 12'000, 1e-6, [&](int i) {
+        return i < 3000 ? 0.0 : amplitude * std::sin(2 * std::numbers::pi * i / period);
+      });
+      EXPECT_LT(std::sqrt(mean_square_error(run(told(1e-6), r.measured).denoised, r.truth, 6000)), 1.0)
+          << amplitude << " sigma over " << period << " samples";
     }
   }
+}
+
+// A plate that rocks by some standard deviations of a sensor on it, and grows out of its noise slowly. What is published is
+// no farther from what was measured than its noise.
+TEST(SmallMotion, OfARockingPlateIsNoColour) {
+  const std::string path = std::string(IFOG_SHARED_DATA) + "/sub_tilt_y.csv.gz";
+  if (!std::filesystem::exists(path))
+    GTEST_SKIP() << path << " is not there; the shared captures beside the project make this run";
+  const ifog::Capture capture = ifog::read_capture(path);
+  std::vector<double> measured;
+  for (const double rate : capture.rate_radps[0])
+    measured.push_back(rate / 9.4e-7);  // as `ifog compare` finds
+  EXPECT_LT(std::sqrt(mean_square_error(run(told(1e-3), measured).denoised, measured, 0)), 1.25);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, ColouredNoise,
