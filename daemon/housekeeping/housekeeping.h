@@ -29,8 +29,8 @@ class Housekeeping {
   ~Housekeeping();
 
   // Until SIGTERM, SIGINT or the end of all files; these and SIGHUP must be blocked in the calling thread, so
-  // that all threads block them. Returns 0, or 1 when no sensor can run or a file could not be read. Throws std::runtime_error with one line where another daemon works with the state folder or reads
-  // a device.
+  // that all threads block them. Returns 0, or 1 when no sensor can run or a file could not be read. Throws
+  // std::runtime_error with one line where another daemon works with the state folder or reads a device.
   int run();
 
  private:

@@ -10,9 +10,9 @@
 
 namespace ifog {
 
-// With the text of the model and of the files that the driver's options name, so that another computer reads
-// the recording as this one would. Files that cannot be read now or are larger than
-// kInputLimits.carried_bytes together are missing, and who reads the recording has to name them. `noise`: what the filter begins with of earlier runs, as the file it is kept in; "" for none.
+// With the text of the model and of the files that the driver's options name, so that another computer reads the recording as
+// this one would. Files that cannot be read now or are larger than kInputLimits.carried_bytes together are missing, and who
+// reads the recording has to name them. `noise`: what the filter begins with, as the file of it; "" for none.
 FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver,
                            const std::string& noise);
 

@@ -63,11 +63,11 @@ struct Unexplained {
   std::vector<double> times_s;  // "bursts"
 };
 
-// Heading error of the next capture, corrected by the model: the bias is taken over the first `aligned_s`
-// seconds at rest and held, and the angle is integrated from then on. Promised is the root of the error's
-// expected square: the noise, as uncertain as the record leaves it; the errors of the effects' parameters,
-// time constants included; effects outside the range they were fitted on; and effects that are known but not corrected online, a line at any phase and a
-// ramp going on. Not in it: what the diagnosis did not see, and steps, which nothing announces.
+// Heading error of the next capture, corrected by the model: the bias is taken over the first `aligned_s` seconds
+// at rest and held, and the angle is integrated from then on. Promised is the root of the error's expected square:
+// the noise, as uncertain as the record leaves it; the errors of the effects' parameters, time constants included;
+// effects outside the range they were fitted on; and effects that are known but not corrected online, a line at any
+// phase and a ramp going on. Not in it: what the diagnosis did not see, and steps, which nothing announces.
 struct HeadingPrediction {
   double aligned_s = 0.0;
   std::vector<double> after_s;    // times since the end of the alignment

@@ -28,9 +28,9 @@ class RowChecks {
 
   // The next rows in the file's units, at least one. Throws std::runtime_error with one line, as finish().
   void take(RowBlock& rows);
-  // found: of each column, values that no sensor measures. A few such values are faults of the logger and become missing. A rate with more than one
-  // in a hundred is not what its name says and is refused. A channel only becomes missing, because a broken
-  // thermometer does not make the rate useless.
+  // found: of each column, values that no sensor measures. A few such values are faults of the logger and
+  // become missing. A rate with more than one in a hundred is not what its name says and is refused. A
+  // channel only becomes missing, because a broken thermometer does not make the rate useless.
   void finish(std::span<const Fault> found);
 
   // Rows received, repeated ones included.

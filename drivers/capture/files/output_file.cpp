@@ -65,8 +65,8 @@ Destination destination_of(const std::string& path, std::error_code& error) {
   return follow(path, error);
 }
 
-// Name of a file that is being written. It has no process number: one left by a kill would block every later process of that number,
-// the same each day on a computer that starts alike.
+// Name of a file that is being written. It has no process number: one left by a kill would block every
+// later process of that number, the same each day on a computer that starts alike.
 std::string passing_name() {
   std::uint64_t number = 0;
   if (::getrandom(&number, sizeof number, 0) != static_cast<ssize_t>(sizeof number))

@@ -17,7 +17,7 @@ namespace ifog {
 struct JointFit {
   NoisePosterior noise;
   // Nuisances (one constant a record), the coefficient of each effect, then one entry for each searched
-  // parameter, in the order of the effects: the logarithm of a time constant; two of a transition, the logarithm of its half width, and its middle in half widths.
+  // parameter, in their order: the logarithm of a time constant, or of a half width and the middle in half widths.
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;
   // Covariance of the coefficients with the searched parameters known. It decides whether there is an effect: where

@@ -42,7 +42,7 @@ TEST(Regimes, EveryRecordIsWhole) {
     EXPECT_EQ(missing > 0, one.name.starts_with("missing"));
     EXPECT_GE(one.limit_at(1e-3), one.limit_at(1e-6));
   }
-  // 33 of the limits' table, two of more noise that is followed, four vehicles at three sample rates and twelve swings that the record begins in, noise given or not.
+  // 33 of the limits' table, two of followed noise; four vehicles at three rates and twelve starts, noise given or not.
   EXPECT_EQ(names.size(), 33U + 2 + 2 * (4 * 3 + 12));
 }
 

@@ -20,9 +20,9 @@
 
 namespace ifog::tools {
 
-// A driver as the commands make it: its warnings are printed, and the files that its settings name are read: no output of the run is one of them
-// (command_files.h). folders: that plugins are looked for in; empty: the standard places. Throws as
-// DriverInstance does.
+// A driver as the commands make it: its warnings are printed, and the files that its settings name are
+// read: no output of the run is one of them (command_files.h). folders: that plugins are looked for in;
+// empty: the standard places. Throws as DriverInstance does.
 [[nodiscard]] DriverInstance driver_of_run(const std::string& name, const DriverSettings& settings,
                                            const std::vector<std::string>& folders = {});
 

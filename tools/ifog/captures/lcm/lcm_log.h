@@ -15,11 +15,11 @@
 
 namespace ifog::tools {
 
-// `channel` empty: the log's only IFOG_… channel with rates, or else its only one of a type of peer_reader.h.
-// Time is the sensor's own clock where it has one, else the fitted time, counted from the first message. Environment channels are those of the sensor's status
-// and of ifog.channel_t, see lcm_channels.h. Throws std::runtime_error with one line: no log, no such channel
-// (those there are named), several where none was chosen, a message that is no rate_t, time that does not go
-// on.
+// `channel` empty: the log's only IFOG_… channel with rates, or else its only one of a type of
+// peer_reader.h. Time is the sensor's own clock where it has one, else the fitted time, counted from the
+// first message. Environment channels are those of the sensor's status and of ifog.channel_t, see
+// lcm_channels.h. Throws std::runtime_error with one line: no log, no such channel (those there are named),
+// several where none was chosen, a message that is no rate_t, time that does not go on.
 void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink);
 
 // What the daemon published, in the columns of `ifog denoise`: raw, compensated and denoised rate and
