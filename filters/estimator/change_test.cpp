@@ -72,7 +72,6 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   c.weight = keep * c.weight + now.mask;
   // How many innovations of full weight the sum is worth: its variance over R.
   const Lanes n = (c.weight * (2.0 * h - c.weight) * c.worth).max(1.0);
-  Lanes evidence = common.rest_evidence - 0.5 * (mine.min(common.cap) + g.log_factor) * now.mask;
   Lanes& likely = c.divisor.setOnes();
   if (coloured_) {
     c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
@@ -82,8 +81,11 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
     likely = (colour > kColoured).select((wide / common.louder).max(1.0), likely);
     widest_ = widest_.max(likely);
-    evidence /= likely;
   }
+  // Neighbours in coloured noise are large together. An outlier is as rare in it as elsewhere.
+  const Lanes share = now.mask / likely;
+  const Lanes evidence = 0.5 * ((now.surprise * share).min(common.cap) - (mine * share).min(common.cap) +
+                                (common.log_rest - g.log_factor) * share);
   const Lanes limit = c.spread * n * likely, square = c.shrinks * c.sum.square();
   if ((square > limit).any()) expect(c, h, (square - limit) / (n * likely), now);
   short_[j] = keep * short_[j] + now.short_rad;
@@ -97,8 +99,8 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
                                             double rarity, double lag) noexcept {
   const Lanes capped = now.surprise.min(2.0 * rarity);
   const Common common{(now.innovation * now.inverse.sqrt()).max(-kMostDeviations).min(kMostDeviations),
-                      0.5 * (capped + logarithm(now.rest_factor)) * now.mask, now.surprise.min(kFarSquare),
-                      (second_ / kOtherNoise).max(1.0), 2.0 * rarity};
+                      now.surprise.min(kFarSquare), (second_ / kOtherNoise).max(1.0), 2.0 * rarity,
+                      logarithm(now.rest_factor)};
   coloured_ = greatest(colour) > kColoured;
   age_ += 1.0;
   unseen_.setZero();
@@ -120,9 +122,9 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   }
   // Tails and colour make large innovations come together. What makes all of them larger than the known noise is neither.
   seen_ = std::min(seen_ + 1.0, kTailMemory);
-  const Lanes unlikely = (fourth_ / (3.0 * common.louder.square())).max(1.0) * widest_;
-  const Lanes larger = 0.5 * (1.0 - 1.0 / kShakingVariance) * capped - std::numbers::ln2;
-  shaking_ = (shaking_ + now.mask * larger / unlikely).max(0.0);
+  const Lanes tails = (fourth_ / (3.0 * common.louder.square())).max(1.0);
+  const Lanes larger = (0.5 - 0.5 / kShakingVariance) * (now.surprise / widest_).min(common.cap);
+  shaking_ = (shaking_ + now.mask * (larger - std::numbers::ln2 / widest_) / tails).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
   second_ += now.mask * (capped - second_) / seen_;
   if (!found && greatest(shaking_) > kEvidence) found = kShaking;

@@ -53,8 +53,8 @@ class ChangeTest {
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {
-    Lanes clipped, rest_evidence, squares, louder;  // the latter: than the known noise may be, in variance
-    double cap;
+    Lanes clipped, squares, louder;  // the latter: than the known noise may be, in variance
+    double cap, log_rest;
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
                const Lanes& colour) noexcept;

@@ -32,13 +32,11 @@ inline constexpr double kMostSquare = kMostDeviations * kMostDeviations;
 inline constexpr double kMostNats = 0.5 * kMostSquare;
 // Where outliers are frequent, and where sizes are compared, those up to 20 standard deviations are measurements.
 inline constexpr double kFarSquare = 400.0;
-// Nats of evidence that decide: by chance once in 6e7 samples.
-inline constexpr double kEvidence = 18.0;
+inline constexpr double kEvidence = 18.0;  // nats that decide: by chance once in 6e7 samples
 // Samples after which a filter that was moved is one at rest again; and that may be lost in a row, or pass until
 // an outlier is explained.
 inline constexpr double kRestMemory = 64.0, kShortGap = 16.0;
-// Samples over which the shape of the noise is averaged: how often outliers come, and their fourth moment.
-inline constexpr double kTailMemory = 8192.0;
+inline constexpr double kTailMemory = 8192.0;  // samples over which tails and outliers are averaged
 
 struct Sample {
   std::uint32_t valid = 0;

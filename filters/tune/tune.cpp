@@ -204,6 +204,7 @@ Tuning tune(std::span<const std::span<const double>> axes, double period_s, cons
   const Data data = scaled(axes, period_s);
   const std::vector<std::string> states = options.states.empty() ? default_candidates() : options.states;
   std::vector<ModelCandidate> candidates;
+  candidates.reserve(states.size());
   for (const std::string& state : states) candidates.emplace_back(state, period_s);
   const RecordSpectrum spectrum = spectrum_of(data.axes);
   const std::size_t length = data.axes[0].size();

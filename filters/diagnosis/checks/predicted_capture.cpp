@@ -29,6 +29,7 @@ Split split_at(const BlockData& data, const std::vector<Candidate>& effects,
                const std::vector<std::size_t>& group, std::size_t record) {
   const Columns joint = design(data, effects);
   std::vector<Eigen::Index> mine;
+  mine.reserve(group.size());
   for (const std::size_t i : group) mine.push_back(column_of(data.grid, i));
   const auto g = static_cast<Eigen::Index>(mine.size());
   Split split{Columns::Zero(joint.rows(), joint.cols() + g), g};

@@ -65,6 +65,7 @@ std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::s
   for (const Record& record : records) period = std::max(period, wrap_period(values_of(record, channel)));
   if (!(period > 0.0)) return std::nullopt;
   std::vector<PhasedRecord> phased;
+  phased.reserve(records.size());
   for (const Record& record : records)
     phased.push_back({&record, [counts = values_of(record, channel), period](std::size_t i) {
                         return counts[i] / period;

@@ -51,6 +51,7 @@ std::vector<Slow> slow_samples(const std::vector<EvenError>& errors, const std::
 void leave_out_noise(std::vector<Slow>& slow) {
   constexpr double kOwnNoise = 5.0;  // standard deviations
   std::vector<double> bends;
+  bends.reserve(slow.size());
   for (const Slow& each : slow) bends.push_back(std::abs(each.bend));
   if (bends.empty()) return;
   const double noise = median(std::move(bends)) / (0.6745 * std::sqrt(6.0));
@@ -84,6 +85,7 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   std::sort(slow.begin(), slow.end(),
             [](const Slow& a, const Slow& b) { return std::abs(a.rate) < std::abs(b.rate); });
   std::vector<double> gained;  // by all samples up to that rate
+  gained.reserve(slow.size());
   double sum = 0.0;
   for (const Slow& each : slow) gained.push_back(sum += each.gain);
   if (gained.empty() || !(white_variance > 0.0)) return std::nullopt;

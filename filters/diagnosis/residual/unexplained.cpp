@@ -212,6 +212,7 @@ Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& 
   std::vector<SpectralLine> peaks;
   if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, grid.sample_s, significance);
   std::vector<NoiseChange> changes;
+  changes.reserve(noise_changes.size());
   for (const NoiseChangeIn& each : noise_changes) changes.push_back(each.change);
   return describe_unexplained(longest.before, longest.after, longest.origin.told(longest.start_s),
                               grid.sample_s, noise, grid, peaks, changes);
