@@ -73,6 +73,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   // How many innovations of full weight the sum is worth: its variance over R.
   const Lanes n = (c.weight * (2.0 * h - c.weight) * c.worth).max(1.0);
   Lanes& likely = c.divisor.setOnes();
+  Lanes share = now.mask;
   if (coloured_) {
     c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
     c.wide += now.mask * (c.sum.square() / n - c.wide) / (h * (c.horizons + 1.0));
@@ -81,9 +82,8 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
     likely = (colour > kColoured).select((wide / common.louder).max(1.0), likely);
     widest_ = widest_.max(likely);
+    share /= likely;  // neighbours are large together, but an outlier is as rare as elsewhere
   }
-  // Neighbours in coloured noise are large together. An outlier is as rare in it as elsewhere.
-  const Lanes share = now.mask / likely;
   const Lanes evidence = 0.5 * ((now.surprise * share).min(common.cap) - (mine * share).min(common.cap) +
                                 (common.log_rest - g.log_factor) * share);
   const Lanes limit = c.spread * n * likely, square = c.shrinks * c.sum.square();
