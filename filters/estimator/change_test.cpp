@@ -82,7 +82,7 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
     const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
     likely = (colour > kColoured).select((wide / common.louder).max(1.0), likely);
     widest_ = widest_.max(likely);
-    share /= likely;  // neighbours are large together, but an outlier is as rare as elsewhere
+    share /= likely;  // correlated neighbours count once; the limit is an outlier's rarity
   }
   const Lanes evidence = 0.5 * ((now.surprise * share).min(common.cap) - (mine * share).min(common.cap) +
                                 (common.log_rest - g.log_factor) * share);
@@ -120,7 +120,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
       found = j;
     }
   }
-  // Tails and colour make large innovations come together. What makes all of them larger than the known noise is neither.
+  // Tails and colour make large innovations come together. If all are larger than the known noise, that is motion.
   seen_ = std::min(seen_ + 1.0, kTailMemory);
   const Lanes tails = (fourth_ / (3.0 * common.louder.square())).max(1.0);
   const Lanes larger = (0.5 - 0.5 / kShakingVariance) * (now.surprise / widest_).min(common.cap);

@@ -53,7 +53,7 @@ class ChangeTest {
     Lanes rest = Lanes::Zero(), rest2 = Lanes::Zero(), tracker = Lanes::Zero();
   };
   struct Common {
-    Lanes clipped, squares, louder;  // the latter: than the known noise may be, in variance
+    Lanes clipped, squares, louder;  // louder: variance over the most of the known noise
     double cap, log_rest;
   };
   void contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
