@@ -50,14 +50,14 @@ bool are_counts(const TableSample& table, const Rates& rates) {
                      [&](const RateCandidate& rate) { return is_whole(table.cells[rate.place]); });
 }
 
-// A rate at rest is noise from row to row; what was summed up is not, and neither is a rate in motion.
+// A rate in motion is as smooth as an angle, so only a lone column without a name is offered as an angle first.
 std::vector<std::string> units_of(const TableSample& table, const Rates& rates) {
   std::vector<std::string> units{"rad/s", "deg/s", "rad/sample", "deg/sample"};
   const auto is_summed = [&](const RateCandidate& rate) { return is_smooth(table.cells[rate.place]); };
   if (rates.front().increment)
     std::rotate(units.begin(), units.begin() + 2, units.end());
   else if (std::any_of(rates.begin(), rates.end(), is_summed))
-    units.insert(units.begin(), {"rad", "deg"});
+    units.insert(!table.named && rates.size() == 1 ? units.begin() : units.end(), {"rad", "deg"});
   return units;
 }
 

@@ -48,13 +48,13 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       // NCLT data set, kvh.csv: the heading of a FOG.
       {rows_of("", "13578472480{i}0000,{angle}"),
        {"--column 'rate_radps=#2:rad'", "in the place of rad: deg, rad/s"}},
+      // Sensor Logger, Gyroscope.csv: a rate in motion is as smooth as an angle.
+      {rows_of("time,seconds_elapsed,z,y,x\n", "1691674007{i}000000,1.{i},{angle},{y},{x}"),
+       {"--column rate_z_radps=z:rad/s", "in the place of rad/s: deg/s, rad/sample, deg/sample, rad, deg"}},
       // VectorNav, user manual, $VNIMU: magnetic field, acceleration, rates, temperature, pressure.
-      {rows_of(
-           "",
-           "$VNIMU,-00.0350,+00.4222,-00.6643,-00.015,+00.019,+09.80{digit},{x},{y},{z},+20.7,+084.322*00"),
+      {rows_of("", "$VNIMU,-0.0350,+0.4222,-0.6643,-0.015,+0.019,+9.80{digit},{x},{y},{z},+20.7,+84.322*00"),
        {"to read it: --sample-rate HZ --column 'rate_x_radps=#8:rad/s' --column 'rate_y_radps=#9:rad/s' "
-        "--column "
-        "'rate_z_radps=#10:rad/s'; in"}},
+        "--column 'rate_z_radps=#10:rad/s'; in"}},
       // OxIOD data set, imu.csv: roll, pitch, yaw, rates, gravity.
       {rows_of("", "1505306516.{i},0.01,0.02,{angle},{x},{y},{z},0.1,0.2,0.97"),
        {"--column 'rate_x_radps=#5:rad/s' --column 'rate_y_radps=#6:rad/s' --column 'rate_z_radps=#7:rad/s'; "

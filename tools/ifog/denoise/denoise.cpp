@@ -169,11 +169,11 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
          options.capture.c_str(), static_cast<unsigned long long>(result.counts.mixed));
   if (rows.none_filtered())
     warn(
-        "%s: %s: denoised is the compensated rate; expected a --model of 'ifog tune' at rest, "
-        "--process-noise and --measurement-noise, or a shorter --start-up\n",
+        "%s: %s: denoised is the compensated rate; expected a --model of 'ifog tune' at rest, or "
+        "--process-noise and --measurement-noise\n",
         options.capture.c_str(),
-        result.noise_known ? "what is wanted of it lies within the start-up that shows its noise"
-                           : "no rest in it is as long as the start-up that shows its noise");
+        result.noise_known ? "these rows are before the noise is known"
+                           : "no 4096 samples in a row are white (dither, lines, drift, motion)");
   tell_unusable(options.capture, rows, result);
   tell_not_as_published(options, rows, result);
   say("%s: %zu samples at %g Hz, %s\n", options.capture.c_str(), rows.written(), result.sample_rate_hz,
@@ -186,8 +186,7 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
                                        : "each as it was");
   const FilterSettings& filter = result.filter;
   if (rows.none_filtered())
-    say("filter %s, state %s: not run, the noise is not known%s\n", filter.rule.c_str(), filter.state.c_str(),
-        result.noise_known ? " there" : "");
+    say("filter %s, state %s: not run\n", filter.rule.c_str(), filter.state.c_str());
   else
     say("filter %s, state %s, process noise %.4g (rad/s)^2/s, measurement noise %.4g (rad/s)^2%s\n",
         filter.rule.c_str(), filter.state.c_str(), filter.process_noise, filter.measurement_noise,
@@ -198,9 +197,7 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
 // What the chain dropped as invalid takes no part; what it compensated does: the same effects are removed.
 void smooth(DenoisedColumns& columns, const OfflineResult& result) {
   if (!result.noise_known)
-    throw std::runtime_error(
-        "--smooth: the capture is shorter than the start-up that would show its noise; "
-        "expected --process-noise and --measurement-noise");
+    throw std::runtime_error("--smooth: the noise is not known; expected a --model of 'ifog tune' at rest");
   std::vector<std::span<const double>> rates;
   for (const DenoisedAxis& axis : columns.axes) rates.emplace_back(axis.compensated);
   const AxisNoise noise{result.shares.noise, result.shares.walk, result.learns_walk};

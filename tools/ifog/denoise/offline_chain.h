@@ -63,7 +63,7 @@ struct OfflineResult {
   AxisShares shares;                  // ChainParts::shares()
   bool learns_walk = false;           // ChainParts::learns_walk()
   bool noise_learned = false;         // from the first seconds
-  bool noise_known = true;            // false: the record is shorter than the start-up
+  bool noise_known = true;            // false: no stretch of the record shows it
   std::vector<std::string> left_out;  // effects of the model that are not corrected
   std::string model;                  // identity
   double sample_rate_hz = 0.0;        // nominal
