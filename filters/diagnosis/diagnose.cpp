@@ -179,14 +179,12 @@ class Run {
     write_before_and_after(errors_, data_.grid.sample_s, data_.reference >= 0, result_);
   }
 
-  // The corrected effect that is most likely chance by its own error bar, if there is one.
+  // The effect that is most likely chance by its own error bar, if there is one.
   [[nodiscard]] std::optional<std::size_t> least_proven() const {
     std::optional<std::size_t> least;
     for (std::size_t i = 0; i < found_.chosen.size(); ++i) {
       const double p = result_.effects[i].p_value;
-      if (found_.chosen[i].candidate.corrected() && p > options_.significance &&
-          (!least || p > result_.effects[*least].p_value))
-        least = i;
+      if (p > options_.significance && (!least || p > result_.effects[*least].p_value)) least = i;
     }
     return least;
   }
