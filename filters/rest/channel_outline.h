@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A channel of any length in a few thousand means: enough for what a temperature does to a rate.
+// Summary of a channel of any length by at most 4096 means, enough for the slow effect of temperature on
+// rate.
 #pragma once
 
 #include <cmath>
@@ -19,10 +20,10 @@ class ChannelOutline {
   explicit ChannelOutline(std::string name) : name_(std::move(name)) {}
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  // Rows to a mean: a power of two.
+  // Rows per mean, a power of two.
   [[nodiscard]] std::size_t rows() const { return rows_; }
-  // Mean of each `rows()` rows from the first on, in the channel's unit; NaN where none of them has a value. Rows
-  // behind the last whole mean are dropped.
+  // Mean of each `rows()` rows from the first row on, in the channel's unit; NaN where a group has no value.
+  // An incomplete last group is dropped.
   [[nodiscard]] const std::vector<double>& means() const { return means_; }
 
   void add(std::span<const double> values) {

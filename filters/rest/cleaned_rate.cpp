@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kStuck = 8;  // equal samples in a row
 
-// None where values stand for several samples as a rule.
+// Empty if repeated values are normal in this record.
 std::vector<Stretch> stuck_runs(const SeriesView& rate, std::span<const Stretch> parts) {
   std::vector<Stretch> stuck;
   std::size_t runs = 0, single = 0;
@@ -52,14 +52,14 @@ std::optional<LongSeries> with(const SeriesView& rate, std::vector<Replacement> 
     for (; next != replacements.end() && next->samples.begin < end; ++next) {
       const std::size_t from = std::max(next->samples.begin, first), to = std::min(next->samples.end, end);
       std::fill_n(repaired.begin() + static_cast<std::ptrdiff_t>(from - first), to - from, next->value);
-      if (next->samples.end > end) break;  // it goes on in the next piece
+      if (next->samples.end > end) break;  // the rest is in the next piece
     }
     out->add(repaired);
   });
   return out;
 }
 
-// Samples that leap and are to be missing.
+// Samples to be set to NaN.
 std::vector<Replacement> leaps_in(const SeriesView& rate, const std::vector<Stretch>& parts, LeapOf of,
                                   const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
   const Glitches leaps = find_glitches(rate, parts, of);

@@ -13,12 +13,12 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kSlowMeans = 32;  // of the record: a temperature is slower
+constexpr std::size_t kSlowMeans = 32;  // per record; temperature is slower
 constexpr std::size_t kFewestMeans = 16;
-// Two random walks that know nothing of each other share this much of their variance once in ten records.
+// Two independent random walks reach this squared correlation in one of ten records.
 constexpr double kLeastShare = 0.7;
 
-// Means of the rate at rest and of a channel over the same rows.
+// Means of the rate at rest and of the channel over the same rows.
 struct Pairs {
   std::vector<double> rate, channel;
 };
@@ -27,7 +27,7 @@ Pairs pairs_of(const SeriesView& rate, std::span<const Stretch> parts, std::size
                const ChannelOutline& channel) {
   const std::size_t group = std::max<std::size_t>(1, channel.means().size() / kSlowMeans),
                     rows = group * channel.rows();
-  const std::size_t begin = (first_row + rows - 1) / rows;  // first group that lies inside
+  const std::size_t begin = (first_row + rows - 1) / rows;  // first group inside the record
   Pairs pairs;
   for (std::size_t g = begin; (g + 1) * group <= channel.means().size(); ++g) {
     const std::size_t from = g * rows - first_row, to = from + rows;
@@ -51,7 +51,6 @@ double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Straight line of the rate over the channel.
 struct Line {
   double slope = 0.0, share = 0.0;
 };
@@ -66,7 +65,7 @@ Line line_of(const Pairs& pairs) {
   return xx > 0.0 && yy > 0.0 ? Line{xy / xx, xy * xy / (xx * yy)} : Line{};
 }
 
-// The rate less the line; between the middles of two means of the channel it goes straight.
+// The rate minus the line, linearly interpolated between the centres of the channel's means.
 LongSeries less_line(const SeriesView& rate, std::size_t first_row, const ChannelOutline& channel,
                      double slope) {
   const std::vector<double>& means = channel.means();
@@ -102,7 +101,7 @@ std::optional<FollowedChannel> followed_channel(const SeriesView& rate, std::spa
   NoiseCoefficients without;
   try {
     without = noise_coefficients(AngleSum(less, parts), period_s);
-  } catch (const std::invalid_argument&) {  // nothing is left but the channel
+  } catch (const std::invalid_argument&) {  // the channel explains everything
   }
   for (const auto term : {&NoiseCoefficients::B, &NoiseCoefficients::K, &NoiseCoefficients::R}) {
     NoiseCoefficient& c = found.*term;

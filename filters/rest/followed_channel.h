@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether slow noise of a rate is what a channel of the file does: a temperature's effect passes for a rate
-// random walk.
+// Finds the channel of the file that explains most of a rate's slow noise. An effect of temperature looks
+// like a rate random walk.
 #pragma once
 
 #include <optional>
@@ -16,12 +16,13 @@ namespace ifog {
 
 struct FollowedChannel {
   std::string name;
-  double share = 0.0;  // of the variance of the rate's slow means that is linear in the channel
+  // of the variance of the rate's slow means, explained by a straight line over the channel
+  double share = 0.0;
 };
 
-// rate: rad/s of the rows from `first_row` of the outlines' on; parts: its stretches at rest. The channel that
-// most of the slow means of the rate follow, if any. Then B, K and R are estimated again without it, and the
-// error bar of each holds the difference.
+// Channel that the slow means of the rate follow most, or nullopt. Then B, K and R are estimated again
+// without its effect, and their error bars are widened by the difference. rate: rad/s, starts at row
+// `first_row` of the outlines; parts: its stretches at rest.
 std::optional<FollowedChannel> followed_channel(const SeriesView& rate, std::span<const Stretch> parts,
                                                 std::size_t first_row, double period_s,
                                                 std::span<const ChannelOutline> channels,

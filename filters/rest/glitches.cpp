@@ -15,23 +15,23 @@ namespace ifog {
 namespace {
 
 constexpr double kFar = 30.0;
-// In white noise a sample less the median of its neighbours has 1.5 times its variance.
+// 1.5 is the variance, relative to the noise, of a white sample minus the mean of its two neighbours.
 constexpr double kOfMedian = 1.4826 / 1.224744871391589;
-// Samples about one: a change of the noise fills at least half of a block or of the next one. Of fewer second
-// differences no deviation is computed, and of as many it is off by a fifth at times.
+// Samples per local block. With fewer than kLeast second differences the local deviation is not used; with
+// kLeast its error reaches a fifth.
 constexpr std::size_t kNear = 64, kLeast = 16;
-constexpr double kLouder = 2.0;
+constexpr double kLocalAbove = 2.0;
 constexpr std::size_t kOneInAtMost = 1000;
-constexpr std::size_t kLongest = 7;       // samples of one value: of more it is a value that was repeated
-constexpr double kRounding = 1e-12;       // of a value
-constexpr std::size_t kEnough = 100'000;  // second differences whose median is as good as that of all
+constexpr std::size_t kLongest = 7;       // samples; a longer run is a repeated value
+constexpr double kRounding = 1e-12;       // relative
+constexpr std::size_t kEnough = 100'000;  // enough second differences for the median
 
-// A sample with two neighbours: how far it is from what is between them, and from the one before.
+// A sample with two neighbours: its distances from their mean and from the sample before.
 struct Middle {
   double value = 0.0, away = 0.0, step = 0.0;
 };
 
-// use(i, middle) for each.
+// Calls use(i, middle) for each sample that has both neighbours.
 template <typename Use>
 void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use use) {
   for (const Stretch& part : parts) {
@@ -48,7 +48,7 @@ void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use
   }
 }
 
-// What a leap is measured against.
+// Noise deviation that a leap is compared with.
 class Yardstick {
  public:
   Yardstick(const SeriesView& rate, std::span<const Stretch> parts) : rate_(rate), parts_(parts) {
@@ -67,23 +67,23 @@ class Yardstick {
     });
     if (some.size() < 3) return;
     all_ = kOfMedian * median(some);
-    // Most neighbours of a coarse sensor are the same, but for the rounding of their digits.
+    // Most neighbours of a sensor with coarse resolution are equal except for rounding.
     least_ = std::max(kRounding * largest_, std::isfinite(smallest_step) ? 0.5 * smallest_step : 0.0);
   }
-  // Farthest from zero, which the record is more than once.
+  // The value farthest from zero, if it occurs more than once.
   [[nodiscard]] bool is_placeholder(double value) const { return times_ > 1 && std::abs(value) == largest_; }
-  // Whether even between the farthest values nothing can leap.
+  // True if not even the two extreme values differ enough for a leap.
   [[nodiscard]] bool is_quiet() const { return 2.0 * largest_ <= kFar * least(); }
-  // No more than at() says anywhere.
+  // Lower limit of at().
   [[nodiscard]] double least() const { return std::max(all_, least_); }
-  // At sample i: noise of the whole record, or of the neighbourhood where that is higher, so that growing noise is
-  // no fault; 0 where nothing moves. i: none before that of the last call.
+  // Deviation at sample i: the whole record's, or the local one if that is higher, so that growing noise is
+  // no fault; 0 if the value does not change. i must not decrease from call to call.
   [[nodiscard]] double at(std::size_t i) {
     const std::size_t block = i / kNear;
     double near = 0.0;
     for (std::size_t b = block - std::min<std::size_t>(block, 1); b < block + 2; ++b)
       near = std::max(near, near_at(b));
-    return std::max(near > kLouder * all_ ? near : all_, least_);
+    return std::max(near > kLocalAbove * all_ ? near : all_, least_);
   }
 
  private:
@@ -92,12 +92,11 @@ class Yardstick {
     double deviation = 0.0;
   };
 
-  // The deviation of a block of samples, of those of them that have two neighbours. Worked out when something
-  // in it or next to it may leap, which is seldom.
+  // Deviation of one block of samples. Computed only where a leap is possible.
   double near_at(std::size_t block) {
     Near& known = near_[block % near_.size()];
     if (known.block == block) return known.deviation;
-    // Parts and their first and last samples besides what is asked for.
+    // The parts within the block, with one more sample on either side.
     const std::size_t begin = block * kNear, end = std::min(begin + kNear, rate_.size());
     std::vector<Stretch> here;
     for (const Stretch& part : parts_)
@@ -111,9 +110,9 @@ class Yardstick {
 
   const SeriesView& rate_;
   std::span<const Stretch> parts_;
-  std::array<Near, 4> near_;  // by block, in turn
+  std::array<Near, 4> near_;  // cache
   double all_ = 0.0, least_ = 0.0, largest_ = 0.0;
-  std::size_t times_ = 0;  // that largest_ stands
+  std::size_t times_ = 0;  // number of samples with largest_
 };
 
 }  // namespace
@@ -124,9 +123,9 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
   if (yardstick.is_quiet()) return out;
   std::size_t samples = 0;
   for (const Stretch& part : parts) samples += part.size();
-  // One in the shortest of records is no habit of its sensor yet.
+  // One outlier is accepted even in a very short record.
   const std::size_t most = samples / kOneInAtMost + 1;
-  std::size_t end = 0, various = 0;  // end: of the last one; various: samples that are no placeholder
+  std::size_t end = 0, various = 0;  // end of the last outlier; samples that are no placeholder
   for_each_run(rate, parts, [&](const Run& run) {
     const double between = 0.5 * (run.before + run.after), away = std::abs(run.value - between);
     const bool placeholder = of == LeapOf::kOneValue && yardstick.is_placeholder(run.value);
@@ -135,7 +134,7 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
     if (!(away > kFar * yardstick.least()) || std::abs(run.after - run.before) >= 0.5 * away) return;
     const double deviation = yardstick.at(run.begin);
     if (!(deviation > 0.0) || away <= kFar * deviation) return;
-    // Between two that leap the one in the middle stands apart as well.
+    // The sample between two outliers looks like one too.
     if (run.begin == end) return;
     end = run.begin + run.length;
     if (out.count == 0) out.first = run.begin;

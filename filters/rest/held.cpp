@@ -16,10 +16,10 @@ constexpr std::size_t kLeastHeld = 64, kMostRuns = 4096;
 HeldApart apart_from_held(const SeriesView& rate, const std::vector<Stretch>& parts) {
   const std::size_t least = std::max(kLeastHeld, rate.size() / kMostRuns);
   HeldApart out;
-  std::size_t steps = 0, changes = 0;  // where it moves
+  std::size_t steps = 0, changes = 0;  // outside held stretches
   for (const Stretch& part : parts) {
     Stretch moving{part.begin, part.begin};
-    std::size_t values = 0;  // that follow one another in it
+    std::size_t values = 0;  // runs in `moving`
     const auto end_moving = [&] {
       if (moving.size() == 0) return;
       out.moving.push_back(moving);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stretches in which the value stands exactly still though it moves elsewhere: a logger that repeats its last
-// value, a sensor that has not begun. They are no quiet noise, and no yardstick of noise either.
+// Stretches where the value does not change at all although it changes elsewhere: the logger repeats its last
+// value, or the sensor has not started. They must not enter a noise estimate.
 #pragma once
 
 #include <vector>
@@ -10,11 +10,12 @@
 namespace ifog {
 
 struct HeldApart {
-  std::vector<Stretch> held, moving;  // in order; together what was asked about
+  std::vector<Stretch> held, moving;  // in order; together all of `parts`
 };
 
-// Held: from 64 samples on, and a four-thousandth of the record, if of the steps elsewhere at least half are
-// changes: of chance one in 1e19. A sensor whose steps are coarse against its noise has no held stretches.
+// Splits `parts`. Held: runs of equal values from 64 samples and 1/4096 of the record on, if at least half of
+// the other steps are changes. So a sensor whose resolution is coarse against its noise has no held
+// stretches.
 [[nodiscard]] HeldApart apart_from_held(const SeriesView& rate_radps, const std::vector<Stretch>& parts);
 
 }  // namespace ifog

@@ -14,51 +14,49 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kTimes = 64;
-// Parts of a time whose middle ones count: an outlier spoils one or two.
+// Quarters of a time cell; the middle two are used, so that an outlier does not count.
 constexpr std::size_t kFine = 4;
 constexpr std::size_t kCells = kTimes * kFine;
 constexpr std::size_t kMostOctaves = 40;
-// Coefficients in a time at least; with fewer times of twice the length an octave is looked at in those.
+// Coefficients a cell needs; below, cells are joined in pairs.
 constexpr double kFewest = 8.0;
 constexpr std::size_t kFewestTimes = 8;
-// From so many coefficients on a time is parted, else an outlier in it is one of few and counts.
+// Cells with fewer coefficients are not divided into quarters.
 constexpr double kParted = 32.0;
-// A departure, over its standard deviation, that the noise of one octave has in any of the two thousand
-// stretches in fewer than one record of two thousand: as simulated, tests/bench/allan.
+// Departure in standard deviations that the noise of one octave reaches in fewer than one of 2000 records,
+// over all stretches (simulated, tests/bench/allan).
 constexpr double kSurely = 5.2;
-// Change of the deviation. Less is of no consequence.
+// Smaller changes of the deviation do not matter.
 constexpr double kMaterial = 1.25;
-// Those octaves of a stretch that was found count as changed, too, in which it departs by this.
+// Departure at which a further octave of the found stretch counts as changed.
 constexpr double kAlso = 3.0;
 constexpr std::size_t kMostChanges = 3;
-// A coefficient counts for so many times the usual one at most, of normal noise's one in fifteen thousand;
-// the usual one is the mean of so many.
+// A coefficient is limited to this multiple of the usual magnitude (normal noise exceeds it once in 15000).
+// The usual magnitude is a mean over kUsual coefficients.
 constexpr double kMostTimes = 5.0;
 constexpr double kUsual = 128.0;
-// Relative difference below which two values are the same: their rounding. Most neighbours of a coarse sensor are
-// the same; what is usual is said by those that are not.
+// Values closer than this, relatively, are equal except for rounding. Most neighbours of a coarse sensor are.
 constexpr double kRoundedAway = 1e-13;
-// Beyond, what is loud or quiet stands against next to nothing.
-constexpr double kMostLoud = 1e6;
-// A step of so many usual ones is a spike if it is back within so many samples.
+// Limit of the reported ratio; avoids a division by almost zero.
+constexpr double kMostRatio = 1e6;
+// A step of kSpike usual steps is a spike if it returns within kMostReplaced samples.
 constexpr double kSpike = 10.0;
 constexpr int kMostReplaced = 3;
 
-// Sums of the magnitudes of one octave's coefficients by the time they are at. Not of their squares, which
-// noise with long tails has no mean of that would settle; for normal noise that costs an eighth of what they
-// say.
+// Sums of coefficient magnitudes of one octave, by time cell. Squares would not converge for heavy-tailed
+// noise; magnitudes cost an eighth of the information for normal noise.
 struct Octave {
   std::array<double, kCells> magnitudes{}, counts{};
-  double beyond_rounding = 0.0;  // so many of them all
+  double beyond_rounding = 0.0;  // count of coefficients beyond rounding
 };
 
-// Scaling coefficients go in one by one, every second one brings a wavelet coefficient and a scaling
-// coefficient of the next octave. Daubechies, "Ten Lectures on Wavelets" (1992), table 6.1, N = 2.
+// Wavelet filter bank: each scaling coefficient in; every second one yields a wavelet coefficient and a
+// scaling coefficient of the next octave. Daubechies, "Ten Lectures on Wavelets" (1992), table 6.1, N = 2.
 class Pyramid {
  public:
   explicit Pyramid(std::size_t samples) : samples_(samples) {}
 
-  // A new stretch begins.
+  // Starts a new stretch.
   void begin() {
     levels_ = {};
     replaced_ = 0;
@@ -78,8 +76,8 @@ class Pyramid {
   [[nodiscard]] const std::vector<Octave>& octaves() const { return octaves_; }
 
  private:
-  // A few samples far beyond what neighbours differ by are the one before them: in slow octaves, of which a
-  // time has few coefficients, a spike would be loud noise.
+  // Replaces a spike of a few samples by the sample before it. Slow octaves have few coefficients per cell,
+  // so a spike would look like a higher noise level.
   double despiked(double rate) {
     const double step = std::abs(rate - accepted_);
     const bool first = levels_[0].count == 0;
@@ -96,8 +94,7 @@ class Pyramid {
     return rate;
   }
 
-  // value / count, of which there are kUsual nearly always: a power of two, by which the product is the
-  // quotient to the bit.
+  // value / count. For count = kUsual, a power of two, the product equals the quotient to the bit.
   static double over(double value, double count) {
     constexpr double kPart = 1.0 / kUsual;
     return count == kUsual ? value * kPart : value / count;
@@ -106,8 +103,8 @@ class Pyramid {
   struct Level {
     std::array<double, 4> last{};
     std::size_t count = 0;
-    std::size_t cell = 0, cell_end = 0;  // of the last coefficient; where the next one begins, 0 at first
-    double usual = 0.0, met = 0.0;       // mean magnitude of its coefficients beyond rounding, over so many
+    std::size_t cell = 0, cell_end = 0;  // cell of the last coefficient; begin of the next cell, 0 at first
+    double usual = 0.0, met = 0.0;       // mean magnitude beyond rounding, and how many
   };
   // (1 - sqrt 3, sqrt 3 - 3, 3 + sqrt 3, -1 - sqrt 3) / (4 sqrt 2).
   static constexpr std::array<double, 4> kHigh{-0.12940952255126037, -0.22414386804201339,
@@ -115,7 +112,7 @@ class Pyramid {
 
   void add(std::size_t octave, std::size_t at, double coefficient, double rounding) {
     if (octave >= octaves_.size()) octaves_.resize(octave + 1);
-    // It reaches back over three of its octave's lengths: half of that.
+    // Centre of the filter, which spans three samples of its octave.
     const std::size_t place = at - std::min(at, std::size_t{3} << octave);
     Level& level = levels_[octave];
     if (place >= level.cell_end) {
@@ -126,7 +123,7 @@ class Pyramid {
     octaves_[octave].counts[cell] += 1.0;
     if (std::abs(coefficient) <= rounding) return;
     octaves_[octave].beyond_rounding += 1.0;
-    // An outlier counts for no more than what is rare; what stays loud soon is the usual.
+    // The limit suppresses outliers; a lasting higher level soon becomes the usual.
     level.met = std::min(level.met + 1.0, kUsual);
     const double magnitude = level.met < kFewest ? std::abs(coefficient)
                                                  : std::min(std::abs(coefficient), kMostTimes * level.usual);
@@ -141,12 +138,12 @@ class Pyramid {
   std::vector<Octave> octaves_;
 };
 
-// Square roots of the mean magnitudes of one octave by time, nearly normal.
-struct Loudness {
-  std::vector<double> root;        // of the times that have coefficients enough
-  std::vector<std::size_t> cell;   // where each begins, kCells a record
-  double deviation = 0.0;          // of one of them while the noise is the same
-  std::size_t cells_each = kFine;  // of a time
+// Square roots of one octave's mean magnitudes by time cell, nearly normal.
+struct NoiseLevel {
+  std::vector<double> root;        // of the cells with enough coefficients
+  std::vector<std::size_t> cell;   // index of the first cell, kCells per record
+  double deviation = 0.0;          // of one root while the level is constant
+  std::size_t cells_each = kFine;  // cells per root
 };
 
 double count_of(const Octave& octave, std::size_t begin, std::size_t end) {
@@ -162,7 +159,7 @@ double mean_magnitude(const Octave& octave, std::size_t begin, std::size_t end) 
   return count > 0.0 ? sum / count : 0.0;
 }
 
-// Mean of the middle two of the four quarters.
+// Mean of the middle two of four quarters.
 double middle_magnitude(const Octave& octave, std::size_t begin, std::size_t end) {
   std::array<double, kFine> quarters{};
   const std::size_t length = (end - begin) / kFine;
@@ -175,9 +172,8 @@ double middle_magnitude(const Octave& octave, std::size_t begin, std::size_t end
   return 0.5 * (quarters[1] + quarters[2]);
 }
 
-// By what means of so many neighbouring times differ from the next ones, relative to one time, of which a change is a
-// few: noise with long tails has more than normal noise, and a resonance that swells and fades over several
-// times more in their means than in one.
+// Scatter of means of `together` neighbouring roots, scaled to one root. Heavy tails scatter more than normal
+// noise. A resonance with slow beats scatters several times more in means than in single roots.
 double deviation_by(const std::vector<double>& root, std::size_t together) {
   if (root.size() < 8 * together) return 0.0;
   std::vector<double> sums{0.0}, steps;
@@ -188,12 +184,12 @@ double deviation_by(const std::vector<double>& root, std::size_t together) {
   return median(steps) / kNormal / std::sqrt(static_cast<double>(together));
 }
 
-Loudness loudness_of(const Octave& octave) {
+NoiseLevel noise_level_of(const Octave& octave) {
   const double count = octave.beyond_rounding, share = count / count_of(octave, 0, kCells);
-  // Only a share of a coarse sensor's differences is not zero; how many varies, too, and they come in pairs: one
-  // change of the value is in two of them.
+  // With a coarse sensor only a share of the differences is not zero. Their number varies, and they come in
+  // pairs, as each change of the value is in two of them.
   const double wanted = kFewest * (1.0 + 3.0 * (1.0 - share));
-  Loudness out;
+  NoiseLevel out;
   std::size_t times = kTimes;
   while (times >= kFewestTimes && count < wanted * static_cast<double>(times)) times /= 2;
   if (times < kFewestTimes) return out;
@@ -202,7 +198,7 @@ Loudness loudness_of(const Octave& octave) {
   for (std::size_t t = 0; t < times; ++t)
     if (const double here = count_of(octave, t * out.cells_each, (t + 1) * out.cells_each); here > 0.0)
       counts.push_back(here);
-  // The usual number of values at a time without a hole.
+  // Usual count of values in a cell without missing samples.
   const double usual = median(counts);
   for (std::size_t t = 0; t < times; ++t) {
     const std::size_t begin = t * out.cells_each, end = begin + out.cells_each;
@@ -212,9 +208,9 @@ Loudness loudness_of(const Octave& octave) {
     out.cell.push_back(begin);
   }
   if (out.root.size() < kFewestTimes) return out = {};
-  constexpr double kOfMiddle = 1.3;  // variance of the mean of the middle two of four over that of all four
-  // The mean magnitude of n normal variables has the relative variance (pi / 2 - 1) / n, its root a
-  // quarter.
+  constexpr double kOfMiddle = 1.3;  // ratio of variances: mean of the middle two of four, mean of all four
+  // The mean magnitude of n normal variables has relative variance (pi / 2 - 1) / n; its square root has a
+  // quarter of that.
   const double each = 0.25 * (0.5708 + 2.0 * (1.0 - share)) / share;
   const double least = std::sqrt(each / usual * (usual < kParted ? 1.0 : kOfMiddle)) * median(out.root);
   if (!(least > 0.0)) return {};
@@ -224,35 +220,35 @@ Loudness loudness_of(const Octave& octave) {
   return out;
 }
 
-// Over its standard deviation: mean of the times begin … end - 1 less that of all others.
-double departure(const Loudness& of, std::size_t begin, std::size_t end, const std::vector<double>& sums) {
+// Mean of roots begin … end - 1 minus the mean of all others, in standard deviations.
+double departure(const NoiseLevel& of, std::size_t begin, std::size_t end, const std::vector<double>& sums) {
   const auto all = static_cast<double>(of.root.size()), here = static_cast<double>(end - begin);
   const double inside = sums[end] - sums[begin];
   return (inside / here - (sums.back() - inside) / (all - here)) /
          (of.deviation * std::sqrt(1.0 / here + 1.0 / (all - here)));
 }
 
-std::vector<double> sums_of(const Loudness& of) {
+std::vector<double> sums_of(const NoiseLevel& of) {
   std::vector<double> sums{0.0};
   for (const double root : of.root) sums.push_back(sums.back() + root);
   return sums;
 }
 
-// The times of an octave whose cells lie within [begin, end).
-std::pair<std::size_t, std::size_t> times_within(const Loudness& of, std::size_t begin, std::size_t end) {
+// Roots of an octave whose cells lie within [begin, end).
+std::pair<std::size_t, std::size_t> times_within(const NoiseLevel& of, std::size_t begin, std::size_t end) {
   const auto first = std::lower_bound(of.cell.begin(), of.cell.end(), begin);
   const auto last = std::lower_bound(first, of.cell.end(), end);
   return {static_cast<std::size_t>(first - of.cell.begin()),
           static_cast<std::size_t>(last - of.cell.begin())};
 }
 
-// Deviation inside over outside.
-double times_as_loud(const Loudness& of, std::size_t begin, std::size_t end,
-                     const std::vector<double>& sums) {
+// Ratio of the deviations inside and outside.
+double level_ratio(const NoiseLevel& of, std::size_t begin, std::size_t end,
+                   const std::vector<double>& sums) {
   const auto all = static_cast<double>(of.root.size()), here = static_cast<double>(end - begin);
   const double inside = (sums[end] - sums[begin]) / here;
   const double outside = (sums.back() - sums[end] + sums[begin]) / (all - here);
-  return std::clamp(std::pow(inside / std::max(outside, 1e-300), 2.0), 1.0 / kMostLoud, kMostLoud);
+  return std::clamp(std::pow(inside / std::max(outside, 1e-300), 2.0), 1.0 / kMostRatio, kMostRatio);
 }
 
 bool material(double times) { return times > kMaterial || times < 1.0 / kMaterial; }
@@ -263,51 +259,50 @@ struct Found {
   double departure = 0.0;
 };
 
-Found surest(const std::vector<Loudness>& all) {
+Found surest(const std::vector<NoiseLevel>& all) {
   Found best;
   for (std::size_t k = 0; k < all.size(); ++k) {
-    const Loudness& of = all[k];
+    const NoiseLevel& of = all[k];
     const std::vector<double> sums = sums_of(of);
     for (std::size_t begin = 0; begin < of.root.size(); ++begin)
       for (std::size_t end = begin + 1; end <= of.root.size(); ++end) {
-        // Half of them at most: of two parts the shorter one is distinguished from the rest. Not across a
-        // hole.
+        // At most half, so the shorter part is the changed one; and not across missing samples.
         const bool hole = end - begin > 1 && of.cell[end - 1] != of.cell[end - 2] + of.cells_each;
         if (hole || 2 * (end - begin) > of.root.size()) break;
         const double here = std::abs(departure(of, begin, end, sums));
-        if (here <= std::abs(best.departure) || !material(times_as_loud(of, begin, end, sums))) continue;
+        if (here <= std::abs(best.departure) || !material(level_ratio(of, begin, end, sums))) continue;
         best = {of.cell[begin], of.cell[end - 1] + of.cells_each, k, here};
       }
   }
   return best;
 }
 
-NoiseChange described(const Found& found, const std::vector<Loudness>& all, double period_s) {
+NoiseChange described(const Found& found, const std::vector<NoiseLevel>& all, double period_s) {
   NoiseChange out;
   const auto changed = [&](std::size_t k) {
-    // The neighbours have a part of it.
+    // Neighbouring octaves contain part of the change.
     const auto [begin, end] = times_within(all[k], found.begin, found.end);
     if (begin == end || end - begin == all[k].root.size()) return 0.0;
     const std::vector<double> sums = sums_of(all[k]);
-    const double times = times_as_loud(all[k], begin, end, sums);
+    const double times = level_ratio(all[k], begin, end, sums);
     return std::abs(departure(all[k], begin, end, sums)) > kAlso && material(times) ? times : 0.0;
   };
   out.times = changed(found.octave);
   std::size_t quickest = found.octave, slowest = found.octave;
-  const bool louder = out.times > 1.0;
-  const auto like = [&](std::size_t k) { return changed(k) > 0.0 && (changed(k) > 1.0) == louder; };
+  const bool higher = out.times > 1.0;
+  const auto like = [&](std::size_t k) { return changed(k) > 0.0 && (changed(k) > 1.0) == higher; };
   while (quickest > 0 && like(quickest - 1)) --quickest;
   while (slowest + 1 < all.size() && like(slowest + 1)) ++slowest;
   for (std::size_t k = quickest; k <= slowest; ++k)
-    out.times = louder ? std::max(out.times, changed(k)) : std::min(out.times, changed(k));
+    out.times = higher ? std::max(out.times, changed(k)) : std::min(out.times, changed(k));
   const double nyquist = 0.5 / period_s;
   out.range_hz = {slowest + 1 < all.size() ? std::ldexp(nyquist, -static_cast<int>(slowest) - 1) : 0.0,
                   std::ldexp(nyquist, -static_cast<int>(quickest))};
   return out;
 }
 
-void leave_out(const Found& found, std::vector<Loudness>& all) {
-  for (Loudness& of : all) {
+void leave_out(const Found& found, std::vector<NoiseLevel>& all) {
+  for (NoiseLevel& of : all) {
     const auto [begin, end] = times_within(of, found.begin - std::min(found.begin, 2 * of.cells_each - 1),
                                            found.end + of.cells_each);
     of.root.erase(of.root.begin() + static_cast<std::ptrdiff_t>(begin),
@@ -318,7 +313,7 @@ void leave_out(const Found& found, std::vector<Loudness>& all) {
   }
 }
 
-// The longest of the held stretches that are no shorter than a time is.
+// The longest held stretch, if it is at least one cell long.
 std::vector<NoiseChange> stands_still(std::vector<Stretch> held, std::size_t samples, double period_s,
                                       const std::function<double(std::size_t)>& time_s) {
   std::erase_if(held, [&](const Stretch& each) { return each.size() * kTimes < samples; });
@@ -343,8 +338,8 @@ std::vector<NoiseChange> noise_changes(const SeriesView& rate_radps, std::span<c
       for (std::size_t i = 0; i < values.size(); ++i) pyramid.take(values[i], first + i);
     });
   }
-  std::vector<Loudness> all;
-  for (const Octave& octave : pyramid.octaves()) all.push_back(loudness_of(octave));
+  std::vector<NoiseLevel> all;
+  for (const Octave& octave : pyramid.octaves()) all.push_back(noise_level_of(octave));
   while (!all.empty() && all.back().root.empty()) all.pop_back();
   std::vector<NoiseChange> changes = stands_still(apart.held, rate_radps.size(), period_s, time_s);
   while (changes.size() < kMostChanges) {

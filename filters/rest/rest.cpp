@@ -18,13 +18,13 @@ constexpr double kWindow_s = 0.5;
 constexpr std::size_t kLeastWindow = 32;  // samples
 constexpr std::size_t kFewestWindows = 16;
 constexpr double kSlowest_s = 2.0;   // sample time
-constexpr double kDwell_s = 1.0;     // above, samples with a reference may be dwells
-constexpr double kAround_s = 10.0;   // on either side, of the running median
-constexpr double kTurned = 20.0;     // times the scatter of neighbouring quiet windows
+constexpr double kDwell_s = 1.0;     // with references, slower samples may be dwells of a rate table
+constexpr double kAround_s = 10.0;   // either side, of the running median
+constexpr double kTurned = 20.0;     // times the usual step of quiet windows
 constexpr double kLeastTurn = 1e-3;  // rad/s
 constexpr double kShaken = 4.0;
-constexpr double kQuieter = 0.3;                              // share of the windows assumed to be quiet
-constexpr std::size_t kShortestRest = 8;                      // windows between two that move
+constexpr double kQuieter = 0.3;                              // share of windows assumed quiet
+constexpr std::size_t kShortestRest = 8;                      // windows between two moving ones
 constexpr double kEnoughOfRecord = 0.5;                       // of the record
 constexpr std::size_t kWorthThreads = std::size_t{1} << 20U;  // samples
 
@@ -38,11 +38,11 @@ double quantile(std::vector<double> values, double p) {
 }
 
 struct Window {
-  double mean = 0.0, scatter = 0.0;  // NaN: too little there
+  double mean = 0.0, scatter = 0.0;  // NaN: too few samples
 };
 
-// By four quarters, of which an outlier spoils one: the mean is that of the middle two, the scatter the
-// second smallest. All four at once, as each sample waits for the one before it in its quarter.
+// Uses four quarters, so that one outlier has no effect: the mean is that of the middle two, the scatter is
+// the second smallest. Interleaved for instruction-level parallelism.
 Window window_of(std::span<const double> rate) {
   constexpr std::size_t kQuarters = 4;
   std::array<double, kQuarters> n{}, level{}, scatter{};
@@ -75,10 +75,10 @@ std::size_t samples_of_window(double period_s) {
   return std::max(kLeastWindow, static_cast<std::size_t>(std::lround(kWindow_s / period_s)));
 }
 
-// Median of the means around each window.
+// Running median of the window means.
 std::vector<double> running_median(const std::vector<Window>& windows, std::size_t around) {
   std::vector<double> out(windows.size());
-  // Every few windows: a median of seconds does not change between two half seconds.
+  // On a coarser grid; a median over seconds changes slowly.
   const std::size_t step = std::max<std::size_t>(1, around / 8);
   for (std::size_t i = 0; i < windows.size(); i += step) {
     std::vector<double> near;
@@ -91,7 +91,7 @@ std::vector<double> running_median(const std::vector<Window>& windows, std::size
   return out;
 }
 
-// leap: of each window, where it is more than noise and no turn; the largest of all axes.
+// leap: by window, the largest step of all axes that exceeds noise and is no turn.
 void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<State>& state,
                std::vector<double>& leap) {
   std::vector<double> scatters, steps;
@@ -101,15 +101,15 @@ void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<
     if (i > 0 && std::isfinite(windows[i - 1].mean))
       steps.push_back(std::abs(windows[i].mean - windows[i - 1].mean));
   }
-  // From the quieter windows, so that the rest of a record that mostly moves is still found: a normal variable
-  // stays within 0.385 of its standard deviation in 30 % of cases.
+  // Quantile of the quieter windows, so that rest is found in a record that mostly moves. A normal variable
+  // is within 0.385 standard deviations in 30 % of cases.
   const double usual = quantile(steps, kQuieter) / 0.385;
   const double quiet = quantile(scatters, kQuieter);
   const auto around = static_cast<std::size_t>(std::lround(kAround_s / window_s));
   const std::vector<double> level = running_median(windows, std::max<std::size_t>(4, around));
   for (std::size_t i = 0; i < windows.size(); ++i) {
     if (!std::isfinite(windows[i].mean)) continue;
-    // A turn that goes on becomes the median itself; it began and will end with a step.
+    // A long turn becomes the median itself, but it starts and ends with a step.
     const bool between = i > 0 && i + 1 < windows.size();
     const double across = between ? std::abs(windows[i + 1].mean - windows[i - 1].mean) : 0.0;
     const double away = std::abs(windows[i].mean - level[i]);
@@ -123,7 +123,7 @@ void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<
   }
 }
 
-// What moves takes a window on either side with it, and rests too short between.
+// Adds one window on either side of motion, and rests that are too short.
 void widen(std::vector<State>& state) {
   const std::vector<State> found = state;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -141,8 +141,7 @@ void widen(std::vector<State>& state) {
   }
 }
 
-// A turn that goes on at a steady rate is quiet in itself: a rest between two turns is one only at the level
-// of the longest rest.
+// A steady turn has little scatter. A rest between two turns counts only at the level of the longest rest.
 void mark_steady_turns(const std::vector<Window>& windows, std::vector<State>& state) {
   struct Run {
     std::size_t begin, end;
@@ -173,7 +172,7 @@ void mark_steady_turns(const std::vector<Window>& windows, std::vector<State>& s
   }
 }
 
-// Neighbouring windows leap once.
+// Two neighbouring windows that leap count once.
 Rest::SlowTurns slow_turns_of(const std::vector<double>& leap, const std::vector<State>& state,
                               std::size_t window) {
   Rest::SlowTurns found;
@@ -187,7 +186,7 @@ Rest::SlowTurns slow_turns_of(const std::vector<double>& leap, const std::vector
   return found;
 }
 
-// For rows too far apart for windows: a row far off the others is a turn.
+// For rows too far apart for windows: a row far from the others is a turn.
 Rest::SlowTurns dwells_of(std::span<const SeriesView> axes) {
   Rest::SlowTurns found;
   for (const SeriesView& rate : axes) {
@@ -223,7 +222,7 @@ Rest as_samples(const std::vector<State>& state, std::size_t window, std::size_t
   return rest;
 }
 
-// Sample by sample: a rate that is set at each of them has no windows.
+// Per sample, because a rate that is set at each sample has no windows.
 Rest rest_by_references(std::span<const SeriesView> references, std::size_t samples) {
   std::vector<State> state(std::max<std::size_t>(1, samples), State::kResting);
   for (const SeriesView& reference : references) {

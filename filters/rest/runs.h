@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Equal values in a row.
+// Runs of equal values.
 #pragma once
 
 #include <cmath>
@@ -15,10 +15,10 @@ namespace ifog {
 struct Run {
   std::size_t begin = 0, length = 0;
   double value = 0.0;
-  double before = 0.0, after = 0.0;  // the values next to it; NaN at an end of a stretch
+  double before = 0.0, after = 0.0;  // neighbouring values; NaN at an end of a stretch
 };
 
-// use(run) for each run of each of the stretches, which hold no NaN, in order.
+// Calls use(run) for each run of each stretch, in order. The stretches hold no NaN.
 template <class Use>
 void for_each_run(const SeriesView& series, std::span<const Stretch> parts, Use use) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

@@ -19,7 +19,6 @@ constexpr double kMostBias_radps = 5.0 * kDegree, kMostNoise_radps = 0.2 * kDegr
 
 std::string six(double value) { return formatted("%.6g", value); }
 
-// The values of the stretches, one after the other.
 std::vector<double> values_of(const SeriesView& rate, std::span<const Stretch> parts) {
   std::vector<double> out;
   for (const Stretch& part : parts) {
@@ -77,8 +76,8 @@ void find_wrapped(const std::vector<double>& values, const std::vector<double>& 
                                   " °/s above the others, none between: signed counts read as unsigned"});
 }
 
-// Sensors in turn differ by their biases all along. A dither is not in step with the samples for a whole
-// record.
+// Interleaved sensors differ by their biases throughout. A dither does not stay in step with the samples for
+// a whole record.
 void find_interleaved(const std::vector<double>& values, std::vector<ValueFault>& found) {
   const auto variance = [&](std::size_t first, std::size_t apart) {
     double count = 0.0, sum = 0.0, squares = 0.0;
