@@ -9,9 +9,9 @@
 namespace ifog {
 namespace {
 
-// From here on means are made of stored ones of this level.
+// Means of this level are stored; higher levels are computed from them.
 constexpr int kStored = 5;
-// Means over more angles differ from this many's by their square in relative terms: from a mean over time.
+// From this level on a mean over angles equals a mean over time for the covariance.
 constexpr int kFinest = 6;
 
 std::size_t angles_of(int level) { return std::size_t{1} << static_cast<unsigned>(level); }
@@ -20,7 +20,7 @@ double mean_of(std::span<const double> part) {
   return std::accumulate(part.begin(), part.end(), 0.0) / static_cast<double>(part.size());
 }
 
-// Generalised covariance of the rate samples, for one unit of N, B and K.
+// Generalised covariance of the rate samples for one unit of each term.
 TermVariances covariance_of_rate(std::size_t lag) {
   const auto t = static_cast<double>(lag);
   const double flicker =
@@ -30,8 +30,8 @@ TermVariances covariance_of_rate(std::size_t lag) {
 
 using LevelCovariance = std::array<TermVariances, kLevelLags>;
 
-// A rate of a level is the samples' weighted by a triangle; its covariance is theirs, folded with the
-// triangle's autocorrelation.
+// A rate of a level is a triangle-weighted sum of samples. Its covariance is that of the samples, convolved
+// with the triangle's autocorrelation.
 LevelCovariance covariance_at(int level, std::span<const TermVariances> of_rate) {
   const std::size_t step = angles_of(level), width = 2 * step - 1;
   std::vector<double> triangle(width), weight(2 * width - 1);

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // A stretch at a coarser step: differences of the means of 2^level neighbouring angles.
 //
-// Averages of the rate would keep one angle in 2^level and so take quantisation, an error of the angle that
-// is independent from sample to sample, for 2^level times what it is at low frequencies: white noise that is
-// plain to see in all samples would drown in it. Means of the angle keep what every sample says of it, and
-// fold less of what is fast onto what is slow.
+// Averages of the rate would keep one angle in 2^level. They would amplify quantisation, which is independent
+// from sample to sample, until it hides white noise. Means of the angle use every sample and alias less.
 #pragma once
 
 #include <cstddef>
@@ -18,12 +16,12 @@ namespace ifog {
 
 class AngleMeans {
  public:
-  // `angles` of them from `first` on: those of one stretch, which have to outlive this. Takes a thirty-second
-  // of their memory.
+  // Uses `angles` angles from `first`, those of one stretch; `angle` must outlive this object, which needs
+  // 1/32 of its memory.
   AngleMeans(const SeriesView& angle, std::size_t first, std::size_t angles);
 
   [[nodiscard]] std::size_t rates(int level) const;
-  // rate[i] for i from `begin`, as many as fit; rad/s. Level 0: the samples themselves.
+  // Writes the rates from index `begin`, as many as fit, in rad/s. Level 0: the samples themselves.
   void rates(int level, std::size_t begin, std::span<double> rate) const;
 
  private:
@@ -32,10 +30,10 @@ class AngleMeans {
   std::vector<double> stored_;
 };
 
-// Lags that the covariance is known for, in steps of a level.
+// Number of lags in level_covariance(), in steps of the level.
 inline constexpr std::size_t kLevelLags = 512;
-// Generalised covariance of such rates at a lag, for one unit of each term's variance in the unit of the
-// level: times level_unit() for one of the samples' own.
+// Generalised covariance of a level's rates by lag, for one unit of each term's variance in units of the
+// level; multiply by level_unit() for units of the samples.
 [[nodiscard]] std::span<const TermVariances> level_covariance(int level);
 [[nodiscard]] TermVariances level_unit(int level);
 

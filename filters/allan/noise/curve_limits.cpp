@@ -9,7 +9,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kConfidence = 0.998;  // of an interval's two sides together
+constexpr double kConfidence = 0.998;  // two-sided
 constexpr double kGoodPart = 0.3;      // of the measured variance
 
 }  // namespace
@@ -44,7 +44,7 @@ CurveLimits::Verdict CurveLimits::judge(Term term, double variance) const {
   for (const Octave& o : octaves_) {
     const double part = variance * expected_variance(Deviation::kAllan, term, o.m);
     if (part > o.upper) {
-      // Beyond what a filter holds back, or of what it cannot.
+      // Not suppressed by a filter, or quantisation.
       if (within || term == kQ) return {true, o.m};
       continue;
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the measured Allan deviation itself allows of a noise term. Terms are found in the spectrum, of which
-// bands may be dropped; the variance of a term is made of all of them. A term that by itself is more than
-// the variance that was measured is not there, however well it describes the bands that were used.
+// Limits that the measured Allan deviation sets to the noise terms. The terms are fitted to the spectrum,
+// possibly without some bands, but the deviation contains all bands. A term that alone exceeds the measured
+// variance is refuted.
 #pragma once
 
 #include <vector>
@@ -13,21 +13,21 @@ namespace ifog {
 
 class CurveLimits {
  public:
-  // Looks at octaves of m up to a quarter of the longest stretch; the sum has to outlive this.
+  // Uses octaves of m up to a quarter of the longest stretch; `sum` must outlive this object.
   explicit CurveLimits(const AngleSum& sum);
-  // The noise that the deviation's intervals are of, as found so far.
+  // Sets the noise from which the confidence intervals are computed.
   void assume(const TermVariances& noise);
 
-  // Largest variance of the term that no octave denies, in all but one record of a thousand.
+  // Largest variance of the term that the curve allows, exceeded in one of 1000 records.
   [[nodiscard]] double most(Term term) const;
 
   struct Verdict {
     bool refuted = false;
-    std::size_t from_m = 1;  // shortest octave from which on the term is within the curve
+    std::size_t from_m = 1;  // shortest octave from which on the term stays below the curve
   };
-  // Judges a term of at least this variance. One that is too much only at the shortest m, and beyond them is a
-  // good part of the curve, is held back there by a filter and not refuted; but for quantisation, which at
-  // every m is what there is at the shortest.
+  // Judges a term of at least this variance. If it exceeds the curve only at the shortest m and is a good
+  // part of it beyond, a filter suppresses it there, and it is not refuted. Quantisation that exceeds the
+  // curve anywhere is refuted.
   [[nodiscard]] Verdict judge(Term term, double variance) const;
 
  private:

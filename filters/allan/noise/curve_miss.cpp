@@ -13,10 +13,10 @@
 namespace ifog {
 namespace {
 
-constexpr double kFewestDegrees = 8.0;  // of freedom: the deviation is known to a quarter
+constexpr double kFewestDegrees = 8.0;  // then the deviation is known to 25 %
 constexpr double kOneSigma = 0.682689;  // of a Gaussian variable within one standard deviation
-// Standard deviations, each by chance in one of two hundred records of 15 octaves: neighbours have a
-// correlation of 0.5 (3000 records of white noise; tests/unit/allan/noise_coefficients_test.cpp).
+// Standard deviations, each exceeded by chance in one of 200 records of 15 octaves; neighbouring octaves
+// correlate by 0.5 (3000 records of white noise; tests/unit/allan/noise_coefficients_test.cpp).
 constexpr double kAtOne = 3.5, kAtTwo = 2.75;
 
 // (rad/s)² at τ, by term.
@@ -44,7 +44,7 @@ CurveMiss widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients
   const std::vector<DeviationPoint> points = deviation(sum, octaves);
   const std::vector<AllanInterval> intervals =
       allan_intervals(sum, Deviation::kAllan, points, found.variances, kOneSigma);
-  double before = 0.0;  // the departure of the octave before, in standard deviations
+  double before = 0.0;  // difference at the octave before, in standard deviations
   for (std::size_t i = 0; i < points.size() && intervals[i].degrees >= kFewestDegrees; ++i) {
     const double tau_s = static_cast<double>(octaves[i]) * period_s, measured = std::sqrt(points[i].variance),
                  modelled = modelled_deviation(found, tau_s);
@@ -62,7 +62,7 @@ CurveMiss widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients
     const double share = most->variance / (modelled * modelled);
     const double error = term.value * std::abs(std::expm1(-off)) / share;
     if (error > term.std_error) {
-      term.upper += 1.959964 * (error - term.std_error);  // of 97.5 %, as it was
+      term.upper += 1.959964 * (error - term.std_error);  // 97.5 % limit
       term.std_error = error;
     }
     if (std::abs(off) > miss.departure) miss = {std::abs(off), tau_s};

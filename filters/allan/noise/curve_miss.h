@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the noise terms of a record are from the deviation that was measured of it. The terms are fitted to
-// the spectrum, where an effect of the temperature or a vibration may pass for noise of another kind; the
-// curve then shows it.
+// Difference between the fitted noise terms and the measured deviation. The terms are fitted to the spectrum,
+// where an effect of temperature or vibration may look like another kind of noise; the curve shows it.
 #pragma once
 
 #include "filters/allan/angle_sum.h"
@@ -10,14 +9,14 @@
 namespace ifog {
 
 struct CurveMiss {
-  double departure = 0.0;  // relative, of the terms' deviation from the measured one; 0: within chance
-  double tau_s = 0.0;      // where it is largest
+  double departure = 0.0;  // relative difference of the fitted from the measured deviation; 0: within chance
+  double tau_s = 0.0;      // of the largest difference
 };
 
-// Looks at the overlapping Allan deviation at every octave of τ where it has eight degrees of freedom or more.
-// A departure counts beyond 3.5 standard deviations, or beyond 2.75 at two octaves in a row to the same side.
-// The term that is most of the curve there gets an error bar which reaches the curve. Lines and left-out bands
-// stand out of the curve by themselves and say so: with them nothing is changed.
+// Checks the overlapping Allan deviation at octaves of τ with at least eight degrees of freedom. A difference
+// counts beyond 3.5 standard deviations, or beyond 2.75 at two octaves in a row with the same sign. The error
+// bar of the strongest term there is widened to reach the curve. Nothing is changed if the spectrum has lines
+// or dropped bands, which explain the difference.
 CurveMiss widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& found);
 
 }  // namespace ifog

@@ -10,8 +10,8 @@
 namespace ifog {
 namespace {
 
-constexpr double kTolerated = 0.1;  // relative departure of the deviation that the error bars may take up
-constexpr double kDepartureQuantile = 0.995;  // of the departures' χ² under the terms alone
+constexpr double kTolerated = 0.1;  // relative difference of the deviation that widened error bars may cover
+constexpr double kDepartureQuantile = 0.995;  // of the χ² of the differences, under the terms alone
 constexpr std::size_t kFewestBands = 6;
 
 struct Band {
@@ -34,7 +34,7 @@ std::vector<Band> half_octaves(const NoiseSpectrum& spectrum) {
   return bands;
 }
 
-// Relative departure of each band's power from the terms', and the variance that chance gives it.
+// Relative difference between each band's power and the terms', and its variance by chance.
 struct Departure {
   double value = 0.0, variance = 0.0;
 };
@@ -56,7 +56,7 @@ std::vector<Departure> departures(const NoiseSpectrum& spectrum, const std::vect
   return out;
 }
 
-// Extra relative error of a band's power that makes the departures' χ² what it should be; 0 where it is.
+// Extra relative error of a band's power with which the χ² is as expected; 0 if it is without.
 double misfit_of(const std::vector<Departure>& found) {
   const double degrees = static_cast<double>(found.size()) - static_cast<double>(kTerms);
   if (degrees < 1.0) return 0.0;
@@ -71,8 +71,8 @@ double misfit_of(const std::vector<Departure>& found) {
   return high;
 }
 
-// The bands above the terms, and the highest, that stand farthest off, the few of which one may be the worst:
-// it may also be one that has pulled the terms towards itself.
+// The few bands above the terms, and the highest ones, with the largest difference. A band that has pulled
+// the terms towards itself may be among them.
 std::vector<std::size_t> farthest(const std::vector<Departure>& found, double misfit) {
   constexpr std::size_t kTried = 5;
   std::vector<std::size_t> order;
@@ -87,7 +87,7 @@ std::vector<std::size_t> farthest(const std::vector<Departure>& found, double mi
   return order;
 }
 
-// With a relative error of its own that a band's bins share.
+// Adds a relative error that a band's bins share.
 NoiseSpectrum loosened(NoiseSpectrum spectrum, const std::vector<Band>& bands, double misfit) {
   for (const Band& band : bands) {
     double degrees = 0.0;
@@ -123,9 +123,9 @@ Described described(NoiseSpectrum spectrum, TermSet allowed) {
   Described result;
   std::vector<Band> bands = half_octaves(spectrum);
   double misfit = settled_misfit(spectrum, bands, allowed, result.terms);
-  std::size_t described = bands.size();  // half of which are to stay
+  std::size_t described = bands.size();  // bands in use; at least half remain
   const auto fewest = [&] { return std::max(kFewestBands, (described + 1) / 2); };
-  // Relative departures of the power are twice the deviation's.
+  // Relative differences of the power are twice those of the deviation.
   while (misfit > 2.0 * kTolerated && bands.size() > fewest()) {
     std::size_t worst = 0;
     double least = std::numeric_limits<double>::infinity();

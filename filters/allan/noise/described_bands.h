@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How well the terms describe a spectrum, and which bands of it no sum of them comes near.
+// Quality of the fit of the terms to a spectrum, and the bands that no sum of terms can describe.
 #pragma once
 
 #include <vector>
@@ -8,18 +8,17 @@
 
 namespace ifog {
 
-// Half-octave bands of the bins in use that stand farther from the likeliest terms than kTolerated of the
-// deviation are dropped, the one whose absence helps most first and at most half of them. Only those above
-// the terms: what disturbs adds power, and terms that a band has less power than are refuted by it. But for
-// the highest bands, from which a filter has removed the noise; these are not counted in the half. What
-// misfit stays is made part of the uncertainty: it lowers the bins' degrees of freedom.
+// Result of a fit without the half-octave bands that differ from the terms by more than kTolerated of the
+// deviation. Bands are dropped one by one, most helpful first, at most half of them. Only bands above the
+// terms are dropped, since disturbances add power, and the highest ones, which a filter may suppress (not
+// counted in the half). The remaining misfit lowers the bins' degrees of freedom.
 struct Described {
   NoiseSpectrum spectrum;
-  TermVariances terms{};                 // the likeliest
+  TermVariances terms{};                 // most likely
   double misfit = 0.0;                   // relative, of the deviation, beyond chance
-  std::vector<FrequencyRange> left_out;  // cycles a sample, neighbours joined
+  std::vector<FrequencyRange> left_out;  // cycles per sample, neighbours joined
 };
-// allowed: terms that may be there.
+// allowed: terms that may be used.
 [[nodiscard]] Described described(NoiseSpectrum spectrum, TermSet allowed = TermSet().set());
 
 }  // namespace ifog

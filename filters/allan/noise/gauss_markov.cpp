@@ -11,19 +11,19 @@
 namespace ifog {
 namespace {
 
-// Half of a chi square of one degree is beyond these in 0.2 and 2.3 % of records of a true walk.
+// Exceeded in 0.2 % (kPresent) and 2.3 % of records of a true walk: half of a χ² with one degree of freedom.
 constexpr double kPresent = 8.0;
 constexpr double kWeighed = 4.0;
-constexpr double kWeighedUpTo = 0.25;   // of the record: what is longer is a walk in it
-constexpr double kInterval = 3.841459;  // of a chi square of one degree, 95 %
-constexpr double kShortest = 32.0;      // samples; shorter ones are a filter's
-constexpr double kSpacing = 1.5;        // of correlation times that are tried
-constexpr double kLongest = 4.0;        // times the record; beyond nobody tells it from a walk
+constexpr double kWeighedUpTo = 0.25;   // of the record; a longer correlation time is a walk there
+constexpr double kInterval = 3.841459;  // χ² with one degree of freedom, 95 %
+constexpr double kShortest = 32.0;      // samples; shorter ones belong to a filter
+constexpr double kSpacing = 1.5;        // ratio of the correlation times tried
+constexpr double kLongest = 4.0;        // times the record; beyond, it cannot be distinguished from a walk
 
-// Covariance of the level's rates, which weigh the samples by a triangle, for a covariance T/2 exp(-|t|/T).
+// Covariance of the level's rates (triangle-weighted samples) for a covariance T/2 exp(-|t|/T).
 struct LevelReturn {
   double decay;            // from one rate to the next
-  double far, zero, next;  // covariance is far * decay^lag but at lags of zero and one
+  double far, zero, next;  // covariance is far * decay^lag except at lags 0 and 1
 
   LevelReturn(double step, double correlation) {
     const double x = step / correlation;
@@ -35,10 +35,10 @@ struct LevelReturn {
   }
 
  private:
-  // Over the triangle's autocorrelation, a cubic spline, by Simpson's rule between its knots, where the
-  // exponential's bend is, too.
+  // Integral over the triangle's autocorrelation, a cubic spline, by Simpson's rule between its knots and the
+  // cusp of the exponential.
   static double folded(double lag, double x, double correlation) {
-    constexpr int kPanels = 32;  // even, a knot
+    constexpr int kPanels = 32;  // even; the cusp is on a node
     double sum = 0.0;
     for (int knot = -2; knot < 2; ++knot)
       for (int i = 0; i <= kPanels; ++i) {
@@ -64,7 +64,7 @@ Eigen::MatrixXd covariance_of(const SlowPart& part, double correlation) {
          (level.next - level.far * level.decay) * (beside + beside.transpose());
 }
 
-// One correlation time and what is then likeliest.
+// One correlation time and the most likely variances there.
 struct Tried {
   double correlation = 0.0;
   NoiseLikelihood::Maximum best;
@@ -75,8 +75,8 @@ Tried tried_at(const NoiseSpectrum& spectrum, Ramp ramp, double correlation, con
   return {correlation, NoiseLikelihood(returning, ramp).maximise(TermSet().set(), near)};
 }
 
-// Where the profile has fallen by kInterval, on one side of its peak; `none` where it has not as far as
-// `last`.
+// Correlation time at which the profile has fallen by kInterval on one side of its peak; `none` if it does
+// not before `last`.
 double edge(const NoiseSpectrum& spectrum, Ramp ramp, const Tried& peak, double way, double last,
             double none) {
   const double least = peak.best.log_likelihood - 0.5 * kInterval;
@@ -116,7 +116,7 @@ NoiseSpectrum with_return(const NoiseSpectrum& spectrum, double correlation) {
 std::optional<GaussMarkovFit> fit_gauss_markov(const NoiseSpectrum& spectrum, Ramp ramp, std::size_t samples,
                                                const TermVariances& terms) {
   if (!(terms[kK] > 0.0 || terms[kB] > 0.0)) return std::nullopt;
-  // From the walk inwards, each from the one before.
+  // From the random walk to shorter times; each starts at the result before.
   std::vector<Tried> all;
   const double walks = NoiseLikelihood(spectrum, ramp).maximise(TermSet().set(), terms).log_likelihood;
   TermVariances near = terms;
@@ -154,9 +154,9 @@ std::optional<GaussMarkovFit> fit_gauss_markov(const NoiseSpectrum& spectrum, Ra
 
 std::vector<GaussMarkovChance> gauss_markov_chances(const NoiseSpectrum& spectrum,
                                                     const GaussMarkovFit& fit) {
-  constexpr double kFarBelow = 6.0;  // log-likelihood below the best at which a value no longer counts
+  constexpr double kFarBelow = 6.0;  // log-likelihood; smaller values are ignored
   constexpr double kTimes = 1.3, kDrives = 1.2;
-  constexpr int kMost = 12;  // values either way
+  constexpr int kMost = 12;  // values on either side
   std::vector<GaussMarkovChance> out;
   double top = -std::numeric_limits<double>::infinity();
   const auto take = [&](double correlation) {
@@ -186,7 +186,7 @@ std::vector<GaussMarkovChance> gauss_markov_chances(const NoiseSpectrum& spectru
 
 double returning_variance(double correlation, double m) {
   const double x = m / correlation;
-  // The square brackets cancel to the third power of x.
+  // The terms cancel up to x³.
   if (x < 1e-3) return m / 3.0 * (1.0 - 0.75 * x);
   return correlation * correlation / m * (1.0 - (3.0 - 4.0 * std::exp(-x) + std::exp(-2.0 * x)) / (2.0 * x));
 }

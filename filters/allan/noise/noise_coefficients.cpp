@@ -20,28 +20,28 @@
 namespace ifog {
 namespace {
 
-// By how much of twice the log-likelihood the best set of terms with a term has to be better than one without
-// it, by how many terms more the latter has. One fewer: a term that is not there passes 6 in 0.72 % of
-// records (half of a χ² of one degree, Self and Liang, J. Am. Stat. Assoc. 82, 1987). As many: one stands in
-// for another. More: several stand in for one, and may even do a little better.
+// Required gain of twice the log-likelihood of the best set with a term over a set without it. kNested: the
+// latter has one term fewer. An absent term passes 6 in 0.72 % of records (half of a χ² with one d.o.f., Self
+// and Liang, J. Am. Stat. Assoc. 82, 1987). kInstead: equally many, another term in its place. kSeveral: more
+// terms, which may fit slightly better.
 constexpr double kNested = 6.0, kInstead = 3.5, kSeveral = -5.0;
 double asked(std::size_t without, std::size_t with) {
   const double more = static_cast<double>(without) - static_cast<double>(with);
   return more < 0.0 ? -kNested * more : more > 0.0 ? kSeveral * more : kInstead;
 }
-// In the average over sets of terms, from which values and error bars come.
+// Cost of a term in the average over sets of terms, which gives values and error bars.
 constexpr double kCostInAverage = 7.0;
-// A bound that is printed only where the term stayed unseen must allow for that choice: what would have been
-// seen, had it been above.
+// A limit printed only for undetected terms must allow for that selection, so it uses the detection
+// threshold.
 constexpr double kBound = kNested;
-// A ramp competes with a random walk estimated from few numbers, so its likelihood ratio has a long tail.
+// A ramp competes with a walk estimated from few numbers, so its likelihood ratio is heavy-tailed.
 constexpr double kRampPresent = 10.0;
 constexpr double kOneSided = 1.959964;
-// Below this the likelihood's curvature, which has the square in its denominator, is no number any more.
+// Below, the likelihood's curvature, with the square in its denominator, overflows.
 constexpr double kLeastPower = 1e-120;
 
-// Variance of `term` at which the likelihood, the others at their best, has fallen by kBound/2. The root of
-// twice the loss is nearly a straight line there, which secants follow in a few steps.
+// Variance of `term` at which the likelihood, maximised over the others, has fallen by kBound/2. Secant
+// method on the root of twice the loss, which is nearly linear.
 double upper_variance(const NoiseLikelihood& likelihood, const NoiseLikelihood::Maximum& best,
                       TermSet allowed, Term term) {
   TermVariances near = best.variances;
@@ -71,7 +71,7 @@ double upper_variance(const NoiseLikelihood& likelihood, const NoiseLikelihood::
   return high;
 }
 
-// Standard deviations of the coefficients (roots of the variances) when the terms of the fit are all open.
+// Standard deviations of the coefficients (roots of the variances) with all terms of the fit free.
 TermVariances errors(const NoiseLikelihood& likelihood, const TermVariances& fit) {
   std::vector<Eigen::Index> open;
   for (std::size_t t = 0; t < kTerms; ++t)
@@ -89,7 +89,7 @@ TermVariances errors(const NoiseLikelihood& likelihood, const TermVariances& fit
   return error;
 }
 
-// Every set of the terms that may be there, its likeliest variances, and what they say together.
+// All sets of the allowed terms, their most likely variances, and the average over sets.
 class TermSets {
  public:
   TermSets(const NoiseLikelihood& likelihood, TermSet allowed, const TermVariances& near) {
@@ -98,7 +98,7 @@ class TermSets {
       if ((set & ~allowed).any()) continue;
       const auto fit = likelihood.maximise(set, set == allowed ? near : sets_.front().fit.variances);
       const double cost = 2.0 * (sets_.empty() ? 0.0 : sets_.front().fit.log_likelihood - fit.log_likelihood);
-      // A term that fell to zero: the set without it is tried by itself.
+      // If a term is zero, the set without it is tried separately.
       bool whole = true;
       for (std::size_t t = 0; t < kTerms; ++t) whole = whole && (!set[t] || fit.variances[t] > 0.0);
       sets_.push_back({set, fit, cost, whole});
@@ -108,8 +108,8 @@ class TermSets {
   }
   [[nodiscard]] const NoiseLikelihood::Maximum& all() const { return sets_.front().fit; }
 
-  // How far the best set with the term passes what is asked of it against every set without; below zero the
-  // record can do without it.
+  // Smallest margin of the best set with the term over all sets without it; below zero the term is not
+  // needed.
   [[nodiscard]] double need(std::size_t term) const {
     double best = -std::numeric_limits<double>::infinity();
     for (const Entry& with : sets_) {
@@ -123,7 +123,7 @@ class TermSets {
     return std::max(best, -kNested);
   }
 
-  // Weighted mean of the coefficient over the sets that have the term, and the spread within and among them.
+  // Weighted mean of the coefficient over the sets with the term, and the scatter within and among the sets.
   struct Average {
     double value = 0.0, error = 0.0;
   };
@@ -141,7 +141,6 @@ class TermSets {
     return {mean, std::sqrt(std::max(0.0, second / weight - mean * mean))};
   }
 
-  // Mean of the variances over all sets.
   [[nodiscard]] TermVariances variances() const {
     TermVariances mean{};
     double weight = 0.0;
@@ -158,7 +157,7 @@ class TermSets {
   struct Entry {
     TermSet set;
     NoiseLikelihood::Maximum fit;
-    double cost = 0.0;  // twice the log-likelihood lost against all terms
+    double cost = 0.0;  // loss of twice the log-likelihood compared with all terms
     bool whole = false;
     TermVariances error{};
   };
@@ -166,7 +165,7 @@ class TermSets {
     return e.cost < 30.0 ? std::exp(-0.5 * (e.cost + kCostInAverage * static_cast<double>(e.set.count())))
                          : 0.0;
   }
-  std::vector<Entry> sets_;  // all terms first
+  std::vector<Entry> sets_;  // the set of all terms first
 };
 
 void fit_ramp(const NoiseSpectrum& spectrum, TermSet allowed, const TermVariances& variances, double period_s,
@@ -185,7 +184,7 @@ void fit_ramp(const NoiseSpectrum& spectrum, TermSet allowed, const TermVariance
   R.std_error = R.present ? error : R.upper / kOneSided;
 }
 
-// Up to which time the walk's deviation is the returning one's within a tenth.
+// Time up to which the deviations of the random walk and the Gauss-Markov noise agree within 10 %.
 double walk_until(double correlation) {
   constexpr double kTenth = 1.1 * 1.1;
   double low = 1e-6 * correlation, high = 100.0 * correlation;
@@ -196,7 +195,8 @@ double walk_until(double correlation) {
   return low;
 }
 
-// Largest relative departure of the terms' deviation from the returning one's, up to a quarter of the record.
+// Largest relative difference between the terms' and the Gauss-Markov deviation, up to a quarter of the
+// record.
 double departure(const NoiseCoefficients& found, const MarkovNoise& markov, std::size_t longest,
                  double period_s) {
   double most = 0.0;
@@ -210,8 +210,8 @@ double departure(const NoiseCoefficients& found, const MarkovNoise& markov, std:
   return most;
 }
 
-// Bands that no sum of the terms comes near may be those of a bias that returns: then it describes all of the
-// spectrum, and its fit is of that. Else it is of what the terms describe.
+// If no sum of the terms describes some bands, they may belong to a Gauss-Markov bias: then it must describe
+// the whole spectrum. Otherwise it is fitted to the bands that the terms describe.
 std::optional<GaussMarkovFit> return_of(const NoiseSpectrum& measured, const Described& record, Ramp ramp,
                                         std::size_t longest, const NoiseSpectrum*& of) {
   if (record.misfit > 0.0 || !record.left_out.empty()) {
@@ -254,7 +254,7 @@ FrequencyRange in_hz(const FrequencyRange& range, double period_s) {
 constexpr std::array<NoiseCoefficient NoiseCoefficients::*, kTerms> kMember{
     &NoiseCoefficients::Q, &NoiseCoefficients::N, &NoiseCoefficients::B, &NoiseCoefficients::K};
 
-// From the root of a variance in samples to the coefficient.
+// Factor from the root of a variance in samples to the coefficient.
 double coefficient_unit(std::size_t term, double period_s) {
   return std::array<double, kTerms>{period_s, std::sqrt(period_s), 1.0, 1.0 / std::sqrt(period_s)}[term];
 }
@@ -281,8 +281,8 @@ void write_terms(const NoiseLikelihood& likelihood, const TermSets& sets, TermSe
   }
 }
 
-// Terms that are more than the curve by themselves, their error bars allowed for. Of those that are not, from
-// which time on; and what the curve allows of those that are not seen.
+// Terms that alone exceed the curve, including their error bars. Sets from_s of the others, and the upper
+// limits of undetected ones.
 TermSet refuted_by(const CurveLimits& curve, TermSet allowed, double period_s, NoiseCoefficients& found) {
   TermSet refuted;
   for (std::size_t t = 0; t < kTerms; ++t) {
@@ -302,7 +302,7 @@ TermSet refuted_by(const CurveLimits& curve, TermSet allowed, double period_s, N
   return refuted;
 }
 
-// What describes the record of terms that its curve allows.
+// Description of the record by the terms that the curve allows.
 struct Fitted {
   Described record;
   TermSet allowed = TermSet().set();
@@ -320,7 +320,7 @@ Fitted fit_terms(const AngleSum& sum, const NoiseSpectrum& measured, double peri
     fit.record.terms = sets.all().variances;
     found.variances = sets.variances();
     write_terms(likelihood, sets, fit.allowed, period_s, found);
-    // Terms that describe all of the spectrum describe the curve.
+    // Terms that describe the whole spectrum also describe the curve.
     if (fit.record.misfit <= 0.0 && fit.record.left_out.empty()) return fit;
     if (!curve) curve.emplace(sum);
     curve->assume(found.variances);
@@ -328,7 +328,7 @@ Fitted fit_terms(const AngleSum& sum, const NoiseSpectrum& measured, double peri
     if (refuted.none()) return fit;
     if (!first) first = Fitted{fit.record, fit.allowed, found.variances};
     if (refuted == fit.allowed) {
-      // Nothing is left to describe it by: the nearest description says how far estimates scatter.
+      // No term is left; the first description gives the scatter of estimates.
       found.variances = first->variances;
       return *first;
     }

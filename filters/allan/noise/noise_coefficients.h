@@ -1,15 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The five noise coefficients of IEEE Std 952 from one record at rest, each with its error bar, and none that
-// the record does not show:
+// The five noise coefficients of IEEE Std 952 of one record at rest, each with its error bar:
 //   σ²(τ) = 3Q²/τ² + N²/τ + (2 ln 2/π)B² + K²τ/3 + R²τ²/2.
 //
-// Q, N, B and K by maximum likelihood over the record's spectrum (noise_spectrum.h), with a rate ramp
-// projected out, so that a ramp and a random walk, alike on an Allan plot, cannot take each other's part. A
-// term is present if the record cannot be described nearly as well without it, whatever the other terms then
-// do. R is the ramp itself, by generalised least squares.
+// Q, N, B and K are maximum-likelihood estimates from the spectrum (noise_spectrum.h). A rate ramp is
+// projected out, so it cannot be confused with a random walk. A term is present if the fit is clearly worse
+// without it. R is the ramp by generalised least squares.
 //
-// This is the one place where the project says what N, B and K of a record are: `ifog allan`, `tune` and
-// `diagnose` all report what it finds.
+// `ifog allan`, `tune` and `diagnose` all use this function.
 #pragma once
 
 #include <optional>
@@ -25,49 +22,47 @@ struct NoiseCoefficient {
   bool present = false;
   double value = 0.0;      // SI, as in the formula above; 0 when absent
   double std_error = 0.0;  // one standard deviation; of an absent term upper/1.96
-  double upper = 0.0;      // above the truth in 97.5 % of records, those included where the term stays unseen
-  double score = 0.0;      // how many standard deviations the record asks for it
-  // For a term that is present: below this averaging time it would be more than the whole curve, which a filter
-  // holds down there; 0 where it is within the curve all along.
+  double upper = 0.0;      // 97.5 % upper limit; also valid if the term is not detected
+  double score = 0.0;      // significance in standard deviations
+  // Of a present term: shortest averaging time at which it is below the measured curve (a filter suppresses
+  // it below that); 0 if it is below everywhere.
   double from_s = 0.0;
 };
 
-// A bias that wanders and comes back (gauss_markov.h), where the record shows that it does.
+// First-order Gauss-Markov bias (gauss_markov.h), if the record shows one.
 struct MarkovNoise {
-  bool present = false;        // else only forecasts weigh it, and it is not reported
+  bool present = false;        // else it is used only in forecasts and not reported
   double sigma_radps = 0.0;    // of the bias
-  double correlation_s = 0.0;  // and how long it remembers, with its 95 % interval
+  double correlation_s = 0.0;  // with its 95 % interval
   double lower_s = 0.0, upper_s = 0.0;
-  double walk = 0.0;                       // K of the walk that it is at short times, rad/s²/√Hz
-  double walk_until_s = 0.0;               // up to here the walk's deviation is its own within a tenth
-  double score = 0.0;                      // how many standard deviations the record asks for the return
-  std::vector<GaussMarkovChance> chances;  // what the record allows it to be; for averages at these samples
-  GaussMarkovFit fit;                      // likewise
+  double walk = 0.0;                       // K of the equivalent random walk at short τ, rad/s²/√Hz
+  double walk_until_s = 0.0;               // up to this τ the random walk's deviation is within 10 %
+  double score = 0.0;                      // significance of the return in standard deviations
+  std::vector<GaussMarkovChance> chances;  // possible values; for averages at these samples
+  GaussMarkovFit fit;
 };
 
 struct NoiseCoefficients {
   NoiseCoefficient Q, N, B, K, R;  // rad, rad/s/√Hz, rad/s, rad/s²/√Hz, rad/s²
   double ramp_radps2 = 0.0;        // R with its sign
-  // Relative departure of the measured deviation from the sum of terms that chance does not explain; 0 when
-  // the terms describe the record. It is part of the error bars, but for what a correlated bias departs by at
-  // long τ.
+  // Relative difference between the measured deviation and the sum of terms beyond chance; 0 if the terms
+  // describe the record. Included in the error bars, except for what a correlated bias causes at long τ.
   double misfit = 0.0;
-  std::optional<MarkovNoise> markov;     // where K is no law of long τ
-  std::vector<FrequencyRange> lines_hz;  // stood out of the spectrum
-  std::vector<FrequencyRange>
-      left_out_hz;  // where no sum of the terms comes near: resonances, vibration, filters
-  // The likeliest variances, of terms too uncertain to be called present too; for averages at these samples.
+  std::optional<MarkovNoise> markov;        // set if K does not hold at long τ
+  std::vector<FrequencyRange> lines_hz;     // spectral lines
+  std::vector<FrequencyRange> left_out_hz;  // no sum of the terms fits here: resonances, vibration, filters
+  // Most likely variances, also of terms that are not present; for averages at these samples.
   TermVariances variances{};
 };
 
-// Throws std::invalid_argument in words for people: fewer than 64 samples in the longest stretch, or a rate
-// that never changes.
+// Throws std::invalid_argument with a message if the longest stretch has fewer than 64 samples or the rate
+// never changes.
 [[nodiscard]] NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s);
 
-// Allan deviation at τ of the terms that are present, rad/s.
+// Allan deviation at τ of the present terms, rad/s.
 [[nodiscard]] double modelled_deviation(const NoiseCoefficients& found, double tau_s);
 
-// "the bias is correlated: …", "": it is not.
+// "the bias is correlated: …", or "" if it is not.
 [[nodiscard]] std::string markov_in_words(const NoiseCoefficients& found);
 
 }  // namespace ifog

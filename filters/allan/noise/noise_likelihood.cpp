@@ -12,16 +12,16 @@
 namespace ifog {
 namespace {
 
-// Steps at first that cannot overshoot, by the ratio of what pulls a variance up and what pushes it down.
+// First steps that cannot overshoot: multiply each variance by the ratio pull / push.
 constexpr int kFromAfar = 10, kFromNear = 1;
 constexpr int kMostSteps = 100;
-constexpr double kClose = 1e-7;  // of the log-likelihood that a further step would gain
+constexpr double kClose = 1e-7;  // log-likelihood that a further step could gain
 
 Eigen::Index row(std::size_t i) { return static_cast<Eigen::Index>(i); }
 
-// To the maximum of slopeᵀd − dᵀ·information·d/2 over the allowed variances x + d that are not negative: the
-// best of the faces, each with its own terms at zero. Cutting off what a plain scoring step makes negative
-// would not even lead upwards where terms can stand for each other.
+// Maximum of slopeᵀd − dᵀ·information·d/2 over non-negative variances x + d, by comparing all faces, each
+// with its terms at zero. Clipping a plain scoring step could even decrease the likelihood if terms are
+// interchangeable.
 Eigen::Vector4d scoring_step(const Eigen::Vector4d& x, const Eigen::Vector4d& slope,
                              const Eigen::Matrix4d& information, TermSet allowed) {
   Eigen::Vector4d best = Eigen::Vector4d::Zero();
@@ -61,7 +61,7 @@ NoiseLikelihood::NoiseLikelihood(const NoiseSpectrum& spectrum, Ramp ramp) : ram
   for (const SlowPart& slow : spectrum.slow) {
     Part part{slow.value, slow.ramp, slow.covariance};
     if (ramp == Ramp::kProjected && !slow.ramp.isZero()) {
-      // An orthonormal basis of what is at right angles to the ramp.
+      // Orthonormal basis of the space orthogonal to the ramp.
       const Eigen::MatrixXd beside = Projection::beside(slow.ramp);
       part.value = beside.transpose() * slow.value;
       for (Eigen::MatrixXd& c : part.covariance) c = (beside.transpose() * c * beside).eval();
@@ -98,7 +98,7 @@ void NoiseLikelihood::add_slow(const Eigen::Vector4d& x, TermSet open, State& st
     const Eigen::VectorXd y = cholesky.solve(z);
     state.log_likelihood -= cholesky.log_determinant() + 0.5 * y.dot(z);
     if (open.none()) continue;
-    std::array<Eigen::MatrixXd, kTerms> share;  // C⁻¹ times each term's covariance
+    std::array<Eigen::MatrixXd, kTerms> share;
     for (std::size_t t = 0; t < kTerms; ++t) {
       if (!open[t]) continue;
       share[t] = unit_[t] * cholesky.solve(part.covariance[t]);
@@ -173,7 +173,7 @@ NoiseLikelihood::Maximum NoiseLikelihood::maximise(TermSet allowed) const {
 }
 
 NoiseLikelihood::Maximum NoiseLikelihood::maximise(TermSet allowed, const TermVariances& near) const {
-  // A little of every term that may be there: from zero the first steps cannot leave.
+  // Starts with a little of every allowed term, because the first steps cannot leave zero.
   TermVariances start{};
   for (std::size_t t = 0; t < kTerms; ++t) start[t] = allowed[t] ? std::max(near[t], 1e-4 * unit_[t]) : 0.0;
   return climb(allowed, in_units(start), kFromNear);

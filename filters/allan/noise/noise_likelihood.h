@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Likelihood of the noise terms given a record's spectrum (noise_spectrum.h), and its maximum over variances
-// that are not negative.
+// Likelihood of the noise terms given a record's spectrum (noise_spectrum.h), and its maximum over
+// non-negative variances.
 //
-// Bins: gamma distributed (Whittle's likelihood with the degrees of freedom each bin has). Slow parts:
-// Gaussian with their exact covariance; a rate ramp in them is ignored, projected out or estimated.
+// Bins: gamma distributed (Whittle's likelihood with each bin's degrees of freedom). Slow parts: Gaussian
+// with exact covariance; a rate ramp in them is ignored, projected out or estimated.
 #pragma once
 
 #include <bitset>
@@ -17,9 +17,9 @@ namespace ifog {
 using TermSet = std::bitset<kTerms>;
 
 enum class Ramp {
-  kNone,       // there is none
-  kProjected,  // nothing along it is used: the same likelihood with any ramp
-  kFree,       // estimated by generalised least squares, one for all stretches
+  kNone,       // there is no ramp
+  kProjected,  // the component along a ramp is not used
+  kFree,       // estimated by generalised least squares, one ramp for all stretches
 };
 
 class NoiseLikelihood {
@@ -27,26 +27,26 @@ class NoiseLikelihood {
   NoiseLikelihood(const NoiseSpectrum& spectrum, Ramp ramp);
 
   struct Maximum {
-    TermVariances variances{};  // 0 for terms not allowed, and for those the data drive to zero
+    TermVariances variances{};  // 0 for terms that are not allowed or that the data drive to zero
     double log_likelihood = 0.0;
   };
-  // Over the allowed terms (at least one), from a start of its own or from `near`.
+  // Maximum over the allowed terms (at least one); the search starts at `near` if given.
   [[nodiscard]] Maximum maximise(TermSet allowed) const;
   [[nodiscard]] Maximum maximise(TermSet allowed, const TermVariances& near) const;
-  // The same with one more term held at a variance.
+  // The same with the variance of one more term fixed.
   [[nodiscard]] Maximum maximise_with(Term held, double variance, TermSet allowed,
                                       const TermVariances& near) const;
 
-  // Fisher information of the variances, at these.
+  // Fisher information of the variances.
   [[nodiscard]] Eigen::Matrix4d information(const TermVariances& at) const;
 
   struct RampEstimate {
-    double value = 0.0, std_error = 0.0;  // rate a sample
+    double value = 0.0, std_error = 0.0;  // rate per sample
   };
-  // By generalised least squares from the slow parts. Only with Ramp::kFree.
+  // Generalised least squares from the slow parts; only with Ramp::kFree.
   [[nodiscard]] RampEstimate ramp(const TermVariances& at) const;
 
-  // No term can have much more than the variance that makes it fill one of the bins alone: a scale for it.
+  // Scale of each term: no term can have much more than the variance that alone fills one of the bins.
   [[nodiscard]] const TermVariances& unit() const { return unit_; }
 
  private:
@@ -56,11 +56,11 @@ class NoiseLikelihood {
   };
   struct State {
     double log_likelihood = 0.0;
-    // The log-likelihood's gradient is pull − push, both >= 0; both and information by variance in units.
+    // Gradient of the log-likelihood is pull − push, both >= 0, per unit() of variance, as is `information`.
     Eigen::Vector4d pull = Eigen::Vector4d::Zero(), push = Eigen::Vector4d::Zero();
     Eigen::Matrix4d information = Eigen::Matrix4d::Zero();
   };
-  // Slopes for the terms of `open` only.
+  // Derivatives only for the terms in `open`.
   [[nodiscard]] State evaluate(const Eigen::Vector4d& x, TermSet open) const;
   void add_slow(const Eigen::Vector4d& x, TermSet open, State& state) const;
   [[nodiscard]] RampEstimate ramp_at(const Eigen::Vector4d& x) const;

@@ -15,16 +15,17 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kSegment = 480;  // steps of a level; one fits where twice the slow part's least do
-constexpr std::size_t kMostSegments = 8192;  // of a level
-constexpr std::size_t kSlow = 32;            // cosines of a stretch
+constexpr std::size_t kSegment = 480;  // steps of a level; fits into twice the fewest steps of a slow part
+constexpr std::size_t kMostSegments = 8192;  // per level
+constexpr std::size_t kSlow = 32;            // cosines per stretch
 constexpr std::size_t kSlowMeans =
-    256;  // of the angle they are computed from, at least: fewer than twice this
+    256;  // fewest angle means for the cosines; there are fewer than twice as many
 constexpr std::size_t kMostSlowStretches = 4;
-constexpr double kTopOfLevel = 1.0 / 16.0;     // cycles a sample of the level; above, the level below has it:
-constexpr double kBottomOfLevel = 1.0 / 32.0;  // averaging folds next to nothing onto frequencies this low
+// cycles per sample of the level; higher frequencies come from the level below
+constexpr double kTopOfLevel = 1.0 / 16.0;
+constexpr double kBottomOfLevel = 1.0 / 32.0;  // aliasing onto frequencies below this is negligible
 
-// A windowed segment: its power, and what each term makes of it.
+// Windowed segment: its power, and the power expected of each term.
 class Segment {
  public:
   explicit Segment(std::size_t size) : size_(size), window_(size) {
@@ -34,7 +35,7 @@ class Segment {
   }
 
   [[nodiscard]] std::size_t size() const { return size_; }
-  // For one unit of each term's variance.
+  // Expected power for one unit of each term's variance.
   [[nodiscard]] TermVariances expected(int level, std::size_t bin) const {
     const auto table = std::min(static_cast<std::size_t>(level), expected_.size() - 1);
     TermVariances out = level_unit(level);
@@ -42,7 +43,7 @@ class Segment {
     return out;
   }
 
-  // rate: size() samples, spoilt. Adds the power of every bin below the Nyquist frequency.
+  // Adds the power of every bin below the Nyquist frequency. rate: size() samples, overwritten.
   void add_power(std::vector<double>& rate, Fourier& fourier, std::vector<double>& power) const {
     detrend(rate);
     for (std::size_t i = 0; i < size_; ++i) rate[i] *= window_[i];
@@ -51,7 +52,8 @@ class Segment {
     for (std::size_t k = 0; k < power.size(); ++k) power[k] += std::norm(bins[k]);
   }
 
-  // Samples' worth of information in `segments` of them `hop` apart: (Σu)²/Σu², u the sum of squared windows.
+  // Effective number of independent samples in `segments` segments `hop` apart: (Σu)²/Σu², u the sum of
+  // squared windows.
   [[nodiscard]] double effective_samples(std::size_t segments, std::size_t hop) const {
     const auto overlap = [&](std::size_t shift) {
       double sum = 0.0;
@@ -79,8 +81,8 @@ class Segment {
     for (std::size_t i = 0; i < size_; ++i) v[i] -= mean + slope * (static_cast<double>(i) - middle);
   }
 
-  // A bin is |u'x|² with u the windowed wave less its own mean and slope: expected is Σ over lags of the
-  // covariance times u's autocorrelation. Levels above the last differ by their unit only.
+  // A bin is |u'x|², u the windowed wave minus mean and slope: expected power is Σ over lags of covariance
+  // times autocorrelation of u. Higher levels than the last differ only by their unit.
   void fill_expected() {
     constexpr int kLevels = 7;
     const std::size_t twice = 2 * size_, bins = size_ / 2;
@@ -98,7 +100,7 @@ class Segment {
       for (auto& s : spectrum) s = std::norm(s);
       fourier.inverse(correlation, spectrum);
       for (int level = 0; level < kLevels; ++level) {
-        // Above the lowest, only low frequencies are used.
+        // Levels above the lowest use only low frequencies.
         if (level > 0 && static_cast<double>(k) > kTopOfLevel * static_cast<double>(size_)) break;
         const std::span<const TermVariances> covariance = level_covariance(level);
         TermVariances& expected = expected_[static_cast<std::size_t>(level)][k];
@@ -114,7 +116,7 @@ class Segment {
   std::vector<std::vector<TermVariances>> expected_;  // by level and bin
 };
 
-// How far up a stretch is averaged before its slow part is computed.
+// Level of a stretch's slow part.
 int last_level(std::size_t samples) {
   int level = 0;
   while (((samples + 1) >> (level + 1)) >= kSlowMeans) ++level;
@@ -123,10 +125,10 @@ int last_level(std::size_t samples) {
 
 std::size_t slow_count(std::size_t averages) { return std::min(kSlow, averages / 2); }
 
-// The highest level whose spectrum is computed: half as far averaged as the slow part, so that a segment fits.
+// Highest level with a spectrum: one below the slow part, so that a segment fits.
 int last_spectrum(std::size_t samples) { return std::max(0, last_level(samples) - 1); }
 
-// Lowest bin frequency that the slow part leaves to the last spectrum, cycles a sample of that level.
+// Lowest bin frequency of the last spectrum above the slow part, cycles per sample of that level.
 double slow_edge(std::size_t samples) {
   const std::size_t averages = ((samples + 1) >> last_level(samples)) - 1;
   const double edge =
@@ -134,8 +136,8 @@ double slow_edge(std::size_t samples) {
   return edge * std::exp2(last_spectrum(samples) - last_level(samples));
 }
 
-// Every second of the first `count` cosines without the constant, from the `first` on: alike or opposite on
-// either side of the middle.
+// Every second one of the first `count` cosines, without the constant, starting at `first`: all even or all
+// odd about the middle.
 Eigen::MatrixXd cosines(std::size_t n, std::size_t count, std::size_t first) {
   Eigen::MatrixXd w(static_cast<Eigen::Index>(n), static_cast<Eigen::Index>((count - first + 1) / 2));
   for (std::size_t k = first; k < count; k += 2)
@@ -147,8 +149,7 @@ Eigen::MatrixXd cosines(std::size_t n, std::size_t count, std::size_t first) {
   return w;
 }
 
-// w'Γw of the Toeplitz matrix of a term; the columns of w all alike on either side of the middle, or all
-// opposite.
+// w'Γw with the Toeplitz matrix Γ of a term; the columns of w are all even or all odd about the middle.
 Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariances> covariance,
                           std::size_t term) {
   const Eigen::Index n = w.rows();
@@ -164,8 +165,8 @@ Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariance
                                           lag.segment(1, n - 1 - i).transpose() * w.bottomRows(n - 1 - i));
     return w.topRows(half).transpose() * product;
   }
-  // Quantisation and white noise end at a lag of one; a random walk's is −|lag|/2 from two on, that of a
-  // running sum up to constants, which columns without a mean do not see.
+  // Covariances of quantisation and white noise are zero beyond lag 1. That of a random walk is −|lag|/2 from
+  // lag 2 on, plus a constant that zero-mean columns cancel.
   const double walk = term == kK ? 1.0 : 0.0;
   const Eigen::MatrixXd beside = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
   Eigen::MatrixXd out = at(0) * w.transpose() * w + (at(1) + 0.5 * walk) * (beside + beside.transpose());
@@ -177,8 +178,7 @@ Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariance
   return out;
 }
 
-// Noise that is the same all along correlates nothing that is alike on either side of the middle with
-// anything that is opposite: two parts of half the size.
+// Stationary noise has no correlation between even and odd parts, so two halves are computed separately.
 std::array<SlowPart, 2> slow_parts(const AngleMeans& means, std::size_t samples) {
   const int level = last_level(samples);
   const std::size_t count = means.rates(level);
@@ -196,7 +196,7 @@ std::array<SlowPart, 2> slow_parts(const AngleMeans& means, std::size_t samples)
     const Eigen::MatrixXd& w = *part.cosines;
     part.value = w.transpose() * rate;
     part.ramp = w.transpose() * ramp;
-    // A ramp is opposite.
+    // A ramp is odd.
     if (first == 1) part.ramp.setZero();
     for (std::size_t t = 0; t < kTerms; ++t)
       part.covariance[t] = unit[t] * projected(w, level_covariance(level), t);
@@ -204,7 +204,7 @@ std::array<SlowPart, 2> slow_parts(const AngleMeans& means, std::size_t samples)
   return parts;
 }
 
-// Spectrum of one level: all stretches that are long enough, and not below their own slow part.
+// Spectrum of one level: all stretches that are long enough, above their own slow part.
 class Level {
  public:
   Level(const Segment& segment, int level) : segment_(segment), level_(level), power_(segment.size() / 2) {
@@ -214,7 +214,7 @@ class Level {
   void add(const AngleMeans& means, std::size_t samples) {
     const std::size_t size = segment_.size(), count = means.rates(level_);
     if (count < size || level_ > last_spectrum(samples)) return;
-    // As many as overlap by half, spread from the first sample to the last.
+    // As many as fit with half overlap, spread from the first sample to the last.
     std::size_t segments = (count - size + size / 2 - 1) / (size / 2) + 1;
     segments = std::min(segments, kMostSegments);
     const double hop =
@@ -239,7 +239,7 @@ class Level {
     }
   }
 
-  // Ascending in frequency.
+  // In ascending frequency.
   [[nodiscard]] std::vector<SpectralBin> bins() const {
     std::vector<SpectralBin> out;
     for (std::size_t k = 1; k < bins_.size(); ++k) {
@@ -265,7 +265,7 @@ class Level {
 
 NoiseSpectrum noise_spectrum(const AngleSum& sum) {
   NoiseSpectrum spectrum;
-  // Most records have room for whole segments, whose table is made once.
+  // The table for full-size segments is computed once.
   static const Segment kWhole(kSegment);
   const Segment segment = sum.longest() >= kSegment ? kWhole : Segment(std::bit_floor(sum.longest()));
   std::vector<AngleMeans> means;

@@ -11,13 +11,13 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kBeside = 2;   // bins on either side that the window smears a line into
-constexpr std::size_t kNearby = 12;  // bins on either side that say what is usual
-constexpr std::size_t kFewest = 4;   // of them
+constexpr std::size_t kBeside = 2;   // bins on either side into which the window smears a line
+constexpr std::size_t kNearby = 12;  // bins on either side that give the usual level
+constexpr std::size_t kFewest = 4;   // usable ones of these
 constexpr double kChance = 1e-6;
-constexpr double kMargin = 1.1;  // a smooth spectrum bends, too
+constexpr double kMargin = 1.1;  // allows for the curvature of a smooth spectrum
 
-// Logarithm of what the neighbours let expect: the mean of both sides' medians follows a slope.
+// Expected logarithm of the density: mean of the medians on both sides, which follows a slope.
 double usual(const std::vector<double>& level, std::size_t i) {
   std::vector<double> left, right;
   for (std::size_t j = kBeside + 1; j <= kNearby; ++j) {
@@ -33,7 +33,7 @@ double usual(const std::vector<double>& level, std::size_t i) {
 
 void leave_out_lines(NoiseSpectrum& spectrum) {
   std::vector<SpectralBin>& bins = spectrum.bins;
-  std::vector<double> level;  // logarithm of the spectral density, in units of white noise
+  std::vector<double> level;  // logarithm of density / white noise
   level.reserve(bins.size());
   for (const SpectralBin& bin : bins)
     level.push_back(std::log(std::max(1e-300, bin.power / bin.expected[kN])));
