@@ -12,7 +12,7 @@ namespace ifog {
 AngleSum::AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
   find_mean(rate_radps, stretches);
   if (rate_radps.in_memory().size() < rate_radps.size() || rate_radps.size() > kMostInMemory) {
-    std::vector<double> some(LongSeries::kAtOnce);  // not one by one
+    std::vector<double> some(LongSeries::kAtOnce);  // written in blocks
     std::size_t held = 0, total = stretches.size();
     for (const Stretch& s : stretches) total += s.size();
     long_.expect(total);
@@ -52,7 +52,7 @@ AngleSum::AngleSum(std::vector<double>&& rate_radps, std::span<const Stretch> st
 }
 
 void AngleSum::find_mean(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
-  constexpr std::size_t kLanes = 4;  // no addition waits for the one before
+  constexpr std::size_t kLanes = 4;  // independent sums for instruction-level parallelism
   std::array<double, kLanes> sum{}, rest{};
   std::size_t total = 0;
   for (const Stretch& s : stretches) {
@@ -87,7 +87,7 @@ void AngleSum::sum_up(const SeriesView& rate_radps, std::span<const Stretch> str
     add(0.0);
     for_each_piece(rate_radps, s.begin, s.end, [&](std::span<const double> rates, std::size_t) {
       for (const double rate : rates) {
-        // The mean is rounded; what it is off by is a constant, which no second difference sees.
+        // The error of the rounded mean is a constant, which a second difference cancels.
         two_sum(high, rate - mean_, high, error);
         low += error;
         add(high + low);

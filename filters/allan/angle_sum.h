@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The running sum of a rate, of which every Allan-like variance is made.
+// Running sum of a rate, from which all variances of the Allan family are computed.
 #pragma once
 
 #include <cstddef>
@@ -12,24 +12,23 @@
 
 namespace ifog {
 
-// The angle at each instant, in units of (rad/s × sample): running sum of the rate less its mean, each
-// stretch starting at zero. The sum is carried in two doubles, so that every entry is rounded once, however
-// long the record: 10⁸ samples with a bias a million times their noise keep nine digits of the deviation at
-// one sample.
+// Angle at each instant in (rad/s × sample): running sum of the rate minus its mean; each stretch starts at
+// zero. Each entry is rounded once (sum in two doubles). So 10⁸ samples whose bias is a million times the
+// noise keep nine digits of the deviation at one sample.
 class AngleSum {
  public:
-  // The angles of more rates than this are in a file.
+  // Longer series are kept in a file.
   static constexpr std::size_t kMostInMemory = std::size_t{1} << 23U;
 
-  // No NaN inside a stretch. Takes 8 bytes a sample, in memory where the rates are, else in a file.
+  // Needs 8 bytes per sample, in memory or in a file like the rates. No NaN inside a stretch.
   AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches);
-  // The same in the samples' own memory, where one stretch covers them all and the vector has room for one
-  // more; else by a copy, and the samples are freed afterwards.
+  // Reuses the vector's memory if one stretch covers all samples and the vector has capacity for one more;
+  // else copies and then frees it.
   AngleSum(std::vector<double>&& rate_radps, std::span<const Stretch> stretches);
 
   struct Part {
-    std::size_t first;   // index of its first angle
-    std::size_t angles;  // one more than its samples
+    std::size_t first;  // index of its first angle
+    std::size_t angles;
   };
   [[nodiscard]] SeriesView angle() const;
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
@@ -43,7 +42,7 @@ class AngleSum {
   void sum_up(const SeriesView& rate_radps, std::span<const Stretch> stretches, Add add);
 
   std::vector<double> angle_;
-  LongSeries long_;  // instead
+  LongSeries long_;  // used instead of angle_ for long series
   std::vector<Part> parts_;
   double mean_ = 0.0;
 };

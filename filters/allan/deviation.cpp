@@ -15,21 +15,21 @@
 namespace ifog {
 namespace {
 
-// Places handled at a time: their angles stay in the second-level cache while every m passes over them, so
-// that of the three streams of a long τ only two come from memory.
+// Places per block: their angles stay in the second-level cache for all m, so only two of a long τ's three
+// streams come from memory.
 constexpr std::size_t kBlock = kSeriesPiece;
 constexpr std::size_t kWorthThreads = std::size_t{1} << 22U;  // squares
 
-// The sums below are most of a long record's work: where the processor has registers of four doubles they are
-// used. The same additions in the same order, so the same bits: AVX2 alone brings no fused multiply-add.
-// Without ThreadSanitizer, whose runtime is not yet there when the choice is made.
+// Uses registers of four doubles where available. The order of additions and so the bits are the same: AVX2
+// has no fused multiply-add. Not with ThreadSanitizer, whose runtime does not exist yet when the ifunc
+// resolver runs.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_THREAD__)
 #define IFOG_WIDE_REGISTERS [[gnu::target_clones("avx2", "default"), gnu::flatten]]
 #else
 #define IFOG_WIDE_REGISTERS
 #endif
 
-// Eight independent sums let the compiler use vector registers without changing the order of any addition.
+// Eight independent sums allow vectorisation without a change in the order of any addition.
 template <typename Difference>
 double sum_of_squares(std::size_t n, Difference difference) {
   constexpr std::size_t kLanes = 8;
@@ -47,7 +47,7 @@ double sum_of_squares(std::size_t n, Difference difference) {
   return ((lane[0] + lane[1]) + (lane[2] + lane[3])) + ((lane[4] + lane[5]) + (lane[6] + lane[7]));
 }
 
-// Where a block's angles are: of its places, and one, two and three m later.
+// Angles of a block's places, and those one, two and three m later.
 using Streams = std::array<const double*, 4>;
 
 IFOG_WIDE_REGISTERS double allan_block(const Streams& x, std::size_t n) {
@@ -60,7 +60,7 @@ IFOG_WIDE_REGISTERS double hadamard_block(const Streams& x, std::size_t n) {
   return sum_of_squares(n, [=](std::size_t i) { return (x3[i] - x0[i]) - 3.0 * (x2[i] - x1[i]); });
 }
 
-// The mean of m neighbouring second differences, which moves along; its sum is carried in two doubles.
+// Moving mean of m neighbouring second differences; its sum is carried in two doubles.
 class MovingMean {
  public:
   explicit MovingMean(std::size_t m) : m_(static_cast<double>(m)) {}
@@ -79,8 +79,7 @@ double second_difference(const Streams& x, std::size_t i, std::size_t from) {
   return (x[from + 2][i] - x[from + 1][i]) - (x[from + 1][i] - x[from][i]);
 }
 
-// The sum starts again in every block, so that rounding cannot pile up along the record. x needs n + 3m − 1
-// angles.
+// The sum restarts in every block to limit rounding errors. x needs n + 3m − 1 angles.
 double modified_block(const double* x, std::size_t m, std::size_t n) {
   const Streams at{x, x + m, x + 2 * m, x + 3 * m};
   MovingMean mean(m);
@@ -98,10 +97,10 @@ double modified_block(const double* x, std::size_t m, std::size_t n) {
 
 struct Kind {
   Deviation which;
-  std::size_t span;     // angles a difference reaches over, in m
-  std::size_t less;     // subtracted from the number of places: the modified one reaches one angle less
-  double norm;          // variance = mean square / (norm·m²)
-  std::size_t block_m;  // places a block in units of m, for the running sum of the modified one
+  std::size_t span;  // reach of a difference, in units of m
+  std::size_t less;  // subtracted from the number of places: the modified one reaches one angle less
+  double norm;
+  std::size_t block_m;  // block size in units of m, for the modified deviation's running sum
 
   [[nodiscard]] double block(const double* x, std::size_t m, std::size_t n) const {
     const Streams at{x, x + m, x + 2 * m, x + (span > 2 ? 3 : 2) * m};
@@ -128,7 +127,7 @@ std::size_t places(const Kind& kind, std::size_t angles, std::size_t m) {
   return angles > reach ? angles - reach : 0;
 }
 
-// A sum of many squares, rounded once.
+// Sum of many squares, rounded once.
 class ExactSum {
  public:
   void add(double value) {
@@ -142,20 +141,19 @@ class ExactSum {
   double sum_ = 0.0, rest_ = 0.0;
 };
 
-// Angles of a part that are side by side in memory, moving along it.
+// Contiguous angles of a part; the window moves along it.
 class Window {
  public:
-  // reach: most that are asked for beyond the first of a place. ahead: read beyond that, so that what stays
-  // is moved seldom.
+  // reach: angles needed beyond a place. ahead: angles read in advance, so that data are moved rarely.
   Window(const SeriesView& angle, const AngleSum::Part& part, std::size_t reach)
       : angle_(angle), part_(part), room_(angle.in_memory().empty() ? reach + ahead(reach) : part.angles) {}
   static std::size_t ahead(std::size_t reach) { return std::max(64 * kBlock, reach / 2); }
 
-  // From `begin` on; begin never goes back. As many as there is room for, or to the part's end.
+  // Angles from `begin`, as many as fit or to the part's end; begin must not decrease.
   std::span<const double> from(std::size_t begin) {
     const std::size_t count = std::min(room_, part_.angles - begin);
     if (!angle_.in_memory().empty()) return angle_.in_memory().subspan(part_.first + begin, count);
-    // Not a vector, which would write zeros into all of it first.
+    // A vector would be zeroed first.
     if (!held_) held_ = std::make_unique_for_overwrite<double[]>(count);
     double* const held = held_.get();
     const std::size_t kept = end_ > begin ? end_ - begin : 0;
@@ -170,15 +168,15 @@ class Window {
   SeriesView angle_;
   AngleSum::Part part_;
   std::size_t room_, begin_ = 0, end_ = 0;
-  std::unique_ptr<double[]> held_;  // as many as are asked for first: later there are never more
+  std::unique_ptr<double[]> held_;  // size of the first request; later ones are not larger
 };
 
-// All m whose differences fit into the window, part by part. squares: by entry of m.
+// Computes all m whose differences fit into the window, part by part. squares: by entry of m.
 void add_together(const AngleSum& sum, const Kind& kind, std::span<const std::size_t> m,
                   std::vector<ExactSum>& squares) {
   if (m.empty()) return;
   const std::size_t longest_m = *std::max_element(m.begin(), m.end());
-  // The modified deviation starts each block with m additions, so its blocks grow with m.
+  // The modified deviation starts each block with m additions, so blocks grow with m.
   const std::size_t block = std::max(kBlock, kind.block_m * longest_m);
   const std::size_t reach = kind.span * longest_m + block;
   for (const AngleSum::Part& part : sum.parts()) {
@@ -186,7 +184,7 @@ void add_together(const AngleSum& sum, const Kind& kind, std::span<const std::si
     for (std::size_t begin = 0; begin < part.angles;) {
       const std::span<const double> x = window.from(begin);
       const bool last = begin + x.size() == part.angles;
-      // Whole blocks, but at the end, of which every difference is in the window.
+      // Only whole blocks, except at the end.
       const std::size_t blocks = last ? (x.size() + block - 1) / block : (x.size() - reach) / block + 1;
       std::vector<double> partial(blocks * m.size());
       share_out(blocks, x.size() * m.size() > kWorthThreads ? 0 : 1, [&](std::size_t b) {
@@ -203,7 +201,7 @@ void add_together(const AngleSum& sum, const Kind& kind, std::span<const std::si
   }
 }
 
-// One m by itself: its angles are read as streams m apart.
+// Computes one m; its angles are streams m apart.
 double alone(const AngleSum& sum, const Kind& kind, std::size_t m) {
   ExactSum squares;
   std::array<std::vector<double>, 4> room;
@@ -230,7 +228,7 @@ double alone(const AngleSum& sum, const Kind& kind, std::size_t m) {
         squares.add(kind.which == Deviation::kHadamard ? hadamard_block(x, count) : allan_block(x, count));
         continue;
       }
-      // Behind the last place the mean does not move on.
+      // After the last place the mean does not move.
       const std::size_t moves = begin + count < all ? count : count - 1;
       const Streams x = streams(begin, moves, 3);
       double block = 0.0;

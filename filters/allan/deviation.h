@@ -15,31 +15,31 @@ namespace ifog {
 
 enum class Deviation {
   kAllan,     // second differences of the angle
-  kModified,  // the same, averaged over m neighbours: tells white from flicker phase noise
-  kHadamard,  // third differences: blind to a rate ramp
+  kModified,  // the same, averaged over m neighbours: separates white from flicker phase noise
+  kHadamard,  // third differences: not affected by a rate ramp
 };
 
-// Mean square over all places where the difference fits inside one stretch.
+// Mean square over all places where the difference fits into one stretch.
 struct DeviationPoint {
   std::size_t m = 0;      // averaging time in samples
   std::size_t terms = 0;  // squares averaged; 0: no stretch is long enough
   double variance = 0.0;  // (rad/s)²; NaN when terms is 0
 };
 
-// The longest averaging time at which a difference fits into a stretch of so many samples; 0 if none does.
+// Longest averaging time in samples at which a difference fits into a stretch of `samples`; 0 if none does.
 [[nodiscard]] std::size_t longest_average(Deviation kind, std::size_t samples);
 
-// Angles of a long series that are in memory at a time, 128 MiB: the m whose differences fit into so many are
-// found in one pass over the file together, longer ones each in a pass of its own.
+// Angles of a long series in memory at a time, 128 MiB. All m whose differences fit are computed in one pass
+// over the file, each longer m in its own pass.
 inline constexpr std::size_t kAnglesAtOnce = std::size_t{1} << 24U;
 
-// One point per entry of m (each >= 1), in that order; on all processors. The same to rounding wherever the
-// angles are.
+// One point per entry of m (each >= 1), in that order, computed on all processors. The result depends on
+// where the angles are stored only by rounding.
 [[nodiscard]] std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::size_t> m,
                                                     Deviation kind = Deviation::kAllan,
                                                     std::size_t angles_at_once = kAnglesAtOnce);
 
-// Averaging times in samples, `per_decade` to a factor of ten, without repeats, from 1 to longest.
+// Averaging times in samples from 1 to longest, `per_decade` per decade, without repeats.
 [[nodiscard]] std::vector<std::size_t> log_spaced(std::size_t longest, int per_decade);
 
 }  // namespace ifog

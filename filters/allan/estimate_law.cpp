@@ -10,11 +10,12 @@
 namespace ifog {
 namespace {
 
-// Above, a single χ² keeps the probabilities to half a point.
+// Above, a single χ² is accurate to half a per cent of probability.
 constexpr double kFew = 30.0;
 constexpr std::size_t kPlacesAnAverage = 8;
 
-// Eigenvalues of the covariance between `places` differences `step` samples apart, of their mean square.
+// Adds eigenvalues of the covariance of `places` differences `step` samples apart, relative to their mean
+// square.
 void add_modes(Deviation kind, std::size_t m, std::size_t places, std::size_t step,
                const TermVariances& variances, double share, std::vector<WeightedChiSquared>& law) {
   const auto n = static_cast<Eigen::Index>(places);
@@ -43,7 +44,7 @@ std::vector<WeightedChiSquared> estimate_law(Deviation kind, std::size_t m,
   const WeightedChiSquared single{1.0 / degrees, degrees};
   if (degrees > kFew) return {single};
   TermVariances slow = variances;
-  // The modified deviation averages quantisation over neighbours before it is squared.
+  // The modified deviation averages quantisation over neighbours before it squares.
   if (kind != Deviation::kModified) slow[kQ] = 0.0;
   const double mean = expected_variance(kind, variances, m);
   const double slow_share = expected_variance(kind, slow, m) / mean;
@@ -63,8 +64,8 @@ std::vector<WeightedChiSquared> estimate_law(Deviation kind, std::size_t m,
               slow_share / slow_square * p / all, law);
   double square = 0.0;
   for (const WeightedChiSquared& part : law) square += part.weight * part.weight;
-  // Quantisation's part scatters less than the whole, nearly not at all where it has many averages; what else
-  // the squares' difference is, the steps between places have left.
+  // Quantisation scatters less than the whole, hardly at all with many averages. The rest of the squares'
+  // difference comes from the steps between the places.
   const double rest = 1.0 - slow_share;
   const double rest_square =
       std::clamp(1.0 / degrees - square, 1e-6 * rest * rest, std::max(0.5 / degrees, 1e-6 * rest) * rest);

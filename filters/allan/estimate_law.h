@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distribution of an overlapping estimate about its mean, under noise of given terms.
+// Distribution of an overlapping estimate under noise of given terms.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace ifog {
 
-// Distribution of estimate over mean. `degrees` is what EstimateVariance says of the same; where it is small the weights
-// are the eigenvalues of the differences' covariance, at places an eighth of m apart: the slow terms
-// change little between them, and what quantisation adds, independent from place to place, is one more part.
-// One part where it is large. samples: lengths of the stretches. Empty where no difference fits.
+// Distribution of estimate / mean as a weighted sum of χ². degrees: equivalent degrees of freedom
+// (EstimateVariance). If it is large, one χ². Else the weights are eigenvalues of the covariance of
+// differences m/8 apart, plus one part for quantisation. samples: lengths of the stretches. Empty if no
+// difference fits.
 [[nodiscard]] std::vector<WeightedChiSquared> estimate_law(Deviation kind, std::size_t m,
                                                            std::span<const std::size_t> samples,
                                                            const TermVariances& variances, double degrees);

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Running sums, above the first value there is, and numbers of values.
+// Running sums relative to the first value, and counts of values.
 struct GappedSum {
   Samples sum, there;
 

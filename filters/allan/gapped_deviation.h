@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Overlapping Allan deviation of a series with missing samples, for comparing the errors of one record before
-// and after a correction: averages of at least half of their samples count.
+// Overlapping Allan deviation of a series with missing samples, to compare errors of one record before and
+// after a correction.
 #pragma once
 
 #include <cstddef>
@@ -9,9 +9,9 @@
 
 namespace ifog {
 
-// rate_radps: at even steps, NaN missing. m: averaging times in samples, each >= 1. One deviation (rad/s) per
-// entry of m, NaN where the series does not hold three such averages. Without a missing sample it is that of
-// deviation(); stretches that holes leave apart are compared across them here, not there.
+// Deviation (rad/s) for each entry of m, NaN if there are fewer than three averages. An average needs half of
+// its samples. Without missing samples the result equals deviation(); unlike there, differences reach across
+// gaps. rate_radps: equidistant, NaN where missing; m: averaging times in samples, >= 1.
 [[nodiscard]] std::vector<double> gapped_deviation(std::span<const double> rate_radps,
                                                    std::span<const std::size_t> m);
 

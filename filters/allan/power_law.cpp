@@ -11,8 +11,8 @@ namespace {
 
 constexpr double kTwoPi = 2.0 * std::numbers::pi;
 
-// A difference of the angle, or of the angle's running sum: coefficients at multiples of m; variance = mean
-// square / (norm·m^power); it reaches over `less` angles fewer than its order times m.
+// Difference of the angle or of its running sum: coefficients at multiples of m; variance = mean square /
+// (norm·m^power). It reaches over order·m − `less` angles.
 struct Difference {
   std::vector<double> weight;
   double norm, power;
@@ -27,9 +27,9 @@ const Difference& difference_of(Deviation kind) {
   return kind == Deviation::kAllan ? kAllanOne : kind == Deviation::kHadamard ? kHadamardOne : kModifiedOne;
 }
 
-// Even g on the whole numbers with g(t+1) − 2g(t) + g(t−1) = −t² ln|t|/2π: the running sum's generalised
-// covariance under flicker noise. 1/(4 sinh²(∂/2)) = ∂⁻² − 1/12 + ∂²/240 − ∂⁴/6048 + … (Euler and Maclaurin)
-// gives it far from zero, the recursion carries it there, and evenness fixes the one free |t|.
+// Even function g on the integers with g(t+1) − 2g(t) + g(t−1) = −t² ln|t|/2π: generalised covariance of the
+// running sum of flicker noise. Far from zero by 1/(4 sinh²(∂/2)) = ∂⁻² − 1/12 + ∂²/240 − ∂⁴/6048 + … (Euler
+// and Maclaurin), from there by recursion; symmetry fixes the free multiple of |t|.
 class FlickerSum {
  public:
   FlickerSum() {
@@ -57,8 +57,8 @@ class FlickerSum {
   double slope_ = 0.0;
 };
 
-// The same as covariance_of_angle for the angle's running sum, on whole lags (and far lags that are not):
-// each has minus the angle's for its second difference.
+// covariance_of_angle for the angle's running sum, at whole lags and far lags. The second difference of each
+// is minus the angle's covariance.
 std::array<double, kTerms> covariance_of_sum(double t) {
   static const FlickerSum kFlicker;
   const double a = std::abs(t), a3 = a * a * a;
@@ -86,13 +86,12 @@ constexpr std::array<double, 4> kNode{0.183434642495649805, 0.525532409916328986
 constexpr std::array<double, 4> kWeight{0.362683783378361983, 0.313706645877887287, 0.222381034453374471,
                                         0.101228536290376259};
 
-// Lags summed one by one on either side of a bend, and the shortest panel.
+// Lags summed singly on either side of a bend; also the shortest panel.
 constexpr long long kSummedExactly = 24;
-// Beyond a few spans only flicker is left, falling with the fourth power of the lag or faster.
+// Beyond this many spans only flicker contributes, falling at least with the fourth power of the lag.
 constexpr long long kReach = 8;
 
-// Σ over lags of (pairs of places at that lag)·γⱼ·γₗ. Both factors are even, so lags below zero are counted
-// with those above.
+// Σ over lags of (number of pairs at that lag)·γⱼ·γₗ. Both factors are even, so only lags >= 0 are summed.
 class LagSum {
  public:
   LagSum(const Difference& difference, std::size_t m, std::span<const double> places)
@@ -105,7 +104,7 @@ class LagSum {
     std::vector<long long> bends{0, 1, end};
     for (long long k = 1; k <= order; ++k) {
       bends.push_back(k * step);
-      bends.push_back(k * step + 1);  // the spike at k·m stands alone
+      bends.push_back(k * step + 1);  // spike at k·m
     }
     for (const double p : places) bends.push_back(static_cast<long long>(p));
     std::sort(bends.begin(), bends.end());
@@ -138,7 +137,7 @@ class LagSum {
     }
   }
 
-  // Lags begin … end − 1, with bends at both ends: panels double in length towards the middle.
+  // Lags begin … end − 1 with bends at both ends: panels double in length towards the middle.
   void between(long long begin, long long end) {
     if (end - begin <= 4 * kSummedExactly) {
       for (long long s = begin; s < end; ++s) add(static_cast<double>(s), 1.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// When the rows of a capture were measured: what every command makes of its time column.
+// Times at which the rows of a capture were measured, used by every command.
 #pragma once
 
 #include <cstddef>
@@ -9,14 +9,14 @@
 
 namespace ifog {
 
-// By their stamps, or where those scatter (SampleClock::scatters) by an even clock that has the samples of
-// each hole in it.
+// The time stamps themselves, or, if they scatter (SampleClock::scatters), an even clock that counts the
+// missing samples of each gap.
 class RowTimes {
  public:
-  // clock: sample_clock(time_s). At least one row.
+  // clock: sample_clock(time_s). Needs at least one row.
   RowTimes(const SeriesView& time_s, const SampleClock& clock);
 
-  // Seconds since the first row, of each row in turn.
+  // Time of the next row, in seconds since the first row.
   double next(double stamp_s);
 
  private:
@@ -27,8 +27,7 @@ class RowTimes {
   double even_s_ = 0.0;
 };
 
-// Samples a second of a period from time stamps, which carries their rounding: nine digits are more than any
-// crystal keeps.
+// Sample rate in Hz, rounded to nine digits; the period from time stamps carries their rounding.
 [[nodiscard]] double rounded_rate(double period_s);
 
 }  // namespace ifog

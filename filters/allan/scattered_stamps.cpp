@@ -10,23 +10,23 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kNext = 7;      // stamps whose median says that a hole is one
-constexpr std::size_t kSettle = 128;  // that say what the phase is
+constexpr std::size_t kNext = 7;      // stamps whose median confirms a gap
+constexpr std::size_t kSettle = 128;  // stamps that give the initial phase
 constexpr double kHalf = 0.5;         // of a period
-// A tracker of second order, critically damped: settled within a hundred samples, and with an error of a
-// twenty-fifth of a period by stamps that are off by up to half of one.
+// Second-order tracker, critically damped. It settles within 100 samples; stamps off by up to half a period
+// move it by 1/25 period.
 constexpr double kPhaseGain = 1.0 / 32.0, kRateGain = kPhaseGain * kPhaseGain / 4.0;
-// Behind a silence of so many periods the device may have restarted, at any phase.
+// After a silence of this many periods the device may have restarted with any phase.
 constexpr std::size_t kSilence = 8;
 constexpr double kMostLost = 1e15;
 
-// The clock that follows: how late a stamp is, in periods, by the clock and the numbers given so far.
+// Tracking clock: lateness of a stamp in periods, given the sample numbers so far.
 class Clock {
  public:
   explicit Clock(double period_s) : period_s_(period_s) {}
 
-  // times: the first stamp of all, or behind a silence, and those that follow it. Its phase is against the
-  // median of theirs, by the numbers that a clock gives them which begins with it.
+  // Initial phase from the median lateness. times: the first stamp, or the first one after a silence, and
+  // those that follow it.
   void begin(std::span<const double> times) {
     Clock trial(period_s_);
     std::array<double, kSettle> late{};
@@ -40,7 +40,7 @@ class Clock {
     late_ = -middle_of(std::span(late).first(count));
     late_ -= std::round(late_);
   }
-  // The next stamp and those that follow it; how many are lost before it.
+  // Returns the number of samples lost before the next stamp. times: that stamp and those that follow it.
   std::size_t take(double last_s, std::span<const double> times) {
     late_ += later(last_s, times[0], 1);
     double lost = 0.0;
@@ -56,18 +56,18 @@ class Clock {
   [[nodiscard]] double squares() const { return squares_; }
 
  private:
-  // How much later a stamp is than one that came so many samples before it.
+  // Lateness of a stamp relative to one `samples` before it, in periods.
   [[nodiscard]] double later(double last_s, double time_s, std::size_t samples) const {
     return (time_s - last_s) / period_s_ - static_cast<double>(samples) * (1.0 + rate_);
   }
-  // The median, with the one that late_ is of.
+  // Median lateness of these stamps and of the last one.
   [[nodiscard]] double lateness_of_next(std::span<const double> times) const {
     std::array<double, kNext> late{};
     const std::size_t count = std::min(kNext, times.size());
     for (std::size_t k = 0; k < count; ++k) late[k] = late_ + later(times[0], times[k], k);
     return middle_of(std::span(late).first(count));
   }
-  // One of them and no mean of two, which may be either side of a hole.
+  // An element, not the mean of two, which may be on either side of a gap.
   static double middle_of(std::span<double> values) {
     const auto middle = values.begin() + (std::ssize(values) - 1) / 2;
     std::nth_element(values.begin(), middle, values.end());
@@ -75,8 +75,8 @@ class Clock {
   }
 
   double period_s_;
-  double late_ = 0.0, rate_ = 0.0;  // of the last stamp used; by which the period is longer
-  double squares_ = 0.0;            // of how far stamps are off
+  double late_ = 0.0, rate_ = 0.0;  // of the last stamp used; relative error of the period
+  double squares_ = 0.0;            // sum of squared distances
 };
 
 }  // namespace

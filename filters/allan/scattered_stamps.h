@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which samples are missing where stamps scatter so far that a single step does not say: a late stamp makes a
-// step of 1.8 periods, and a lost sample between a late and an early one a step of 1.2. What says is a clock
-// that follows the stamps, by which each sample has a number.
+// Finds missing samples if time stamps scatter so much that a single step is ambiguous: a late stamp makes a
+// step of 1.8 periods, a lost sample between a late and an early stamp one of 1.2. A tracking clock follows
+// the stamps and numbers each sample.
 #pragma once
 
 #include <cstddef>
@@ -11,13 +11,12 @@
 
 namespace ifog {
 
-// found(i, lost, step_s) for each sample i behind which samples are lost, with the step of time there, in
-// order. period_s: within a percent of the true one. Right as long as a stamp is off by less than half a
-// period; where a few are off by more, a hole counts as real only if most of the next stamps say so, too.
-// Other holes close by are no hindrance: the median of numbers that only ever rise is not moved by where else
-// they do.
+// Calls found(i, lost, step_s) in order for each sample i after which samples are lost, with the time step
+// there. Returns the mean squared distance of the stamps from the clock, in periods².
 //
-// What it gives back is the mean square of how far stamps are off that clock, in periods.
+// Exact while each stamp is off by less than half a period. With larger errors, a gap counts only if most of
+// the next stamps confirm it (median, which other gaps nearby do not disturb). period_s: within 1 % of the
+// true period.
 double holes_of_scattered(const SeriesView& time_s, double period_s,
                           const std::function<void(std::size_t i, std::size_t lost, double step_s)>& found);
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Allan deviation while the data arrive: averaging times of 1, 2, 4, … samples in constant memory, for the
-// daemon's status.
+// Allan deviation of arriving data at 1, 2, 4, … samples in constant memory, for the daemon's status.
 //
-// Each octave keeps its last eight quarter-length averages and takes a difference at every new one, so that
-// neighbouring differences overlap by three quarters: within a few per cent as certain as the fully
-// overlapping estimate, at eight additions per difference. One sample costs about two such steps on average
-// and one per octave at most; no allocation, lock or exception.
+// Each octave keeps its last eight quarter-length averages and takes a difference at each new one.
+// Differences overlap by three quarters, so the estimate is within a few per cent as certain as the fully
+// overlapping one. A sample costs about two such steps on average, at most one per octave. No allocation,
+// lock or exception.
 #pragma once
 
 #include <array>
@@ -17,14 +16,13 @@ namespace ifog {
 
 class StreamingAllan {
  public:
-  static constexpr int kOctaves = 24;  // 2²³ samples: an hour and more at 2 kHz
+  static constexpr int kOctaves = 24;  // 2²³ samples: more than an hour at 2 kHz
 
-  // The next rate, rad/s, one sample time after the one before. A value that is not finite breaks the series
-  // like a gap.
+  // Adds the next rate, rad/s, one sample time after the one before. A value that is not finite acts as a
+  // gap.
   void add(double rate_radps) noexcept {
     if (!std::isfinite(rate_radps)) return restart();
-    // Differences do not care for a common offset, but their digits do: a bias a million times the noise
-    // stays out.
+    // Subtracting the first value keeps the digits of the noise if the bias is much larger.
     if (!started_) offset_ = rate_radps;
     started_ = true;
     double mean = rate_radps - offset_;
@@ -36,18 +34,18 @@ class StreamingAllan {
         take<2>(1, level);
       }
       if (k + 2 < kOctaves) take<4>(k + 2, level);
-      if ((level.filled & 1U) != 0) return;  // half of the next level's average
+      if ((level.filled & 1U) != 0) return;  // only half of the next level's average is complete
       mean = 0.5 * (level.at(0) + level.at(1));
     }
   }
 
-  // After a gap: no difference reaches across. What was found so far stays.
+  // To be called after a gap: no difference reaches across it. The sums are kept.
   void restart() noexcept {
     for (Level& level : level_) level.filled = 0;
     started_ = false;
   }
 
-  // Allan deviation at 2^octave samples, rad/s; NaN until the first difference.
+  // Allan deviation at 2^octave samples, rad/s; NaN before the first difference.
   [[nodiscard]] double deviation(int octave) const noexcept {
     const Sum& sum = sum_[static_cast<std::size_t>(octave)];
     return sum.count == 0 ? std::numeric_limits<double>::quiet_NaN()
@@ -56,7 +54,7 @@ class StreamingAllan {
   [[nodiscard]] std::uint64_t differences(int octave) const noexcept {
     return sum_[static_cast<std::size_t>(octave)].count;
   }
-  // Octaves that have at least one difference: the first so many of them.
+  // Number of octaves that have at least one difference.
   [[nodiscard]] int octaves() const noexcept {
     int n = 0;
     while (n < kOctaves && sum_[static_cast<std::size_t>(n)].count > 0) ++n;
@@ -64,7 +62,7 @@ class StreamingAllan {
   }
 
  private:
-  // The last eight means of 2^k samples, newest at 0.
+  // The last eight means of 2^k samples; index 0 is the newest.
   struct Level {
     std::array<double, 8> ring{};
     std::uint64_t filled = 0;
@@ -76,7 +74,7 @@ class StreamingAllan {
     std::uint64_t count = 0;
   };
 
-  // kUnits: of the level, a power of two.
+  // kUnits: means per average, a power of two.
   template <std::uint64_t kUnits>
   void take(int octave, const Level& level) noexcept {
     if (level.filled < 2 * kUnits) return;

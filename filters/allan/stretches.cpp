@@ -17,16 +17,16 @@ namespace {
 constexpr double kGap = 1.5;  // in periods
 constexpr std::size_t kBesideGap = 2;
 
-// Some steps of the time with the samples around them.
+// A few time steps with the stamps around them.
 class Steps {
  public:
   Steps(std::span<const double> time_s, std::size_t first, std::size_t samples)
       : time_s_(time_s), first_(first), samples_(samples) {}
 
-  // From sample i to the next.
+  // Step from sample i to i + 1.
   [[nodiscard]] double step(std::size_t i) const { return at(i + 1) - at(i); }
-  // A late stamp followed by an early one is jitter; a gap leaves all that follows late. The step is judged
-  // by the second sample on either side, which what one bad stamp does has no part in.
+  // A late stamp followed by an early one is jitter; after a gap all stamps stay late. The second sample on
+  // either side decides, so one bad stamp has no effect.
   [[nodiscard]] bool is_gap(std::size_t i, double period) const {
     if (step(i) <= kGap * period) return false;
     const std::size_t low = i >= kBesideGap ? i - kBesideGap : 0;
@@ -42,7 +42,7 @@ class Steps {
   std::size_t first_, samples_;
 };
 
-// use(steps, i) for every step i in order.
+// Calls use(steps, i) for every step i in order.
 template <typename Use>
 void for_each_step(const SeriesView& time_s, Use use) {
   const std::size_t samples = time_s.size();
@@ -56,7 +56,8 @@ void for_each_step(const SeriesView& time_s, Use use) {
   }
 }
 
-// found(i, lost, step) for each hole behind sample i; of stamps that scatter, their mean square.
+// Calls found(i, lost, step) for each gap after sample i. Returns the stamps' mean squared distance if they
+// scatter.
 template <typename Found>
 double for_each_hole(const SeriesView& time_s, double period, bool scatters, Found found) {
   if (scatters) return holes_of_scattered(time_s, period, found);
@@ -69,13 +70,13 @@ double for_each_hole(const SeriesView& time_s, double period, bool scatters, Fou
 }
 
 struct Period {
-  double period_s = 0.0;  // the mean of the steps that are no gap
+  double period_s = 0.0;  // mean of the steps without gaps
   std::size_t gaps = 0;
-  double squares = 0.0;  // as for_each_hole
+  double squares = 0.0;  // as returned by for_each_hole
 };
 
-// By the gaps that there are with this period. Of stamps that scatter a short gap counts as so many steps:
-// its length says less of when the next sample was measured than its number.
+// Mean period without the gaps found with this period. With scattering stamps a short gap counts as its
+// number of steps, because its length is less accurate.
 Period mean_period(const SeriesView& time_s, double period_s, bool scatters) {
   constexpr std::size_t kShort = 8;
   const std::size_t count = time_s.size() - 1;
@@ -96,12 +97,12 @@ Period mean_period(const SeriesView& time_s, double period_s, bool scatters) {
   return out;
 }
 
-// The shortest and the longest step: where even that is no gap, none is.
+// Shortest and longest step; if the longest is no gap, there is none.
 struct Extremes {
   double least_s = std::numeric_limits<double>::infinity(), most_s = -least_s;
 
   [[nodiscard]] bool gapless(double period_s) const { return most_s <= kGap * period_s; }
-  // From the period. Of a number less another the rounded absolute is largest at one end or the other.
+  // Largest distance of a step from the period.
   [[nodiscard]] double jitter_s(double period_s) const {
     return std::max(std::abs(least_s - period_s), std::abs(most_s - period_s));
   }
@@ -114,7 +115,7 @@ Extremes extremes_of(const SeriesView& time_s) {
   for (std::size_t begin = 0; begin + 1 < samples; begin += kSeriesPiece) {
     const std::span<const double> some =
         time_s.piece(begin, std::min(kSeriesPiece + 1, samples - begin), room);
-    constexpr std::size_t kLanes = 4;  // no comparison waits for the one before
+    constexpr std::size_t kLanes = 4;  // for instruction-level parallelism
     std::array<double, kLanes> least, most;
     least.fill(found.least_s);
     most.fill(found.most_s);
@@ -129,7 +130,7 @@ Extremes extremes_of(const SeriesView& time_s) {
   return found;
 }
 
-// Some steps, evenly chosen.
+// Every `stride`-th step.
 std::vector<double> some_steps(const SeriesView& time_s, std::size_t stride) {
   std::vector<double> some, room;
   some.reserve((time_s.size() - 1) / stride + 1);
@@ -140,14 +141,13 @@ std::vector<double> some_steps(const SeriesView& time_s, std::size_t stride) {
   return some;
 }
 
-// Period of stamps that scatter; near: what their steps one by one say.
+// Period of scattering stamps. near_s: from the single steps.
 double scattered_period(const SeriesView& time_s, double near_s) {
   Period out{.period_s = near_s};
   for (int round = 0; round < 3; ++round) out = mean_period(time_s, out.period_s, true);
-  // Where stamps are off by all but half a period steps say nothing. If nothing is missing at the mean of all
-  // of them, that is it, unless a few holes make a much better clock; or stamps would be off by more than
-  // half a period, as those of bursts.
-  constexpr double kHalfEitherWay = 0.1;  // a twelfth, with the error of the clock
+  // The mean of all steps is the period if no sample is missing. It is rejected if a clock with few gaps fits
+  // much better, or if stamps would be off by more than half a period, as in bursts.
+  constexpr double kHalfEitherWay = 0.1;  // of a uniform error; 1/12 plus the clock's error
   const std::size_t count = time_s.size() - 1;
   const double all_s = (time_s.at(count) - time_s.at(0)) / static_cast<double>(count);
   const Period all = mean_period(time_s, all_s, true);
@@ -156,9 +156,9 @@ double scattered_period(const SeriesView& time_s, double near_s) {
   return even ? all_s : out.period_s;
 }
 
-// Period of an even clock whose stamps are in ticks of more than half its period, as those of single precision far
-// from 0 are: steps of one tick and of two, which would be holes. 0: they are none. A stamp is never further
-// from an even clock than a tick; of holes by chance so many are, or there are few of them.
+// Period of an even clock with stamps rounded to ticks of more than half a period (single precision far from
+// 0). Its steps of one and two ticks would look like gaps. A stamp is never more than one tick from such a
+// clock. 0: the stamps are not of this kind.
 double even_period(const SeriesView& time_s, double tick_s) {
   constexpr double kFewest = 16.0, kRounding = 1.0 + 1e-6;
   const auto count = static_cast<double>(time_s.size() - 1);
@@ -180,7 +180,7 @@ double even_period(const SeriesView& time_s, double tick_s) {
 SampleClock sample_clock(const SeriesView& time_s) {
   if (time_s.size() < 2) throw std::invalid_argument("a sample time needs two samples");
   const std::size_t count = time_s.size() - 1;
-  // The median of a hundred thousand steps is as good as that of all.
+  // Some 100,000 steps suffice for the median.
   std::vector<double> some = some_steps(time_s, count / 100'000 + 1);
   const Extremes steps = extremes_of(time_s);
   double period = median(some);
@@ -188,15 +188,16 @@ SampleClock sample_clock(const SeriesView& time_s) {
 
   SampleClock clock;
   if (const double even_s = even_period(time_s, period); even_s > 0.0) {
-    clock.scatter = period / (std::sqrt(12.0) * even_s);  // of what is rounded
+    clock.scatter = period / (std::sqrt(12.0) * even_s);  // of the rounding error
     period = even_s;
   } else {
-    // Coarse stamps make the median one tick too short or too long; a second round with the mean settles it.
+    // The median of coarse stamps is one tick too short or too long; a second round with the mean corrects
+    // it.
     for (int round = 0; round < 2; ++round)
       period = steps.gapless(period) ? (time_s.at(count) - time_s.at(0)) / static_cast<double>(count)
                                      : mean_period(time_s, period, false).period_s;
     for (double& step : some) step = std::abs(step - period);
-    clock.scatter = 1.4826 * median(some) / (std::numbers::sqrt2 * period);  // as of Gaussians
+    clock.scatter = 1.4826 * median(some) / (std::numbers::sqrt2 * period);  // of Gaussian scatter
     if (clock.scatters()) period = scattered_period(time_s, period);
   }
   clock.period_s = period;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a capture's time column says before any variance is computed: the true sample time, and where samples are
-// missing. An Allan variance over a hole would compare averages that do not touch, so holes end a stretch.
+// Sample time and missing samples from a capture's time column. An Allan variance across a gap would compare
+// averages that are not adjacent, so a gap ends a stretch.
 #pragma once
 
 #include <cstddef>
@@ -11,28 +11,29 @@
 
 namespace ifog {
 
-// Samples begin … end − 1, evenly spaced and all present.
+// Samples begin … end − 1, equidistant and complete.
 struct Stretch {
   std::size_t begin = 0, end = 0;
   [[nodiscard]] std::size_t size() const { return end - begin; }
 };
 
 struct SampleClock {
-  double period_s = 0.0;        // mean of the steps that are no gap
-  double worst_jitter_s = 0.0;  // largest distance of such a step from period_s
-  std::size_t gaps = 0;         // steps over which samples are missing
-  std::size_t missing = 0;      // so many
-  double scatter = 0.0;  // deviation of a stamp, in periods, by the steps' median distance from period_s
-  // The stamps are off by more than distinguishes steps of an even clock: when a sample was measured its number
-  // says better.
+  double period_s = 0.0;        // mean of the steps without gaps
+  double worst_jitter_s = 0.0;  // largest difference between such a step and period_s
+  std::size_t gaps = 0;         // steps with missing samples
+  std::size_t missing = 0;      // samples
+  // standard deviation of the stamps in periods, from the steps' median distance from period_s
+  double scatter = 0.0;
+  // True if the stamps are too irregular to recognise single steps; then the sample's number gives its time
+  // better.
   [[nodiscard]] bool scatters() const { return scatter >= 0.1; }
   std::size_t first_gap = 0;  // index of the sample before the first gap; meaningful when gaps > 0
 };
 
-// time_s strictly increasing, at least two samples; throws std::invalid_argument otherwise. The median step
-// decides what a gap is, so up to half of the steps may be gaps. Time stamps rounded to coarse ticks
-// alternate between steps of k and k + 1 ticks; a step counts as a gap only if the stamps stay late after it.
-// For stamps that scatter see filters/allan/scattered_stamps.h.
+// Throws std::invalid_argument unless time_s is strictly increasing and has two samples or more. The median
+// step defines a gap, so up to half of the steps may be gaps. Coarsely rounded stamps alternate between k and
+// k + 1 ticks; so a step is a gap only if later stamps stay late. Scattering stamps:
+// filters/allan/scattered_stamps.h.
 [[nodiscard]] SampleClock sample_clock(const SeriesView& time_s);
 
 struct Hole {
@@ -40,10 +41,10 @@ struct Hole {
   std::size_t lost = 0;
 };
 
-// In order.
+// In order of time.
 [[nodiscard]] std::vector<Hole> holes(const SeriesView& time_s, const SampleClock& clock);
 
-// The runs without gap or NaN, in order. time_s may be empty: then only NaNs part them.
+// Stretches without gap or NaN, in order. If time_s is empty only NaN divides them.
 [[nodiscard]] std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_radps,
                                              const SampleClock& clock);
 

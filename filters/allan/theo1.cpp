@@ -15,7 +15,7 @@ constexpr std::size_t kPlaces = 128;
 constexpr std::size_t kFewestSamples = 64;
 constexpr double kTauOfSpan = 0.75;
 
-// Every term of Thêo1 as four angles with their signs, and its weight.
+// Calls use with the four angles and the weight of each term of Thêo1.
 template <typename Use>
 void for_each_difference(std::size_t angles, std::size_t m, Use use) {
   const std::size_t half = m / 2;
@@ -41,7 +41,7 @@ Eigen::MatrixXd quadratic_form(std::size_t angles, std::size_t m) {
   return form;
 }
 
-// Covariance of the angle, up to what no difference sees.
+// Generalised covariance of the angle.
 Eigen::MatrixXd covariance(std::size_t angles, const TermVariances& terms) {
   const auto n = static_cast<Eigen::Index>(angles);
   Eigen::VectorXd lag(n);
@@ -56,7 +56,7 @@ Eigen::MatrixXd covariance(std::size_t angles, const TermVariances& terms) {
   return c;
 }
 
-// Distribution of the form over its mean: eigenvalues of F^½·C·F^½.
+// Distribution of form / mean: eigenvalues of F^½·C·F^½.
 std::vector<WeightedChiSquared> law_of(const Eigen::MatrixXd& form, const Eigen::MatrixXd& c, double mean) {
   const SymmetricEigen root = symmetric_eigen(form);
   const Eigen::MatrixXd half =
@@ -69,7 +69,7 @@ std::vector<WeightedChiSquared> law_of(const Eigen::MatrixXd& form, const Eigen:
   return law;
 }
 
-// Even spans whose τ lies in (from, to], logarithmically spaced.
+// Even spans with τ in (from, to], logarithmically spaced.
 std::vector<std::size_t> spans(double from, double to, int per_decade) {
   std::vector<std::size_t> m;
   const double step = std::pow(10.0, 1.0 / per_decade);
@@ -104,7 +104,7 @@ std::vector<LongPoint> theo1(const AngleSum& sum, const TermVariances& terms, do
   std::vector<double> angle;
   for (std::size_t i = 0; i < part->angles; i += step)
     angle.push_back(sum.angle().at(part->first + i) / scale);
-  // Averages over `step` samples are noise of the same terms.
+  // Averages over `step` samples have the same terms with these variances.
   TermVariances averaged{terms[kQ] / (scale * scale), terms[kN] / scale, terms[kB], terms[kK] * scale};
   if (std::all_of(averaged.begin(), averaged.end(), [](double v) { return v <= 0.0; })) averaged[kN] = 1.0;
   const Eigen::MatrixXd c = covariance(angle.size(), averaged);
@@ -116,7 +116,7 @@ std::vector<LongPoint> theo1(const AngleSum& sum, const TermVariances& terms, do
     LongPoint point;
     const double tau = kTauOfSpan * static_cast<double>(m);
     point.tau = tau * scale;
-    double allan = 0.0;  // expected_variance wants whole samples; the terms' powers do not
+    double allan = 0.0;  // the powers of the terms also hold for τ that is not whole
     const std::array<double, kTerms> allan_of{3.0 / (tau * tau), 1.0 / tau,
                                               expected_variance(Deviation::kAllan, kB, 1), tau / 3.0};
     double most = 0.0;

@@ -3,7 +3,7 @@
 
 namespace ifog {
 
-// a + b exactly, as a rounded sum and what the rounding left (Knuth, TAOCP vol. 2, 4.2.2 theorem B).
+// a + b as the rounded sum and the exact rounding error (Knuth, TAOCP vol. 2, 4.2.2 theorem B).
 inline void two_sum(double a, double b, double& sum, double& rest) {
   sum = a + b;
   const double t = sum - a;
