@@ -61,7 +61,7 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
   const ifog_description& d = driver.description();
   rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : rate_hz;
   timed_ = d.has_device_time != 0 || driver.takes_can();
-  const double first_s = capture.size() > 0 ? capture.origin.told(capture.time_s.front()) : 0;
+  const double first_s = capture.size() > 0 ? capture.origin.in_s(capture.time_s.front()) : 0;
   if (timed_ && first_s < 0.0) {
     later_s_ = static_cast<std::int64_t>(std::ceil(-first_s));
     notices_.push_back("begins at " + seven_digits(first_s) +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One capture of the sensor, as a diagnosis takes it.
+// One capture of the sensor as input of a diagnosis.
 #pragma once
 
 #include <algorithm>
@@ -15,17 +15,17 @@ namespace ifog {
 
 // The caller keeps the arrays alive; all are as long as time_s.
 struct RecordChannel {
-  std::string name;                // the capture's column, NAME_UNIT
-  std::span<const double> values;  // NaN: missing, held
-  double period = 0.0;             // of an unwrapped angle, in its unit; 0: not an angle
+  std::string name;                // column of the capture, NAME_UNIT
+  std::span<const double> values;  // NaN: missing, the last value holds
+  double period = 0.0;             // period of an unwrapped angle, in its unit; 0: not an angle
 };
 
-// What a record's times are counted from, where they are large numbers: the sum of the two.
+// Origin of a record's times if they are large numbers: the sum of both parts.
 struct RecordOrigin {
   double whole_s = 0.0, beyond_s = 0.0;
 
-  // A time of the record as its capture says it, and back.
-  [[nodiscard]] double told(double time_s) const { return whole_s + (beyond_s + time_s); }
+  // Converts between the record's time and the time in the capture.
+  [[nodiscard]] double in_s(double time_s) const { return whole_s + (beyond_s + time_s); }
   [[nodiscard]] double since(double told_s) const { return told_s - whole_s - beyond_s; }
 };
 
@@ -33,17 +33,17 @@ struct Record {
   std::string name;
   std::span<const double> time_s;             // strictly increasing
   std::span<const double> rate_radps;         // NaN: missing
-  std::span<const double> reference_radps{};  // empty: none; then the true rate is assumed constant
+  std::span<const double> reference_radps{};  // empty: the true rate is assumed constant
   std::string reference_name = "reference_rate_radps";
   std::vector<RecordChannel> channels;
-  // Rates of the same sensor, by the names of their columns: it rests when all of them do.
+  // Rates of the sensor's other axes, by column name. The sensor rests when all axes do.
   std::vector<RecordChannel> other_axes;
-  std::vector<std::span<const double>> other_references{};  // of those, in their order; empty: none
-  std::vector<Stretch> at_rest;                             // samples, in order; empty: not looked for, all
-  RecordOrigin origin;                                      // that time_s is counted from
+  std::vector<std::span<const double>> other_references{};  // of other_axes, in their order; empty: none
+  std::vector<Stretch> at_rest;  // in samples, in order; empty: not determined, all
+  RecordOrigin origin;           // of time_s
 };
 
-// Values of the channel of that name; empty if the record has none.
+// Values of a channel by name; empty if the record has none.
 inline std::span<const double> values_of(const Record& record, std::string_view name) {
   for (const RecordChannel& channel : record.channels) {
     if (channel.name == name) return channel.values;
@@ -51,7 +51,7 @@ inline std::span<const double> values_of(const Record& record, std::string_view 
   return {};
 }
 
-// Whether there are two values.
+// True if the values are not all equal.
 inline bool moves(std::span<const double> values) {
   const auto finite = [](double value) { return std::isfinite(value); };
   const auto first = std::find_if(values.begin(), values.end(), finite);

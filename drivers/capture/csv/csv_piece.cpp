@@ -234,7 +234,7 @@ class Rows {
     double since = 0.0;
     if (!stamps_.since(digits, since)) since = stamps_.since(number(name, text, digits));
     if (std::isnan(since)) throw Unreadable{printable(name) + " is missing, expected a time"};
-    if (!time_range_.holds(stamps_.origin().told(since)))
+    if (!time_range_.holds(stamps_.origin().in_s(since)))
       throw Unreadable{
           what_no_sensor_measures(name, text, measurable_in_file(header_.layout.time.value_or(CsvTime{})))};
     piece_.rows.time_s.push_back(since);

@@ -124,7 +124,7 @@ void Hdf5Writer::take_large_times(std::span<const double> since_s, const TimeOri
       std::abs(origin.s) < kMostSecondsInNs && !std::count(names_.begin(), names_.end(), kHdf5ExactTime);
   std::vector<double>& time = held_.front();
   std::transform(since_s.begin(), since_s.end(), time.end() - static_cast<std::ptrdiff_t>(since_s.size()),
-                 [&](double since) { return origin.told(since); });
+                 [&](double since) { return origin.in_s(since); });
   if (times_are_large_)
     for (const double since : since_s) held_ns_.push_back(origin.in_ns(since));
 }

@@ -27,7 +27,7 @@ struct TimeOrigin {
   [[nodiscard]] static TimeOrigin of(std::int64_t first_ns);
 
   // A time as a double holds it.
-  [[nodiscard]] double told(double since_s) const {
+  [[nodiscard]] double in_s(double since_s) const {
     return static_cast<double>(s) + (static_cast<double>(ns) / 1e9 + since_s);
   }
   // What 64 bits have room for.

@@ -17,18 +17,18 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kLookedAt = 50000;  // values, evenly chosen: what is usual shows in so many
-constexpr std::size_t kFewest = 100;      // values, that tell what is usual
-constexpr std::size_t kFewValues = 5;     // of a switch, or of states
-constexpr double kMostFaults = 0.1;       // of the readings: what is more often is a state of the channel
-constexpr double kLongest_s = 60.0;       // of an interpolation
-constexpr std::size_t kLearned = 1000;    // samples that the rule learns from before it judges the first one
+constexpr std::size_t kLookedAt = 50000;  // values examined for the usual range
+constexpr std::size_t kFewest = 100;      // fewest values for a usual range
+constexpr std::size_t kFewValues = 5;     // of a switch or a state
+constexpr double kMostFaults = 0.1;  // share of the readings; more frequent values are a state of the channel
+constexpr double kLongest_s = 60.0;  // longest interpolation
+constexpr std::size_t kLearned = 1000;  // samples used to initialise the rule
 
 using Flags = std::vector<std::uint8_t>;
 
-// How many values at the beginning of sorted ones are a placeholder. A logger's 9999 or 85 °C, which may stand for
-// minutes, is one number, farther from all others than most of them are from each other; but zero is what a
-// channel reads that is switched off.
+// Number of equal values at the start of a sorted list that are a placeholder (9999 or 85 °C): one value,
+// farther from all others than most of these are from each other. Zero is none; a channel that is switched
+// off reads zero.
 std::size_t placeholders_of(const std::vector<double>& values) {
   const std::size_t n = values.size();
   const auto most = static_cast<std::size_t>(kMostFaults * static_cast<double>(n));
@@ -39,7 +39,7 @@ std::size_t placeholders_of(const std::vector<double>& values) {
   return std::abs(*other - first) > std::abs(values[n - 1 - most] - *other) ? times : 0;
 }
 
-// From the hundredth to the ninety-ninth quantile.
+// From the 1 % to the 99 % quantile.
 std::optional<ChannelRange> usual_range(std::span<const double> column) {
   std::vector<double> values;
   const std::size_t stride = std::max<std::size_t>(1, column.size() / kLookedAt);
@@ -57,8 +57,8 @@ std::optional<ChannelRange> usual_range(std::span<const double> column) {
   return ChannelRange{"", at(0.01), at(0.99)};
 }
 
-// By sample, whether the rule refuses what the channel says there, forwards in time or backwards. A record
-// may begin with a fault, so the rule learns from its first samples before it judges them.
+// By sample, whether the rule rejects the reading forwards or backwards in time. A record may begin with a
+// fault, so the rule first learns from the first samples.
 Flags refused(const Record& record, std::span<const double> column, const ChannelRange& range,
               bool forwards) {
   const std::size_t n = column.size();
@@ -77,8 +77,8 @@ Flags refused(const Record& record, std::span<const double> column, const Channe
   return found;
 }
 
-// Linear in time between the readings before and behind each run of faults; one of them where the other is
-// missing. What it was for longer than a minute nobody knows.
+// Linear interpolation between the readings on either side of each fault, or the one that exists; missing if
+// the fault is longer than a minute.
 Samples interpolated(const Record& record, std::span<const double> column, const Flags& fault) {
   Samples values(column);
   const auto believed = [&](std::size_t i) { return std::isfinite(column[i]) && !fault[i]; };
@@ -103,7 +103,7 @@ Samples interpolated(const Record& record, std::span<const double> column, const
 }
 
 struct RepairedChannel {
-  Samples values;  // empty: it has no fault
+  Samples values;  // empty: no fault
   std::string remark;
 };
 
@@ -153,7 +153,7 @@ OwnedRecords without_leaping_rates(OwnedRecords given) {
     std::vector<ValueFault> faults;
     const std::optional<LongSeries> cleaned = without_leaps(
         record.rate_radps, error, stretches({}, error, {}),
-        [&](std::size_t i) { return record.origin.told(record.time_s[i]); }, faults);
+        [&](std::size_t i) { return record.origin.in_s(record.time_s[i]); }, faults);
     for (const ValueFault& fault : faults)
       given.remarks.push_back("the rate" + given.of_several(record) + ": " + fault.text);
     if (!cleaned) continue;

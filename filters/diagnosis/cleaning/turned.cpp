@@ -14,7 +14,7 @@
 namespace ifog {
 namespace {
 
-// The sample period; none for a record without an even clock, such as a list of dwells.
+// Sample period; nullopt without an even clock, e.g. a list of dwells.
 std::optional<double> period_of(const Record& record) {
   try {
     return sample_clock(record.time_s).period_s;
@@ -23,7 +23,7 @@ std::optional<double> period_of(const Record& record) {
   }
 }
 
-// As `allan` and `tune` say it.
+// With the texts of `allan` and `tune`.
 void note_value_faults(const Record& record, const Rest& rest, std::vector<std::string>& remarks) {
   const SampleClock clock = sample_clock(record.time_s);
   const std::vector<Stretch> parts = common(stretches(record.time_s, record.rate_radps, clock), rest.at_rest);
@@ -38,7 +38,7 @@ OwnedRecords without_turns(OwnedRecords given) {
   for (Record& record : given.records) {
     const std::optional<double> period = period_of(record);
     if (!record.reference_radps.empty() || !period) continue;
-    const double period_s = *period, start_s = record.origin.told(record.time_s.front());
+    const double period_s = *period, start_s = record.origin.in_s(record.time_s.front());
     std::vector<std::span<const double>> axes{record.rate_radps};
     for (const RecordChannel& other : record.other_axes) axes.push_back(other.values);
     const std::vector<SeriesView> views(axes.begin(), axes.end());

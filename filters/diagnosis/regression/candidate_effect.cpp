@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A candidate as columns of the regression, as an effect of the model and the other way; what its form costs.
+// Conversion of a candidate to regression columns and to an effect and back; price of a form.
 #include <cmath>
 #include <stdexcept>
 
@@ -36,11 +36,11 @@ double complexity_of_form(const Candidate& candidate) {
       return 5.0;
     case Form::kSeptic:
       return 6.0;
-    case Form::kLagged:  // the channel itself is one without a lag, which noise likes with a short one
+    case Form::kLagged:  // a channel without lag has a form of its own, and a short lag fits noise
     case Form::kWarmUp:
-    case Form::kTransition:  // its middle and its width are free
+    case Form::kTransition:  // centre and width are free
       return 8.0;
-    case Form::kProduct:  // a scale factor that depends on a channel, or its nonlinearity that does
+    case Form::kProduct:  // scale factor, or its nonlinearity, that depends on a channel
       return candidate.with_form == Form::kLinear ? 4.0 : 8.0;
     default:
       return 4.0;
@@ -119,7 +119,7 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
     effect.parameters.push_back({std::string(second_time_constant_name(effect)), second, 0.0, "s"});
   }
   if (candidate.form == Form::kStep) {
-    const double time_s = data.grid.origin_of(candidate.record).told(candidate.time_s);
+    const double time_s = data.grid.origin_of(candidate.record).in_s(candidate.time_s);
     effect.parameters.push_back({"time_s", time_s, 0.0, "s"});
   }
   if (candidate.is_earth_rate() && candidate.form == Form::kLinear) effect.form = name_of(Form::kEarthRate);

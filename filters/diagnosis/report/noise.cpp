@@ -19,7 +19,7 @@ void put(const NoiseCoefficient& found, std::optional<double>& value, std::optio
   error = found.std_error;
 }
 
-// What the effects leave of a record's samples at rest, NaN elsewhere.
+// Residual of a record at rest, NaN elsewhere.
 Samples error_at_rest(const Record& record, const EvenError& error, double sample_s) {
   Samples left = error.after.values();
   if (record.at_rest.empty()) return left;
@@ -33,7 +33,7 @@ Samples error_at_rest(const Record& record, const EvenError& error, double sampl
   return left;
 }
 
-// All records one after the other.
+// All records in sequence.
 NoiseCoefficients coefficients_at_rest(const std::vector<Record>& records,
                                        const std::vector<EvenError>& errors, double sample_s) {
   Samples all;
@@ -55,7 +55,7 @@ void write_changes(const std::vector<Record>& records, const std::vector<EvenErr
     const std::span<const double> rate = left;
     const std::vector<NoiseChange> found =
         noise_changes(rate, stretches({}, rate, {}), sample_s, [&](std::size_t i) {
-          return errors[r].origin.told(errors[r].start_s + static_cast<double>(i) * sample_s);
+          return errors[r].origin.in_s(errors[r].start_s + static_cast<double>(i) * sample_s);
         });
     for (const NoiseChange& change : found) diagnosis.noise_changes.push_back({records[r].name, change});
     if (const std::string words = in_words(found); !words.empty())
@@ -63,7 +63,7 @@ void write_changes(const std::vector<Record>& records, const std::vector<EvenErr
   }
 }
 
-// A bias that comes back is foretold by what the record allows it to be: the regression takes it for a walk.
+// Adds the Gauss-Markov alternatives to the posterior, as the regression models that bias as a random walk.
 void weigh_return(const NoiseCoefficients& found, double sample_s, NoisePosterior& posterior) {
   if (!found.markov) return;
   posterior.parts.clear();
@@ -82,7 +82,7 @@ void write_noise(const std::vector<Record>& records, const std::vector<EvenError
   NoiseTerms &value = diagnosis.noise, &error = diagnosis.noise_error;
   if (grid.dwells) {
     value = noise_terms(regression.shape, regression.white_variance, grid.block_s);
-    // Degrees of freedom of the scatter of independent dwells about the fit.
+    // Degrees of freedom of the dwells' scatter about the fit.
     double degrees = static_cast<double>(grid.used()) - static_cast<double>(grid.constants());
     for (const FoundEffect& found : diagnosis.effects)
       degrees -= static_cast<double>(found.effect.parameters.size());

@@ -21,14 +21,14 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// Median of the values that are measured; 0 if none is.
+// Median of the known values; 0 if there is none.
 double usual_of(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   return values.empty() ? 0.0 : median(std::move(values));
 }
 
-// Energy of differences within short pieces, so that slow changes of the rate do not count. NaN for a piece
-// with a hole in it: of few differences the energy scatters more than that of the others.
+// Energy of differences in short pieces, which ignores slow changes. NaN for a piece with missing samples,
+// whose energy would scatter more.
 std::vector<double> energies(std::span<const double> left, std::size_t piece) {
   std::vector<double> found;
   for (std::size_t from = 0; from + piece <= left.size(); from += piece) {
@@ -45,8 +45,8 @@ std::vector<double> energies(std::span<const double> left, std::size_t piece) {
   return found;
 }
 
-// The level a piece's energy exceeds once in a hundred records of white noise, over the median of all pieces.
-// Mean squares of m differences of neighbours scatter like chi-square of 2/3 m degrees of freedom.
+// Level over the median that one piece exceeds in 1 % of records of white noise. The mean square of m
+// differences is χ² distributed with 2/3 m degrees of freedom.
 double burst_level(std::size_t piece, std::size_t pieces) {
   const double freedom = 2.0 / 3.0 * static_cast<double>(piece - 1);
   const double chance = 0.01 / static_cast<double>(pieces);
@@ -58,8 +58,8 @@ std::size_t measured_of(std::span<const double> energy) {
       std::count_if(energy.begin(), energy.end(), [](double value) { return std::isfinite(value); }));
 }
 
-// By piece, over the median of its minute: where traffic comes and goes, a knock stands out of its own time.
-// A minute of which little was measured has no usual energy of its own. 0 where nothing was measured.
+// Energy of each piece over the median of its minute, so that a shock is detected in changing traffic. 0 if
+// nothing was measured; minutes with few values use no median of their own.
 std::vector<double> over_usual(const std::vector<double>& energy, double piece_s) {
   const double of_all = usual_of(energy);
   const auto minute = std::max<std::size_t>(16, static_cast<std::size_t>(60.0 / piece_s));
@@ -76,11 +76,11 @@ std::vector<double> over_usual(const std::vector<double>& energy, double piece_s
 }
 
 struct SlowRest {
-  double over_s = 0.0;  // length of the means that show it best; 0: nothing slow
-  double share = 0.0;   // of their variance that neighbours do not see
+  double over_s = 0.0;  // length of the means that show it best; 0: none
+  double share = 0.0;   // share of their variance that neighbours do not show
 };
 
-// Slow is what makes means scatter more than neighbouring means differ (von Neumann's ratio, whose standard
+// Slow noise makes means scatter more than neighbouring means differ (von Neumann's ratio; its standard
 // deviation for n means of white noise is 1 / sqrt n).
 SlowRest slow_rest(std::span<const double> left, double period_s) {
   constexpr double kFewest = 16.0;
@@ -112,7 +112,7 @@ void describe_peak(const SpectralLine& peak, Unexplained& found) {
       peak.frequency_hz, peak.width_hz);
 }
 
-// energy: of pieces of so many samples. False when there are none, or so many that they are the noise.
+// energy: of pieces of `piece` samples. False if there are no bursts, or so many that they are the noise.
 bool describe_bursts(const std::vector<double>& energy, std::size_t piece, double start_s, double period_s,
                      Unexplained& found) {
   const std::vector<double> over = over_usual(energy, static_cast<double>(piece) * period_s);
@@ -165,7 +165,7 @@ void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
   }
 }
 
-// Describes means of a second, or block means with harmonics: what sways is part of the noise of block means.
+// Describes 1 s means, or block means if there are harmonics, which are part of the block means' noise.
 void describe_share(std::span<const double> error, std::span<const double> left, double period_s,
                     const NoiseFit& noise, const BlockGrid& grid, Unexplained& found) {
   const bool sways = !noise.shape.harmonics.empty();
@@ -214,7 +214,7 @@ Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& 
   std::vector<NoiseChange> changes;
   changes.reserve(noise_changes.size());
   for (const NoiseChangeIn& each : noise_changes) changes.push_back(each.change);
-  return describe_unexplained(longest.before, longest.after, longest.origin.told(longest.start_s),
+  return describe_unexplained(longest.before, longest.after, longest.origin.in_s(longest.start_s),
                               grid.sample_s, noise, grid, peaks, changes);
 }
 

@@ -96,7 +96,7 @@ TEST(TimeStamps, AreToldInTheDigitsTheyCameWith) {
   EXPECT_EQ(told({-1700000001, 500'000'000}, 0.0), "-1700000000.5");
   EXPECT_EQ(told({-1700000001, 500'000'000}, 0.5), "-1700000000");
   EXPECT_EQ(told({-2, 250'000'000}, 1.0), "-0.75");
-  EXPECT_EQ(origin.told(0.076543211), 1700000000.2);
+  EXPECT_EQ(origin.in_s(0.076543211), 1700000000.2);
   EXPECT_EQ(origin.in_ns(0.01), 1'700'000'000'133'456'789);
   EXPECT_EQ(origin.later_than({1699999999, 123'456'790}), 0.999999999);
 }

@@ -28,7 +28,7 @@ struct AnalysedPart {
   std::string slow_turns = {};  // what the reader should know of turns that stay in; "" for nothing
 
   // For messages, of one of its rows.
-  [[nodiscard]] double told_time_s(std::size_t row) const { return table.origin.told(time_s.at(row)); }
+  [[nodiscard]] double told_time_s(std::size_t row) const { return table.origin.in_s(time_s.at(row)); }
   // "file:line", or the sample's number where the file is no text.
   [[nodiscard]] std::string place(std::size_t row) const;
 };

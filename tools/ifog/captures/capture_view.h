@@ -33,7 +33,7 @@ struct CaptureView {
   CaptureView(const Capture& capture);  // which has to outlive this
 
   // Time of a row as shown to the user.
-  [[nodiscard]] double told_time_s(std::size_t row) const { return origin.told(time_s[row]); }
+  [[nodiscard]] double told_time_s(std::size_t row) const { return origin.in_s(time_s[row]); }
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
 

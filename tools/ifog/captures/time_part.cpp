@@ -55,7 +55,7 @@ TimePart::Rows TimePart::rows(const SeriesView& time_s, const TimeOrigin& origin
   const std::size_t begin = first_from(time_s, origin, 0, from);
   const std::size_t end = first_from(time_s, origin, begin, to);
   if (begin == end && !time_s.empty())
-    refuse_empty(origin.told(time_s.at(0)), origin.told(time_s.at(time_s.size() - 1)), name);
+    refuse_empty(origin.in_s(time_s.at(0)), origin.in_s(time_s.at(time_s.size() - 1)), name);
   return {begin, end};
 }
 

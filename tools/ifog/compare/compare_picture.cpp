@@ -50,7 +50,7 @@ AllanCurve over(const AllanCurve& curve, const AllanCurve& other) {
 report::Thinned drawn(const CaptureView& capture, const report::TimeAxis& axis,
                       std::span<const double> rate_radps) {
   Samples time(capture.time_s), rate(rate_radps);
-  for (double& t : time) t = axis(capture.origin.told(t));
+  for (double& t : time) t = axis(capture.origin.in_s(t));
   for (double& r : rate) r *= 1.0 / kDegreePerHour;
   return report::thinned(time, rate);
 }

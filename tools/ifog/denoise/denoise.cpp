@@ -152,13 +152,13 @@ void tell_not_as_published(const DenoiseOptions& options, const DenoisedRows& ro
     warn(
         "%s: from %s s on, until the filter has settled, this need not be what was published: the "
         "recording lacks something there\n",
-        options.capture.c_str(), told_time(rows.origin().told(*result.not_as_published_from_s)).c_str());
+        options.capture.c_str(), told_time(rows.origin().in_s(*result.not_as_published_from_s)).c_str());
   if (result.merged > 0)
     warn(
         "%s: %llu samples, the first about %s s, were published as one with others (the ring was full): so "
         "many rows more than messages, and until the filter has settled behind each not what was published\n",
         options.capture.c_str(), static_cast<unsigned long long>(result.merged),
-        told_time(rows.origin().told(result.merged_from_s.value_or(0.0))).c_str());
+        told_time(rows.origin().in_s(result.merged_from_s.value_or(0.0))).c_str());
 }
 
 void tell(const DenoiseOptions& options, const DenoisedRows& rows, const OfflineResult& result) {

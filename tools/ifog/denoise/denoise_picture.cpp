@@ -22,7 +22,7 @@ std::vector<double> in_degrees_per_hour(const Samples& rate_radps) {
 void draw_denoised(const std::string& path, const DenoisedColumns& columns, const TimeOrigin& origin,
                    const OfflineResult& result) {
   std::vector<double> time(columns.time_s.begin(), columns.time_s.end());
-  for (double& t : time) t = origin.told(t);
+  for (double& t : time) t = origin.in_s(t);
   const report::TimeAxis axis_of_time(time.front(), time.back());
   time = axis_of_time(std::move(time));
   std::vector<report::PictureRow> rows;

@@ -56,7 +56,7 @@ void DenoisedRows::count(const ChainOutput& out) {
 }
 
 bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOutput& out) {
-  const double told_s = origin_.told(time_s);
+  const double told_s = origin_.in_s(time_s);
   if (extent_.rows++ == 0) extent_.first_s = told_s;
   extent_.last_s = told_s;
   if (keep_) {

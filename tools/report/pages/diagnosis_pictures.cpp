@@ -35,7 +35,7 @@ Series centred(Series x, double scale) {
 // As the captures' columns say them.
 Series told_times(const DiagnosisSeries& s) {
   Series told = s.time_s;
-  for (double& time : told) time = s.origin.told(time);
+  for (double& time : told) time = s.origin.in_s(time);
   return told;
 }
 
@@ -50,7 +50,7 @@ std::string block_words(const DiagnosisSeries& s) {
 std::string time_picture(const Diagnosis& d) {
   const DiagnosisSeries& s = d.series;
   if (s.time_s.empty()) return "";
-  const TimeAxis time(s.origin.told(s.time_s.front()), s.origin.told(s.time_s.back()));
+  const TimeAxis time(s.origin.in_s(s.time_s.front()), s.origin.in_s(s.time_s.back()));
   Chart chart("The error over time, before and after", account_of_change(d, "rms_10s_radps"),
               {time.label(), false, {}, {}}, {"error (°/h)", false, {}, {}});
   const Series t = time(told_times(s));
@@ -118,7 +118,7 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
   if (index >= s.contribution_radps.size() || s.contribution_radps[index].size() != s.time_s.size())
     return "";
   if (s.time_s.empty()) return "";
-  const TimeAxis time(s.origin.told(s.time_s.front()), s.origin.told(s.time_s.back()));
+  const TimeAxis time(s.origin.in_s(s.time_s.front()), s.origin.in_s(s.time_s.back()));
   const Series t = time(told_times(s));
   const Series& part = s.contribution_radps[index];
   const Series effect = centred(part, 1.0), after = centred(s.after_radps, 1.0);

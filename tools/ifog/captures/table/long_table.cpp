@@ -40,7 +40,7 @@ void LongTable::clean(Rule rule) {
     std::string axis;
     if (axis_of(columns[c].name, "rate", axis))
       rule(
-          columns[c].values, [&](std::size_t row) { return origin.told(times.at(row)); }, columns[c].repeats);
+          columns[c].values, [&](std::size_t row) { return origin.in_s(times.at(row)); }, columns[c].repeats);
   });
 }
 
