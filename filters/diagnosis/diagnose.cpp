@@ -32,10 +32,11 @@
 namespace ifog {
 namespace {
 
-constexpr double kOfLines = 1.0 / 200.0;  // of the significance: every frequency is tried
-constexpr std::size_t kMoreOnDwells = 4;  // effects: a scale factor comes with its powers and products
+constexpr double kOfLines = 1.0 / 200.0;  // share of the significance; every frequency is a try
+// further effects on a rate table: powers and products of the scale factor
+constexpr std::size_t kMoreOnDwells = 4;
 
-// One diagnosis, step by step. What each step finds is out of the errors for the next.
+// One diagnosis, step by step. Each step removes what it finds from the errors for the next.
 class Run {
  public:
   Run(const PreparedRecords& prepared, const DiagnoseOptions& options)
@@ -77,7 +78,6 @@ class Run {
     reconstructed_ = with_reconstructed_channels(data_);
   }
 
-  // Fits noise and effects together.
   void search() {
     SearchOptions search;
     search.significance = options_.significance;
@@ -90,7 +90,7 @@ class Run {
     if (!options_.allow_proxies) doubt_proxies(reconstructed_, found_);
   }
 
-  // Subtracts the ramps and the effects that the search found from the errors.
+  // Subtracts the ramps and the effects of the search from the errors.
   void subtract_found() {
     const std::vector<Candidate> chosen = candidates_of(found_.chosen);
     result_.effects.clear();
@@ -102,7 +102,7 @@ class Run {
     subtract_effects(records_, data_, found_, result_, errors_);
   }
 
-  // What the effects that are corrected leave on the mean.
+  // Mean rate of the corrected effects.
   [[nodiscard]] double mean_of_corrected() const {
     const std::vector<Candidate> chosen = candidates_of(found_.chosen);
     Eigen::VectorXd coefficients = found_.coefficients;
@@ -111,7 +111,7 @@ class Run {
     return mean_left(data_.grid, design(data_, chosen), coefficients);
   }
 
-  // Everything but effect `at` is fitted again.
+  // Removes effect `at` and fits the others again.
   void drop(std::size_t at) {
     found_.chosen.erase(found_.chosen.begin() + static_cast<std::ptrdiff_t>(at));
     std::erase_if(found_.alternatives, [&](const Alternative& other) { return other.of == at; });
@@ -121,7 +121,7 @@ class Run {
     found_.coefficients = solve(reconstructed_.grid, found_.noise.shape, columns, &found_.covariance);
   }
 
-  // The forms of the search would take a part of it for a nonlinearity.
+  // Before the search, which would explain part of it by a nonlinearity.
   void separate_dead_zone() {
     if (data_.reference < 0 || data_.grid.dwells || data_.grid.noisy_reference) return;
     FoundZone found;
@@ -136,7 +136,7 @@ class Run {
     reconstructed_.grid.error = data_.grid.error;
   }
 
-  // Lines are looked for in what the effects leave, and the search is made again without them.
+  // Looks for lines in the residual of the effects, then repeats the search without them.
   void separate_lines() {
     if (data_.grid.dwells) return;
     subtract_found();
@@ -149,7 +149,7 @@ class Run {
     search();
   }
 
-  // A loop is no effect that the daemon corrects, but what it leaves is searched again without it.
+  // Hysteresis is not corrected by the daemon, but the search is repeated without it.
   void separate_hysteresis() {
     result_.hysteresis =
         find_hysteresis(reconstructed_, candidates_of(found_.chosen), found_.noise, options_.significance);
@@ -179,7 +179,7 @@ class Run {
     write_before_and_after(errors_, data_.grid.sample_s, data_.reference >= 0, result_);
   }
 
-  // The effect that is most likely chance by its own error bar, if there is one.
+  // The effect that is most likely chance according to its error bar, if any.
   [[nodiscard]] std::optional<std::size_t> least_proven() const {
     std::optional<std::size_t> least;
     for (std::size_t i = 0; i < found_.chosen.size(); ++i) {
@@ -189,8 +189,8 @@ class Run {
     return least;
   }
 
-  // Index of the effect to drop, judged by runs of the daemon's own correction on blocks that the fit did not see;
-  // none if no effect makes an error larger.
+  // Index of the effect to drop because the daemon's correction increases an error on blocks that were not
+  // fitted; nullopt if there is none.
   std::optional<std::size_t> what_makes_it_worse() {
     if (const auto uncertain = least_proven()) return uncertain;
     if (!grows_over_many(result_, errors_)) return std::nullopt;
@@ -223,7 +223,7 @@ class Run {
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
     say(unexplained_beside_claims(result_, records_.size()));
-    // With a part held back, judge() says this of the figures of that part.
+    // With a held-out part, judge() checks it.
     if (TimeShare{options_.fit_from, options_.fit_to}.whole())
       say(grown_in_words(result_, samples_of(errors_)));
     say(lines_of_a_ramp_);
@@ -241,10 +241,10 @@ class Run {
 
   const std::vector<Record>& records_;
   const std::vector<RampFit>& ramps_;
-  const std::string& lines_of_a_ramp_;  // empty, or a sentence
+  const std::string& lines_of_a_ramp_;  // remark, or empty
   const DiagnoseOptions& options_;
   const EarthRateOptions earth_;
-  BlockData data_;           // without the ramps
+  BlockData data_;           // without ramps
   BlockData reconstructed_;  // the same with reconstructed channels
   std::vector<EvenError> errors_;
   std::optional<FoundZone> zone_;
@@ -252,7 +252,7 @@ class Run {
   SearchResult found_;
   bool searched_ = false;
   JointFit joint_;
-  std::vector<Eigen::VectorXd> parts_;  // of the error by block, one an effect of found_
+  std::vector<Eigen::VectorXd> parts_;  // contribution by block, one per effect of found_
   Diagnosis result_;
 };
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a diagnosis says: the effects it found, how large the error is before and after, what cannot be
-// distinguished, what stays, and what the record leaves open. Data, which every room of the diagnosis may know.
+// Result of a diagnosis, as plain data for all rooms of the diagnosis.
 #pragma once
 
 #include <cstddef>
@@ -16,21 +15,21 @@
 
 namespace ifog {
 
-// The noise parameters that the record allows. Predictions average over them.
+// Noise parameters that the record allows; predictions average over them.
 struct NoisePosterior {
   struct Part {
-    double weight = 0.0;    // of all parts: sum to one
-    double white = 0.0;     // variance of a mean of one second, (rad/s)^2 s
+    double weight = 0.0;    // the weights of all parts sum to one
+    double white = 0.0;     // variance of 1 s means, (rad/s)^2 s
     double walk = 0.0;      // growth of the random walk's variance, (rad/s)^2/s
     double flicker = 0.0;   // variance of each Gauss-Markov process of the bank, (rad/s)^2
-    double markov = 0.0;    // of one process of its own
+    double markov = 0.0;    // variance of a single further Gauss-Markov process
     double markov_s = 0.0;  // its time constant
   };
   std::vector<Part> parts;
   std::vector<double> flicker_s;  // time constants of the bank
 };
 
-// A bias that depends on which way a channel came, and that no form corrects; see hysteresis.h.
+// Bias that depends on the channel's direction of motion; not corrected (hysteresis.h).
 struct Hysteresis {
   std::string channel;
   double half_width = 0.0;   // of the play, in the channel's unit
@@ -40,22 +39,20 @@ struct Hysteresis {
 
 struct FoundEffect {
   Effect effect;
-  double p_value = 1.0;  // after correction for the number of tries
-  double variance_explained =
-      0.0;  // share of the variance of the error's 1 s means (or of single samples if longer)
-  double likelihood_ratio = 0.0;  // what the fit loses without it, with the noise fitted again
+  double p_value = 1.0;             // after correction for the number of tries
+  double variance_explained = 0.0;  // of the error's 1 s means (or of samples, if longer), as a share
+  double likelihood_ratio = 0.0;  // loss of twice the log-likelihood without it, with the noise fitted again
 };
 
 struct Indistinguishable {
-  std::vector<Effect> effects;  // the first is the one the model uses
+  std::vector<Effect> effects;  // the first is the one that the model uses
   double correlation = 0.0;     // of the regressors after whitening
-  std::string separate_by;      // the capture that would tell
+  std::string separate_by;      // capture that would distinguish them
 };
 
 struct Unexplained {
-  double fraction =
-      0.0;  // of the variance of the error that is neither white noise nor harmonic nor explained
-  double means_s = 1.0;  // length of the means whose variance that is
+  double fraction = 0.0;  // variance of the error that is neither noise nor explained, as a fraction
+  double means_s = 1.0;   // length of the means to which the fraction refers
   // "nothing", "slow", "line", "bursts", "changing_variance", "hysteresis", "uncorrelated"
   std::string kind;
   std::string hint;
@@ -63,46 +60,46 @@ struct Unexplained {
   std::vector<double> times_s;  // "bursts"
 };
 
-// Heading error of the next capture, corrected by the model: the bias is taken over the first `aligned_s` seconds
-// at rest and held, and the angle is integrated from then on. Promised is the root of the error's expected square:
-// the noise, as uncertain as the record leaves it; the errors of the effects' parameters, time constants included;
-// effects outside the range they were fitted on; and effects that are known but not corrected online, a line at any
-// phase and a ramp going on. Not in it: what the diagnosis did not see, and steps, which nothing announces.
+// Heading error of the next capture after correction by the model. The bias is the mean over the first
+// `aligned_s` seconds at rest; the angle is integrated from then on. Promised is the root of the error's
+// expected square. It includes the noise with its uncertainty, parameter errors (time constants too), effects
+// outside their fitted range, and known but uncorrected effects: a line at any phase, a continuing ramp. Not
+// included: what the diagnosis did not detect, and steps.
 struct HeadingPrediction {
   double aligned_s = 0.0;
-  std::vector<double> after_s;    // times since the end of the alignment
-  std::vector<double> sigma_rad;  // root of the expected square of the heading error then
+  std::vector<double> after_s;    // times after the end of the alignment
+  std::vector<double> sigma_rad;  // root of the expected square of the heading error at these times
 };
 
-// Delay of a reference that was logged late: the true rate at a time is found delay_s later. The figures before
-// and after are those of the shifted reference.
+// Delay of a reference in the log: it shows the rate of time t at t + delay_s. The figures before and after
+// use the shifted reference.
 struct ReferenceDelay {
   std::string record;
-  double delay_s = 0.0;  // below zero: early, or the rate late
+  double delay_s = 0.0;  // negative: reference early or rate late
   double std_error_s = 0.0;
 };
 
-// Delay of a channel that was logged late: a value holds for the time delay_s before its stamp.
+// Delay of a channel in the log: a value is valid delay_s before its stamp.
 struct ChannelDelay {
   std::string channel;
-  double delay_s = 0.0;  // below zero: early
+  double delay_s = 0.0;  // negative: early
   double std_error_s = 0.0;
 };
 
-// What a report draws. Decimated to a few thousand points.
+// Data for the report's pictures, decimated to a few thousand points.
 struct DiagnosisSeries {
   std::vector<double> time_s, before_radps, after_radps;  // block means of the error
-  RecordOrigin origin;                                    // that time_s is counted from
-  std::vector<std::string> names;                         // one entry an effect
+  RecordOrigin origin;                                    // origin of time_s
+  std::vector<std::string> names;                         // by effect
   std::vector<std::vector<double>> contribution_radps,
-      channel;  // by effect, at time_s; channel empty without one
+      channel;  // by effect, at time_s; channel is empty for effects without one
   std::vector<double> frequency_hz, before_radps_rthz, after_radps_rthz;  // amplitude spectral density
   std::vector<double> tau_s, before_adev_radps, after_adev_radps;
-  // 68.3 % interval of the deviation after, under the noise found; NaN where none can be said.
+  // 68.3 % interval of the deviation after, under the noise found; NaN if unknown.
   std::vector<double> after_adev_low_radps, after_adev_high_radps;
 };
 
-// The error's noise is another in a part of a capture.
+// Change of the error's noise level within a capture.
 struct NoiseChangeIn {
   std::string capture;
   NoiseChange change;
@@ -111,27 +108,27 @@ struct NoiseChangeIn {
 struct Diagnosis {
   std::size_t samples = 0;
   double sample_rate_hz = 0.0;
-  NoiseTerms noise;                          // after the effects, as noise_coefficients finds it at rest
-  NoiseTerms noise_error;                    // standard deviations of those
-  std::optional<MarkovNoise> markov;         // a bias that comes back; K is then no law of long times
-  std::vector<NoiseChangeIn> noise_changes;  // which make noise an average of unlike parts
-  std::vector<FoundEffect> effects;          // traced to channels, then ramps, then lines of the samples
-  std::optional<ModelParameter> bias;  // relative to a reference: corrected; an effect where it is clear
-  std::vector<double> covariance;      // of all parameters of all effects in order, row-major
-  std::vector<ChannelRange> ranges;    // of the channels the effects use
+  NoiseTerms noise;                             // after the effects are removed, at rest (noise_coefficients)
+  NoiseTerms noise_error;                       // standard deviations of `noise`
+  std::optional<MarkovNoise> markov;            // Gauss-Markov bias; then K does not hold at long times
+  std::vector<NoiseChangeIn> noise_changes;     // then `noise` is an average over unlike parts
+  std::vector<FoundEffect> effects;             // those with channels, then ramps, then lines in the samples
+  std::optional<ModelParameter> bias;           // relative to a reference; an effect if it is significant
+  std::vector<double> covariance;               // of the parameters of all effects in order, row-major
+  std::vector<ChannelRange> ranges;             // of the channels used by the effects
   std::map<std::string, double> before, after;  // held-out figures, units in their names
   std::vector<Indistinguishable> indistinguishable;
   Unexplained unexplained;
   std::optional<Hysteresis> hysteresis;
-  HeadingPrediction heading;  // if the channels run as they did in the longest record
+  HeadingPrediction heading;  // if the channels behave as in the longest record
   NoisePosterior noise_posterior;
-  std::vector<ReferenceDelay> reference_delays;  // of the records that have one
+  std::vector<ReferenceDelay> reference_delays;  // of the records with a reference
   std::vector<ChannelDelay> channel_delays;
-  std::vector<std::string> remarks;  // anything else a person should know, one sentence each
+  std::vector<std::string> remarks;  // further remarks for the user, one sentence each
   DiagnosisSeries series;
 };
 
-// The model these findings make: effects, covariance, ranges, noise. Source is for the caller to fill.
+// Adds the effects, covariance, ranges and noise to the model. The caller sets its source.
 void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& model);
 
 }  // namespace ifog

@@ -18,7 +18,7 @@
 namespace ifog {
 namespace {
 
-// Why there is nothing to fit a coefficient by; empty where there is.
+// Reason why the data cannot determine a coefficient; empty if they can.
 std::string missing(const BlockData& data, const std::string& name) {
   for (const FineChannel& channel : data.channels)
     if (channel.name == name) return channel.varies ? "" : name + " does not change in the captures";
@@ -43,12 +43,12 @@ Named candidate_named(const BlockData& data, const Effect& effect) {
     return named;
   }
   named.candidate = *candidate;
-  if (form == Form::kEarthRate)  // the regressor of acceleration
+  if (form == Form::kEarthRate)  // uses the regressor of acceleration
     named.candidate.first_reading = FirstReading::kEarthRateSubtracted;
   return named;
 }
 
-// In which of the captures a step was, a model does not say: in each that it can be of.
+// The model does not name the capture of a step, so one candidate for each capture that may contain it.
 std::vector<Candidate> steps_named(const BlockData& data, const Effect& effect) {
   const BlockGrid& grid = data.grid;
   Candidate step;
@@ -63,7 +63,7 @@ std::vector<Candidate> steps_named(const BlockData& data, const Effect& effect) 
   return found;
 }
 
-// Early channels as the daemon has them once it has waited.
+// Advances early channels as the daemon does by waiting.
 void wait_for_early(const std::vector<ChannelRange>& ranges, BlockData& data) {
   bool any = false;
   for (const ChannelRange& range : ranges)
@@ -113,7 +113,7 @@ class Measuring {
     if (named.not_measured.empty() && !has_shape(model_, named.candidate)) model_.push_back(named.candidate);
   }
 
-  // What the fit loses without effect `at` of the model, and what the others in its place win back.
+  // Likelihood loss without effect `at`, and gain of each alternative.
   void weigh(std::size_t at) {
     std::vector<Candidate> rest = all();
     rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(at));
@@ -141,7 +141,7 @@ class Measuring {
   void report(const JointFit& joint) {
     const auto count = static_cast<Eigen::Index>(model_.size());
     const Eigen::Index first = data_.grid.constants();
-    // With a model that has no bias the rates count from what the effects leave on the mean.
+    // Without a bias in the model, rates count from the mean that the effects leave.
     const double rates_from = mean_left(data_.grid, design(data_, all()), joint.values);
     std::vector<FoundEffect> found;
     for (Eigen::Index i = 0; i < count; ++i) {
@@ -168,7 +168,7 @@ class Measuring {
   const BlockData& data_;
   const EffectsToMeasure& wanted_;
   const std::string& axis_;
-  std::vector<std::size_t> place_;  // in `together`, of the first effects of the model
+  std::vector<std::size_t> place_;  // index in `together` of the first effects of the model
   std::vector<Candidate> model_, steps_;
   NoiseFit noise_;
   MeasuredEffects result_;

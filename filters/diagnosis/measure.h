@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Named effects measured on captures, whatever a search would say of them: estimate, standard error and what
-// the likelihood gains. What a population of sensors is made of needs the ones below the threshold of a
-// single diagnosis as well.
+// Measures given effects on captures regardless of their significance: estimate, standard error, and gain of
+// likelihood. Statistics of a sensor population need insignificant effects as well.
 //
-// The captures are prepared as diagnose() prepares them, and the regression is its own: the noise model
-// fitted again under every set of effects, generalised least squares in its innovations, coefficients averaged
-// over the noise that the captures allow. Time constants are as given. What depends on the rate counts from
-// the bias that the effects leave, as in a diagnosis.
+// Preparation and regression are those of diagnose(): for each set of effects the noise model is fitted
+// again, generalised least squares on the innovations, coefficients averaged over the possible noise. Time
+// constants are fixed. Rate-dependent effects count from the bias that the effects leave.
 #pragma once
 
 #include <cstddef>
@@ -19,30 +17,30 @@
 namespace ifog {
 
 struct EffectsToMeasure {
-  std::vector<Effect> together;  // in one fit; of their parameters the time constants count
-  // By effect of `together`: others that are each tried in its place. As many entries, or none.
+  std::vector<Effect> together;  // fitted jointly; only the time constants of their parameters are used
+  // For each effect of `together`, alternatives that are tried in its place. One entry per effect, or none.
   std::vector<std::vector<Effect>> instead;
-  // Other effects of the sensor, fitted along: a step only in the captures that can have it, a line in none.
+  // The sensor's other effects, fitted too: a step only in captures that can contain it, a line in none.
   std::vector<Effect> beside;
-  // Ranges of the sensor's own model, which say how early its channels are: the daemon waits for those.
+  // From the sensor's model. They give how early its channels are; the daemon waits for those.
   std::vector<ChannelRange> ranges = {};
 };
 
 struct MeasuredEffect {
   Effect effect;                  // coefficient and its standard error in its parameters
-  double likelihood_ratio = 0.0;  // twice the log-likelihood lost without it, with the noise fitted again
-  std::string not_measured;       // why; empty: it was
-  std::vector<double> instead;    // likelihood ratios of the others in its place, 0 where not measured
+  double likelihood_ratio = 0.0;  // loss of twice the log-likelihood without it, with the noise fitted again
+  std::string not_measured;       // reason; empty if it was measured
+  std::vector<double> instead;    // likelihood ratios of the alternatives; 0 if not measured
 };
 
 struct MeasuredEffects {
   std::vector<MeasuredEffect> together;
-  std::vector<Effect> beside;      // those of one coefficient that were fitted along
-  std::vector<double> covariance;  // of the coefficients of all measured, then of `beside`; row-major
+  std::vector<Effect> beside;      // those with one coefficient that were fitted too
+  std::vector<double> covariance;  // of the coefficients of all measured effects, then of `beside`; row-major
   std::vector<ChannelRange> ranges;
 };
 
-// axis: written into the effects. Throws std::invalid_argument as diagnose() does.
+// axis is written into the effects. Throws std::invalid_argument as diagnose() does.
 MeasuredEffects measure_effects(const std::vector<Record>& records, const EffectsToMeasure& wanted,
                                 const std::string& axis, double significance = 0.01);
 

@@ -8,7 +8,7 @@ namespace ifog {
 void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& model) {
   std::size_t old = 0;
   for (const Effect& effect : model.effects) old += effect.parameters.size();
-  std::vector<std::size_t> rows;  // of the diagnosis' covariance
+  std::vector<std::size_t> rows;  // of the diagnosis's covariance
   std::size_t all = 0;
   for (const FoundEffect& found : diagnosis.effects) {
     const std::size_t next = all + found.effect.parameters.size();
@@ -31,13 +31,13 @@ void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& mo
     effect.parameters = {*diagnosis.bias};
     model.effects.push_back(std::move(effect));
   }
-  // Axes are fitted apart, so nothing is known of covariances across them: zero.
+  // Axes are fitted separately, so covariances across axes are set to zero.
   std::vector<double> covariance((old + added) * (old + added), 0.0);
   for (std::size_t i = 0; i < old && model.covariance.size() == old * old; ++i) {
     for (std::size_t j = 0; j < old; ++j) covariance[i * (old + added) + j] = model.covariance[i * old + j];
   }
   if (bias) covariance.back() = diagnosis.bias->std_error * diagnosis.bias->std_error;
-  // Before the joint fit nothing is known of them.
+  // Without a joint fit the covariance is unknown.
   for (std::size_t i = 0; i < fitted && diagnosis.covariance.size() == all * all; ++i) {
     for (std::size_t j = 0; j < fitted; ++j)
       covariance[(old + i) * (old + added) + old + j] = diagnosis.covariance[rows[i] * all + rows[j]];

@@ -15,10 +15,10 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kMostDifferences = 6;
-constexpr double kWholeTurn = 0.9;    // of the period, that a wrap jumps and the values reach
-constexpr double kInsideTurn = 0.95;  // share of the values that lie within the turn
+constexpr double kWholeTurn = 0.9;    // of the period: size of a wrap, and extent of the values
+constexpr double kInsideTurn = 0.95;  // share of the values within the turn
 constexpr double kRounding = 1e-3;    // of the period, beyond its ends
-constexpr double kUnsure = 0.01;      // share of steps too long to say which way the angle went
+constexpr double kUnsure = 0.01;      // largest share of steps whose direction is ambiguous
 
 double period_by_unit(const std::string& channel) {
   const std::string unit = unit_of(channel);
@@ -32,7 +32,8 @@ struct Turn {
   [[nodiscard]] bool has(double value) const { return value >= low && value <= high; }
 };
 
-// From zero, or from half a turn below it, whichever holds nearly all values: others are a logger's faults.
+// Turn from zero or from minus half a turn, whichever contains nearly all values; the others are faults of
+// the logger.
 std::optional<Turn> turn_of(std::span<const double> values, double period) {
   for (const double start : {0.0, -0.5 * period}) {
     const Turn turn{start - kRounding * period, start + (1.0 + kRounding) * period};
@@ -50,7 +51,7 @@ bool all_have(const std::vector<Record>& records, const Name& name) {
                      [&](const Record& record) { return moves(values_of(record, name)); });
 }
 
-// One measures the same quantity at another place as the other does.
+// True if both measure the same quantity at different places.
 bool alike(const std::string& one, const std::string& other) {
   const ChannelKind kind = kind_of(one);
   const bool has_gradients = kind == ChannelKind::kTemperature || kind == ChannelKind::kPressure;
@@ -62,7 +63,7 @@ void add_difference(const std::string& one, const std::string& other, OwnedRecor
     const std::span<const double> a = values_of(record, one);
     const std::span<const double> b = values_of(record, other);
     Samples& difference = to.columns.emplace_back(a.size());
-    double held_a = std::nan("");  // loggers poll their thermometers in turn
+    double held_a = std::nan("");  // loggers may poll their thermometers alternately
     double held_b = std::nan("");
     for (std::size_t i = 0; i < a.size(); ++i) {
       if (std::isfinite(a[i])) held_a = a[i];

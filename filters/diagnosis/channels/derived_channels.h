@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Channels that no logger writes and that physics asks for: the difference of two like channels (two
-// thermometers on one coil see its gradient), and angles without their wraps.
+// Channels derived from logged ones: differences of like channels (two thermometers on one coil give its
+// gradient) and unwrapped angles.
 #pragma once
 
 #include <span>
@@ -10,18 +10,18 @@
 
 namespace ifog {
 
-// 2 pi, 360 or 1 when the channel is an angle by its unit (rad, deg, turns) that stays within a turn and
-// wraps by a whole one; 0 otherwise.
+// Period 2 pi, 360 or 1 of a channel whose unit is an angle (rad, deg, turns), if its values stay within one
+// turn and wrap by a whole one; else 0.
 double angle_period(const std::string& channel, std::span<const double> values);
 
-// Components of one vector, as "magnetic_x_uT" and "magnetic_y_uT": names that differ in their axis alone.
+// True for components of one vector, names that differ only in the axis: "magnetic_x_uT" and "magnetic_y_uT".
 bool of_one_vector(const std::string& one, const std::string& other);
 
-// Angles go on where they wrapped, in every record; RecordChannel::period says which they are.
+// Unwraps angles in every record and sets RecordChannel::period.
 OwnedRecords with_unwrapped_angles(OwnedRecords given);
 
-// Adds, of the channels that all records have and that move, the differences of like ones (at most six),
-// named as difference_of() does.
+// Adds at most six differences of like channels that all records have and that vary, named by
+// difference_of().
 OwnedRecords with_differences(OwnedRecords given);
 
 }  // namespace ifog

@@ -10,23 +10,23 @@
 namespace ifog {
 namespace {
 
-// Means of this length keep a tenth of the variance of an acceleration that a sled or a tumble table holds.
-// Traffic, sway, swell and the body waves of an earthquake are quicker.
+// Means of this length keep 10 % of the variance of an acceleration on a sled or tumble table. Traffic, sway,
+// swell and body waves of an earthquake are faster.
 constexpr double kHeld_s = 30.0;
 constexpr double kHeldShare = 0.1;
-// Towers, bridges, seas, suspensions and surface waves swing at 1 Hz and slower, machines shake quicker: means
-// over this keep more than half of the power of the ones, and less of the others.
+// Means of this length keep most of the power of towers, bridges, seas, suspensions and surface waves (1 Hz
+// and slower), and less of that of machines.
 constexpr double kSwing_s = 0.5;
-// Twice the log-likelihood that a slope has to gain: one in a million by chance, with a hundred looks.
+// Required gain of twice the log-likelihood of a slope: by chance one in 10^6, with 100 tries.
 constexpr double kCertainMotion = 40.0;
-constexpr double kOfRate = 0.02;  // of the rate's variance, below which nothing is said
+constexpr double kOfRate = 0.02;  // of the rate's variance; smaller shares are not reported
 
-// How closely y goes with x.
+// Linear dependence of y on x.
 struct Likeness {
   double share = 0.0, gain = 0.0;  // of y's variance; twice the log-likelihood
 };
 
-// By their changes from block to block, so that slow drifts of either have no part in it.
+// Uses changes from block to block, so that slow drifts do not count.
 Likeness likeness_of(const BlockGrid& grid, const Eigen::VectorXd& x, const Eigen::VectorXd& y) {
   double xx = 0.0, xy = 0.0, yy = 0.0, n = 0.0;
   for (const BlockRange& record : grid.records)
@@ -41,7 +41,7 @@ Likeness likeness_of(const BlockGrid& grid, const Eigen::VectorXd& x, const Eige
   return {share, -n * std::log(std::max(1e-12, 1.0 - share))};
 }
 
-// By block, from the one before to the one behind.
+// Change over two blocks, centred.
 Eigen::VectorXd change_of(const BlockGrid& grid, const Eigen::VectorXd& x) {
   Eigen::VectorXd change = Eigen::VectorXd::Zero(x.size());
   for (const BlockRange& record : grid.records)
@@ -50,7 +50,7 @@ Eigen::VectorXd change_of(const BlockGrid& grid, const Eigen::VectorXd& x) {
   return change;
 }
 
-// One sentence of what the channel would explain; empty where that is nothing.
+// Sentence on what the channel would explain, or empty.
 std::string rotation_in_words(const BlockData& data, std::size_t c) {
   const Eigen::VectorXd value = column(data, ShapeSettings{}, c);
   const Likeness by_value = likeness_of(data.grid, value, data.grid.error);
@@ -63,7 +63,8 @@ std::string rotation_in_words(const BlockData& data, std::size_t c) {
          data.channels[c].name + ", as a sway or a ride does: that is rotation and stays in the rate";
 }
 
-// The share of a channel's variance that means of so many samples keep. A long record's grid hides what is quick.
+// Share of a channel's variance in means of `count` samples. The grid of a long record does not show fast
+// changes.
 double kept_by_means(const std::vector<Record>& records, const std::string& name, double count) {
   const auto each = static_cast<std::size_t>(std::max(1.0, std::round(count)));
   double all = 0.0, kept = 0.0;

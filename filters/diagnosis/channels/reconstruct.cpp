@@ -12,18 +12,18 @@
 namespace ifog {
 namespace {
 
-// Readings that repeat more often than this come in steps coarser than the channel's changes.
+// If more readings than this repeat the one before, the steps are coarser than the channel's changes.
 constexpr double kRepeats = 0.6;
-// Readings, or means of some, that the smoothness is found from.
+// Largest number of readings, or means of readings, for the estimate of smoothness.
 constexpr std::size_t kMostReadings = 4096;
-// Log-likelihood by which a smooth motion must beat a random walk, whose jumps a spline would blur.
+// Required gain of log-likelihood over a random walk, whose jumps a spline would blur.
 constexpr double kSmoother = 5.0;
 constexpr double kScatter = 6.0;
-// The channel must vary by this many times its reading noise.
+// Required standard deviation in units of the reading noise.
 constexpr double kAboveNoise = 3.0;
 
 struct Reading {
-  double step;  // of the fine grid, fractional between two steps
+  double step;  // position on the fine grid, fractional
   double value;
 };
 
@@ -43,7 +43,7 @@ bool is_coarse(std::span<const Reading> readings) {
   return static_cast<double>(repeats) > kRepeats * static_cast<double>(readings.size());
 }
 
-// Where a coarse reading changes by one step the channel passes the middle; a jump over several steps is one.
+// Positions where a coarse reading changes, at half a step; a change over several steps is one.
 std::vector<Reading> crossings(std::span<const Reading> readings, double step) {
   std::vector<Reading> found;
   for (std::size_t i = 1; i < readings.size(); ++i) {
@@ -60,7 +60,7 @@ std::vector<Reading> crossings(std::span<const Reading> readings, double step) {
   return found;
 }
 
-// Level and slope of an integrated random walk; covariances relative to the variance of a reading.
+// Level and slope of an integrated random walk; covariances relative to a reading's variance.
 struct State {
   double level = 0.0, slope = 0.0;
   double pll = 0.0, pls = 0.0, pss = 0.0;
@@ -75,7 +75,7 @@ void predict(State& s, double d, double drive) {
   s.pss += drive * d;
 }
 
-// Innovation and its variance; the state takes the reading in.
+// Measurement update; returns the innovation and its variance.
 std::pair<double, double> update(State& s, double value) {
   const double variance = s.pll + 1.0;
   const double innovation = value - s.level;
@@ -89,7 +89,7 @@ std::pair<double, double> update(State& s, double value) {
   return {innovation, variance};
 }
 
-// Through the first two readings: what is known after them whatever was before.
+// State after the first two readings with a diffuse prior.
 State started(const Reading& a, const Reading& b, double drive) {
   const double d = b.step - a.step;
   State s;
@@ -108,7 +108,7 @@ struct Likelihood {
   }
 };
 
-// Both explain the readings after the second, so that their likelihoods compare.
+// Models of the readings after the second one, so that their likelihoods are comparable.
 enum class Course { kSmooth, kWalk };
 
 double likelihood(std::span<const Reading> readings, Course course, double drive) {
@@ -130,8 +130,7 @@ double likelihood(std::span<const Reading> readings, Course course, double drive
   return sum.value();
 }
 
-// Means of so many readings that few enough are left. All of the record is used: the few kinks in it are what
-// the spline must be able to follow.
+// Means of readings, as many as allowed, over the whole record, because the spline must follow its few kinks.
 std::vector<Reading> thinned(const std::vector<Reading>& readings) {
   const std::size_t share = (readings.size() + kMostReadings - 1) / kMostReadings;
   if (share < 2) return readings;
@@ -151,8 +150,8 @@ struct Drive {
   double drive, likelihood;
 };
 
-// The likeliest ratio, per step, of the random walk of the slope (or level) to the variance of a reading: searched
-// by decades, then within one.
+// Most likely ratio, per step, of the slope's (or level's) random walk to the reading variance: search by
+// decades, then within one.
 Drive best_drive(std::span<const Reading> readings, Course course) {
   double best = 0.0;
   double most = -std::numeric_limits<double>::infinity();
@@ -175,7 +174,7 @@ Drive best_drive(std::span<const Reading> readings, Course course) {
   return {std::pow(10.0, best), most};
 }
 
-// Rauch-Tung-Striebel; levels and slopes at the readings.
+// Rauch-Tung-Striebel smoother; levels and slopes at the readings.
 std::vector<State> smoothed(std::span<const Reading> readings, double drive) {
   std::vector<State> states(readings.size());
   states[1] = started(readings[0], readings[1], drive);
@@ -205,7 +204,7 @@ std::vector<State> smoothed(std::span<const Reading> readings, double drive) {
   return states;
 }
 
-// Through levels and slopes at the readings, cubic between two of them; asked at steps in their order.
+// Cubic Hermite spline through levels and slopes; arguments must not decrease.
 class Spline {
  public:
   Spline(std::span<const Reading> readings, double drive)
@@ -253,11 +252,11 @@ Reconstruction reconstruct(std::span<const double> values) {
   const std::vector<Reading> few = thinned(used);
   const Drive smooth = best_drive(few, Course::kSmooth);
   if (smooth.likelihood < best_drive(few, Course::kWalk).likelihood + kSmoother) return as_read(values);
-  // The variance of a mean of readings is that share of a reading's.
+  // Ratio of the variance of a mean to that of a reading.
   const double share = static_cast<double>(few.size()) / static_cast<double>(used.size());
   Spline spline(used, smooth.drive * share);
   Reconstruction result{{}, true};
-  std::vector<double> taken;  // away: it has to be reading noise and nothing else
+  std::vector<double> taken;  // the residual must be reading noise
   for (const Reading& each : read) {
     double value = spline.at(each.step);
     if (coarse) value = std::clamp(value, each.value - 0.5 * step, each.value + 0.5 * step);
@@ -284,7 +283,7 @@ bool stands_still(std::span<const double> readings) {
   return true;
 }
 
-// Computes differences again from the two channels: the difference of two quantised readings has steps of neither.
+// The difference of two quantised readings has irregular steps, so it is recomputed.
 void rebuild_differences(BlockData& data) {
   const auto named = [&](const std::string& name) {
     return std::find_if(data.channels.begin(), data.channels.end(),

@@ -13,11 +13,11 @@
 namespace ifog {
 namespace {
 
-constexpr double kDelayFactor = 2.0;  // between the delays tried, from a block on
-// Twice the log-likelihood that a delay has to gain: one in ten thousand by chance after some thirty tries.
+constexpr double kDelayFactor = 2.0;  // ratio between the delays tried, which start at one block
+// Required gain of twice the log-likelihood: one in 10^4 by chance after some 30 tries.
 constexpr double kCertainlyDelayed = 24.0;
 
-// Twice the log-likelihood of the model with the channel as it was so long before.
+// Twice the log-likelihood of the model as a function of the channel's delay.
 class Profile {
  public:
   Profile(const BlockData& data, const std::vector<Candidate>& model, const NoiseShape& shape,
@@ -80,12 +80,12 @@ std::vector<ChannelDelay> delayed_channels(const BlockData& data, const std::vec
       for (const double each : {delay, -delay})
         if (const double value = profile.at(each); value > top) best = each, top = value;
     if (top - none < kCertainlyDelayed) continue;
-    constexpr int kBits = 9;  // of the bracket, whose ends were tried
+    constexpr int kBits = 9;  // resolution within the bracket
     std::uintmax_t most = 20;
     const auto [delay, lacking] = boost::math::tools::brent_find_minima(
         [&](double at) { return -profile.at(at); }, std::min(best / kDelayFactor, best * kDelayFactor),
         std::max(best / kDelayFactor, best * kDelayFactor), kBits, most);
-    // By how far twice the log-likelihood falls by one: the standard deviation of a parabola.
+    // The standard deviation of a parabola is where twice the log-likelihood has fallen by one.
     const double step = 0.1 * std::abs(delay), falls = -lacking - profile.at(delay + step);
     found.push_back({data.channels[c].name, delay, step / std::sqrt(std::max(falls, 1e-6))});
   }

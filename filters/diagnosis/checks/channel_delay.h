@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A channel that was logged late or early against the rate. It is reported, and mended in the logger.
+// Channel that was logged late or early relative to the rate. It is reported; the logger must be corrected.
 #pragma once
 
 #include <vector>
@@ -9,12 +9,12 @@
 
 namespace ifog {
 
-// Values of the channel as they would have been logged without that delay; linear between fine steps, held at
-// the ends of a record.
+// Shifts the channel to its values without the delay: linear between fine steps, constant at the ends of a
+// record.
 void undo_delay(const BlockGrid& grid, double delay_s, FineChannel& channel);
 
-// Channels of the model whose delay, within 60 s, makes the model far likelier with everything else unchanged.
-// Delays below zero are early.
+// Delays, within ±60 s, of channels of the model that make the model far more likely, with everything else
+// unchanged. Negative: early.
 std::vector<ChannelDelay> delayed_channels(const BlockData& data, const std::vector<Candidate>& model,
                                            const NoiseShape& shape);
 

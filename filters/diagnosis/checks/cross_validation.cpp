@@ -21,7 +21,7 @@ std::vector<int> fold_of_block(const BlockGrid& grid) {
   return grid.dwells ? folds_of(grid, kDwellFolds, 1) : folds_of(grid, kFolds);
 }
 
-// Least squares of the measurement on what is left of the regressors without one fold.
+// Least squares on the residual of the regressors without one fold.
 Eigen::VectorXd without_fold(Columns white, const std::vector<int>& fold, int held_out) {
   const Eigen::Index p = white.cols() - 1;
   const Eigen::VectorXd full = white.rightCols(p).colwise().norm().transpose().cwiseMax(1e-300);
@@ -29,7 +29,7 @@ Eigen::VectorXd without_fold(Columns white, const std::vector<int>& fold, int he
     if (fold[static_cast<std::size_t>(i)] == held_out) white.row(i).setZero();
   }
   const Columns x = white.rightCols(p);
-  // What happened in the held-out fold alone, the others cannot know: no coefficient.
+  // An effect that happened only in the held-out fold gets no coefficient.
   Eigen::VectorXd scale = x.colwise().norm().transpose();
   for (Eigen::Index j = 0; j < p; ++j) scale[j] = scale[j] > 1e-3 * full[j] ? 1.0 / scale[j] : 0.0;
   const Eigen::MatrixXd scaled = x * scale.asDiagonal();
@@ -40,9 +40,8 @@ Eigen::VectorXd without_fold(Columns white, const std::vector<int>& fold, int he
 
 std::vector<Eigen::VectorXd> coefficients_without_each_fold(const BlockGrid& grid, const NoiseShape& shape,
                                                             const Columns& columns) {
-  // Whitened on all blocks, then fitted on the rows of the others: a fold is excluded from the fit, not from the
-  // filter, which would otherwise restart behind every gap. The constants are projected out on all
-  // blocks.
+  // Whitened on all blocks, then fitted on the other folds' rows: a fold is excluded from the fit but not
+  // from the filter, which would restart after every gap. The constants are projected out on all blocks.
   Columns white = columns;
   Whitening(grid, shape).apply(white);
   const Eigen::Index k = grid.constants();
@@ -77,8 +76,8 @@ Eigen::VectorXd held_out_change(const BlockData& data, const std::vector<Candida
 
 namespace {
 
-// Share of a step's size by which the means before and after it have to differ: the whole means, and those of the
-// halves farther from it.
+// Required difference of the means before and after, as a share of the step: of the whole means and of the
+// halves farther from the step.
 constexpr double kLasting = 0.4;
 constexpr double kLastingFar = 0.25;
 
@@ -118,13 +117,13 @@ bool step_persists(const BlockData& data, const Claimed& claimed) {
   const Columns columns = design(data, claimed.model);
   const Eigen::VectorXd c = solve(grid, claimed.noise.shape, columns);
   const Eigen::Index last = columns.cols() - 1;
-  // Other steps stay where they are: of two that cancel, neither is still there later.
+  // Other steps remain: of two that cancel, neither lasts.
   Eigen::VectorXd taken = c.head(last - 1);
   for (std::size_t i = 0; i + 1 < claimed.model.size(); ++i)
     if (claimed.model[i].form == Form::kStep) taken[column_of(grid, i) - 1] = 0.0;
   const BlockRange& record = grid.records[step.record];
   const std::size_t window = std::max<std::size_t>(8, record.size() / 20);
-  std::array<std::vector<double>, 2> level;  // before and after, in the order of time
+  std::array<std::vector<double>, 2> level;  // before and after, in order of time
   for (std::size_t b = record.first; b < record.end; ++b) {
     const double away = std::abs(grid.time_s[b] - step.time_s) / grid.block_s;
     if (!grid.valid[b] || away < 3.0 || away > static_cast<double>(window)) continue;

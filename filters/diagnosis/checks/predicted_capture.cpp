@@ -14,15 +14,15 @@ namespace ifog {
 namespace {
 
 constexpr double kCertainlyOff = 4.0;  // standard errors
-constexpr double kVisible = 5.0;       // standard deviations, of what is predicted
-constexpr double kUncertain = 0.2;     // of the prediction's square, the most that may be doubt of it
-constexpr double kMoves = 1e-6;        // of the regressors' square here, the least in the others
-constexpr double kAsMuch = 0.25;       // of the regressors' squares in all others together
-constexpr double kUnseen = 9.0;        // twice the log-likelihood that a capture gains by the law of all
+constexpr double kVisible = 5.0;       // standard deviations of the prediction
+constexpr double kUncertain = 0.2;     // largest uncertainty relative to the square of the prediction
+constexpr double kMoves = 1e-6;        // smallest square of the regressors in the others, relative to here
+constexpr double kAsMuch = 0.25;       // smallest square of the regressors here, relative to all others
+constexpr double kUnseen = 9.0;        // twice the log-likelihood gained by the common law
 
 struct Split {
-  Columns columns;         // measurement, all else, the group in the other records, the group in this one
-  Eigen::Index group = 0;  // columns of it
+  Columns columns;         // measurement, other effects, the group in other records, the group in this one
+  Eigen::Index group = 0;  // number of the group's columns
 };
 
 Split split_at(const BlockData& data, const std::vector<Candidate>& effects,
@@ -46,7 +46,7 @@ Split split_at(const BlockData& data, const std::vector<Candidate>& effects,
   return split;
 }
 
-// Whitened, with all else projected out.
+// Whitened and with all other effects projected out.
 struct Whitened {
   Eigen::VectorXd error;
   Eigen::MatrixXd others, here;  // the group's columns
@@ -54,7 +54,7 @@ struct Whitened {
 };
 
 Whitened whitened(const BlockGrid& grid, const Split& split, const NoiseFit& noise) {
-  // The noise that was fitted with one coefficient for all captures has absorbed their differences.
+  // Noise that was fitted with common coefficients has absorbed the differences between captures.
   Columns white = split.columns;
   Whitening(grid, fit_noise(grid, split.columns, noise.shape).shape).apply(white);
   const Eigen::Index g = split.group;
@@ -67,7 +67,7 @@ Whitened whitened(const BlockGrid& grid, const Split& split, const NoiseFit& noi
           left / std::max(1.0, static_cast<double>(grid.used()) - static_cast<double>(p))};
 }
 
-// What the coefficients of the other records are worth in this one.
+// Compares the prediction by the other records' coefficients with this record.
 bool prediction_fails(const Whitened& of, DeniedEffects& found) {
   if (of.others.squaredNorm() < kMoves * of.here.squaredNorm()) return false;
   const LeastSquares by_others(of.others);
@@ -85,7 +85,7 @@ bool prediction_fails(const Whitened& of, DeniedEffects& found) {
   return found.share + kCertainlyOff * found.share_error < 0.5;
 }
 
-// Seen by the others, not by this one, though it was tried as hard here.
+// True if the others show the effect and this record does not although its regressors vary as much.
 bool unseen_though_moved(const Whitened& of, DeniedEffects& found) {
   for (Eigen::Index k = 0; k < of.here.cols(); ++k)
     if (of.here.col(k).squaredNorm() < kAsMuch * of.others.col(k).squaredNorm()) return false;
@@ -100,7 +100,7 @@ bool unseen_though_moved(const Whitened& of, DeniedEffects& found) {
   return true;
 }
 
-// Those that share a channel with effect `at`, or with one that does.
+// Effects connected to effect `at` by shared channels, directly or indirectly.
 std::vector<std::size_t> one_law(const std::vector<Candidate>& effects, std::size_t at) {
   const auto of_a_channel = [](const Candidate& each) {
     return each.channel != Candidate::kNone && each.first_reading == FirstReading::kError;

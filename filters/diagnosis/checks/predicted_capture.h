@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several captures of one sensor, each predicted by the others: of a channel that only ran along with the
-// cause in one capture nothing is there in the next, and a correction by it makes that worse.
+// Predicts each capture of one sensor from the others. If a channel was correlated with the true cause only
+// in one capture, its correction makes another capture worse.
 #pragma once
 
 #include <cstddef>
@@ -12,19 +12,18 @@
 
 namespace ifog {
 
-// Effects that share a channel, for two of them may be one law.
+// Effects that share a channel, because two of them may describe one law.
 struct DeniedEffects {
   std::vector<std::size_t> effects;  // ascending
-  std::size_t record = 0;            // that denies them
-  // Share of what the other captures predict that is present in this one. Below one half a correction leaves
-  // more error than none does. NaN: they predict nothing certain, but their regressors move as much here as where
-  // they are seen, and they are not.
+  std::size_t record = 0;            // record that refutes them
+  // Share of the prediction from the other captures that is present in this one; below 0.5 a correction
+  // increases the error. NaN: the others predict nothing certain, but the regressors vary as much here and
+  // the effects are absent.
   double share = 0.0, share_error = 0.0;
 };
 
-// The effects whose prediction is surely less than half there, by four standard errors; captures for which
-// the others predict nothing that would be seen, or nothing certain, are asked whether they see anything.
-// None with one record. data: reconstructed.
+// Effects whose share is below 0.5 by four standard errors, or that are absent here although the regressors
+// vary. nullopt with one record. data: reconstructed.
 std::optional<DeniedEffects> denied_by_a_capture(const BlockData& data, const std::vector<Candidate>& effects,
                                                  const NoiseFit& noise);
 

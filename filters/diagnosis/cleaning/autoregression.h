@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Noise as an autoregression, by which a series is whitened.
+// Autoregressive noise model for whitening a series.
 #pragma once
 
 #include <Eigen/Dense>
@@ -11,12 +11,12 @@
 
 namespace ifog {
 
-// What is left of a series is white noise once its next value is predicted from the ones before.
+// Prediction of a series from its last values; the prediction errors are white.
 class Autoregression {
  public:
   static constexpr std::size_t kOrder = 16;
 
-  Autoregression() = default;  // of white noise
+  Autoregression() = default;  // white noise
   explicit Autoregression(const std::vector<double>& series) {
     double mean = 0.0, count = 0.0;
     for (const double value : series)
@@ -30,7 +30,7 @@ class Autoregression {
       }
     covariance[0] *= 1.0 + 1e-9;
     if (!(covariance[0] > 0.0)) return;
-    Eigen::Matrix<double, kOrder, kOrder> equations;  // of Yule and Walker
+    Eigen::Matrix<double, kOrder, kOrder> equations;  // Yule-Walker equations
     Eigen::Matrix<double, kOrder, 1> right;
     for (std::size_t i = 0; i < kOrder; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
@@ -42,7 +42,7 @@ class Autoregression {
     std::copy(weight.begin(), weight.end(), weight_.begin());
   }
 
-  // NaN where a value before is missing.
+  // NaN if one of the values before is missing.
   [[nodiscard]] std::vector<double> whitened(const std::vector<double>& series) const {
     std::vector<double> out(series.size(), std::nan(""));
     for (std::size_t i = kOrder; i < series.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error of every record on its nominal grid, and what of it is explained so far.
+// Error of every record on its nominal grid, and the parts explained so far.
 #pragma once
 
 #include <vector>
@@ -11,32 +11,31 @@
 
 namespace ifog {
 
-// The error of one record on an even grid, NaN where there is no sample. Series that are equal share their samples.
+// Error of one record on an equidistant grid, NaN where missing. Equal series share their memory.
 struct EvenError {
-  RecordOrigin origin{};  // that start_s is counted from
+  RecordOrigin origin{};  // of start_s
   double start_s = 0.0;
   SharedSamples before;    // rate - reference
-  SharedSamples rest;      // less lines and a dead zone, which are not corrected
-  SharedSamples after;     // `rest` less the effects
-  SharedSamples written;   // what the daemon's own correction leaves of `before`, by the model as written
+  SharedSamples rest;      // minus lines and dead zone, which are not corrected
+  SharedSamples after;     // `rest` minus the effects
+  SharedSamples written;   // residual of `before` after the daemon's correction with the written model
   SharedSamples held_out;  // the same with coefficients fitted without the sample's own part
 };
 
-// after, held_out and written: still empty. The records' rates outlive what is made of them. Throws as
+// Leaves after, held_out and written empty. The records' rates must outlive the result. Throws as
 // on_even_grid() does.
 std::vector<EvenError> even_errors(const std::vector<Record>& records, double sample_s);
 
-// Takes a part, by sample, out of the rest of a record's error and of the means over its blocks of the grid.
+// Subtracts a part, given by sample, from the record's residual and from its block means in the grid.
 void take_out(std::span<const double> part, std::size_t record, BlockGrid& grid, EvenError& error);
 
-// The sum of one series over all records.
+// Sum of one series over all records.
 FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::*series);
 
-// The error of the record with the most steps. At least one record is given.
+// Error of the record with the most steps; needs at least one record.
 const EvenError& longest_of(const std::vector<EvenError>& errors);
 
-// A stuck device, or a placeholder: rounding would be all there is to explain. Throws std::invalid_argument
-// when the error is the same number all along every record.
+// Throws std::invalid_argument if the error is constant over every record: stuck device or placeholder.
 void refuse_constant(const std::vector<Record>& records);
 
 }  // namespace ifog

@@ -13,15 +13,15 @@ namespace {
 constexpr std::size_t kStampsApart = 16;
 constexpr double kOwnLengths = 4.0;
 
-// What one late stamp adds to a step it takes from the next, so sums of steps scatter as one does; of steps
-// that are of different lengths the sum's variance is the sum.
+// A late stamp lengthens one step and shortens the next, so sums of steps scatter like one step. For steps of
+// different lengths the sum's variance is the sum.
 bool keeps_a_beat(std::span<const double> time_s, const SampleClock& clock) {
   const double period = clock.period_s;
   double one = 0.0, many = 0.0;
   for (std::size_t i = kStampsApart; i < time_s.size(); i += kStampsApart) {
     const double step = time_s[i] - time_s[i - 1] - period;
     const double sum = time_s[i] - time_s[i - kStampsApart] - static_cast<double>(kStampsApart) * period;
-    if (std::abs(sum) > 2.0 * period) continue;  // a hole
+    if (std::abs(sum) > 2.0 * period) continue;  // a gap
     one += step * step;
     many += sum * sum;
   }

@@ -10,8 +10,8 @@
 namespace ifog {
 namespace {
 
-// Measured rate less reference, on a constant and all references that move, in the order given. Empty where
-// there is nothing to tell them by.
+// Regression of measured rate minus reference on a constant and all moving references, in the given order.
+// Empty if not possible.
 Eigen::VectorXd shares_of(std::span<const double> measured, std::span<const double> reference,
                           const std::vector<std::span<const double>>& along) {
   std::vector<std::vector<double>> columns(2, std::vector<double>(measured.size(), 1.0));
@@ -34,7 +34,7 @@ Samples less_its_own(std::span<const double> measured, std::span<const double> r
   return corrected;
 }
 
-// The other axes as records, each with its reference as if that had not been logged late.
+// The other axes as records, each with its reference aligned.
 OwnedRecords aligned_others(const Record& record) {
   std::vector<Record> axes;
   for (std::size_t a = 0; a < record.other_axes.size(); ++a) {

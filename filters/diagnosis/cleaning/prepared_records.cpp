@@ -11,7 +11,7 @@
 namespace ifog {
 namespace {
 
-// An angle's wraps are no faults, and differences are of channels without faults.
+// Wraps are removed before faults are searched, and differences are formed of repaired channels.
 OwnedRecords cleaned(const std::vector<Record>& captures) {
   check_columns(captures);
   OwnedRecords channels =

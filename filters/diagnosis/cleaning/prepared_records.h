@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Captures as every diagnosis and measurement takes them: stamps that scatter set even, angles without their
-// wraps, channels' faults repaired, differences of channels added, faults of the rate out, a late
-// reference shifted, the other axes added, turns dropped, the part to fit cut, ramps subtracted.
+// Preparation of captures, common to diagnosis and measurement: even stamps, unwrapped angles, repaired
+// channels, differences of channels, rate without faults, aligned reference, other axes, no turns, the part
+// to fit, ramps subtracted.
 #pragma once
 
 #include <vector>
@@ -13,14 +13,14 @@
 namespace ifog {
 
 struct PreparedRecords {
-  // captures: their arrays outlive this. share: of each, that is fitted. significance: of a ramp. Throws
-  // std::invalid_argument as check_columns() and without_turns() do.
+  // The captures' arrays must outlive this. share: part of each that is fitted. significance: of a ramp.
+  // Throws std::invalid_argument as check_columns() and without_turns() do.
   explicit PreparedRecords(const std::vector<Record>& captures, const TimeShare& share = {},
                            double significance = 0.01);
 
   OwnedRecords whole;
   std::vector<Record> fitted;
-  WithoutRamps without_ramps;  // of what is fitted
+  WithoutRamps without_ramps;  // from `fitted`
 };
 
 }  // namespace ifog

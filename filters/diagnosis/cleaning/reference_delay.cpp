@@ -27,20 +27,20 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kMostDelaySteps = 1U << 17U;  // steps that the delay is sought on
-constexpr std::size_t kLeast = 200;                 // and the fewest that tell
+constexpr std::size_t kMostDelaySteps = 1U << 17U;  // steps of the series on which the delay is searched
+constexpr std::size_t kLeast = 200;                 // fewest steps
 constexpr int kRounds = 20;
-constexpr double kSettled = 1e-5;       // of a step
-constexpr double kCertainDelay = 25.0;  // twice the log-likelihood, beyond what the lags tried bring
-constexpr std::size_t kPowers = 4;      // of the reference: constant to cubic
+constexpr double kSettled = 1e-5;       // in steps
+constexpr double kCertainDelay = 25.0;  // required gain of twice the log-likelihood beyond the number of lags
+constexpr std::size_t kPowers = 4;      // powers of the reference: constant to cubic
 using Series = std::vector<double>;
 
-constexpr double kTold = 0.1;  // of a step: a delay that is known so well
+constexpr double kTold = 0.1;  // in steps; sufficient accuracy of the delay
 
 struct Pair {
   Series rate, reference;
-  Series without_jumps;        // the reference; empty: it has none
-  std::vector<Series> others;  // references of the other axes, as late as this one
+  Series without_jumps;        // the reference; empty: has no jumps
+  std::vector<Series> others;  // references of the other axes, with the same delay
   double step_s = 0.0;
 };
 
@@ -54,7 +54,7 @@ Series means(std::span<const double> series, std::size_t count) {
   if (count == 1) return {series.begin(), series.end()};
   Series out(series.size() / count);
   for (std::size_t i = 0; i < out.size(); ++i) {
-    double sum = 0.0;  // NaN as soon as one is missing: a mean of some would come from another time
+    double sum = 0.0;  // NaN if one is missing; a partial mean would be for another time
     for (std::size_t k = i * count; k < (i + 1) * count; ++k) sum += series[k];
     out[i] = sum / static_cast<double>(count);
   }
@@ -79,7 +79,7 @@ std::optional<Pair> pair_of(const Record& record) {
         pair.others.push_back(means(on_even_grid(record, period_s, other), count));
     pair.step_s = period_s * static_cast<double>(count);
   } catch (const std::invalid_argument&) {
-    return std::nullopt;  // no even clock, or hardly anything on it
+    return std::nullopt;  // no even clock, or too few samples
   }
   return pair;
 }
@@ -97,7 +97,7 @@ std::vector<std::complex<double>> transform(const Series& series, std::size_t si
   return spectrum;
 }
 
-// In whole steps, by where the whitened series are most alike.
+// In whole steps, by the maximum cross-correlation of the whitened series.
 double coarse_delay(const Pair& pair) {
   const Series rate = differences(pair.rate), reference = differences(pair.reference);
   const Autoregression noise(rate);
@@ -117,8 +117,8 @@ double coarse_delay(const Pair& pair) {
   return static_cast<double>(best);
 }
 
-// Rate, powers of the reference as it would be with a delay, what the other axes were turned by, of which a
-// misalignment sees a share and which in coning is like the slope, and last the slope over a step.
+// Columns: rate, powers of the shifted reference, the other axes' references (misalignment, which in coning
+// resembles the slope), and last the slope over a step.
 std::vector<Series> columns_of(const Pair& pair, double scale, double steps, bool with_slope) {
   std::vector<Series> columns{pair.rate};
   const Samples moved = shifted(pair.reference, steps);
@@ -145,7 +145,7 @@ std::vector<Series> whitened(const std::vector<Series>& columns, const Autoregre
   return white;
 }
 
-// Autoregression of the noise that remains next to a reference moved so. The last of `columns` is its slope.
+// Autoregression of the noise that remains with the reference in `columns`, whose last is the slope.
 Autoregression noise_beside(const std::vector<Series>& columns) {
   const std::vector<Series> without(columns.begin(), columns.end() - 1);
   const SeriesFit plain = least_squares(without, complete_rows(without));
@@ -156,7 +156,7 @@ Autoregression noise_beside(const std::vector<Series>& columns) {
   return Autoregression(left);
 }
 
-// By the angle turned: over an arc its sine is like the slope, and a law of the angle like a delay.
+// Harmonics of the turned angle, which over an arc resemble the slope.
 std::vector<Series> once_a_turn(const Pair& pair) {
   std::vector<Series> columns(2, Series(pair.reference.size()));
   double angle = 0.0;
@@ -170,7 +170,7 @@ std::vector<Series> once_a_turn(const Pair& pair) {
 
 struct Delay {
   double steps = 0.0, error = 0.0;
-  double gain = 0.0;  // twice the log-likelihood, over none
+  double gain = 0.0;  // of twice the log-likelihood over no delay
 };
 
 std::optional<Delay> refined(const Pair& pair, double steps) {
@@ -199,7 +199,7 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
       for (const Series& each : once_a_turn(pair)) as_logged.push_back(noise.whitened(each));
       if (least_squares(as_logged, rows).square < with.square) return std::nullopt;
       delay.gain = static_cast<double>(with.rows) * std::log(without.square / with.square);
-      delay.steps += step;  // what is settled to a part of a sample may be known to less
+      delay.steps += step;  // accurate enough
       return delay;
     }
     delay.steps += std::clamp(step, -1.0, 1.0);
@@ -208,13 +208,13 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
   return std::nullopt;
 }
 
-// Twice the log-likelihood that the lags tried bring by chance, and what is asked beyond it.
+// Gain of twice the log-likelihood by chance with the lags tried, plus the required margin.
 double price_of(const Pair& pair) {
   return kCertainDelay + 2.0 * std::log(2.0 * static_cast<double>(longest_lag(pair)) + 1.0);
 }
 
-// A jump tells a delay to whole samples only, and loudly: where what lies between the jumps tells it to a
-// part of one, that is it. Where all motion is jumps, they are all there is.
+// Jumps give the delay only in whole samples but dominate the likelihood. If the samples without jumps
+// determine it to a fraction, their result is used.
 void settle_without_jumps(Pair& pair, Delay& delay) {
   if (pair.without_jumps.empty()) return;
   Pair smooth = pair;
@@ -226,7 +226,7 @@ void settle_without_jumps(Pair& pair, Delay& delay) {
   pair.reference = pair.without_jumps;
 }
 
-// By row of the record, the reference as it would have been without delay.
+// The reference without delay, by row of the record.
 Samples moved_reference(const Record& record, double delay_s) {
   const double period_s = sample_clock(record.time_s).period_s;
   const Samples logged = on_even_grid(record, period_s, record.reference_radps);
@@ -268,16 +268,15 @@ OwnedRecords align_references(OwnedRecords given) {
 
 namespace {
 
-// A jump has six times itself as its fourth difference, white noise 8.4 times its deviation.
-constexpr double kJumpOfFourth = 50.0;  // deviations of the noise: a jump of eight
+// The fourth difference of a jump is six times the jump; that of white noise has 8.4 standard deviations.
+constexpr double kJumpOfFourth = 50.0;  // standard deviations of the noise, i.e. a jump of eight
 constexpr std::size_t kRings = 12;      // samples on either side: half the width of the interpolation
 constexpr double kMostOfJumps = 0.25;
-// Ratio of the fourth difference to the second: small for what is smooth over a few samples, two to six at a jump
-// or a kink.
+// Limit of the ratio of fourth to second difference: small for smooth motion, two to six at a jump or kink.
 constexpr double kRoughness = 1.0;
-constexpr std::size_t kEnough = 50000;  // steps, to tell the noise by
+constexpr std::size_t kEnough = 50000;  // steps for the noise estimate
 
-// Noise of one sample, by the median difference of neighbours.
+// Noise of one sample, from the median difference of neighbours.
 double noise_beside_reference(const Samples& reference, std::span<const double> rate) {
   std::vector<double> steps;
   const std::size_t stride = std::max<std::size_t>(1, rate.size() / kEnough);
@@ -330,7 +329,7 @@ Kernel kernel_at(double fraction) {
     kernel[static_cast<std::size_t>(k)] = sinc * window;
     sum += kernel[static_cast<std::size_t>(k)];
   }
-  for (double& weight : kernel) weight /= sum;  // what stands still stays where it is
+  for (double& weight : kernel) weight /= sum;  // preserves a constant
   return kernel;
 }
 

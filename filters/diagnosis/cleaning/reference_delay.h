@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A reference that was logged late or early against the rate. The difference of the two is then the true
-// rate's change over the delay: no error of the gyro, but where it turns the largest thing in the record.
+// Reference logged late or early relative to the rate. The difference then contains the change of the true
+// rate over the delay, which in turns may be the largest part of the record.
 #pragma once
 
 #include <cstddef>
@@ -11,26 +11,22 @@
 
 namespace ifog {
 
-// The delay within 60 s of greatest likelihood, together with a constant and a cubic of the reference, in
-// innovations of an autoregressive noise. Sought by generalised cross-correlation (Knapp and Carter 1976:
-// both series whitened as the rate demands), then by Gauss and Newton to a part of a sample. Applied where it
-// gains more likelihood than the lags tried would by chance, and more than what repeats with an angle that
-// was logged; a reference that does not move has nothing to tell it by. Left as they are: records without a
-// reference, with an uneven clock, and tables of dwells.
+// Shifts references by the most likely delay within ±60 s, fitted with a constant and a cubic of the
+// reference under autoregressive noise. Search by generalised cross-correlation (Knapp and Carter 1976), then
+// Gauss-Newton to a fraction of a sample. Applied only if its gain exceeds chance and that of a logged
+// angle's harmonics. Unchanged: records without a reference or a moving one, with an uneven clock, and tables
+// of dwells.
 OwnedRecords align_references(OwnedRecords given);
 
-// A reference that jumps from one sample to the next, where it was moved by a part of a sample.
-// What lies between samples is known of what changes slowly against them; where a reference jumps, an
-// interpolation rings by a tenth of the jump, which in a turn is thousands of times the noise. Such samples
-// are made missing, by the reference's fourth difference against the noise of rate less reference and
-// against its second one (of what is smooth it is a small part of that), and how many is returned. None where
-// they would be a quarter of all: that is how the sensor was moved.
+// Sets to missing the samples where an interpolated reference jumps and returns their number. Interpolation
+// rings by a tenth of a jump, which in a turn is far above the noise. Test: the reference's fourth difference
+// against the noise of rate minus reference and against its second difference. If a quarter of all samples
+// jump, none is removed, because that is the motion.
 std::size_t leave_out_jumps(Samples& reference, std::span<const double> rate);
 
-// A series on an even grid, moved by a part of a step.
-// values at k + steps for every k, by a sinc under a Hann window of 24 steps: white noise stays as white and
-// as loud as it was, so that no shift is preferred for being smooth. Linear next to holes; NaN where there
-// is nothing to interpolate between.
+// Series shifted by a fraction of a step: values at k + steps, by a sinc with a Hann window of 24 steps.
+// White noise keeps its variance, so no shift is preferred for smoothing. Linear next to gaps; NaN where
+// nothing can be interpolated.
 Samples shifted(std::span<const double> values, double steps);
 
 }  // namespace ifog

@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least squares of one series on others, over the rows where none is missing.
 #pragma once
 
 #include <Eigen/Dense>
@@ -15,12 +14,12 @@ namespace ifog {
 
 struct SeriesFit {
   Eigen::VectorXd coefficients;
-  double square = 0.0;  // that is left
+  double square = 0.0;  // of the residual
   double last_variance = 0.0;
   std::size_t rows = 0;
 };
 
-// Least squares of the first column on the others, over the rows where none is missing in any of `all`.
+// Least squares of the first column on the others, over the given rows.
 inline SeriesFit least_squares(const std::vector<std::vector<double>>& columns,
                                const std::vector<std::uint8_t>& rows) {
   const auto width = static_cast<Eigen::Index>(columns.size());

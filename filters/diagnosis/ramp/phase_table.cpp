@@ -9,7 +9,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kSamplesAStep = 100.0;  // that a table needs at least
+constexpr double kSamplesAStep = 100.0;  // fewest samples per step of the table
 
 struct Sums {
   Eigen::MatrixXd gram;
@@ -20,7 +20,7 @@ struct Sums {
       : gram(Eigen::MatrixXd::Zero(steps, steps)), moment(Eigen::VectorXd::Zero(steps)) {}
 };
 
-// StepWeights of the steps that the phases now and before lie between; the first has no column, as it is zero.
+// Weights of the table's steps next to the phases now and before. The first step is zero and has no column.
 struct StepWeights {
   std::array<std::pair<Eigen::Index, double>, 4> entry{};
   std::size_t count = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The nonlinearity of a feedback ramp as a table over its cycle: an error of the angle, f(phase), which makes
-// of the rate the difference of f from sample to sample over the time between. The phase comes from a counter
-// that was logged, or from the angle that the sensor has measured.
+// Nonlinearity of a feedback ramp as a table over its cycle. The angle error is f(phase); the rate error is
+// the difference of f between samples divided by dt. The phase comes from a logged counter or from the
+// measured angle.
 #pragma once
 
 #include <Eigen/Core>
@@ -18,46 +18,46 @@ namespace ifog {
 
 inline constexpr double kSlowSamples = 512.0;  // length of the running mean that removes the slow part
 
-// A record with the phase of its ramp at each sample, in cycles of which whole ones do not count; NaN: unknown.
+// Record with the ramp's phase at each sample, in cycles modulo one; NaN: unknown.
 struct PhasedRecord {
   const Record* record;
   std::function<double(std::size_t)> cycles;
 };
 
-// Phase of a sample and of the one before it, both known.
+// Known phases of a sample and the one before it.
 struct PhaseStep {
   double before, now;  // cycles, in [0, 1)
   double dt_s;
-  double error_radps;  // rate, less the reference if there is one, less its slow part
+  double error_radps;  // rate minus the reference, if any, minus the slow part
 };
 
-// Angles (rad) at even steps of the cycle, behind its start, where the angle is zero. The last one is where
-// the cycle ends: a flyback is not exactly 2 pi, so that it need not be zero.
+// Angles (rad) at even steps after the start of the cycle, where the angle is zero. The last one is at the
+// end of the cycle; it is not zero if the flyback is not exactly 2 pi.
 struct PhaseTable {
   Eigen::VectorXd angle_rad;
-  double angle_error = 0.0;  // standard deviation of an angle
+  double angle_error = 0.0;  // standard deviation of one angle
   double samples = 0.0;
-  double square = 0.0, explained = 0.0;  // of the errors, (rad/s)^2
+  double square = 0.0, explained = 0.0;  // sum of squares of the errors, (rad/s)^2
 
   [[nodiscard]] double left() const { return std::max(square - explained, 1e-12 * square); }
-  // Twice the log-likelihood that the table gains in white noise.
+  // Gain of twice the log-likelihood in white noise.
   [[nodiscard]] double ratio() const { return samples * std::log(square / left()); }
-  // The same less what its angles cost by the Bayesian information criterion.
+  // ratio() minus the cost of the angles (Bayesian information criterion).
   [[nodiscard]] double score() const {
     return ratio() - static_cast<double>(angle_rad.size()) * std::log(samples);
   }
 };
 
-// Angle of a table between two of its steps.
+// Angle between the table's steps, linearly interpolated.
 double angle_at(const Eigen::VectorXd& angle_rad, double cycles);
 
-// What the table makes of a rate, rad/s.
+// Rate error by the table, rad/s.
 inline double ramp_rate(const Eigen::VectorXd& angle_rad, const PhaseStep& step) {
   return (angle_at(angle_rad, step.now) - angle_at(angle_rad, step.before)) / step.dt_s;
 }
 
-// use(sample, step) for each. The slow part is a mean of all samples so far, at last of 512: as the correction
-// online takes it out (see ramp_tracker.h).
+// Calls use(sample, step) for each sample. The slow part is the mean of the samples so far, at most 512, as
+// in the online correction (ramp_tracker.h).
 template <class Use>
 void each_phase_step(const PhasedRecord& of, Use&& use) {
   const Record& record = *of.record;
@@ -76,12 +76,11 @@ void each_phase_step(const PhasedRecord& of, Use&& use) {
   }
 }
 
-// With enough steps for the table's shape and no more, by the Bayesian information criterion, and a hundred
-// samples for each of them, by which a table takes half a per cent of noise for its own; nothing where the
-// records are too short for any.
+// The number of steps minimises the Bayesian information criterion, with at least 100 samples per step (then
+// the table absorbs 0.5 % of the noise). nullopt if the records are too short.
 std::optional<PhaseTable> fit_phase_table(const std::vector<PhasedRecord>& records);
 
-// What a table of so many steps explains of the errors, (rad/s)^2.
+// Part of the errors' sum of squares that a table of `steps` explains, (rad/s)^2.
 double explained_by_table(const std::vector<PhasedRecord>& records, Eigen::Index steps);
 
 }  // namespace ifog

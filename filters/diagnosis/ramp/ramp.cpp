@@ -18,7 +18,8 @@ Effect table_effect(const std::string& channel, double period, const PhaseTable&
   effect.channel = channel;
   effect.period = period;
   effect.angle = true;
-  // A constant angle has no rate: the table is stored about its mean, which keeps a reload's jump small.
+  // A constant angle has no rate. The table is stored minus its mean, so that a model change causes a small
+  // jump.
   const double mean = table.angle_rad.sum() / (steps + 1.0);
   double square = 0.0;
   for (double k = 0.0; k <= steps; ++k) {
@@ -35,11 +36,11 @@ Effect table_effect(const std::string& channel, double period, const PhaseTable&
 }  // namespace
 
 double wrap_period(std::span<const double> values) {
-  constexpr double kSmallestCounter = 16.0;  // counts: what is smaller may be a state
+  constexpr double kSmallestCounter = 16.0;  // counts; a smaller one may be a state
   double low = 1e300, high = -1e300;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) continue;
-    if (values[i] < 0.0) return 0.0;  // no counter
+    if (values[i] < 0.0) return 0.0;  // not a counter
     low = std::min(low, values[i]);
     high = std::max(high, values[i]);
   }

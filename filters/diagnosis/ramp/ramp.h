@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The feedback ramp of a closed-loop sensor, if a channel is one: a counter that wraps and whose slope is the
-// closed loop's own measure of the rotation. Its nonlinearity is an error of the angle, f(ramp), so that of
-// the rate is the difference of f from sample to sample over dt. f is bounded: this correction cannot swallow
-// rotation, whatever the ramp's speed, which no function of the ramp's slope could promise.
+// Detects a closed-loop sensor's feedback ramp among the channels: a counter that wraps and whose slope
+// measures the rotation. Its nonlinearity is an angle error f(ramp), so the rate error is the difference of f
+// divided by dt. f is bounded, so this correction cannot remove rotation. A function of the ramp's slope
+// could.
 #pragma once
 
 #include <cstdint>
@@ -17,18 +17,18 @@
 
 namespace ifog {
 
-// The period, a power of two, when the values lie in [0, period) and jump by about a period; 0 otherwise.
+// Period, a power of two, if the values are in [0, period) and jump by about a period; else 0.
 double wrap_period(std::span<const double> values);
 
 struct RampFit {
-  // The effect is an angle lookup, whose table's ends may differ: the flyback is not exactly 2 pi. Its
-  // likelihood ratio is that in white noise.
+  // Angle lookup whose table ends may differ, as the flyback is not exactly 2 pi. Its likelihood ratio is for
+  // white noise.
   FoundEffect found;
   std::vector<Samples> correction;  // by record and sample, rad/s
 };
 
-// Fits the ramp of one channel. Nothing if the table does not gain what its angles cost, or if chance would do as
-// well more often than `significance`.
+// Fits the ramp of one channel. nullopt if the table gains less than its cost, or if its p-value exceeds
+// `significance`.
 std::optional<RampFit> fit_ramp(const std::vector<Record>& records, const std::string& channel,
                                 double significance);
 

@@ -19,14 +19,15 @@ using Complex = std::complex<double>;
 
 constexpr std::size_t kLeastSamples = 4096, kMostSamples = 131072;
 constexpr std::size_t kMostBins = 1U << 20U;
-// A coil of diameter D has D/(n lambda) cycles a radian (Lefevre, The Fiber-Optic Gyroscope, on the phase
-// ramp): 2.3 cm at 1.55 um to 70 cm at 0.8 um. What wants another coil is no ramp.
+// A coil of diameter D has D/(n lambda) cycles per radian (Lefevre, The Fiber-Optic Gyroscope, phase ramp):
+// limits for 2.3 cm at 1.55 um and 70 cm at 0.8 um.
 constexpr double kLeastCycles = 1e4, kMostCycles = 6e5;
 constexpr double kLeastTurns = 20.0;
-constexpr double kStandsOut = 20.0;    // power over the noise around: once in 10^3 records by chance
-constexpr std::size_t kPeaks = 8;      // that are looked at
-constexpr std::size_t kHarmonics = 8;  // a peak may be this harmonic; so many make a first score
-constexpr std::size_t kRefined = 3;    // fundamentals
+constexpr double kStandsOut = 20.0;  // power / surrounding noise, exceeded by chance in one of 10^3 records
+constexpr std::size_t kPeaks = 8;    // number of peaks examined
+// a peak may be up to this harmonic; also the number in the first score
+constexpr std::size_t kHarmonics = 8;
+constexpr std::size_t kRefined = 3;  // number of fundamentals refined
 
 Complex carrier_of(double cycles) {
   return std::polar(1.0, 2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
@@ -46,7 +47,7 @@ Stretch longest_without_hole(const Record& record, double step_s) {
   return longest;
 }
 
-// Power over its neighbours' for k = bin / length, by the angle; length is twice the angle turned.
+// Power over that of the neighbours for k = bin / length; length is twice the angle turned.
 struct AngleSpectrum {
   std::vector<double> power;
   double length = 0.0;
@@ -62,12 +63,12 @@ void divide_by_floor(std::vector<double>& power) {
   }
   for (std::size_t i = 0; i < power.size(); ++i) {
     const std::size_t block = i / kBlock;
-    // The last block may be short, and where noise falls off steeply the neighbour with more of it counts.
+    // The last block may be short; in steep noise the larger neighbour counts.
     power[i] /= std::max(floor[block], floor[std::min(block + 1, floor.size() - 1)]);
   }
 }
 
-// A non-uniform transform: samples are put into bins of the angle, two or more to a cycle of the highest k.
+// Transform over the angle: samples are averaged in angle bins, at least two per cycle of the highest k.
 AngleSpectrum spectrum_over_angle(const UnbrokenPart& part) {
   const auto [low, high] = std::minmax_element(part.angle_rad.begin(), part.angle_rad.end());
   const double lowest = *low, most = 0.5 / std::abs(part.mean_turn_rad());
@@ -86,10 +87,10 @@ AngleSpectrum spectrum_over_angle(const UnbrokenPart& part) {
   return out;
 }
 
-// What the harmonics of a fundamental at `bin` gain, less what they cost, for the best number of them. One
-// loud line makes no comb.
+// Gain minus cost of the harmonics of a fundamental at `bin`, for the best number of harmonics. A single
+// strong line does not score as a comb.
 double score_of(const std::vector<double>& power, double bin) {
-  constexpr double kMostOfOne = 10.0;  // of a harmonic, in units of its cost
+  constexpr double kMostOfOne = 10.0;  // limit for one harmonic, in units of its cost
   const double cost = std::log(static_cast<double>(power.size()));
   double best = 0.0, sum = 0.0;
   for (std::size_t h = 1; h <= 2 * kHarmonics; ++h) {
@@ -102,8 +103,8 @@ double score_of(const std::vector<double>& power, double bin) {
   return best;
 }
 
-// Cycles a radian that the part can show: from a fundamental above the slow part that was removed, with
-// twenty cycles or more, to one below half the sample rate. Empty (least > most) near zero rate.
+// Detectable cycles per radian: from a fundamental above the removed slow part with at least 20 cycles to one
+// below half the sample rate. Empty (least > most) near zero rate.
 struct VisibleCycles {
   double least = 0.0, most = 0.0;
 };
@@ -115,7 +116,7 @@ VisibleCycles visible_cycles(const UnbrokenPart& part) {
   return {std::max(kLeastCycles, slowest / turn), std::min(kMostCycles, 0.45 / turn)};
 }
 
-// Bins of fundamentals, the most telling first.
+// Bins of possible fundamentals, best first.
 std::vector<double> fundamentals(const AngleSpectrum& spectrum, const VisibleCycles& visible) {
   const std::vector<double>& power = spectrum.power;
   const double least = visible.least * spectrum.length;
@@ -140,8 +141,8 @@ std::vector<double> fundamentals(const AngleSpectrum& spectrum, const VisibleCyc
   return bins;
 }
 
-// k near the one given at which a table explains most: first by a table of few steps, which cannot miss it,
-// then by ever finer ones, which tell it ever more closely. span: the angle turned.
+// Refines k to the value at which a table explains most: first with few steps, then with ever finer ones.
+// span: angle turned.
 double refined(const UnbrokenPart& part, double k, double span) {
   double reach = 1.0 / span, step = 0.0;
   for (const Eigen::Index steps : {8, 16, 32, 64, 128}) {
@@ -154,7 +155,7 @@ double refined(const UnbrokenPart& part, double k, double span) {
     reach = 2.0 * step;
   }
   constexpr Eigen::Index kFinest = 128;
-  constexpr int kBits = 8;  // of a step
+  constexpr int kBits = 8;  // resolution within a step
   std::uintmax_t most_evaluations = 20;
   const auto lacking = [&](double steps) {
     return -explained_by_table({part.with_phase(k + steps * step)}, kFinest);
@@ -162,10 +163,10 @@ double refined(const UnbrokenPart& part, double k, double span) {
   return k + step * boost::math::tools::brent_find_minima(lacking, -1.0, 1.0, kBits, most_evaluations).first;
 }
 
-// A sensor that counts pulses makes steps of a fixed angle: a comb over the angle, and no ramp. The angle
-// only ever takes values that are whole cycles apart, where it turns through all of them otherwise.
+// True for a sensor that counts pulses. Its steps of a fixed angle make a comb over the angle but no ramp:
+// its angle values are whole cycles apart.
 bool counts_pulses(const UnbrokenPart& part, double cycles_per_rad) {
-  constexpr double kStanding = 0.3;  // of a carrier; through twenty cycles and more it turns to 0.05
+  constexpr double kStanding = 0.3;  // mean of the carrier; 0.05 after 20 cycles of uniform rotation
   for (std::size_t h = 1; h <= 2 * kHarmonics; ++h) {
     Complex mean = 0.0;
     for (const double angle : part.angle_rad)
@@ -175,7 +176,7 @@ bool counts_pulses(const UnbrokenPart& part, double cycles_per_rad) {
   return false;
 }
 
-// Share of the squared error that the table's first harmonic alone explains.
+// Share of the squared error that the table's first harmonic explains.
 double explained_by_line(const UnbrokenPart& part, double cycles_per_rad) {
   Complex sum = 0.0;
   double square = 0.0;

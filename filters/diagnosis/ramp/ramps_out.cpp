@@ -49,16 +49,16 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
 
 namespace {
 
-// Twice the log-likelihood that a comb has to gain beyond one at fixed frequencies, and beyond one line.
+// Required gain of twice the log-likelihood over fixed frequencies and over a single line.
 constexpr double kOverOthers = 30.0;
-// Slower sensors cannot show a ramp, and nothing is said of it.
+// A ramp is not detectable in slower sensors.
 constexpr double kQuickSensor_hz = 20.0;
 constexpr double kCertainTable = 3.0;  // standard errors of the table
-// The ramp's phase is the angle's, and stays it: a tenth of a cycle in 40 min is more than the one that was
-// measured walks. A line that walks more, of a swaying structure or a machine, follows itself.
+// The ramp's phase follows the angle. The largest walk allowed is 0.1 cycle in 40 min, above the one
+// measured. Lines of a structure or machine walk more.
 constexpr double kMostWalk = 0.002;  // cycles/sqrt(s)
 
-// Sentence about the spectral lines of a comb that is not corrected.
+// Remark about the lines of a comb that is not corrected.
 std::string lines_in_words(const RampComb& comb, const UnbrokenPart& part) {
   const double hz = comb.cycles_per_rad * std::abs(part.mean_turn_rad()) / part.sample_s();
   return "lines at " + formatted("%.4g", hz) +
@@ -69,8 +69,8 @@ std::string lines_in_words(const RampComb& comb, const UnbrokenPart& part) {
          "corrected. A capture at another rate would tell, and so would the feedback ramp, logged";
 }
 
-// The phase against k times the angle, piece by piece, to first order: how far it walks, and how uncertain
-// that and the noise leave k.
+// Phase relative to k times the angle, piece by piece, to first order: its random walk, and the resulting
+// uncertainty of k.
 struct Phase {
   double walk = 0.0, walk_error = 0.0;  // cycles/sqrt(s)
   double cycles_error = 0.0;            // of k
@@ -96,7 +96,7 @@ Phase phase_of(const UnbrokenPart& part, const RampComb& comb) {
     information += std::pow(slope * (part.angle_rad[i] - middle), 2);
   });
   const double span_s = static_cast<double>(part.size()) * part.sample_s();
-  // Means over two neighbouring pieces of a walk differ by two thirds of what it makes in one.
+  // The difference of two neighbouring means has 2/3 of the walk's variance in one piece.
   double walk = 0.0;
   for (std::size_t p = 1; p < kPieces; ++p) {
     if (!(square[p] > 0.0) || !(square[p - 1] > 0.0)) continue;
@@ -104,7 +104,7 @@ Phase phase_of(const UnbrokenPart& part, const RampComb& comb) {
     walk += apart * apart - variance / square[p] - variance / square[p - 1];
   }
   walk /= 2.0 / 3.0 * span_s * static_cast<double>(kPieces - 1) / static_cast<double>(kPieces);
-  // A walk below this part of the phase that blurs the table cannot be detected.
+  // Share of the blur of the phase; a smaller walk cannot be detected.
   constexpr double kWalkSeen = 0.1;
   const double least = kWalkSeen / (std::numbers::pi * static_cast<double>(angle.size()));
   Phase phase;
@@ -116,8 +116,8 @@ Phase phase_of(const UnbrokenPart& part, const RampComb& comb) {
   return phase;
 }
 
-// One cycle about its mean, twice as fine as the table and between its steps, where straight lines through
-// noise scatter least.
+// One cycle minus its mean, at twice the table's resolution and halfway between its steps, where linear
+// interpolation has the least noise.
 std::vector<double> cycle_of(const Eigen::VectorXd& angle_rad) {
   const Eigen::Index values = 2 * angle_rad.size();
   Eigen::VectorXd cycle(values);
@@ -133,7 +133,7 @@ double rms(const std::vector<double>& angle) {
   return std::sqrt(square / static_cast<double>(angle.size()));
 }
 
-// What the tracker makes of a record as the daemon would, by sample.
+// Correction of a record by the daemon's tracker, by sample.
 Samples tracked(const Record& record, const RampSettings& settings) {
   RampTracker tracker(settings);
   const double usual_s = usual_step(record.time_s);
@@ -169,7 +169,7 @@ Effect effect_of(const RampComb& comb, const RampSettings& settings, const Phase
   return effect;
 }
 
-// Whether the errors are smaller without what the tracker makes of them.
+// True if the correction reduces the errors.
 bool helps(const std::vector<Record>& records, const RampFit& fit) {
   double before = 0.0, after = 0.0;
   for (std::size_t r = 0; r < records.size(); ++r) {
@@ -187,7 +187,7 @@ double chance_of(const RampComb& comb) {
                   comb.tries * chi_squared_above(table.ratio(), static_cast<double>(table.angle_rad.size())));
 }
 
-// With the ramp's table and what the tracker makes of it; nothing where it does not help.
+// With table and correction; nullopt if the correction does not help.
 std::optional<RampFit> fit_of(const std::vector<Record>& records, const UnbrokenPart& part,
                               const RampComb& comb) {
   const PhaseTable& table = comb.table;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records without what their closed loops' feedback ramps make of them, logged or rebuilt.
+// Removes the effect of feedback ramps, logged or reconstructed, from records.
 #pragma once
 
 #include <optional>
@@ -12,26 +12,25 @@ namespace ifog {
 
 struct WithoutRamps {
   std::vector<RampFit> ramps;
-  std::vector<Record> records;  // without channels that wrap, and less what the ramps explain
-  std::vector<Samples> rates;   // what their rates point to, when a ramp was found
-  std::string remark;           // of lines that one that was not logged may make; empty: none
+  std::vector<Record> records;  // without wrapping channels and without what the ramps explain
+  std::vector<Samples> rates;   // corrected rates, if a ramp was found
+  std::string remark;           // about lines that may come from a ramp that was not logged, or empty
 };
 
-// A counter that wraps is no environment: as a function of its value or slope it would take rotation away. So
-// it may explain the rate as a ramp's angle or not at all, and goes from the channels either way. Where none
-// does explain it, a ramp that was not logged is looked for: its phase would follow the angle turned
-// (rebuild_ramp() below).
+// A wrapping counter is not an environment channel: its value or slope would remove rotation. It may explain
+// the rate only as a ramp's angle and is removed from the channels in any case. If no counter explains the
+// rate, rebuild_ramp() searches for a ramp that was not logged.
 WithoutRamps take_out_ramps(const std::vector<Record>& records, double significance);
 
-// A feedback ramp that was not logged: its k found by the comb it leaves in the rate, its table fitted over
-// the angle that the sensor has measured, its correction made by the code that runs online.
+// Feedback ramp that was not logged. k comes from its comb in the rate, the table is fitted over the measured
+// angle, and the correction is computed by the online code.
 struct RebuiltRamp {
   std::optional<RampFit> fit;  // effect "rebuilt_ramp"
-  std::string remark;          // where lines are found that may be a ramp's and are not corrected
+  std::string remark;          // if lines may come from a ramp but are not corrected
 };
 
-// Nothing is found where the harmonics would do as well at fixed frequencies or near zero rate, or where by chance
-// a comb would do as well more often than `significance`.
+// No fit if fixed frequencies explain the harmonics equally well, near zero rate, or if the p-value exceeds
+// `significance`.
 RebuiltRamp rebuild_ramp(const std::vector<Record>& records, double significance);
 
 }  // namespace ifog

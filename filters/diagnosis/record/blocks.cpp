@@ -20,12 +20,12 @@
 namespace ifog {
 namespace {
 
-// Steps of the fine grid a block may have; a lag of a block is then known to a sixteenth of it.
+// Fine steps per block; a lag is thus resolved to 1/16 of a block.
 constexpr std::size_t kMostFine = 16;
-// A block counts when this share of its samples is there.
+// A block is valid if it has this share of its samples.
 constexpr double kLeastShare = 0.5;
 constexpr std::size_t kLeastBlocks = 32;
-// Points of a rate table: a calibration by IEEE Std 952 has 11 or more.
+// A calibration by IEEE Std 952 has 11 points or more.
 constexpr std::size_t kLeastDwells = 11;
 
 std::string too_few(const std::vector<Record>& records, std::size_t blocks, double block_s) {
@@ -52,9 +52,8 @@ double median_period(const std::vector<Record>& records) {
   return median(std::move(steps));
 }
 
-// The true one, where stamps are rounded: at 128 Hz those in whole milliseconds have steps of 8 ms and seldom
-// of 7. By the first record, as all are of one sensor; of rows that keep no beat, such as a table's points,
-// the median.
+// True period if stamps are rounded: at 128 Hz stamps in whole milliseconds have steps of 8 ms, seldom 7.
+// From the first record, as all are of one sensor; the median for irregular rows such as a table's points.
 double sample_period(const std::vector<Record>& records) {
   constexpr double kRounded = 1.0, kExact = 1e-9;  // of the median
   const double step_s = median_period(records);
@@ -92,8 +91,8 @@ void check_columns(const std::vector<Record>& records) {
 
 namespace {
 
-// Noise of one sample from its neighbours' differences, by their median: steps, ramps and bursts do not
-// count.
+// Noise variance of one sample from the median difference of neighbours, which ignores steps, ramps and
+// bursts.
 double white_variance(const std::vector<Record>& records) {
   std::vector<double> differences;
   for (const Record& record : records) {
@@ -118,7 +117,7 @@ void describe(FineChannel& channel) {
   channel.varies = channel.high - channel.low > 1e-9 * scale;
 }
 
-// The error's slope over the reference, from changes between neighbouring means of m samples.
+// Slope of the error over the reference, from changes between neighbouring means of m samples.
 struct MeansSlope {
   double value = 0.0, error = 0.0, pairs = 0.0;
 };
@@ -143,13 +142,12 @@ MeansSlope slope_of_means(const std::vector<Record>& records, std::size_t m) {
   return {value, std::sqrt(std::max(0.0, yy - value * xy) / n / xx), n};
 }
 
-// Samples that a mean needs next to a reference with noise of its own (interpolated, or read from angles).
-// That noise draws the slope of short means away from the scale factor (errors in variables) and averages out
-// in longer ones: they are long enough when means of twice the length have the same slope.
+// Samples per mean needed with a noisy reference (interpolated, or derived from angles). Its noise biases the
+// slope of short means (errors in variables). Means are long enough if twice the length gives the same slope.
 std::size_t long_enough(const std::vector<Record>& records) {
   constexpr std::size_t kLongest = 128;
-  constexpr double kFewest = 60.0;  // changes, that tell a slope to an eighth of its scatter
-  constexpr double kSame = 0.01;    // of the rate: nonlinearity and rounding change slopes by as much
+  constexpr double kFewest = 60.0;  // changes; then the slope is known to 1/8 of its scatter
+  constexpr double kSame = 0.01;    // relative; nonlinearity and rounding change slopes by as much
   constexpr double kWithin = 4.0;   // standard errors
   for (std::size_t m = 1; m < kLongest; m *= 2) {
     const MeansSlope one = slope_of_means(records, m), twice = slope_of_means(records, 2 * m);
@@ -160,7 +158,7 @@ std::size_t long_enough(const std::vector<Record>& records) {
   return kLongest;
 }
 
-// Lengths of blocks and of the fine grid's steps, so that there are at most so many blocks.
+// Sets the lengths of blocks and fine steps for at most `most_blocks` blocks.
 BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_blocks) {
   BlockGrid grid;
   grid.sample_s = sample_period(records);
@@ -183,7 +181,7 @@ BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_
   return grid;
 }
 
-// The first samples of the steps of its fine grid.
+// Adds a record's blocks; returns the first samples of its fine steps.
 StepStarts add_blocks_of(const Record& record, BlockGrid& grid, std::vector<double>& error) {
   const std::size_t steps = fine_index(record, record.time_s.size() - 1, grid.fine_s) + 1;
   const std::size_t blocks = (steps + grid.fine - 1) / grid.fine;
@@ -216,7 +214,7 @@ FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& gr
   FineChannel channel;
   channel.name = name;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    const bool several = grid.fine_s > grid.sample_s;  // samples a step
+    const bool several = grid.fine_s > grid.sample_s;  // samples per step > 1
     const StepMeans steps = step_means(values_in(records[r]), starts[r], several);
     channel.values.insert(channel.values.end(), steps.means.begin(), steps.means.end());
     channel.power.insert(channel.power.end(), steps.power.begin(), steps.power.end());
@@ -225,7 +223,8 @@ FineChannel fine_channel(const std::vector<Record>& records, const BlockGrid& gr
   return channel;
 }
 
-// Whether the channel has two values. A thermometer of whole degrees in a steady room also has, and is no switch.
+// True if a channel of unknown quantity has exactly two values. (A thermometer in whole degrees may have two,
+// too.)
 bool is_switch(const std::vector<Record>& records, const std::string& name) {
   if (kind_of(name) != ChannelKind::kOther) return false;
   std::set<double> different;
@@ -254,7 +253,7 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   BlockData data;
   data.grid = steps_and_blocks(records, most_blocks);
   std::vector<double> error;
-  std::vector<StepStarts> starts;  // by record: the first samples of its steps
+  std::vector<StepStarts> starts;  // by record
   starts.reserve(records.size());
   for (const Record& record : records) starts.push_back(add_blocks_of(record, data.grid, error));
   data.grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
@@ -273,7 +272,7 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
     data.reference = static_cast<std::ptrdiff_t>(data.channels.size());
     data.channels.push_back(fine_channel(records, data.grid, starts, records.front().reference_name,
                                          [](const Record& record) { return record.reference_radps; }));
-    // Averages of seconds at rates that were set: whatever drifts between them is not sampled as drift.
+    // Averages over seconds at set rates: drift between them is not sampled.
     data.grid.dwells = data.grid.sample_s > kSlowest_s && data.channels.back().varies;
   }
   if (data.grid.used() < (data.grid.dwells ? kLeastDwells : kLeastBlocks))

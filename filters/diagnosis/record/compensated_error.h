@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The error of a record that the daemon's own correction leaves.
+// Residual error of a record after the daemon's correction.
 #pragma once
 
 #include "filters/diagnosis/record.h"
@@ -8,9 +8,8 @@
 
 namespace ifog {
 
-// Rate less the model's effects, causally and with their lags settled as they would be online, less the
-// reference if there is one; by sample. The model's effects name no axis; a warm_up
-// counts from the first sample, as it was fitted. Throws as Compensator does.
+// Rate minus the model's effects minus the reference, if any, by sample. Causal, with lags initialised as
+// online. The effects name no axis; a warm_up counts from the first sample. Throws as Compensator does.
 Samples compensated_error(const Record& record, const Model& model);
 
 }  // namespace ifog

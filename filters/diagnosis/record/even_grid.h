@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A record on its nominal grid: even steps, so that spectra and Allan deviations mean something.
+// A record on its nominal equidistant grid, for spectra and Allan deviations.
 #pragma once
 
 #include <optional>
@@ -10,14 +10,14 @@
 
 namespace ifog {
 
-// values: one a sample of the record. Throws std::invalid_argument when gaps make the grid a hundred times
-// the samples.
+// values: one per sample. Throws std::invalid_argument if gaps make the grid a hundred times as long as the
+// samples.
 Samples on_even_grid(const Record& record, double sample_s, std::span<const double> values);
 
 // rate - reference by sample.
 Samples error_of(const Record& record);
 
-// Deviation from the mean, without NaN; 0, or nothing, for fewer than two values.
+// Variance about the mean, ignoring NaN; 0, or nullopt, for fewer than two values.
 double variance_of(std::span<const double> values);
 std::optional<double> variance_of_two(std::span<const double> values);
 

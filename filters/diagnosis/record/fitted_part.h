@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of each record that is fitted; what is left of it judges.
+// Part of each record that is fitted; the rest is for validation.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace ifog {
 
-// A part of a record's time, as fractions of it.
+// Part of a record's time, as fractions.
 struct TimeShare {
   double from = 0.0, to = 1.0;
   [[nodiscard]] bool whole() const { return from <= 0.0 && to >= 1.0; }

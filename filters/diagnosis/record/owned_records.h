@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records with the columns that were made for them, as each step of the preparation takes and returns them.
+// Records together with the columns that the preparation made for them.
 #pragma once
 
 #include <list>
@@ -14,23 +14,23 @@
 namespace ifog {
 
 struct OwnedRecords {
-  // Captures as they are given: the caller keeps their arrays.
+  // The caller keeps the arrays of the given records alive.
   OwnedRecords(std::vector<Record> given) : records(std::move(given)) {}
-  // A copy's records would show the columns of the first one.
+  // Not copyable: the copy's spans would refer to the columns of the original.
   OwnedRecords(const OwnedRecords&) = delete;
   OwnedRecords& operator=(const OwnedRecords&) = delete;
   OwnedRecords(OwnedRecords&&) = default;
   OwnedRecords& operator=(OwnedRecords&&) = default;
   ~OwnedRecords() = default;
 
-  // Which of them is meant, where there are several.
+  // Suffix that names the record if there are several.
   [[nodiscard]] std::string of_several(const Record& record) const {
     return records.size() > 1 ? " (" + record.name + ")" : "";
   }
 
   std::vector<Record> records;
-  std::list<Samples> columns;          // that the records' spans show
-  std::vector<std::string> remarks;    // a sentence for each change, for people
+  std::list<Samples> columns;          // storage for spans of the records
+  std::vector<std::string> remarks;    // one sentence for users per change
   std::vector<ReferenceDelay> delays;  // of references that were shifted
 };
 

@@ -8,8 +8,8 @@
 namespace ifog {
 namespace {
 
-// Where the record has no rows the channel is interpolated linearly between the steps on both sides of the hole.
-// Held there and then jumping, its derivative would be that of no temperature.
+// Interpolates linearly between the steps on either side of a gap; a jump would have an unrealistic
+// derivative.
 void bridge_holes(const StepStarts& first, std::span<double> means) {
   std::size_t last = 0;
   for (std::size_t k = 0; k < means.size(); ++k) {
@@ -42,7 +42,7 @@ StepMeans step_means(std::span<const double> values, const StepStarts& starts, b
   StepMeans out;
   auto& [means, power] = out;
   const std::size_t steps = starts.size() - 1;
-  bool known = false;  // steps before the first value hold that
+  bool known = false;  // steps before the first value use that value
   double held = 0.0;
   for (std::size_t k = 0; k < steps; ++k) {
     double sum = 0.0, square = 0.0;

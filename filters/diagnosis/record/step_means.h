@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A record's columns as means over the steps of a grid.
+// Columns of a record as means over grid steps.
 #pragma once
 
 #include <cstddef>
@@ -10,18 +10,19 @@
 
 namespace ifog {
 
-// The step of a record's fine grid that sample i is in.
+// Step of the record's fine grid that contains sample i.
 std::size_t fine_index(const Record& record, std::size_t i, double fine_s);
 
-// The first sample of each step of a record's fine grid, and behind the last step the number of samples.
+// First sample of each step of a record's fine grid, and at the end the number of samples.
 using StepStarts = std::vector<std::size_t>;
 StepStarts step_starts(const Record& record, double fine_s, std::size_t steps);
 
 struct StepMeans {
-  std::vector<double> means, power;  // power: of what is within a step, about its mean
+  std::vector<double> means, power;  // power: variance within a step
 };
 
-// Means of a column over each step. Steps without a value hold the last one; linear where the record has no rows.
+// Means of a column over each step. A step without a value holds the last one; where the record has no rows,
+// linear interpolation.
 StepMeans step_means(std::span<const double> values, const StepStarts& starts, bool with_power);
 
 }  // namespace ifog

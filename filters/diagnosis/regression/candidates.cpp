@@ -11,18 +11,18 @@
 namespace ifog {
 namespace {
 
-constexpr double kGridFactor = 2.5;    // between time constants: neighbours correlate above 0.95
-constexpr double kBlocksOfRate = 2.0;  // the shortest smoothing of a derivative: beyond a thermometer's steps
-// What warms up has a mass. What settles faster is how the record began.
+constexpr double kGridFactor = 2.5;  // ratio of time constants; neighbours correlate above 0.95
+// Shortest smoothing of a derivative, longer than a thermometer's steps
+constexpr double kBlocksOfRate = 2.0;
+// Shorter ones are start-up effects of the record.
 constexpr double kShortestWarmUp_s = 10.0;
-constexpr double kHighest = 0.5;  // of a sample: a band power of the frequencies near half the sample rate
+constexpr double kHighest = 0.5;  // cycles per sample, highest frequency of a band power
 constexpr double kCentreInside =
-    0.1;  // of the range from its edge: of a transition both levels have to be seen
-// Twice log-likelihood that a bolder claim has to gain: a gradient is bolder than a temperature, another axis
-// than the own, a product of two components of a field, which has a direction, than their sum, and a fringe,
-// whose period is free, than a polynomial.
+    0.1;  // smallest distance of a transition's centre from the range's edge, as a share
+// Extra cost in twice the log-likelihood of less usual effects: a gradient compared with a temperature,
+// another axis, a product of two field components, a fringe with its free period.
 constexpr double kBolder = 4.0;
-// Another axis was turned when it moved by this share of the own; what runs with it this closely is a picture of it.
+// An axis was turned if its rate reaches this share of the own axis's, and is not a copy of it.
 constexpr double kTurned = 0.05;
 constexpr double kPicture = 0.9;
 
@@ -42,7 +42,7 @@ Eigen::VectorXd means_of(const BlockData& data, std::size_t channel) {
   return means;
 }
 
-// A gradient drives a bias by itself, by its change, or late; its powers and vibrations are nobody's law.
+// A gradient acts by its value, change or lag; not by powers or vibration.
 void add_difference(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   const auto add = [&](Form form, double tau) {
     found.push_back(candidate_of(form, channel, tau));
@@ -54,7 +54,7 @@ void add_difference(const BlockData& data, std::size_t channel, std::vector<Cand
     for (const double tau : time_constants(data.grid, form)) add(form, tau);
 }
 
-// Once a turn, as a field does, and twice, as what bends does.
+// Once per turn (a field) and twice per turn (bending).
 void add_angle(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   for (const double times : {1.0, 2.0}) {
     for (const Form form : {Form::kCosine, Form::kSine}) {
@@ -74,8 +74,8 @@ void add_other_axis(const BlockData& data, std::size_t channel, std::vector<Cand
   found.back().of_channel = kBolder;
 }
 
-// Where the polarisation of the coil turns over the bias goes from one level to another. Widths in parts of
-// the range, and middles as dense as neighbours that correlate above 0.9.
+// The bias changes between two levels where the polarisation of the coil changes. Widths are shares of the
+// range; the spacing of the centres is for correlations above 0.9.
 void add_transitions(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   const FineChannel& source = data.channels[channel];
   if (kind_of(source.name) != ChannelKind::kTemperature) return;
@@ -92,9 +92,9 @@ void add_transitions(const BlockData& data, std::size_t channel, std::vector<Can
   }
 }
 
-// Fewer fringes are a polynomial's as well, of more a thermometer's noise leaves nothing.
+// Fewer fringes look like a polynomial; more are lost in the thermometer's noise.
 void add_fringes(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
-  constexpr double kFewest = 1.25, kMost = 12.0;  // within the range
+  constexpr double kFewest = 1.25, kMost = 12.0;  // per range
   const FineChannel& source = data.channels[channel];
   if (kind_of(source.name) != ChannelKind::kTemperature || data.grid.dwells) return;
   for (double fringes = kFewest; fringes <= kMost; fringes += kStepOfFringes)
@@ -105,7 +105,7 @@ void add_fringes(const BlockData& data, std::size_t channel, std::vector<Candida
     }
 }
 
-// A switch is its own square; what it heats follows late.
+// The square of a switch is the switch; what it heats follows with a lag.
 void add_switch(const BlockData& data, std::size_t channel, std::vector<Candidate>& found) {
   found.push_back(candidate_of(Form::kLinear, channel));
   for (const double tau : time_constants(data.grid, Form::kLagged))
@@ -125,16 +125,14 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
   const auto add = [&](Form form, double tau) { found.push_back(candidate_of(form, channel, tau)); };
   const FineChannel& source = data.channels[channel];
   add(Form::kLinear, 0.0);
-  // On a channel that stands still the other forms are shapes of reading noise, low-passed into a random walk that
-  // slow noise resembles somewhere.
+  // On a constant channel other forms are shapes of reading noise; a low-pass of it is like slow noise.
   if (!source.still) {
     for (const Form form : {Form::kQuadratic, Form::kCubic}) add(form, 0.0);
     add_transitions(data, channel, found);
     add_fringes(data, channel, found);
-    // Gravity's share of a horizontal acceleration changes with the tilt, so its derivative is the rotation
-    // itself (times g). Without a reference nothing tells the two apart, and a correction must be transparent
-    // to rotation. Beside one that moves it is the rotation's own change, by which a reference that is late
-    // or interpolated errs, and no law of a gyro.
+    // The derivative of a horizontal acceleration is rotation times g, since tilt changes gravity's share.
+    // Without a reference it cannot be distinguished. With one that moves it is the change of rotation, which
+    // delay or interpolation of the reference turns into an error.
     const bool moved = data.reference < 0 || data.channels[static_cast<std::size_t>(data.reference)].varies;
     const bool is_rotation = moved && kind_of(source.name) == ChannelKind::kAcceleration;
     for (const Form form : {Form::kRate, Form::kLagged}) {
@@ -145,7 +143,8 @@ void add_channel(const BlockData& data, std::size_t channel, std::vector<Candida
   add_vibration(data, channel, found);
 }
 
-// The coil makes the scale factor, and a thermometer next to it is ahead of it. product: of the reference.
+// The scale factor depends on the coil, whose temperature lags behind the thermometer. product: of the
+// reference.
 void add_lagging_scale(const BlockData& data, Candidate product, std::vector<Candidate>& found) {
   if (data.grid.dwells || kind_of(data.channels[product.with_channel].name) != ChannelKind::kTemperature)
     return;
@@ -173,7 +172,7 @@ void add_reference(const BlockData& data, std::vector<Candidate>& found) {
     if (channel == reference || !source.varies || !source.environment() || source.still) continue;
     if (is_difference(source)) continue;
     if (data.grid.noisy_reference && kind_of(source.name) != ChannelKind::kTemperature) continue;
-    // The channel's own scale factor sensitivity, its nonlinearity's, and its square's.
+    // Sensitivity of the scale factor, of its nonlinearity, and of its square.
     candidate.channel = channel;
     candidate.with_channel = reference;
     for (const Form form : {Form::kLinear, Form::kQuadratic, Form::kCubic}) {
@@ -188,7 +187,7 @@ void add_reference(const BlockData& data, std::vector<Candidate>& found) {
   }
 }
 
-// Two quantities of the surroundings that are no pictures of each other.
+// Product of two environmental channels that are not copies of each other.
 Candidate product_of(const BlockData& data, std::size_t one, std::size_t other) {
   Candidate candidate;
   candidate.form = Form::kProduct;
@@ -204,7 +203,7 @@ bool may_be_factor(const BlockData& data, std::size_t channel) {
          !source.still && !is_difference(source);
 }
 
-// What a switch lets through: another channel's effect while it is on.
+// Effects of another channel while a switch is on.
 std::vector<std::pair<std::size_t, std::size_t>> switched(const BlockData& data) {
   std::vector<std::pair<std::size_t, std::size_t>> found;
   for (std::size_t gate = 0; gate < data.channels.size(); ++gate) {
@@ -215,8 +214,8 @@ std::vector<std::pair<std::size_t, std::size_t>> switched(const BlockData& data)
   return found;
 }
 
-// What answers to another quantity does so through parts whose temperature changes. Where that runs about the
-// temperature of no answer, neither quantity has an effect of its own, and products_of() is never asked.
+// Sensitivities to another quantity that vary with temperature. If the temperature varies about the zero of
+// the sensitivity, neither channel has an effect alone, and products_of() is never called.
 void add_through_temperature(const BlockData& data, std::vector<Candidate>& found) {
   const auto warm = [&](std::size_t channel) {
     return kind_of(data.channels[channel].name) == ChannelKind::kTemperature;
@@ -271,7 +270,7 @@ std::vector<Candidate> library(const BlockData& data) {
     if (source.moves && !source.held)
       add_vibration(data, channel, found);
     else if (data.reference >= 0 && source.period == 0.0 && motion_of(source.name) == Motion::kAngle)
-      continue;  // of a part of the turn: what the reference turned, again
+      continue;  // part of a turn: the reference's rotation again
     else if (source.of_axis)
       add_other_axis(data, channel, found);
     else if (source.period > 0.0)
@@ -299,8 +298,8 @@ std::vector<Candidate> library(const BlockData& data) {
 }
 
 namespace {
-// Two band powers, one that weighs high frequencies more, make with coefficients of their own the power of
-// one band and not another: a resonance of the coil answers one machine and not the next.
+// Two band powers with different weights at high frequencies form the power of one band: a resonance of the
+// coil responds to one machine only.
 void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPair>& pairs) {
   const FineChannel& source = data.channels[channel];
   if (!source.vibrates() || !source.power.empty()) return;
@@ -309,7 +308,7 @@ void add_band(const BlockData& data, std::size_t channel, std::vector<NaturalPai
                      candidate_of(Form::kBandPower, channel, kHighest * data.grid.fine_s)});
 }
 
-// A scale factor that is right where nobody knows: at that value of the channel neither of the two shows.
+// Scale factor with an unknown zero: at that value of the channel neither term is visible alone.
 void add_scales(const BlockData& data, std::vector<NaturalPair>& pairs) {
   if (data.reference < 0) return;
   const auto reference = static_cast<std::size_t>(data.reference);
@@ -325,7 +324,7 @@ void add_scales(const BlockData& data, std::vector<NaturalPair>& pairs) {
 std::vector<NaturalPair> natural_pairs(const BlockData& data) {
   std::vector<NaturalPair> pairs;
   if (data.grid.dwells) {
-    // What bends at both ends of a rate table.
+    // Nonlinearity at both ends of a rate table.
     if (data.reference >= 0) {
       const auto reference = static_cast<std::size_t>(data.reference);
       pairs.push_back({candidate_of(Form::kQuintic, reference), candidate_of(Form::kSeptic, reference)});

@@ -19,19 +19,19 @@ namespace {
 
 constexpr double kLeastPeriods = 64.0;  // in the longest record
 constexpr double kLeastDecay = 1.0;
-constexpr double kMostDecays = 16.0;  // a record has at least so many
+constexpr double kMostDecays = 16.0;  // fewest decay times in a record
 constexpr std::size_t kFewestBlocks = 512;
 constexpr std::size_t kMostOrders = 6;
-constexpr double kOfHarmonic = 3.0;  // parameters
+constexpr double kOfHarmonic = 3.0;  // number of parameters
 constexpr double kSmallWalk = 1e-5, kSmallFlicker = 1e-3;
 constexpr double kRoughStep = 1.4;
 constexpr double kFine = 1.05;
 
-// Spectrum of the innovations, divided by that of white noise of the same power; bins 0 … length / 2. Empty if an
-// innovation is not a number.
+// Spectrum of the innovations / that of white noise of the same power; bins 0 … length / 2. Empty if an
+// innovation is not finite.
 struct WhiteSpectrum {
   std::vector<double> power;
-  double ordinates = 1.0;  // independent ones a bin
+  double ordinates = 1.0;  // independent ones per bin
   [[nodiscard]] double cycles(double bin) const { return 0.5 * bin / static_cast<double>(power.size() - 1); }
 };
 
@@ -56,13 +56,13 @@ WhiteSpectrum of_innovations(const BlockGrid& grid, const Columns& columns, cons
 }
 
 struct Hump {
-  double cycles = 0.0, width = 0.0;  // a block
-  double ratio = 0.0;                // to the floor
-  double floor = 1.0;                // of the innovations where no hump is
-  double gain = 0.0;                 // twice the log-likelihood that white noise of another level there gains
+  double cycles = 0.0, width = 0.0;  // per block
+  double ratio = 0.0;                // over the floor
+  double floor = 1.0;                // level of the innovations outside humps
+  double gain = 0.0;                 // gain of twice the log-likelihood by another white level in the hump
 };
 
-// Half of the short stretches of the spectrum lie below it.
+// Median of short stretches of the spectrum.
 double floor_of(const WhiteSpectrum& spectrum, std::size_t first) {
   constexpr std::size_t kBins = 16;
   std::vector<double> means;
@@ -74,7 +74,7 @@ double floor_of(const WhiteSpectrum& spectrum, std::size_t first) {
   return std::max(median(means), 1e-6);
 }
 
-// The stretch of the spectrum that stands highest above the floor for its width (Whittle's likelihood).
+// Stretch of the spectrum with the most significant excess over the floor (Whittle's likelihood).
 std::optional<Hump> highest_hump(const WhiteSpectrum& spectrum, const HarmonicLimits& limits) {
   const std::size_t n = spectrum.power.size();
   if (n < 2) return std::nullopt;
@@ -98,19 +98,19 @@ std::optional<Hump> highest_hump(const WhiteSpectrum& spectrum, const HarmonicLi
   return best;
 }
 
-// White noise of the old shape was the mean over all, humps included: the rest is relative to the floor now.
+// The previous white noise included the hump; all is now relative to the floor.
 NoiseShape with_hump(const BlockGrid& grid, const NoiseShape& shape, const Hump& hump, double white,
                      DampedHarmonic::Of of) {
   const HarmonicLimits limits = harmonic_limits(grid);
   const double density = relative_density(grid, shape, hump.cycles);
   NoiseShape with = shape;
-  // What had sunk in white noise that was too large may be there after all.
+  // Components hidden by too large a white noise may be present.
   with.walk = std::max(shape.walk / white, kSmallWalk);
   with.flicker = std::max(shape.flicker / white, kSmallFlicker);
   for (DampedHarmonic& each : with.harmonics) each.variance /= white;
   const double decay =
       std::clamp(1.0 / (std::numbers::pi * hump.width), limits.least_decay, limits.most_decay);
-  // The area on both sides of zero: height times half pi times the width.
+  // Area on both sides of zero: height times half pi times the width.
   DampedHarmonic mine{0.0, hump.cycles, decay, of};
   mine.variance = std::numbers::pi * hump.width * (hump.ratio - 1.0) * hump.floor * density / white /
                   mine.seen_at(hump.cycles);
@@ -141,7 +141,7 @@ bool is_better(const BlockGrid& grid, const NoiseFit& one, const NoiseFit& than)
   return information_criterion(grid, one) < information_criterion(grid, than);
 }
 
-// Without a harmonic, where the criterion says so.
+// Fit without one harmonic, if the criterion is smaller.
 NoiseFit with_less(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit, std::size_t harmonic) {
   NoiseShape shape = fit.shape;
   shape.harmonics.erase(shape.harmonics.begin() + static_cast<std::ptrdiff_t>(harmonic));

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// Resonances and lines in the noise: damped harmonics, as many as the Bayesian information criterion asks
-// for, each sought where the innovations of the noise so far are not white, and fitted together with white
-// noise, flicker and walk by the likelihood of the innovations.
+// Resonances and lines in the noise as damped harmonics. Their number minimises the Bayesian information
+// criterion. Each is searched where the innovations are not white and is fitted jointly with white noise,
+// flicker and walk.
 #pragma once
 
 #include "filters/diagnosis/regression/noise_fit.h"
 
 namespace ifog {
 
-// Limits of what may be called a harmonic on this grid.
+// Limits of harmonics on this grid.
 struct HarmonicLimits {
-  double least_cycles = 0.0;                   // a block: slower ones an effect may be mistaken for
-  double least_decay = 0.0, most_decay = 0.0;  // blocks: what keeps its phase longer is a line
+  double least_cycles = 0.0;                   // per block; a slower one could be mistaken for an effect
+  double least_decay = 0.0, most_decay = 0.0;  // in blocks; one with a longer decay is a line
 };
 HarmonicLimits harmonic_limits(const BlockGrid& grid);
 
-// Less is better. Counts the noise parameters besides white noise, flicker and walk, without constants.
+// Smaller is better. Counts the noise parameters except white noise, flicker and walk, without constants.
 double information_criterion(const BlockGrid& grid, const NoiseFit& fit);
 
-// `fit` with harmonics added, those it has kept where they are still worth their parameters, all refitted;
-// as it was when it has none and none is there. columns: measurement, then regressors, not whitened.
+// `fit` with further harmonics, all refitted; existing ones are removed if not worth their parameters.
+// Returns `fit` if there are none. columns: measurement, then regressors, not whitened.
 NoiseFit with_harmonics(const BlockGrid& grid, const Columns& columns, const NoiseFit& fit);
 
 }  // namespace ifog

@@ -25,7 +25,7 @@ WhitenedFit fit_whitened(const BlockGrid& grid, const NoiseShape& shape, const C
   square = std::max(square, 1e-12 * gram(0, 0) + 1e-300);
   WhitenedFit fit;
   fit.white_variance = square / std::max(1.0, n - static_cast<double>(p)) / filter.innovation_variance();
-  // With the white variance concentrated out, a steady filter's determinant cancels its innovations' scale.
+  // With concentrated white variance the determinant of a steady filter cancels the innovations' scale.
   fit.log_likelihood = -0.5 * n * std::log(square / n);
   return fit;
 }
@@ -43,14 +43,14 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseSha
 
 namespace {
 
-// Walk and flicker stand in for each other along a ridge with more than one top: one climb from the best of
+// Walk and flicker partly replace each other, so there may be several maxima: one search from the best of
 // each kind of start.
 NoiseFit fit_walk_and_flicker(const BlockGrid& grid, const Columns& columns) {
   struct Start {
     NoiseShape shape;
     double value = -1e300;
   };
-  std::array<Start, 3> starts;  // mostly walk, mostly flicker, both
+  std::array<Start, 3> starts;  // walk, flicker, both
   for (const double walk : {0.0, 1e-6, 1e-4, 1e-2, 1.0}) {
     for (const double flicker : {0.0, 1e-3, 1e-1, 1e1}) {
       const NoiseShape shape{walk, flicker};
@@ -77,13 +77,13 @@ NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns) {
 
 namespace {
 
-// Below these a component changes the likelihood of a few thousand blocks by nothing: it is set to zero.
+// Smaller components do not change the likelihood of a few thousand blocks and are set to zero.
 constexpr double kLeastWalk = 1e-10;
 constexpr double kLeastFlicker = 1e-6;
-// Above this there is no white noise left to be relative to.
+// Above this the white noise is negligible.
 constexpr double kMostNoise = 1e6;
 
-// One parameter a factor further; false where that leads nowhere.
+// Multiplies one parameter by a factor; false if not possible.
 using Way = std::function<bool(NoiseShape&, double)>;
 
 Way way_of(double NoiseShape::*parameter) {
@@ -105,7 +105,7 @@ void add_ways(const BlockGrid& grid, std::size_t harmonic, std::vector<Way>& way
     decay *= factor;
     return decay >= limits.least_decay && decay <= limits.most_decay;
   });
-  // By its width.
+  // By the bandwidth.
   ways.emplace_back([=](NoiseShape& shape, double factor) {
     DampedHarmonic& each = shape.harmonics[harmonic];
     each.cycles += std::log(factor) / (2.0 * std::numbers::pi * each.decay);
@@ -113,7 +113,7 @@ void add_ways(const BlockGrid& grid, std::size_t harmonic, std::vector<Way>& way
   });
 }
 
-// An overestimate of the white noise makes all other components too small together.
+// All other components together, in case the white noise was overestimated.
 bool against_white(NoiseShape& shape, double factor) {
   shape.walk *= factor;
   shape.flicker *= factor;
@@ -136,8 +136,8 @@ std::vector<Way> ways_of(const BlockGrid& grid, const NoiseShape& shape, bool wi
 
 }  // namespace
 
-// One parameter at a time by a shrinking factor in both directions; the likelihood is smooth and nearly
-// separable in the logarithms of walk and flicker, and zero is a value of its own that no factor reaches.
+// Coordinate search in both directions with a shrinking factor. The likelihood is smooth and nearly separable
+// in the logarithms; zero is tried separately.
 NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, double precision,
                bool with_harmonics) {
   const auto evaluate = [&](const NoiseShape& at) { return fit_whitened(grid, at, columns).log_likelihood; };
@@ -150,7 +150,7 @@ NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, 
       for (const double f : {factor, 1.0 / factor}) {
         for (NoiseShape trial = shape; way(trial, f); trial = shape) {
           const double value = evaluate(trial);
-          if (!(value > best + 1e-9)) break;  // NaN is no way up
+          if (!(value > best + 1e-9)) break;  // also ends at NaN
           best = value;
           shape = trial;
           moved = true;

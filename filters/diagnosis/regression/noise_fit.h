@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maximum likelihood of the noise model, given regressors: the likelihood of the filter's innovations with
-// the white variance and the coefficients of the regressors concentrated out.
+// Maximum likelihood of the noise model, given regressors. The white variance and the regressors'
+// coefficients are concentrated out of the innovations' likelihood.
 #pragma once
 
 #include "filters/diagnosis/regression/whitening.h"
 
 namespace ifog {
 
-// What is left of the first column of whitened data after least squares on the others.
+// Residual of the first whitened column after least squares on the others.
 struct WhitenedFit {
-  double log_likelihood = 0.0;  // up to a constant that depends on the number of blocks alone
-  double white_variance = 0.0;  // of a block mean, in the square of the first column's unit
+  double log_likelihood = 0.0;  // except for a constant that depends only on the number of blocks
+  double white_variance = 0.0;  // of a block mean, in the first column's unit squared
 };
 
 // columns: measurement, then regressors, not whitened.
@@ -22,16 +22,15 @@ struct NoiseFit {
   double white_variance = 0.0;
 };
 
-// Searches walk and flicker, both down to zero, from there. Harmonics are kept as they are in `start`.
+// Fits walk and flicker, both may become zero, starting at `start`. Keeps the harmonics of `start`.
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns, const NoiseShape& start,
                    double precision = 1.05);
 
-// From nothing known: coarse grid, then fit_noise; then how many harmonics.
+// Fits from a coarse grid, then the number of harmonics.
 NoiseFit fit_noise(const BlockGrid& grid, const Columns& columns);
 
-// The way up the likelihood of the noise's parameters.
-// Climbs from `shape` to the nearest top: walk and flicker where they are not zero, and down to zero; the
-// harmonics when `with_harmonics`.
+// Local maximum of the likelihood, starting at `shape`: walk and flicker, if not zero, and the harmonics if
+// `with_harmonics`.
 NoiseFit climb(const BlockGrid& grid, const Columns& columns, NoiseShape shape, double precision,
                bool with_harmonics = false);
 

@@ -11,25 +11,25 @@
 namespace ifog {
 namespace {
 
-// Noise parameters are tried from where they change nothing (their part in the mean of the record a
-// hundredth of the white noise's) to where nothing white is left, evenly in the logarithm.
+// Noise parameters are tried logarithmically from negligible (1 % of the white noise's part in the record's
+// mean) to values that leave no white noise.
 constexpr double kNegligible = 0.03;
 constexpr double kMostRatio = 1e4;
-constexpr double kCoarse = 6.0;    // factor between the values of the first grid
-constexpr double kFarBelow = 8.0;  // log-likelihood below the best at which a value no longer counts
-constexpr int kFineGrid = 9;       // values a parameter of the second grid
-// Before looking at the data a time constant is known to about this, natural logarithm: the search's range.
+constexpr double kCoarse = 6.0;    // ratio in the first grid
+constexpr double kFarBelow = 8.0;  // log-likelihood; smaller values are ignored
+constexpr int kFineGrid = 9;       // values per parameter in the second grid
+// Prior standard deviation of the logarithm of a time constant: the search's range.
 constexpr double kLogRange = 2.0;
 constexpr double kLogStep = 0.05;
 
 struct Solved {
-  double log_likelihood = -1e300;  // restricted, the white variance concentrated out
+  double log_likelihood = -1e300;  // restricted, with concentrated white variance
   double white_variance = 0.0;
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;
 };
 
-// The last columns' values are known beforehand to `known` (standard deviations; infinite where nothing is).
+// known: prior standard deviations of the last columns' values, infinite if unknown.
 Solved solve_at(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& known,
                 const NoiseShape& shape, double white_guess) {
   Columns white = columns;
@@ -87,7 +87,7 @@ double best_of(const std::vector<Tried>& tried) {
   return best;
 }
 
-// The values of one parameter that count, one step of the grid beyond them on either side.
+// Range of the relevant values of one parameter, plus one grid step on either side.
 std::pair<double, double> span_of(const std::vector<Tried>& tried, double NoiseShape::*parameter, double step,
                                   const std::pair<double, double>& limits) {
   const double least = best_of(tried) - kFarBelow;
@@ -136,8 +136,8 @@ Columns searched_columns(const BlockData& data, const std::vector<Candidate>& ef
 
 namespace {
 
-// Over the walks and flickers that the record allows: a coarse grid of all, then finer ones around what
-// counts. A record that tells its noise well leaves one point of a coarse grid.
+// Evaluates walks and flickers that the record allows: first a coarse grid, then finer ones, because a long
+// record may leave one point of the coarse grid.
 template <class Evaluate>
 std::vector<Tried> try_noise(const BlockGrid& grid, const NoiseShape& best, Evaluate&& evaluate) {
   if (grid.dwells) return {Tried{best, evaluate(best)}};
@@ -159,7 +159,7 @@ std::vector<Tried> try_noise(const BlockGrid& grid, const NoiseShape& best, Eval
   return tried;
 }
 
-// Weighted by the restricted likelihood.
+// Averages, weighted by the restricted likelihood.
 void average(const BlockGrid& grid, const std::vector<Tried>& tried, JointFit& fit) {
   const double top = best_of(tried);
   double sum = 0.0;
@@ -182,7 +182,7 @@ void average(const BlockGrid& grid, const std::vector<Tried>& tried, JointFit& f
   }
 }
 
-// known: beforehand, of the columns after the measurement; see solve_at().
+// known: priors of the columns after the measurement, see solve_at().
 void fit_over_noise(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& known,
                     const NoiseFit& best, JointFit& fit) {
   average(grid,

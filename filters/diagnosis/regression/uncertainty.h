@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the fit does not know. A coefficient's error depends on the slow noise, which the record itself has to
-// tell, and of which it holds few independent pieces: taking the likeliest noise for the true one makes
-// intervals too narrow, the more so where the likeliest walk is zero. So the coefficients are averaged over
-// the noise parameters the record allows, each weighted by its restricted likelihood, and their spread
-// counts. Time constants that were searched are free along with the coefficients (Gauss-Newton).
+// Uncertainty of the fit. A coefficient's error depends on the slow noise, of which a record has few
+// independent pieces. With the most likely noise alone the intervals would be too narrow, especially if the
+// most likely walk is zero. So coefficients are averaged over the possible noise parameters, weighted by
+// restricted likelihood. Searched time constants are free parameters (Gauss-Newton).
 #pragma once
 
 #include <vector>
@@ -16,24 +15,24 @@ namespace ifog {
 
 struct JointFit {
   NoisePosterior noise;
-  // Nuisances (one constant a record), the coefficient of each effect, then one entry for each searched
-  // parameter, in their order: the logarithm of a time constant, or of a half width and the middle in half widths.
+  // Nuisances (one constant per record), one coefficient per effect, then the searched parameters in order:
+  // logarithm of a time constant, or logarithm of a half width and centre in half widths.
   Eigen::VectorXd values;
   Eigen::MatrixXd covariance;
-  // Covariance of the coefficients with the searched parameters known. It decides whether there is an effect: where
-  // there is none, no time constant changes anything.
+  // Covariance of the coefficients with the searched parameters fixed. It decides on significance, since
+  // without an effect time constants have no influence.
   Eigen::MatrixXd of_coefficients;
-  std::vector<std::size_t> searched;  // effect of each of those last entries
+  std::vector<std::size_t> searched;  // effects of the searched parameters
 };
 
-// Effects as the search left them, `coefficients` theirs, `best` the likeliest noise.
+// effects: as the search left them; coefficients: of these; best: most likely noise.
 JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
                    const Eigen::VectorXd& coefficients, const NoiseFit& best);
 
-// The same at the time constants that the effects have.
+// The same with the time constants of the effects fixed.
 JointFit joint_fit_at(const BlockData& data, const std::vector<Candidate>& effects, const NoiseFit& best);
 
-// Derivatives of the sum of the effects with respect to what was searched, one column each.
+// Derivatives of the sum of the effects by the searched parameters, one column each.
 Columns searched_columns(const BlockData& data, const std::vector<Candidate>& effects,
                          const Eigen::VectorXd& coefficients, Eigen::Index nuisances,
                          std::vector<std::size_t>* of = nullptr);

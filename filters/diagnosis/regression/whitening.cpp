@@ -10,9 +10,9 @@
 namespace ifog {
 namespace {
 
-// Steady-state covariance of the prediction for x+ = F x + w, z = s'x + v, var w = diag(q), var v = 1: the
-// structure-preserving doubling algorithm (Chu, Fan, Lin 2005), quadratic where iterating the filter takes as
-// long as the slowest state.
+// Steady-state covariance of the prediction for x+ = F x + w, z = s'x + v, var w = diag(q), var v = 1, by the
+// structure-preserving doubling algorithm (Chu, Fan, Lin 2005). It converges quadratically; filter iteration
+// takes as long as the slowest state.
 Eigen::MatrixXd steady_covariance(const Eigen::MatrixXd& f, const Eigen::VectorXd& q,
                                   const Eigen::VectorXd& s) {
   const Eigen::Index m = q.size();
@@ -99,7 +99,7 @@ void Whitening::design_gain() {
   gain_.assign(gain.begin(), gain.end());
 }
 
-// A fixed number of columns at once, so that their states stay in registers.
+// A fixed number of columns at a time keeps their states in registers.
 template <int Width>
 void Whitening::apply_some(Columns& columns, Eigen::Index first) const {
   using Lane = Eigen::Array<double, Width, 1>;
@@ -144,7 +144,7 @@ void Whitening::apply(Columns& columns) const {
 
 namespace {
 
-// 1 + 2 sum of r^k cos, of a process that keeps exp(-1 / decay) from block to block.
+// 1 + 2 sum of r^k cos, for a process with factor r = exp(-1 / decay) per block.
 double poisson_kernel(double decay, double cycles) {
   const double r = std::exp(-1.0 / decay);
   return (1.0 - r * r) / (1.0 - 2.0 * r * std::cos(2.0 * std::numbers::pi * cycles) + r * r);

@@ -51,13 +51,13 @@ void balance_shares(std::size_t jointly, Diagnosis& diagnosis) {
 namespace {
 
 constexpr double kGrown = 1.02;
-constexpr double kMany = 100.0;  // an RMS of so many is known to 7 %
-// With fewer means than that, the number of standard errors of an RMS that chance may add.
+constexpr double kMany = 100.0;  // an RMS of so many values is accurate to 7 %
+// With fewer means: standard errors by which an RMS may increase by chance.
 constexpr double kByChance = 1.5;
 
 struct Figure {
   const char* key;
-  double means_s;  // 0: single samples
+  double means_s;  // 0: samples
 };
 
 constexpr std::array<Figure, 5> kFigures = {{{"residual_rms_radps", 0.0},
@@ -66,7 +66,7 @@ constexpr std::array<Figure, 5> kFigures = {{{"residual_rms_radps", 0.0},
                                              {"rms_10s_radps", 10.0},
                                              {"rms_100s_radps", 100.0}}};
 
-// After over before; 0 where the report does not have it.
+// after / before; 0 if the report does not have the figure.
 double growth_of(const Diagnosis& diagnosis, const char* key) {
   const auto before = diagnosis.before.find(key), after = diagnosis.after.find(key);
   if (before == diagnosis.before.end() || after == diagnosis.after.end() || !(before->second > 0.0))
@@ -124,7 +124,7 @@ void judge(const std::vector<Record>& records, const TimeShare& fitted, Diagnosi
     const SampleRange part = samples_in(record, fitted);
     const Samples raw = error_of(record);
     const Samples left = compensated_error(record, model);
-    // Each judged piece on its own: what lies between them was fitted.
+    // The two parts outside the fitted one, separately.
     for (const SampleRange range : {SampleRange{0, part.from}, SampleRange{part.to, record.time_s.size()}}) {
       if (range.size() < 32) continue;
       const Record piece = part_of(record, range);

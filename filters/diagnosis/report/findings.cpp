@@ -17,11 +17,11 @@
 namespace ifog {
 namespace {
 
-// The joint fit is linear in the logarithm of a time constant: further it is not to be trusted.
+// The joint fit is linear in the logarithm of a time constant; it is not valid beyond this.
 constexpr double kFarthest = 0.3;
-// Standard errors a curvature has to be from zero before it is followed beyond the range that showed it.
+// Required significance of a curvature, in standard errors, for extrapolation.
 constexpr double kWellKnown = 5.0;
-constexpr int kHighestFollowed = 3;  // higher powers stand for a law that is none
+constexpr int kHighestFollowed = 3;  // higher powers are only a series expansion
 
 std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& values) {
   std::vector<double> used;
@@ -36,7 +36,7 @@ bool is_searched(const ModelParameter& parameter, const Effect& effect) {
   return parameter.name == time_constant_name(effect);
 }
 
-// Which capture would tell two effects apart that this one cannot.
+// Capture that would distinguish two effects.
 std::string capture_that_separates(const BlockData& data, const Candidate& one, const Candidate& other) {
   const bool timed = one.channel == Candidate::kNone || other.channel == Candidate::kNone;
   const std::size_t channel = one.channel == Candidate::kNone ? other.channel : one.channel;
@@ -90,7 +90,7 @@ JointFit settle(const BlockData& reconstructed, SearchResult& found) {
     else
       candidate.half_width *= std::exp(near);
   }
-  // The joint fit is straight in what was searched; the coefficients that belong to where it led are not.
+  // The searched parameters have moved, so the coefficients' covariance is taken from the joint one.
   joint.of_coefficients = joint.covariance.topLeftCorner(linear, linear);
   if (!joint.searched.empty()) {
     const JointFit there = joint_fit_at(reconstructed, candidates_of(found.chosen), found.noise);
@@ -109,17 +109,16 @@ int highest_power(const Effect& effect) {
   return power_of(form == Form::kProduct ? form_named(effect.with_form).value_or(Form::kLinear) : form);
 }
 
-// Whose power is of the rate.
+// True if its power is of the rate.
 bool is_of_rate(const Effect& effect) {
   const std::string& of = effect.form == name_of(Form::kProduct) ? effect.with_channel : effect.channel;
   return kind_of(of) == ChannelKind::kReferenceRate;
 }
 
-// By its tangent a square leaves as much again one span beyond its range as it did within. Where the
-// curvature is far above its error the form itself is the better guess; not next to higher powers of the same
-// channel, for then all of them are a series that ends somewhere. A cube is a law of the rate; of the
-// surroundings none is known, and there it is a series by itself (of a supply below which a regulator lets
-// go, three times the effect was left where the cube went on).
+// Extrapolates a significant curvature as a square instead of a tangent, whose error one span outside the
+// range is as large as the square's part within. Not if the channel has higher powers: they are a series. A
+// cube is extrapolated only of the rate; for environmental channels it is a series as well (a regulator below
+// its supply limit).
 void follow_known_curves(const BlockData& data, std::vector<FoundEffect>& effects) {
   const auto channels = [](const Effect& effect) {
     return std::array<std::string, 2>{effect.channel, effect.with_channel};
@@ -143,7 +142,7 @@ void follow_known_curves(const BlockData& data, std::vector<FoundEffect>& effect
   }
 }
 
-// What the search chose, with parameters, their errors and each one's part of the error by block.
+// Chosen effects with parameters, their errors, and each one's part of the error by block.
 void add_effects(const BlockData& data, const SearchResult& found, const JointFit& joint,
                  const std::string& axis, Findings& findings) {
   const BlockGrid& grid = data.grid;
@@ -168,7 +167,7 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
         if (is_searched(parameter, effect.effect)) parameter.std_error = sigma * parameter.value;
       }
     }
-    // By the same fit that gives the error bars, when that is less certain than the likelihood's loss.
+    // p-value from the fit's error bar, if that is less significant than the likelihood ratio.
     if (joint.of_coefficients(at, at) > 0.0) {
       const double z = joint.values[at] / std::sqrt(joint.of_coefficients(at, at));
       const double tries = chosen.of_a_law ? 1.0 : found.tries;
@@ -199,8 +198,8 @@ void add_alternatives(const BlockData& data, const BlockData& reconstructed, con
   }
 }
 
-// A gyro that tilts on one heading cannot tell the Earth's rate turning into its axis from g-sensitivity of
-// that size: it is the same regressor.
+// On one heading the Earth's rate in a tilting axis cannot be distinguished from g-sensitivity: same
+// regressor.
 void add_earth_rate(Findings& findings) {
   for (const FoundEffect& each : findings.effects) {
     const Effect& effect = each.effect;
@@ -234,8 +233,8 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
                                   Eigen::Index nuisances, std::size_t jointly) {
   struct Row {
     Eigen::Index column = -1;  // of the joint fit
-    double scale = 1.0;        // parameter over that column's unit
-    double alone = 0.0;        // variance of a parameter that is not in it
+    double scale = 1.0;        // parameter / that column's unit
+    double alone = 0.0;        // variance of a parameter that is not in the joint fit
   };
   std::vector<Row> rows;
   Eigen::Index at = nuisances;
@@ -253,7 +252,7 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
       }
       rows.push_back(row);
     }
-    if (i < jointly && effect.form == name_of(Form::kTransition)) ++searched;  // its middle
+    if (i < jointly && effect.form == name_of(Form::kTransition)) ++searched;  // its centre
   }
   const std::size_t n = rows.size();
   std::vector<double> covariance(n * n, 0.0);
@@ -278,7 +277,7 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
         {std::string(kTimeRange), 0.0, static_cast<double>(data.grid.longest()) * data.grid.block_s});
   for (std::size_t c = 0; c < data.channels.size(); ++c) {
     const FineChannel& channel = data.channels[c];
-    if (channel.period > 0.0) continue;  // an angle, seen all round
+    if (channel.period > 0.0) continue;  // an angle covers the whole turn
     const auto uses = [&](const FoundEffect& found) {
       if (found.effect.shown_only) return false;
       return found.effect.channel == channel.name || found.effect.with_channel == channel.name;

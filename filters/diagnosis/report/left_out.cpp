@@ -63,7 +63,7 @@ bool has_a_value(const std::vector<Record>& records, const std::string& name) {
 
 std::string unused_channels(const std::vector<Record>& records, const BlockData& data,
                             const std::vector<std::string>& ramps) {
-  std::map<std::string, std::string> names;  // by the reason
+  std::map<std::string, std::string> names;  // by reason
   std::set<std::string> seen(ramps.begin(), ramps.end());
   for (const Record& record : records) {
     for (const RecordChannel& channel : record.channels) {

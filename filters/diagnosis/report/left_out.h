@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a diagnosis did not use and why, and what it judged besides, in sentences.
+// Sentences on what a diagnosis did not use and why.
 #pragma once
 
 #include <cstddef>
@@ -12,20 +12,19 @@
 
 namespace ifog {
 
-// One that the daemon's own run judged.
+// Effect that increases an error in the daemon's correction.
 std::string harmful_in_words(const Effect& effect);
 
-// Effects of one channel that a capture denies.
+// Effects of one channel that a capture refutes.
 std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,
                             const std::vector<Record>& records);
 
-// Says that a channel that was logged may only run along with the cause, where much stays unexplained. Empty
-// where little does, or no effect was traced to a channel. captures: diagnosed together.
+// Warns that a channel may only be correlated with the cause, if much stays unexplained. Empty if little does
+// or no effect uses a channel. captures: number diagnosed together.
 std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t captures);
 
-// Columns that a diagnosis cannot use, so that nobody takes their silence for a finding.
-// One sentence naming the channels that are not in every record, have no value, or never change; empty when
-// all are of use. `ramps`: channels that an effect has been made of already, and that are in no block.
+// Sentence on the channels that cannot be used: not in every record, without a value, or constant; empty if
+// there is none. ramps: channels already used by a ramp.
 std::string unused_channels(const std::vector<Record>& records, const BlockData& data,
                             const std::vector<std::string>& ramps);
 

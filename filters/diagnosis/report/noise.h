@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise terms of what the effects leave, as every command reports them.
+// Noise terms of the residual, as all commands report them.
 #pragma once
 
 #include <vector>
@@ -10,9 +10,8 @@
 
 namespace ifog {
 
-// `noise`, `noise_error` and `noise_changes` of the diagnosis; a remark where the record is too short for
-// them and where they are of unlike parts. Dwells are no evenly sampled record: there the regression's own
-// white noise is all there is.
+// Fills `noise`, `noise_error` and `noise_changes`; adds a remark if the record is too short or its noise
+// level changes. Dwells are not evenly sampled: then only the regression's white noise is given.
 void write_noise(const std::vector<Record>& records, const std::vector<EvenError>& errors,
                  const BlockGrid& grid, const NoiseFit& regression, Diagnosis& diagnosis);
 

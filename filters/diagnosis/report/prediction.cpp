@@ -16,10 +16,10 @@
 namespace ifog {
 namespace {
 
-constexpr double kCaptureSteps = 4000.0;  // of a capture, for the noise
+constexpr double kCaptureSteps = 4000.0;  // steps per capture for the noise
 
-// Variance that a first-order process with the given factor and drive brings into the sum of weight times
-// value. A random walk (factor 1) starts anywhere: the weights sum to zero.
+// Variance of a weighted sum of a first-order process with the given factor and drive. A random walk (factor
+// 1) has an arbitrary start, so its weights sum to zero.
 double brought_by(const std::vector<double>& weight, double factor, double drive) {
   double variance = 0.0;
   double ahead = 0.0;
@@ -32,11 +32,11 @@ double brought_by(const std::vector<double>& weight, double factor, double drive
 }
 
 struct HeadingWeights {
-  std::vector<double> of_step;  // s: the heading error is their sum with the rate's error
+  std::vector<double> of_step;  // s; the heading error is the sum of weight times rate error
   double step_s;
 };
 
-// Sums to zero: what stays the same is aligned out.
+// They sum to zero: alignment removes a constant.
 HeadingWeights heading_weights(double aligned_s, double after_s, double step_s, std::size_t most) {
   const auto aligned = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(aligned_s / step_s)));
   auto moving = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(after_s / step_s)));
@@ -54,8 +54,8 @@ double along(const HeadingWeights& weights, const Eigen::VectorXd& column) {
   return sum;
 }
 
-// A capture as the correction sees it: channels held at the edge of what they were fitted on, or as far
-// beyond it as a polynomial form goes on.
+// Capture as the correction sees it: channels limited to the fitted range, or to the range to which a
+// polynomial is extrapolated.
 BlockData held_in_range(BlockData data, const std::vector<ChannelRange>& ranges, bool goes_on) {
   for (FineChannel& channel : data.channels) {
     for (const ChannelRange& range : ranges) {
@@ -69,17 +69,17 @@ BlockData held_in_range(BlockData data, const std::vector<ChannelRange>& ranges,
   return data;
 }
 
-// One set of effects on one capture: what they are there, and how that changes with each parameter.
+// Effects on one capture and their derivatives by each parameter.
 struct Effects {
-  Columns gradient;          // by parameter, in the order of the model's covariance; zero where not corrected
-  Eigen::VectorXd left;      // rad/s, of those corrected, beyond the correction
-  Eigen::VectorXd going_on;  // not corrected, but there
+  Columns gradient;           // by parameter, in the order of the model's covariance; zero if not corrected
+  Eigen::VectorXd left;       // residual of the corrected effects, rad/s
+  Eigen::VectorXd going_on;   // effects that are present but not corrected
   std::vector<Effect> lines;  // not corrected, phase unknown
 };
 
-// held: the channels at the edge of their ranges; followed: as far as a linear form goes. Of a higher power,
-// which goes on by its tangent, the larger error, that of holding, is used. ramp_s: for how long a ramp in time
-// was fitted, which goes on for as much again; none: it is not corrected.
+// held: channels limited to their ranges; followed: extrapolated as a linear form is. For higher powers,
+// extrapolated by the tangent, the larger error (held) is used. ramp_s: duration for which a time ramp was
+// fitted; it continues as long again. nullopt: ramp not corrected.
 Effects effects_on(const BlockData& next, const BlockData& held, const BlockData& followed,
                    std::optional<double> ramp_s, const std::vector<Effect>& effects) {
   const auto n = static_cast<Eigen::Index>(next.grid.size());
@@ -93,7 +93,7 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
   for (const Effect& effect : effects) {
     const Eigen::Index at = row;
     row += static_cast<Eigen::Index>(effect.parameters.size());
-    if (effect.shown_only) continue;  // rotation, which the heading is to follow
+    if (effect.shown_only) continue;  // rotation, which the heading follows
     if (effect.form == "line") {
       on.lines.push_back(effect);
       continue;
@@ -114,7 +114,7 @@ Effects effects_on(const BlockData& next, const BlockData& held, const BlockData
     const bool tangent = (power_of(candidate->form) > 1 && parameter(effect, kCurveReach) == 0.0) ||
                          candidate->form == Form::kLookup;
     on.left += coefficient * (column - regressor(tangent ? held : followed, *candidate));
-    // By the logarithm of a time constant, or of a transition's half width.
+    // By the logarithm of a time constant or half width.
     const double searched = candidate->is_transition() ? candidate->half_width : candidate->time_constant_s;
     if (!(searched > 0.0)) continue;
     const std::string_view name = candidate->is_transition() ? kHalfWidth : time_constant_name(effect);
@@ -135,7 +135,7 @@ void add_loop(const BlockData& data, const Hysteresis& known, Eigen::VectorXd& t
   }
 }
 
-// Mean square over the phase of a line of this frequency and amplitude.
+// Mean square over all phases of a line of this frequency and amplitude.
 double line_square(const HeadingWeights& weights, const Effect& line) {
   const double turn = 2.0 * std::numbers::pi * parameter(line, "frequency_hz") * weights.step_s;
   const double half = 0.5 * turn;
@@ -218,7 +218,7 @@ HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::ve
                         [&](const Record& a, const Record& b) { return span_of(a) < span_of(b); });
   const double aligned = std::min(300.0, span_of(longest) / 10.0);
   std::vector<double> after_s = {60.0, 300.0, 600.0, 1800.0, 3600.0};
-  // A record says nothing of what is a hundred times as long, and to add it up takes as many steps.
+  // Beyond 100 times the record's length the noise is unknown and the computation too long.
   constexpr double kFarthest = 100.0;
   std::erase_if(after_s, [&](double after) { return after > kFarthest * span_of(longest); });
   return predict_heading(diagnosis, longest, aligned, after_s);

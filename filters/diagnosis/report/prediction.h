@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a model leaves of the heading of a capture not yet made: exact for the linear functional "angle after
-// alignment", from the state space that the diagnosis fitted and the regressors of the capture's own
-// channels.
+// Expected heading error of a future capture with a model: exact for the linear functional "angle after
+// alignment", from the fitted state space and the regressors of the capture's channels.
 #pragma once
 
 #include "filters/diagnosis/diagnosis.h"
@@ -10,16 +9,16 @@
 
 namespace ifog {
 
-// bias taken over aligned_s, angle integrated from then to each of after_s. Of `next` only times and channels
-// count, and the reference when effects use one. Effects without a channel in it count as not corrected
-// and not there.
+// Bias: mean over aligned_s; the angle is integrated from there to each of after_s. next: its times and
+// channels are used, and its reference if effects need it. An effect without a channel there counts as absent
+// and not corrected.
 HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next, double aligned_s,
                                   const std::vector<double>& after_s);
 
-// Heading error of a next capture whose channels run as they did in the longest record.
+// Heading error of a capture whose channels behave as in the longest record.
 HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records);
 
-// Variance of the heading error by noise alone, without the motion of what the sensor stands on, rad^2.
+// Variance of the heading error by noise alone, rad^2, without motion of the sensor's support.
 double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s);
 
 }  // namespace ifog

@@ -9,7 +9,7 @@
 namespace ifog {
 namespace {
 
-// Share of the errors' variance that a part of them, given by record and sample, explains.
+// Share of the errors' variance that a part, given by record and sample, explains.
 template <class PartOf>
 double share_of(const std::vector<EvenError>& errors, const PartOf& part_of) {
   double explained = 0.0, total = 0.0;

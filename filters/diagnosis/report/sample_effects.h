@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Effects that were fitted to samples and not to block means, outside the joint fit: ramps, a dead zone and
-// lines.
+// Effects fitted to samples instead of block means, outside the joint fit: ramps, dead zone, lines.
 #pragma once
 
 #include <optional>
@@ -13,14 +12,14 @@
 
 namespace ifog {
 
-// A dead zone with the true rates it was found in, by record, and the name of their column.
+// A dead zone with the true rates, by record, and the name of their column.
 struct FoundZone {
   DeadZone zone;
   std::vector<Samples> rates;
   std::string channel;
 };
 
-// Ramps first, then the zone. errors: of the records they were found in.
+// Ramps first, then the zone, then lines. errors: of the records.
 std::vector<FoundEffect> sample_effects(const std::vector<RampFit>& ramps,
                                         const std::optional<FoundZone>& zone,
                                         const std::vector<LineOf>& lines,

@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kSeriesPoints = 4000;
 
-// NaN where less than half of the block was measured.
+// NaN if less than half of the block was measured.
 double mean_of_block(const BlockGrid& grid, std::span<const double> error, std::size_t block) {
   const double samples = grid.block_s / grid.sample_s;
   const auto from =
@@ -59,8 +59,8 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
   }
   for (std::size_t r = 0; r < grid.records.size(); ++r) {
     const BlockRange& record = grid.records[r];
-    // The first in its own time, each other from where the one before ends: clocks of captures may have any
-    // beginning.
+    // The first record in its own time, each other one from the end of the one before, since their clocks may
+    // be unrelated.
     const double offset =
         series.time_s.empty() || record.size() == 0
             ? 0.0

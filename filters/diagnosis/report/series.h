@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a report draws of a diagnosis.
+// Data of a diagnosis for the report's pictures.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,8 @@
 
 namespace ifog {
 
-// parts: rad/s by block, of each chosen effect; effects: those and others after them; noise: what they leave,
-// by which the deviation after is known.
+// parts: rad/s by block, of each chosen effect; effects: the chosen ones, then others; noise: of the
+// residual, for the confidence of the deviation after.
 DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& errors,
                           const std::vector<Chosen>& chosen, const std::vector<FoundEffect>& effects,
                           const std::vector<Eigen::VectorXd>& parts, const NoiseTerms& noise);

@@ -26,8 +26,8 @@ double error_in_means(std::span<const double> error) {
 
 void name_bias(const BlockGrid& grid, const JointFit& joint, double value, const std::string& axis,
                Diagnosis& diagnosis) {
-  constexpr double kClear = 5.0;  // standard deviations
-  // A walk from zero has a third of its last variance on the mean; each process of the flicker keeps its own.
+  constexpr double kClear = 5.0;  // in standard deviations
+  // The mean of a walk from zero has a third of its final variance; each flicker process has its own.
   const double span_s = static_cast<double>(grid.used()) * grid.block_s;
   double variance = joint.covariance(0, 0) / static_cast<double>(grid.records.size());
   for (const NoisePosterior::Part& part : joint.noise.parts)
@@ -35,7 +35,7 @@ void name_bias(const BlockGrid& grid, const JointFit& joint, double value, const
                                part.flicker * static_cast<double>(joint.noise.flicker_s.size()));
   const double sigma = std::sqrt(variance);
   const bool clear = std::abs(value) > kClear * sigma;
-  // One that the noise may have made is corrected by the share of its square that is beyond the noise's.
+  // A bias that noise may have caused is corrected by the share of its square above the noise's.
   const double share = clear ? 1.0 : value * value / (value * value + variance);
   diagnosis.bias = ModelParameter{"coefficient", share * value, sigma, "rad/s"};
   if (!clear) return;
@@ -51,7 +51,7 @@ void name_bias(const BlockGrid& grid, const JointFit& joint, double value, const
 
 namespace {
 
-// Straight between the middles of a record's blocks. at: sample.
+// Linear between the centres of a record's blocks. at: sample.
 double between_blocks(const BlockGrid& grid, const BlockRange& record, const Eigen::VectorXd& values,
                       std::size_t at) {
   const double blocks = (static_cast<double>(at) * grid.sample_s + 0.5 * grid.fine_s) / grid.block_s - 0.5;
@@ -61,7 +61,7 @@ double between_blocks(const BlockGrid& grid, const BlockRange& record, const Eig
   return values[low] + (place - std::floor(place)) * (values[high] - values[low]);
 }
 
-// What is not corrected online: steps at their times, and what is shown by its blocks.
+// Effects that are not corrected online: steps at their times, shown ones by their blocks.
 class Uncorrected {
  public:
   Uncorrected(const BlockData& data, const SearchResult& found)
@@ -76,7 +76,7 @@ class Uncorrected {
     }
   }
 
-  // Value for a record's sample at that time.
+  // Value for a record's sample at this time.
   [[nodiscard]] double at(std::size_t record, std::size_t sample, double time_s) const {
     double sum = between_blocks(grid_, grid_.records[record], shown_, sample);
     for (const Step& each : steps_)

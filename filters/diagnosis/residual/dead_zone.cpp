@@ -11,18 +11,18 @@ namespace ifog {
 namespace {
 
 constexpr double kWidestZone = 0.5;   // of the largest rate
-constexpr double kFactor = 1.15;      // between widths that are independent tries
-constexpr double kShare = 0.1;        // of the significance: one question among all others
-constexpr double kWithoutOne = 12.0;  // twice the log-likelihood that all passages but any one have to gain
-constexpr double kNearlyWhole = 0.1;  // of a coefficient of -1, and three standard errors
-constexpr std::size_t kWindow = 64;   // samples of the running mean that removes a slow error
+constexpr double kFactor = 1.15;      // ratio between widths that are independent tries
+constexpr double kShare = 0.1;        // of the significance, as one of many tests
+constexpr double kWithoutOne = 12.0;  // required gain of twice the log-likelihood without the best crossing
+constexpr double kNearlyWhole = 0.1;  // tolerance of a coefficient of -1, besides three standard errors
+constexpr std::size_t kWindow = 64;   // samples of the running mean that removes slow error
 
-// A sample whose rate is small. Its error is what is left about the mean of those around it.
+// A sample with a small rate. Its error is relative to the mean of those around it.
 struct Slow {
   double rate, bend;    // bend: second difference of the rate
-  double gain;          // in the square of the error, where the sensor sees nothing of the rate
-  double product;       // of rate and error
-  std::size_t passage;  // through zero; it lasts as long as no rate is above the widest
+  double gain;          // reduction of the squared error if the sensor does not sense the rate
+  double product;       // rate times error
+  std::size_t passage;  // index of the crossing of zero, which lasts while the rate is below the widest zone
 };
 
 std::vector<Slow> slow_samples(const std::vector<EvenError>& errors, const std::vector<Samples>& rates,
@@ -46,8 +46,8 @@ std::vector<Slow> slow_samples(const std::vector<EvenError>& errors, const std::
   return found;
 }
 
-// At rest the error is the reference's own noise with its sign changed, as if rotation as small as that were
-// not seen: what lies within the noise says nothing.
+// At rest the error is minus the reference's noise, as in a dead zone. So rates within that noise are
+// excluded.
 void leave_out_noise(std::vector<Slow>& slow) {
   constexpr double kOwnNoise = 5.0;  // standard deviations
   std::vector<double> bends;
@@ -58,7 +58,7 @@ void leave_out_noise(std::vector<Slow>& slow) {
   std::erase_if(slow, [&](const Slow& each) { return std::abs(each.rate) <= kOwnNoise * noise; });
 }
 
-// What all passages but the one that says most gain.
+// Gain without the crossing that gains most.
 double without_best_passage(std::vector<Slow> inside) {
   std::sort(inside.begin(), inside.end(), [](const Slow& a, const Slow& b) { return a.passage < b.passage; });
   double all = 0.0, most = 0.0, mine = 0.0;
@@ -84,7 +84,7 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   leave_out_noise(slow);
   std::sort(slow.begin(), slow.end(),
             [](const Slow& a, const Slow& b) { return std::abs(a.rate) < std::abs(b.rate); });
-  std::vector<double> gained;  // by all samples up to that rate
+  std::vector<double> gained;  // by all samples up to this rate
   gained.reserve(slow.size());
   double sum = 0.0;
   for (const Slow& each : slow) gained.push_back(sum += each.gain);
@@ -96,10 +96,10 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   zone.ratio = *best / white_variance;
   const double tries = independent_columns(static_cast<std::size_t>(
       std::log(kWidestZone * most / std::max(std::abs(slow.front().rate), 1e-3 * most)) / std::log(kFactor)));
-  // The width between its neighbours is a second parameter.
+  // The width is a second parameter.
   zone.p_value = std::min(1.0, kProfiled * tail(zone.ratio, 2) * tries);
   if (zone.p_value > kShare * significance) return std::nullopt;
-  // Where twice the log-likelihood is within one of the most.
+  // True if twice the log-likelihood is within one of the maximum.
   const auto close = [&](double value) { return value > *best - white_variance; };
   const auto from = std::find_if(gained.begin(), gained.end(), close) - gained.begin();
   const auto to = gained.rend() - std::find_if(gained.rbegin(), gained.rend(), close);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rate below which the sensor sees none: what it says there is its bias, and the error is the rotation that
-// it missed. A turn passes through in a few samples, so it is sought in the samples themselves, about a mean
-// of a few seconds, before the effects of block means.
+// Dead zone: a rate below which the sensor outputs only its bias, so the error is minus the rotation. A turn
+// crosses it in a few samples. So it is detected in samples, relative to a mean over some seconds, before the
+// effects of block means.
 #pragma once
 
 #include <optional>
@@ -15,23 +15,23 @@ namespace ifog {
 struct DeadZone {
   double half_width = 0.0;  // rad/s
   double half_width_error = 0.0;
-  double coefficient = 0.0;  // error over rate inside: -1 where nothing is seen
+  double coefficient = 0.0;  // error / rate inside; -1 if no rotation is sensed
   double coefficient_error = 0.0;
-  double ratio = 0.0;  // twice the log-likelihood gained
+  double ratio = 0.0;  // gain of twice the log-likelihood
   double p_value = 1.0;
 };
 
-// errors: what is left, `rest`. rates: true ones on the same grid, by record; NaN missing. white_variance: of
-// a sample's noise. Nothing where chance or one passage alone would do as well, or where the coefficient is
-// another than -1, as that of a scale factor is.
+// nullopt if chance or a single crossing explains it, or if the coefficient is not -1 (a scale factor).
+// errors: residuals `rest`; rates: true rates on the same grid, by record, NaN missing; white_variance: of a
+// sample.
 std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
                                        const std::vector<Samples>& rates, double white_variance,
                                        double significance);
 
-// What the zone makes of a rate, sample by sample; zero where that is missing.
+// Error that the dead zone causes, by sample; zero where the rate is missing.
 Samples hidden_by(const DeadZone& zone, std::span<const double> rate);
 
-// Out of the rest of the errors, and of the means over the grid's blocks.
+// Subtracts the zone's error from the residuals and from the grid's block means.
 void take_out(const DeadZone& zone, const std::vector<Samples>& rates, BlockGrid& grid,
               std::vector<EvenError>& errors);
 

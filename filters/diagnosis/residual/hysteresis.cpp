@@ -10,10 +10,10 @@
 namespace ifog {
 namespace {
 
-// Half widths of the play, of the channel's range: neighbours correlate above 0.9.
+// Half widths of the play relative to the channel's range; neighbours correlate above 0.9.
 constexpr std::array kShares = {0.05, 0.07, 0.1, 0.14, 0.19, 0.25, 0.33};
-constexpr double kCertainLoop = 0.1;     // of the significance: nothing is corrected, so it has to be sure
-constexpr double kLoopParameters = 3.0;  // its size, its width, and the channel's linear effect
+constexpr double kCertainLoop = 0.1;     // of the significance; strict, because a loop is not corrected
+constexpr double kLoopParameters = 3.0;  // size, width, and the channel's linear effect
 
 bool may_have_a_loop(const BlockData& data, std::size_t channel) {
   const FineChannel& c = data.channels[channel];
@@ -21,7 +21,7 @@ bool may_have_a_loop(const BlockData& data, std::size_t channel) {
          c.environment() && names_in(c.name).less.empty();
 }
 
-// The likeliest loop in place of the effects of the channel; the noise begins at the model's.
+// Most likely loop in place of the channel's effects; the noise fit starts at the model's.
 std::pair<Hysteresis, NoiseFit> likeliest_loop(const BlockData& data, const std::vector<Candidate>& beside,
                                                std::size_t channel, const NoiseShape& shape) {
   const FineChannel& source = data.channels[channel];

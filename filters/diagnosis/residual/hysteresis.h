@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A bias that depends on which way a channel came: the loop of the play operator, which no form of the model
-// file describes. It is recognised all the same, since for as long as the channel moves one way it looks like
-// the channel's rate, or like a polynomial of it, and fails as soon as the channel turns.
+// Hysteresis: a bias that depends on the direction of a channel's change (play operator). The model file has
+// no form for it. It must be detected because, while the channel moves one way, it looks like an effect of
+// the channel's rate or a polynomial; this fails when the channel turns.
 #pragma once
 
 #include <optional>
@@ -13,17 +13,16 @@
 
 namespace ifog {
 
-// What is left of the play operator (Prandtl and Ishlinskii; Krasnosel'skii and Pokrovskii, Systems with
-// Hysteresis, 1989) when the channel itself is removed: within half_width of zero, from block to block.
-// It starts at zero, as nothing says where the channel came from.
+// Play operator minus the channel itself (Prandtl and Ishlinskii; Krasnosel'skii and Pokrovskii, Systems with
+// Hysteresis, 1989): within ± half_width, by block. Starts at zero because the history is unknown.
 Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, double half_width);
 
-// Takes a loop of the channel out of the error of the grid's valid blocks.
+// Subtracts a channel's loop from the error of the grid's valid blocks.
 void take_out(const Hysteresis& loop, const BlockData& data, BlockGrid& grid);
 
-// The loop of a smooth channel that overrules what the model says of that channel but for a linear effect, by
-// more than chance and the widths tried; or, where the model claims more than that, by the Bayesian
-// information criterion. None on a rate table, where time is no order.
+// Loop of a smooth channel that explains the error better than the model's effects of that channel. Compared
+// with a linear effect: p-value with the number of widths; with more effects: Bayesian information criterion.
+// nullopt on a rate table, which has no time order.
 std::optional<Hysteresis> find_hysteresis(const BlockData& data, const std::vector<Candidate>& model,
                                           const NoiseFit& noise, double significance);
 

@@ -17,8 +17,8 @@ namespace {
 
 using Complex = std::complex<double>;
 
-// Noise power right next to a peak. On a resonance it is far above the noise of the wider band, and every
-// ripple of the resonance would pass for a line against that.
+// Noise power next to a peak. On a resonance it is far above that of the wider band, so ripples of the
+// resonance are not mistaken for lines.
 double noise_beside(std::span<const double> power, std::size_t k) {
   constexpr std::size_t kNear = 4;
   constexpr std::size_t kFar = 40;
@@ -34,8 +34,8 @@ Complex wave_at(double cycles) {
   return std::polar(1.0, -2.0 * std::numbers::pi * (cycles - std::floor(cycles)));
 }
 
-// Sums of error exp(-i 2 pi f t) over equal pieces; finer frequencies then cost only the pieces. of: cycles a
-// sample.
+// Sums of error exp(-i 2 pi f t) over equal pieces, so that the frequency can be refined with the sums. of:
+// cycles per sample.
 std::vector<Complex> demodulate(std::span<const double> error, double mean, double of, std::size_t pieces) {
   const Complex turn = wave_at(of);
   std::vector<Complex> sums(pieces);
@@ -65,14 +65,13 @@ Complex shifted(const std::vector<Complex>& sums, double cycles_per_piece, std::
   return total;
 }
 
-// What a peak is refined in.
 struct Search {
   std::span<const double> error;
   double start_s, period_s, significance;
   const Periodogram& spectrum;
 };
 
-// Offset from the bin, in parts of one over the length, at which the pieces add up to most.
+// Offset from the bin, in units of 1 / length, with the largest coherent sum.
 double best_offset(const std::vector<Complex>& sums) {
   const auto power_lacking = [&](double offset) {
     return -std::norm(shifted(sums, offset / static_cast<double>(sums.size()), 0, sums.size()));
@@ -82,7 +81,7 @@ double best_offset(const std::vector<Complex>& sums) {
   return boost::math::tools::brent_find_minima(power_lacking, -1.0, 1.0, kBits, most_evaluations).first;
 }
 
-// For peaks that chance would make as well, only the p-value is set.
+// If chance explains the peak, only the p-value is set.
 SpectralLine refine(const Search& in, std::size_t bin, double floor) {
   const auto& [error, start_s, period_s, significance, spectrum] = in;
   const auto n = static_cast<double>(error.size()), length = static_cast<double>(spectrum.length);
@@ -96,7 +95,7 @@ SpectralLine refine(const Search& in, std::size_t bin, double floor) {
   SpectralLine line;
   line.frequency_hz = (f0 + offset / n) / period_s;
   line.ratio = std::norm(total) / (floor * n / length);
-  // Between the bins there are more tries than bins: Rice's count of the maxima of a spectrum.
+  // Between the bins there are more maxima than bins (Rice).
   const double between = std::max(1.0, std::sqrt(std::numbers::pi * line.ratio / 3.0));
   line.p_value = std::min(1.0, between * static_cast<double>(spectrum.power.size()) * std::exp(-line.ratio));
   if (line.p_value > significance) return line;
@@ -120,7 +119,7 @@ SpectralLine refine(const Search& in, std::size_t bin, double floor) {
   return line;
 }
 
-// Bins within which a peak has no other.
+// Fewest bins between two peaks.
 std::size_t beside(std::size_t k) { return std::max<std::size_t>(6, k / 100); }
 
 // peaks: strongest first.

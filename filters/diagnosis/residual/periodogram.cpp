@@ -35,7 +35,7 @@ Periodogram periodogram(std::span<const double> error) {
 }
 
 NoiseFloor::NoiseFloor(std::span<const double> power) {
-  // Noise is estimated from ±15 % of the frequency, and at least so many bins.
+  // Noise is estimated from ±15 % of the frequency, and a minimum number of bins.
   constexpr double kBand = 0.15;
   constexpr std::size_t kLeastBins = 25;
   std::vector<double> window;
@@ -63,8 +63,8 @@ double NoiseFloor::operator[](std::size_t bin) const {
 
 std::vector<std::size_t> peaks_of(const Periodogram& spectrum, const NoiseFloor& floor, double significance) {
   const std::vector<double>& power = spectrum.power;
-  constexpr std::size_t kFirstBin = 16;  // below, slow noise and a line look alike
-  constexpr double kLeastOfLines = 0.6;  // of a line's power that its nearest bin has, between two bins
+  constexpr std::size_t kFirstBin = 16;  // below, a line cannot be distinguished from slow noise
+  constexpr double kLeastOfLines = 0.6;  // smallest share of a line's power in its nearest bin
   const double least = -kLeastOfLines * std::log(significance / static_cast<double>(power.size()));
   std::vector<std::size_t> peaks;
   for (std::size_t k = kFirstBin; k + 1 < power.size(); ++k)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What stays, in words a person can act on.
+// Describes the residual in words on which a person can act.
 #pragma once
 
 #include <span>
@@ -13,18 +13,18 @@
 
 namespace ifog {
 
-// error, left: before and after, even steps of period_s, NaN missing, of one record starting at start_s.
-// peaks: spectral peaks of `left` that are no lines of one phase; changes: of its noise.
+// error, left: before and after, equidistant with period_s from start_s, one record, NaN missing. peaks:
+// peaks of `left` without constant phase; changes: of its noise level.
 Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
                                  double period_s, const NoiseFit& noise, const BlockGrid& grid,
                                  const std::vector<SpectralLine>& peaks,
                                  std::span<const NoiseChange> changes = {});
 
-// Describes the longest record's error. Peaks are sought in what is left (none on a rate table).
+// Describes the longest record's residual. Peaks are searched in the residual (not on a rate table).
 Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
                           double significance, const std::vector<NoiseChangeIn>& noise_changes);
 
-// A loop takes the description's place.
+// Replaces the description by that of the hysteresis.
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found);
 
 }  // namespace ifog

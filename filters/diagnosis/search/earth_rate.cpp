@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
 constexpr double kWithin = 2.0;         // standard errors
-constexpr double kOfGravity = 0.05;     // by which a resting triad may miss g: scale and mounting errors
-constexpr double kSteady = 0.2;         // change of the whole force over that of one of its parts
-constexpr double kUndone = 0.5;         // share of an acceleration's square that the others may leave
+constexpr double kOfGravity = 0.05;     // deviation from g of a resting triad: scale and mounting errors
+constexpr double kSteady = 0.2;         // change of the total force relative to that of one component
+constexpr double kUndone = 0.5;         // share of an acceleration's square that the others leave
 
 double gravity_in(const std::string& channel) { return unit_of(channel) == "g" ? 1.0 : kStandardGravity; }
 
@@ -25,7 +25,7 @@ bool is_acceleration(const BlockData& data, std::size_t channel) {
   return channel != Candidate::kNone && kind_of(data.channels[channel].name) == ChannelKind::kAcceleration;
 }
 
-// Power of g by which an effect's largest coefficient goes down; 0 for what is never the Earth's rate.
+// Power of g that divides the effect's largest coefficient; 0 if it cannot be the Earth's rate.
 int order_of(const BlockData& data, const Candidate& candidate) {
   if (!is_acceleration(data, candidate.channel)) return 0;
   if (candidate.form == Form::kLagged) return 1;
@@ -65,7 +65,7 @@ bool may_be_tilt(const BlockData& data, std::size_t channel) {
   const double mean = all.mean();
   const bool all_of_gravity = std::abs(std::sqrt(mean) - g) < kOfGravity * g;
   if (!all_of_gravity) return count < 3;
-  // The magnitude of a triad's specific force may not change, whichever axis drives it.
+  // The magnitude of the specific force must be constant; each axis is tested.
   all.array() -= mean;
   const double changes = all.squaredNorm() / (4.0 * mean);
   const double moves = variance_of(mine.values) * static_cast<double>(mine.values.size());

@@ -13,23 +13,24 @@
 namespace ifog {
 namespace {
 
-// By angle random walk, since a capture does not say what made it. The largest figures of makers' data sheets:
-// - ring lasers and fibre-optic gyros (KVH DSP-3000 and 1775, Fizoptika VG910, Optolink SRS):
+// Grades by angle random walk, since a capture does not name the sensor. Largest values of data sheets: -
+// ring lasers and fibre-optic gyros (KVH DSP-3000 and 1775, Fizoptika VG910, Optolink SRS):
 //   1 °/h/g, 10 °/h/K, 60 °/h/V, 100 °/h/mT;
-// - from 0.02 °/√h on MEMS that are as quiet as a fibre-optic gyro (STIM300: 15 °/h/g; ADIS16488A:
-//   0.009 °/s/g, 0.0025 °/s/K) or the Northrop LN-200;
+// - from 0.02 °/√h on also MEMS as quiet as a fibre-optic gyro (STIM300: 15 °/h/g; ADIS16488A: 0.009 °/s/g,
+//   0.0025 °/s/K) or the Northrop LN-200;
 // - MEMS (ADIS16405: 0.05 °/s/g, 0.01 °/s/K, 0.32 °/s/V; ADXRS, L3GD20, MPU-6050: 0.1 °/s/g, 0.3 °/s/K).
 struct Grade {
-  double noise;  // °/√h, up to which
+  double noise;  // °/√h, upper limit
   const char* name;
   double per_g, per_kelvin, per_volt, per_millitesla;  // °/h
 };
 constexpr std::array<Grade, 3> kGrades = {{{0.02, "an optical gyro", 1.0, 10.0, 60.0, 100.0},
                                            {0.3, "a tactical gyro", 32.4, 10.0, 60.0, 100.0},
                                            {1e300, "a MEMS gyro", 360.0, 1080.0, 1152.0, 360.0}}};
-// Data sheets are of products that are shielded and compensated; a gyro under development may lack a decade of that.
+// Data sheets describe shielded and compensated products; a gyro under development may be a decade worse.
 constexpr double kMargin = 10.0;
-// m/s: no surface wave and no vehicle is quicker. So what turns with an acceleration does so by 1/2c or more.
+// m/s; no surface wave or vehicle is faster. So a rotation linked to an acceleration has a coefficient of at
+// least 1/2c.
 constexpr double kQuickest = 8000.0;
 
 const Grade& grade_of(const BlockGrid& grid, const NoiseFit& noise) {
@@ -39,7 +40,7 @@ const Grade& grade_of(const BlockGrid& grid, const NoiseFit& noise) {
   return kGrades[i];
 }
 
-// rad/s per unit of the channel; none where nothing is specified.
+// rad/s per unit of the channel; nullopt if nothing is specified.
 std::optional<double> specified(const Grade& grade, const std::string& channel) {
   const std::string unit = unit_of(channel);
   const double scale = kMargin * kDegreePerHour;
@@ -65,7 +66,7 @@ struct Bound {
   const char* of;
 };
 
-// Where an acceleration may be that of a rotation, only what is too small for one is an error.
+// If an acceleration may come from a rotation, only a coefficient too small for that is an error.
 std::optional<Bound> bound_of(const Grade& grade, const FineChannel& channel) {
   const std::optional<double> most = specified(grade, channel.name);
   if (!most) return std::nullopt;
@@ -88,7 +89,7 @@ double size_of(const BlockData& data, const Candidate& effect, double coefficien
 bool may_be_proxy(const BlockData& data, const Candidate& effect) {
   if (effect.channel == Candidate::kNone || effect.first_reading != FirstReading::kError) return false;
   if (!names_in(data.channels[effect.channel].name).less.empty()) return false;
-  // What goes with the rate is a scale factor; a mean square and a change have units of their own.
+  // Effects of the rate are scale factors; mean squares and derivatives have other units.
   return effect.form == Form::kLinear || effect.form == Form::kQuadratic || effect.form == Form::kCubic ||
          effect.form == Form::kLagged || effect.form == Form::kTransition;
 }

@@ -13,13 +13,14 @@
 namespace ifog {
 namespace {
 
-// Half a per cent of a time constant: what the likelihood tells apart of even a strong effect.
+// 0.5 % of a time constant; a finer value does not change the likelihood.
 constexpr int kBits = 11;
-constexpr double kEdge = 0.05;             // of the range: nearer to its edge no middle of a transition
+constexpr double kEdge = 0.05;  // of the range: smallest distance of a transition's centre from its edges
 constexpr double kWidestTransition = 0.5;  // of the range
-constexpr double kNarrowest = 0.02;        // likewise
+constexpr double kNarrowest = 0.02;        // of the range
 
-// Brent's minimum of minus the log-likelihood of the columns that `with` makes of a value between low and high.
+// Brent's minimum of minus the log-likelihood as a function of a value in [low, high]; `with` makes the
+// columns.
 template <class With>
 double likeliest(const BlockGrid& grid, const NoiseShape& shape, double low, double high, const With& with) {
   std::uintmax_t most_evaluations = 30;
@@ -47,8 +48,7 @@ void refine_transition(const BlockData& data, const NoiseShape& shape, std::vect
     const Candidate now = model[at];
     best(&Candidate::centre, std::max(channel.low + kEdge * span, now.centre - now.half_width),
          std::min(channel.high - kEdge * span, now.centre + now.half_width));
-    // Only widths that leave both levels visible, see levels_seen(): a wider one may be a little likelier, and then
-    // the law is the widest of these and not something else.
+    // Only widths with both levels visible (levels_seen()), even if a wider one is slightly more likely.
     const double centre = model[at].centre;
     best(&Candidate::half_width, std::max(kNarrowest * span, now.half_width / 2.0),
          std::min(
@@ -56,7 +56,7 @@ void refine_transition(const BlockData& data, const NoiseShape& shape, std::vect
   }
 }
 
-// By fringes within the range, between its neighbours on the grid.
+// In fringes within the range, between the neighbours on the grid.
 void refine_fringe(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
                    std::size_t at) {
   const FineChannel& channel = data.channels[model[at].channel];
@@ -84,12 +84,12 @@ void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Ca
     refine(data, shape, model, at);
 }
 
-// Over the logarithm of the time constant.
+// In the logarithm of the time constant.
 void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model, std::size_t at,
             double Candidate::*which) {
   const Form form = model[at].form;
   const std::vector<double> tried = time_constants(data.grid, form);
-  // The power of vibration is as quick as the samples.
+  // Vibration power may change as fast as the samples.
   double least = (form == Form::kBandPower ? 0.3 : 2.0) * data.grid.fine_s;
   if (form == Form::kWarmUp && !tried.empty()) least = tried.front();
   const double most = tried.empty() ? 3600.0 : std::min(3600.0, 1.6 * tried.back());
@@ -117,9 +117,9 @@ bool levels_seen(const BlockData& data, const std::vector<Candidate>& model) {
 
 namespace {
 
-// Twice the log-likelihood that each has to gain.
+// Required gain of twice the log-likelihood of each.
 constexpr double kSecondLag = 16.0;
-constexpr std::array<double, 2> kPowerAverages_s = {0.4, 2.5};  // that are refined
+constexpr std::array<double, 2> kPowerAverages_s = {0.4, 2.5};  // start values
 constexpr std::array<double, 2> of_lag(double lag_s) { return {0.1 * lag_s, 0.5 * lag_s}; }
 
 double gained(const NoiseFit& with, const NoiseFit& without) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Searched time constants, and where a transition is, at their optimum.
+// Optimises the parameters that the search takes from a grid: time constants, transitions, fringe periods.
 #pragma once
 
 #include <cstddef>
@@ -9,29 +9,30 @@
 
 namespace ifog {
 
-// The time constant of model[at] of greatest likelihood within a factor of 2.5, all coefficients free, the
-// noise held; never outside what time_constants() spans by much. `which` is the first or the second one.
+// Sets the time constant of model[at] to its most likely value within a factor of 2.5 (roughly within
+// time_constants()), with free coefficients and fixed noise. which: first or second time constant.
 void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model, std::size_t at,
             double Candidate::*which = &Candidate::time_constant_s);
 
-// Whatever of model[at] is searched: its time constant, a transition's middle and width, or a fringe's period,
-// of both halves. The middle stays off the edges of the channel's range and the width below a half of it.
+// Optimises all searched parameters of model[at]: time constant, or centre and width of a transition, or
+// period of a fringe (both halves). A centre keeps its distance from the edges of the channel's range; a
+// width is at most half of it.
 void refine_shape(const BlockData& data, const NoiseShape& shape, std::vector<Candidate>& model,
                   std::size_t at);
 
-// Whether both levels of every transition lie within the channel's range, as far as one half width from its
-// middle. What only bends there is a polynomial's to describe, which goes on where a level would stop.
+// True if both levels of every transition are visible, i.e. the range extends one half width to either side
+// of its centre. Otherwise a polynomial describes the bend.
 bool levels_seen(const BlockData& data, const std::vector<Candidate>& model);
 
-// What one effect stands for that is more: a second time constant, a second layer that heat passes, or a
-// direction in the place of a product. Tried when the choice of one is made; each has to earn what it costs.
+// Tries a second time constant, a second thermal layer, or a direction instead of a product, once the effect
+// is chosen. Each must gain more than its cost.
 struct FittedModel {
   std::vector<Candidate> effects;
   NoiseFit noise;  // with them
 };
 
-// A coil inside a housing follows the thermometer through two time constants, and a bias follows the power of
-// vibration as fast as it may.
+// A coil in a housing follows the thermometer with two time constants; the effect of vibration power has two
+// as well.
 void try_second_time_constants(const BlockData& data, FittedModel& model);
 
 }  // namespace ifog

@@ -12,7 +12,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kDependent = 1e-7;  // of the squares: two columns this alike are one
+constexpr double kDependent = 1e-7;  // relative square below which two columns are equal
 
 std::vector<NoiseShape> spread(const NoiseShape& shape, bool thorough) {
   std::vector<NoiseShape> shapes;
@@ -30,7 +30,7 @@ std::vector<NoiseShape> spread(const NoiseShape& shape, bool thorough) {
       shapes.push_back(each);
     }
   }
-  // A harmonic may stand in for a channel that goes up and down.
+  // A harmonic may describe what an oscillating channel causes.
   for (std::size_t i = 0; i < shape.harmonics.size(); ++i) {
     NoiseShape each = shape;
     each.harmonics.erase(each.harmonics.begin() + static_cast<std::ptrdiff_t>(i));
@@ -39,7 +39,7 @@ std::vector<NoiseShape> spread(const NoiseShape& shape, bool thorough) {
   return shapes;
 }
 
-// Reduction of the squared remainder of the measurement by one column, or by two. Columns are projected.
+// Reduction of the measurement's squared residual by one or two projected columns.
 double gain_of(const Eigen::VectorXd& xy, const Eigen::VectorXd& xx, Eigen::Index j) {
   return xx[j] > 0.0 ? xy[j] * xy[j] / xx[j] : 0.0;
 }
@@ -84,7 +84,7 @@ void Scan::pair(const std::vector<NaturalPair>& pairs) {
   }
 }
 
-// Columns of unit size: units of channels are many decades apart.
+// Columns of unit norm, as the channels' units differ by many decades.
 void Scan::fill(std::size_t candidate) {
   Eigen::VectorXd column = regressor(data_, candidates_[candidate]);
   const double size = std::sqrt(column.squaredNorm() / static_cast<double>(column.size()));
@@ -105,7 +105,7 @@ Scan::Projected Scan::project(const std::vector<Candidate>& base, const NoiseSha
   projected.columns = all.rightCols(candidates.cols());
   const Eigen::RowVectorXd before = projected.columns.colwise().squaredNorm();
   others.take_out_of(projected.columns);
-  // A column that the others make up to rounding says nothing of its own.
+  // A column that equals a combination of the others except for rounding is ignored.
   for (Eigen::Index j = 0; j < candidates.cols(); ++j) {
     if (projected.columns.col(j).squaredNorm() < 1e-9 * before[j]) projected.columns.col(j).setZero();
   }
@@ -172,7 +172,7 @@ std::vector<Scored> Scan::steps(const std::vector<Candidate>& base, const NoiseF
       for (Eigen::Index at = 4; at + 4 < length; ++at) {
         const Eigen::Index rest = length - at;
         const double xy = h.head(rest).dot(p.y.segment(from + at, rest));
-        // The constant, projected out of the measurement, is not yet out of the step.
+        // The constant is projected out of the measurement but not yet out of the step.
         const double xx =
             energy[rest - 1] * std::max(0.05, shape.walk > 0.0 ? 1.0 : double(at) / double(length));
         const double left = std::max(p.square - xy * xy / xx, 1e-12 * p.square);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores of the whole library at once: for a spread of noise models around the present one every column is
-// whitened, the effects already chosen are projected out, and what is left of each column is regressed on
-// what is left of the measurement. The best noise model counts for each candidate separately: the noise
-// fitted without an effect has already swallowed part of it.
+// Scores all candidates at once. For several noise models near the present one, columns are whitened, chosen
+// effects are projected out, and the residuals are regressed. Each candidate uses its best noise model,
+// because noise fitted without an effect has absorbed part of it.
 #pragma once
 
 #include <algorithm>
@@ -18,10 +17,10 @@ namespace ifog {
 
 struct Scored {
   Candidate candidate;
-  std::optional<Candidate> with;  // of a natural pair the second
-  double ratio = 0.0;             // twice the log-likelihood gained
-  NoiseShape shape;               // the noise model at which it gains that
-  double correlation = 0.0;       // with the effect it is compared to, if any
+  std::optional<Candidate> with;  // second effect of a natural pair
+  double ratio = 0.0;             // gain of twice the log-likelihood
+  NoiseShape shape;               // noise model with this gain
+  double correlation = 0.0;       // with the effect `compared`, if any
 };
 
 class Scan {
@@ -30,20 +29,20 @@ class Scan {
 
   [[nodiscard]] std::size_t size() const { return candidates_.size(); }
 
-  // Further candidates; those of a shape that is there already are skipped.
+  // Adds candidates whose shape is not yet there.
   void add(const std::vector<Candidate>& more);
 
-  // thorough: the full spread of noise models; otherwise a few of them.
-  // With `pairs` these follow the candidates, in their order.
+  // thorough: all noise models, otherwise a few. pairs: the scores of pairs follow those of the candidates,
+  // in order.
   [[nodiscard]] std::vector<Scored> score(const std::vector<Candidate>& base, const NoiseFit& noise,
                                           bool thorough, const Candidate* compared = nullptr,
                                           const NoiseShape* at = nullptr, bool pairs = false) const;
 
-  // Natural pairs whose both effects are in the library; none given: no pairs.
+  // Adds natural pairs whose effects are both in the library.
   void pair(const std::vector<NaturalPair>& pairs);
   [[nodiscard]] std::size_t pairs() const { return pairs_.size(); }
 
-  // The most likely positions of a step of the rate, one a record at most.
+  // Most likely position of a step, at most one per record.
   [[nodiscard]] std::vector<Scored> steps(const std::vector<Candidate>& base, const NoiseFit& noise) const;
 
  private:
@@ -62,20 +61,17 @@ class Scan {
   Columns columns_;
 };
 
-// How many independent tries a search over correlated candidates amounts to. Counting every column and every
-// position of a step would ask for far more than chance can do, and effects that are there would be missed.
-// The noise is fitted again under each candidate, from a record that holds few of its longest swings: chance
-// then exceeds a likelihood ratio more often than with known noise. Of some 1500 simulated sensors without
-// effects 0.7 % had one found at a level of 1 % with a factor of 3, so that a tenth of all samples of a
-// thousand would have had more than 1 %.
+// Factor of the p-value for the refitted noise. The record has few of its longest periods, so chance exceeds
+// a likelihood ratio more often than with known noise. With a factor of 3, 0.7 % of 1500 simulated sensors
+// without effects had one found at a level of 1 %.
 inline constexpr double kProfiled = 5.0;
 
-// Probability that chance makes twice the log-likelihood gained by so many parameters of what is not there
-// reach `ratio` (chi-square of that many degrees of freedom, 1 or 2).
+// Probability that pure chance gains `ratio` of twice the log-likelihood with this many parameters
+// (chi-square with 1 or 2 d.o.f.).
 double tail(double ratio, int parameters);
 
-// Neighbours among lags, powers and products of a channel correlate above 0.9: of so many columns a third is
-// new.
+// Number of independent columns: neighbouring lags, powers and products of a channel correlate above 0.9, so
+// a third counts.
 inline double independent_columns(std::size_t columns) {
   return std::max(1.0, 0.3 * static_cast<double>(columns));
 }

@@ -14,16 +14,15 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kShortlist = 4;   // candidates of different shape that are refined at each step
-constexpr std::size_t kPairsTried = 2;  // besides the shortlist
-constexpr double kRise = 1.0;  // twice the log-likelihood that any change has to gain beyond its price
-constexpr double kLikeness =
-    6.0;  // loss below which another effect cannot be distinguished from the chosen one
-constexpr double kTrialFactor = 1.3;  // noise parameters need no more precision before the shape is refined
-constexpr double kShareOfChannels = 0.7;  // of the significance; the rest is for steps
-constexpr double kAlike = 0.98;           // or this correlation of the whitened regressors
+constexpr std::size_t kShortlist = 4;     // candidates of different shape that are refined per step
+constexpr std::size_t kPairsTried = 2;    // in addition to the shortlist
+constexpr double kRise = 1.0;             // required gain of the score of any change
+constexpr double kLikeness = 6.0;         // loss below which an alternative is indistinguishable
+constexpr double kTrialFactor = 1.3;      // the noise needs no higher precision before the shape is refined
+constexpr double kShareOfChannels = 0.7;  // share of the significance; the rest is for steps
+constexpr double kAlike = 0.98;           // sufficient correlation of the whitened regressors
 
-// Half a fringe alone is no law: with a free period it stands in for the other half.
+// Half a fringe is no law: with a free period it replaces the other half.
 bool swings(const std::vector<Candidate>& model, const Candidate& half) {
   return std::any_of(model.begin(), model.end(),
                      [&](const Candidate& each) { return each.swings_with(half); });
@@ -34,8 +33,8 @@ std::vector<Candidate> without(std::vector<Candidate> model, std::size_t at) {
   return model;
 }
 
-// One score: twice the log-likelihood less the price of each effect. Effects are added, swapped and removed
-// only where the score rises by kRise or more, and it is bounded, so the search ends.
+// Score: twice the log-likelihood minus the price of each effect. A change must increase it by kRise; it is
+// bounded, so the search ends.
 class EffectSearch {
  public:
   EffectSearch(const BlockData& data, const SearchOptions& options)
@@ -60,7 +59,7 @@ class EffectSearch {
   }
 
  private:
-  // The chance of a false effect is shared out between channels and steps.
+  // Divides the probability of a false effect between channels and steps.
   void count_tries() {
     const double independent = independent_columns(scan_.size()) + static_cast<double>(scan_.pairs());
     tries_of_channels_ = independent / (data_.grid.dwells ? 1.0 : kShareOfChannels);
@@ -72,15 +71,15 @@ class EffectSearch {
     return std::min(1.0, kProfiled * tail(ratio, 1) * tries);
   }
 
-  // The ratio that chance reaches once in 1 / significance searches.
+  // Likelihood ratio that chance reaches in `significance` of all searches.
   [[nodiscard]] double threshold(const Candidate& candidate) const {
     double ratio = 1.0;
     while (p_value(candidate, ratio) > options_.significance) ratio += 0.25;
     return ratio;
   }
 
-  // Whether `candidate` is one law together with one of the others: what is proven then needs no second proof,
-  // only what the Bayesian information criterion asks of one coefficient more.
+  // True if `candidate` forms one law with an effect in `beside`. Then it needs no separate proof, only the
+  // gain that the Bayesian information criterion requires of one coefficient.
   [[nodiscard]] bool completes_a_law(const Candidate& candidate, std::span<const Candidate> beside) const {
     if (std::any_of(beside.begin(), beside.end(),
                     [&](const Candidate& each) { return each.swings_with(candidate); }))
@@ -101,7 +100,7 @@ class EffectSearch {
       const bool law = completes_a_law(model[i], std::span(model).first(i));
       sum -= complexity(model[i]) + (law ? std::log(n) : threshold(model[i]));
     }
-    // For few points: Hurvich and Tsai's correction of the criterion, Biometrika 76, 1989.
+    // Correction for few points: Hurvich and Tsai, Biometrika 76, 1989.
     const auto k = static_cast<double>(model.size()) + 2.0;
     return sum - 2.0 * k * (k + 1.0) / std::max(1.0, n - k - 1.0);
   }
@@ -137,9 +136,9 @@ class EffectSearch {
     return true;
   }
 
-  // What every gyro has is fitted jointly with the noise before the noise can swallow it: scale factor,
-  // misalignment, temperature to the second order. What does not pay is dropped again, one at a time; the
-  // noise fit starts from the noise without them and from nothing, and the likelier result is used.
+  // First fits what every gyro has, before the noise model absorbs it: scale factor, misalignment,
+  // temperature to second order. Unprofitable ones are removed one by one. The noise fit starts both from the
+  // noise without them and from zero; the more likely result is used.
   void start_with_basics() {
     if (data_.reference < 0) return;
     Trial basics{model_, {}, 0.0};
@@ -184,7 +183,7 @@ class EffectSearch {
     }
   }
 
-  // The best of the shortlist, fully fitted, as an addition to `base`.
+  // Best addition to `base` from the shortlist, fully fitted.
   [[nodiscard]] Trial best_addition(const std::vector<Candidate>& base, const NoiseFit& noise,
                                     bool thorough) const {
     std::vector<Scored> scored = scan_.score(base, noise, thorough, nullptr, nullptr, thorough);
@@ -212,7 +211,7 @@ class EffectSearch {
       model.push_back(each.candidate);
       if (each.with) model.push_back(last);
       Trial trial = refined(model, model.size() - 1, each.shape);
-      // A knock that does not last is no effect, nor does it speak against one that it hides.
+      // A shock that does not last is no effect, and does not exclude one that it hides.
       if (last.form == Form::kStep && !proven(trial)) continue;
       if (trial.score > best.score) best = std::move(trial);
     }
@@ -229,7 +228,7 @@ class EffectSearch {
     return true;
   }
 
-  // A channel with an effect of its own may change another one's.
+  // An accepted channel may modify the effect of another one.
   void offer_products(std::size_t channel) {
     if (channel == Candidate::kNone) return;
     const std::size_t before = scan_.size();
@@ -237,7 +236,7 @@ class EffectSearch {
     tries_of_channels_ += static_cast<double>(scan_.size() - before) / kShareOfChannels;
   }
 
-  // Effects chosen early were chosen without the later ones: each one's removal, replacement and shape.
+  // Tries to remove, replace and reshape each effect, since early ones were chosen without the later ones.
   void revise() {
     for (std::size_t i = 0; i < model_.size() && model_.size() > 1;) {
       std::vector<Candidate> rest = without(model_, i);
@@ -259,7 +258,7 @@ class EffectSearch {
       const NoiseFit noise = fit_noise(data_.grid, design(data_, rest), noise_.shape);
       Chosen chosen{model_[i], 2.0 * (noise_.log_likelihood - noise.log_likelihood), 1.0};
       chosen.of_a_law = completes_a_law(model_[i], rest);
-      // Only this term was tried of a law whose other term is proven.
+      // The other term of the law is proven, so only this term was tried.
       chosen.p_value = chosen.of_a_law ? std::min(1.0, kProfiled * tail(chosen.likelihood_ratio, 1))
                                        : p_value(model_[i], chosen.likelihood_ratio);
       result.chosen.push_back(chosen);
@@ -294,7 +293,8 @@ class EffectSearch {
   std::vector<NaturalPair> laws_;
   std::vector<Candidate> model_;
   NoiseFit noise_;
-  double tries_of_channels_ = 1.0, tries_of_steps_ = 1.0;  // independent ones over their share
+  // Numbers of independent tries / their share of the significance
+  double tries_of_channels_ = 1.0, tries_of_steps_ = 1.0;
 };
 
 }  // namespace

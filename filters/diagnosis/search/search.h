@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The search of the diagnosis: basics first, then one loop that adds, swaps and removes effects by one score
-// in the innovations of the noise model, each fitted together with the noise. What is added also has to predict
+// Search of the diagnosis: basic effects first, then a loop that adds, swaps and removes effects by one score
+// in the innovations of the noise model, with the noise fitted each time. An added effect must also predict
 // held-out blocks.
 #pragma once
 
@@ -15,25 +15,25 @@ namespace ifog {
 
 struct Chosen {
   Candidate candidate;
-  double likelihood_ratio = 0.0;  // twice the log-likelihood lost without it, with the noise fitted again
-  double p_value = 1.0;           // after correction for everything tried
-  bool of_a_law = false;          // of two coefficients that are one law; see natural_pairs()
+  double likelihood_ratio = 0.0;  // loss of twice the log-likelihood without it, with the noise fitted again
+  double p_value = 1.0;           // corrected for the number of tries
+  bool of_a_law = false;          // one of two coefficients of one law; see natural_pairs()
 };
 
 struct Alternative {
-  std::size_t of;  // index of the chosen effect it could stand for
+  std::size_t of;  // index of the chosen effect that it could replace
   Candidate candidate;
-  double correlation;  // of the whitened regressors, all else projected out
-  double loss;         // twice the log-likelihood lost by taking it instead
+  double correlation;  // of the whitened regressors, all others projected out
+  double loss;         // loss of twice the log-likelihood if it replaces that effect
 };
 
 struct SearchResult {
   std::vector<Chosen> chosen;
   std::vector<Alternative> alternatives;
-  NoiseFit noise;                // with the chosen effects
-  Eigen::VectorXd coefficients;  // nuisances (one constant a record) first, then that of each chosen effect
-  Eigen::MatrixXd covariance;    // of those
-  double tries = 1.0;  // independent ones of a channel's effect, over their share of the significance
+  NoiseFit noise;
+  Eigen::VectorXd coefficients;  // nuisances (one constant per record), then one per chosen effect
+  Eigen::MatrixXd covariance;    // of the coefficients
+  double tries = 1.0;  // number of independent tries of channel effects / their share of the significance
 };
 
 std::vector<Candidate> candidates_of(const std::vector<Chosen>& chosen);
@@ -42,10 +42,10 @@ struct SearchOptions {
   double significance = 0.01;
   std::size_t most_effects = 8;
   std::function<void(std::size_t, std::size_t)> progress;
-  std::optional<NoiseShape> noise;  // of a search before, to begin with; none: from nothing known
+  std::optional<NoiseShape> noise;  // start value, from an earlier search
 };
 
-// data: channels as with_reconstructed_channels() makes them.
+// data: with channels from with_reconstructed_channels().
 SearchResult search_effects(const BlockData& data, const SearchOptions& options);
 
 }  // namespace ifog
