@@ -11,14 +11,14 @@
 namespace ifog {
 namespace {
 
-// Shaking: innovations of that variance, in R; half its logarithm is ln 2.
+// Variance of innovations in shaking, in R; half its logarithm is ln 2.
 constexpr double kShakingVariance = 4.0;
-// Sums that are learned from: half of them overlap, so that 180 know their variance to 15 %; and what the prior is
-// worth.
+// Number of sums averaged: half of them overlap, so 180 give their variance to 15 %; and the weight of the
+// prior.
 constexpr double kMostHorizons = 180.0, kPriorHorizons = 10.0;
 }  // namespace
 
-// Evidence by the sizes of the errors alone, of so many as are independent by their fourth moment.
+// Evidence from the sizes of the errors alone, with their effective number from the fourth moment.
 double ChangeTest::same_size(const Contest& c, Eigen::Index a) const noexcept {
   return 0.5 * c.rest[a] * c.rest[a] / std::max(c.rest2[a], 1e-9) *
          logarithm((4.0 + c.rest[a]) / (4.0 + c.tracker[a]));
@@ -29,13 +29,14 @@ void ChangeTest::begin() noexcept {
     c.ratio = c.sum = c.weight = c.times = c.rest = c.rest2 = c.tracker = Lanes::Zero();
   forget_angle();
   shaking_.setZero();
-  unseen_.setZero();
+  change_variance_.setZero();
   suspected_ = false;
   age_ = 0.0;
 }
 
-// An offset that makes R into kShakingVariance R has a prior variance of m / n of R, where n is what a sum over the
-// horizon is worth. A sum of normalised square z^2 is likelier by it by exp(z^2 / 2 m / (m + 1)) / sqrt(m + 1).
+// Prior variance of an offset that raises R to kShakingVariance R: m / n of R, n the worth of a sum over the
+// horizon. The likelihood ratio of a sum with normalised square z^2 is exp(z^2 / 2 m / (m + 1)) / sqrt(m +
+// 1).
 ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
   forget_angle();
   for (std::size_t j = 0; j < Trackers::kMost; ++j) {
@@ -47,8 +48,8 @@ ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
   }
 }
 
-// Bayes: a change over the horizon is as likely beforehand as it has been on average at this rest. A sum that speaks
-// against a change counts as none.
+// Bayes: the prior probability of a change over the horizon is its average at this rest. A sum that
+// contradicts a change counts as none.
 void ChangeTest::expect(Contest& c, double h, const Lanes& nats, const Sample& now) noexcept {
   Lanes likely = Lanes::Zero();
   for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
@@ -58,7 +59,7 @@ void ChangeTest::expect(Contest& c, double h, const Lanes& nats, const Sample& n
     likely[a] = begun / (begun + 1.0 - often);
   }
   c.times += now.mask * likely;
-  unseen_ = unseen_.max(likely * now.scale * (c.sum / c.weight.max(1.0)).square());
+  change_variance_ = change_variance_.max(likely * now.scale * (c.sum / c.weight.max(1.0)).square());
 }
 
 void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& now, const Common& common,
@@ -70,19 +71,19 @@ void ChangeTest::contest(const Trackers& trackers, std::size_t j, const Sample& 
   const Lanes mine = error * error * now.inverse * (1.0 / g.factor);
   c.sum = keep * c.sum + common.clipped;
   c.weight = keep * c.weight + now.mask;
-  // How many innovations of full weight the sum is worth: its variance over R.
+  // Effective number of innovations in the sum: its variance / R.
   const Lanes n = (c.weight * (2.0 * h - c.weight) * c.worth).max(1.0);
   Lanes& likely = c.divisor.setOnes();
   Lanes share = now.mask;
   if (coloured_) {
     c.horizons = (c.horizons + now.mask / h).min(kMostHorizons);
     c.wide += now.mask * (c.sum.square() / n - c.wide) / (h * (c.horizons + 1.0));
-    // Until it is learned the width is the widest that the known noise allows with its third differences.
+    // Until it is learned, the width is the largest that the known noise and its third differences allow.
     const Lanes prior = (h * (1.0 - 1.0 / colour)).max(1.0);
     const Lanes wide = (kPriorHorizons * prior + c.horizons * c.wide) / (kPriorHorizons + c.horizons);
-    likely = (colour > kColoured).select((wide / common.louder).max(1.0), likely);
+    likely = (colour > kColoured).select((wide / common.excess).max(1.0), likely);
     widest_ = widest_.max(likely);
-    share /= likely;  // correlated neighbours count once; the limit is an outlier's rarity
+    share /= likely;  // correlated neighbours count once; limited by the rarity of an outlier
   }
   const Lanes evidence = 0.5 * ((now.surprise * share).min(common.cap) - (mine * share).min(common.cap) +
                                 (common.log_rest - g.log_factor) * share);
@@ -103,7 +104,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
                       logarithm(now.rest_factor)};
   coloured_ = greatest(colour) > kColoured;
   age_ += 1.0;
-  unseen_.setZero();
+  change_variance_.setZero();
   widest_.setOnes();
   suspected_ = false;
   std::optional<std::size_t> found;
@@ -120,9 +121,9 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
       found = j;
     }
   }
-  // Tails and colour make large innovations come together. If all are larger than the known noise, that is motion.
+  // Tails and colour let large innovations coincide. If all exceed the known noise, it is motion.
   seen_ = std::min(seen_ + 1.0, kTailMemory);
-  const Lanes tails = (fourth_ / (3.0 * common.louder.square())).max(1.0);
+  const Lanes tails = (fourth_ / (3.0 * common.excess.square())).max(1.0);
   const Lanes larger = (0.5 - 0.5 / kShakingVariance) * (now.surprise / widest_).min(common.cap);
   shaking_ = (shaking_ + now.mask * (larger - std::numbers::ln2 / widest_) / tails).max(0.0);
   fourth_ += now.mask * (capped * capped - fourth_) / seen_;
@@ -131,9 +132,9 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   return found;
 }
 
-// A filter of gain k leaves k R / (r + k) of noise of correlation rate r. Its innovations, summed over 1 / b, are
-// 2 b r / ((r + k) (r + b) (k + b)) of R, and the walk's part k / (k + b) of the rule's R more. So b / (k + b) over the
-// noise's part is a straight line in b, of which the end at zero is wanted.
+// A filter of gain k has the variance k R / (r + k) in noise of correlation rate r. Its innovations, summed
+// over 1 / b, have 2 b r / ((r + k) (r + b) (k + b)) R plus the walk's k / (k + b) of the rule's R. So b / (k
+// + b) divided by the noise's part is linear in b and is extrapolated to zero.
 Lanes ChangeTest::wide(const Trackers& trackers, double lag, double rule) const noexcept {
   Lanes wide = Lanes::Ones(), inverse_before = Lanes::Zero();
   if (!coloured_) return wide;

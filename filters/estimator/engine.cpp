@@ -7,14 +7,13 @@
 namespace ifog {
 namespace {
 
-// Samples between refreshes of the settled filter's lag, by the sequence so that a replay has them where the
-// run had.
+// Samples between updates of the lag; by sequence number, so that a replay updates at the same samples.
 constexpr std::uint64_t kLagEvery = 256;
-// Largest rate of a sensor at rest, rad/s: beyond the bias of any fibre-optic gyro, and 1.1 deg/s.
+// Largest rate at rest, rad/s (1.1 deg/s): above the bias of any fibre-optic gyro.
 constexpr double kMostRestRate = 0.02;
-// Lags of rest after which the end of a manoeuvre, and where it moved the filter to, have faded.
+// Lags at rest after which the end of a manoeuvre has faded from the filter.
 constexpr double kYoungLags = 7.0;
-// The largest payment over the standard deviation of the filter at rest: it costs a quarter of its variance.
+// Largest payment / standard deviation of the filter at rest; costs 25 % of its variance.
 constexpr double kMostPaid = 0.5;
 
 }  // namespace
@@ -83,7 +82,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   publish(s);
 }
 
-// Which axes have a measurement that can be used.
+// Determines the axes with a usable measurement.
 void Engine::screen(Step& s) noexcept {
   for (std::size_t a = 0; a < axes_; ++a) {
     if ((s.in.valid_axes >> a & 1U) == 0 || !std::isfinite(s.in.rate_radps[a])) continue;
@@ -100,7 +99,7 @@ void Engine::screen(Step& s) noexcept {
 // The first measurement of an axis sets its state.
 void Engine::begin_axes(const Step& s) noexcept {
   Follower& f = follow_;
-  // What the rate did in a gap nobody knows: the filter at rest has to stand by what is measured now.
+  // After a gap the rate is unknown, so the filter at rest must be confirmed by measurements.
   if (follows_ && !f.moving && s.sample.valid != 0 && s.dt_s > kShortGap * period_s_) {
     f.moving = true;
     f.failed_nats = 0.0;
@@ -112,7 +111,7 @@ void Engine::begin_axes(const Step& s) noexcept {
   if (first == 0) return;
   rest_->shift_to(s.sample.rate, first);
   f.trackers.seed(s.sample.rate, mask_of(first));
-  // An axis that comes late is one that begins, and all share one gain.
+  // An axis that starts later restarts the common gain.
   if (follows_ && started_ != 0) {
     rest_->set_variance(noise_.mean_known());
     f.since_moved = 0.0;
@@ -129,7 +128,7 @@ void Engine::weigh(Step& s) noexcept {
   Sample& m = s.sample;
   m.rest_factor = 1.0 + rest_->measurement_variance() / (noise_.mean_known() * s.noise_scale);
   m.scale = noise_.each(&Noise::tested) * s.noise_scale;
-  if (smooths_) m.scale *= noise_.each(&Noise::heard);
+  if (smooths_) m.scale *= noise_.each(&Noise::excess);
   m.innovation = m.mask * (m.rate - rest_->measurement());
   m.inverse = m.mask / m.scale;
   const Lanes covered = to_lanes(s.in.covered_s);
@@ -145,9 +144,8 @@ void Engine::follow(Step& s) noexcept {
     return;
   }
   Follower& f = follow_;
-  // What shaking makes is no outlier among the like. Where nothing follows the motion nothing tells an outlier
-  // from it.
-  const Lanes allowed = f.moving ? noise_.each(&Noise::shaken) : Lanes::Ones();
+  // Outliers must exceed the present shaking. Without a tracker of the motion they cannot be recognised.
+  const Lanes allowed = f.moving ? noise_.each(&Noise::over_known) : Lanes::Ones();
   switch (f.moving && f.mix.raw()
               ? Outliers::Verdict::usual
               : f.outliers.take(f.trackers, s.sample, allowed, f.moving, !smooths_, f.lag())) {
@@ -157,7 +155,7 @@ void Engine::follow(Step& s) noexcept {
       s.outlier = true;
       rest_->skip();
       follow_.moving ? publish_mix(s) : publish_rest(s);
-      // Until the next measurement says which, it may be the first of a jump.
+      // It may be the first sample of a jump.
       s.variance += s.sample.innovation * s.sample.innovation;
       return;
     case Outliers::Verdict::jump:
@@ -172,7 +170,7 @@ void Engine::follow(Step& s) noexcept {
   follow_.moving ? follow_manoeuvre(s) : follow_rest(s);
 }
 
-// So many measurements that nothing predicts are a new rate: followers begin with this one.
+// Enough unpredicted measurements are a new rate: trackers restart with this one.
 void Engine::jump(Step& s) noexcept {
   Follower& f = follow_;
   f.trackers.begin();
@@ -187,7 +185,7 @@ void Engine::jump(Step& s) noexcept {
 
 void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
-  s.sample.short_rad = f.ledger.take_short_at_rest();
+  s.sample.short_rad = f.ledger.shortfall_at_rest();
   std::optional<std::size_t> found =
       f.change.take(f.trackers, s.sample, noise_.each(&Noise::colour), f.outliers.rarity(), f.lag());
   if (found == ChangeTest::kShaking && smooths_) found.reset();
@@ -205,10 +203,10 @@ void Engine::follow_rest(Step& s) noexcept {
 void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   Follower& f = follow_;
   const bool shaking = tracker == ChangeTest::kShaking;
-  // What nothing predicts may have gone on for as long as anything.
-  const std::size_t foresees = std::min(tracker, f.trackers.size() - 1);
+  // Unpredicted motion may have lasted any time.
+  const std::size_t predicts = std::min(tracker, f.trackers.size() - 1);
   f.ledger.admit();
-  f.ledger.owe_late(f.change.angle(foresees), f.trackers.horizon(foresees), f.settled);
+  f.ledger.owe_late(f.change.angle(predicts), f.trackers.horizon(predicts), f.settled);
   s.out.flags |= kManoeuvre;
   if (!f.moving) ++health_.manoeuvres;
   f.moving = true;
@@ -236,7 +234,7 @@ void Engine::follow_manoeuvre(Step& s) noexcept {
   }
 }
 
-// The filter at rest takes the measurement in, clipped. learn: its rule learns of the innovation.
+// The filter at rest uses the clipped measurement. learn: its rule learns from the innovation.
 void Engine::take(Step& s, bool learn) noexcept {
   const Sample& m = s.sample;
   if (m.valid == 0) {
@@ -249,14 +247,14 @@ void Engine::take(Step& s, bool learn) noexcept {
       const Lanes most = kMostDeviations * (m.scale * m.rest_factor).sqrt();
       measured.rate += m.innovation.max(-most).min(most) - m.innovation;
     }
-    // The mean of all axes, whichever are measured: one gain is for all.
+    // The mean of all axes, measured or not, as the gain is common.
     measured.share = noise_.share();
-    if (smooths_) measured.share *= noise_.each(&Noise::heard);
+    if (smooths_) measured.share *= noise_.each(&Noise::excess);
     const double more = smooths_ ? noise_.mean(measured.share) : 1.0;
     measured.share *= 1.0 / more;
     measured.noise_scale *= more * noise_.mean_known() / settings_.measurement_noise;
   }
-  // The first measurement sets the state: its innovation is zero and no evidence.
+  // The first measurement sets the state; its innovation is zero and no evidence.
   rest_->update(measured, s.in.sequence, learn && follow_.since_moved > 0.0);
   follow_.since_moved += 1.0;
   if (!learn || !(rest_->covariance() > 0.0)) return;
@@ -268,13 +266,12 @@ void Engine::take(Step& s, bool learn) noexcept {
 void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
   rest_->shift_to(rate, started_);
   const double of_all = noise_.mean(variance / noise_.share());
-  // Colour and lines that a larger model has found stay known.
+  // A larger model keeps what it knows of colour and lines.
   if (rest_->rate_alone() || of_all > rest_->variance()) rest_->set_variance(of_all);
   follow_.since_moved = 0.0;
 }
 
-// Divergence: a covariance that is none any more, or a state that is no number. It starts again from this
-// measurement.
+// After divergence (invalid covariance or state) restarts the filter from this measurement.
 void Engine::guard(Step& s) noexcept {
   if (rest_->sound() && s.rate.allFinite()) return;
   ++health_.divergences;
@@ -286,7 +283,7 @@ void Engine::guard(Step& s) noexcept {
   publish_rest(s);
 }
 
-// Half of the variance is the measurements' noise, more where it is coloured, and half the walk's.
+// Half of the variance is due to measurement noise (more if coloured), half due to the walk.
 void Engine::publish_rest(Step& s) noexcept {
   s.rate = rest_->rate();
   s.gain = rest_->gain();
@@ -295,27 +292,27 @@ void Engine::publish_rest(Step& s) noexcept {
   const double rule = rest_->rule().measurement_noise() / settings_.measurement_noise;
   const Lanes wide = follow_.change.wide(follow_.trackers, follow_.lag(), rule);
   s.variance *= 0.5 * (noise_.walk_share() + noise_.share() * wide);
-  s.variance += follow_.change.unseen() + noise_.each(&Noise::rounding);
+  s.variance += follow_.change.change_variance() + noise_.each(&Noise::rounding);
 }
 
 void Engine::publish_mix(Step& s) noexcept {
-  // A measurement's variance as it is heard: what is louder may be noise.
-  const Lanes heard = noise_.each(&Noise::known) * noise_.each(&Noise::louder) * s.noise_scale;
+  // Present variance of a measurement; an excess may be noise.
+  const Lanes level = noise_.each(&Noise::known) * noise_.each(&Noise::significant_excess) * s.noise_scale;
   const Mix::Published mix =
       follow_.mix.publish(follow_.trackers, rest_->rate(), rest_->variance() * noise_.share(),
-                          s.sample.scale.max(heard), follow_.lag());
+                          s.sample.scale.max(level), follow_.lag());
   s.rate = mix.rate;
   s.variance = mix.variance;
   s.gain = mix.gain + follow_.mix.rest_weight() * rest_->gain();
 }
 
-// Books what the rate falls short of, and adds the payment of this sample.
+// Books the rate's shortfall and adds this sample's payment.
 void Engine::pay(Step& s) noexcept {
   using enum Ledger::Account;
   Follower& f = follow_;
   Ledger& ledger = f.ledger;
   const bool follows = settings_.follow_manoeuvres;
-  // Until it has settled nothing that the filter lags behind by returns by itself.
+  // Before it has settled, the filter does not recover its lag by itself.
   f.at_rest_for = f.moving ? 0.0 : f.at_rest_for + 1.0;
   if (!s.outlier) {
     const bool settled =
@@ -324,12 +321,12 @@ void Engine::pay(Step& s) noexcept {
     f.settled = settled;
   }
   const Lanes fell_short = (s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s;
-  // In a manoeuvre as much of it is the filter's at rest as that takes part.
+  // In a manoeuvre the filter at rest has a share according to its weight.
   const double rests = s.outlier ? 0.0 : f.moving ? f.mix.rest_weight() : 1.0;
   ledger.book((1.0 - rests) * fell_short, s.outlier ? kDoubt : kDebt);
   ledger.book(rests * fell_short, f.settled ? kCarried : kTail);
   if (f.moving) ledger.pace(f.mix.length(f.trackers, follow_.lag()));
-  // What a gap hides is no angle.
+  // Angle in a gap is unknown and not booked.
   const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
   Lanes most = Lanes::Constant(1e300);
   if (follows) most = kMostPaid * (rest_->variance() * noise_.share()).sqrt();
@@ -359,8 +356,7 @@ void Engine::publish(const Step& s) noexcept {
     const auto i = static_cast<Eigen::Index>(a);
     const double variance = s.variance[i] + unmeasured_.more()[i];
     s.out.denoised_radps[a] = s.rate[i];
-    // A rule without a floor may take the covariance below zero: it then says no more than one measurement
-    // does.
+    // A rule without a floor may make the covariance negative; then the variance is that of one measurement.
     s.out.variance_rad2ps2[a] = variance >= 0.0 ? variance : settings_.measurement_noise;
     s.out.gain[a] = s.gain;
     s.out.innovation_variance[a] =
@@ -375,7 +371,7 @@ void Engine::publish(const Step& s) noexcept {
       period_s_ * follow_.settled_lag * (follow_.moving ? follow_.mix.rest_weight() : 1.0);
 }
 
-// The lag of the filter at rest once it has settled.
+// Updates the lag of the filter at rest after it has settled.
 void Engine::refresh_lag() noexcept {
   const Settled now = rest_->settled();
   if (!std::isfinite(now.lag) || !std::isfinite(now.correlation)) return;

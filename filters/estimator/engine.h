@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the estimator does at each step: screen the measurement, filter it at rest or mix the followers of a
-// manoeuvre, keep the angle, learn the noise, publish. README.md derives it.
+// Steps of the estimator: screen the measurement, filter it at rest or mix the trackers of a manoeuvre, keep
+// the angle, learn the noise, publish. README.md derives them.
 #pragma once
 
 #include <algorithm>
@@ -19,10 +19,10 @@
 
 namespace ifog {
 
-// How well the filter at rest does by its own innovations: their normalised square, and how alike neighbours are.
+// Quality of the filter at rest from its innovations: mean normalised square and autocorrelation at lag 1.
 class Grades {
  public:
-  // normalised: innovation over the standard deviation that the filter gives it.
+  // normalised: innovation / its predicted standard deviation.
   void take(std::size_t axis, double normalised, EstimatorHealth& health) noexcept {
     constexpr double kMemory = 512.0;
     Grade& grade = grades_[axis];
@@ -41,13 +41,13 @@ class Grades {
   std::array<Grade, kMaxAxes> grades_{};
 };
 
-// The two ways in which the rate is followed, and the state that belongs to them.
+// The two estimates of the rate (trackers and filter at rest) and their state.
 class Follower {
  public:
   Follower(std::size_t axes, double period_s, bool begins_moving) noexcept
       : trackers(axes), change(trackers), ledger(period_s), moving(begins_moving) {}
 
-  // Lag of the filter at rest, samples; after a move at most the number of samples received since.
+  // Lag of the filter at rest, samples; at most the number of samples since it was reset.
   [[nodiscard]] double lag() const noexcept {
     return std::max(1.0, std::min(settled_lag, since_moved + 1.0));
   }
@@ -61,15 +61,15 @@ class Follower {
   Outliers outliers;
   Mix mix;
   Ledger ledger;
-  bool moving;  // nobody knows at the beginning: rest has to be found
-  // Nats by which the filter at rest has failed since nothing was known. A start at rest looks like a motion, and is
-  // called one only once chance does not explain them.
+  bool moving;  // true at the start: rest must be detected
+  // Evidence in nats against the filter at rest since the start. A start at rest looks like a motion, so it
+  // is reported as a manoeuvre only with significant evidence.
   double failed_nats = 0.0;
-  double settled_lag = 0.0;         // of the filter at rest, samples, once it has settled
-  double since_moved = 0.0;         // samples that the filter at rest has had since it was moved
-  double at_rest_for = 0.0;         // samples since rest was found
-  bool settled = false;             // the filter at rest gets back by itself what it lags behind by
-  Lanes published = Lanes::Zero();  // the last rate, without payments
+  double settled_lag = 0.0;         // in samples, of the settled filter at rest
+  double since_moved = 0.0;         // samples of the filter at rest since it was reset
+  double at_rest_for = 0.0;         // samples since rest was detected
+  bool settled = false;             // the filter at rest recovers its lag by itself
+  Lanes published = Lanes::Zero();  // last rate, without angle payments
 };
 
 class Engine {
@@ -84,12 +84,12 @@ class Engine {
   [[nodiscard]] LearnedNoise learned() const noexcept { return noise_.learned(); }
 
  private:
-  // What one step knows.
+  // Data of one step.
   struct Step {
     const EstimatorInput& in;
     EstimatorOutput& out;
     double dt_s;
-    double noise_scale;  // variance of a measurement over that of the nominal period
+    double noise_scale;  // variance of the measurement / that at the nominal period
     Sample sample;
     Lanes rate = Lanes::Zero(), variance = Lanes::Zero();
     double gain = 0.0;
@@ -118,7 +118,7 @@ class Engine {
 
   FilterSettings settings_;
   bool smooths_;  // what exceeds the known noise is noise
-  bool follows_;  // motion, beside the filter at rest
+  bool follows_;  // tracks motion, in addition to the filter at rest
   std::size_t axes_;
   double period_s_;
   std::unique_ptr<RestFilter> rest_;

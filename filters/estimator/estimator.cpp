@@ -32,8 +32,9 @@ void check(const FilterSettings& settings, int axes, double nominal_period_s) {
   require_in_range(settings);
 }
 
-// Innovations whose random weights make chance of the gain 3 % and of the error 0.1 %. Beyond, noise of skewness g puts
-// the rate off by g / N deviations, a tenth of the (q dt / R)^(1/4) that noise leaves where g = 2 and N is 20 over that.
+// Window in innovations: the random weights make the gain scatter by 3 % and the error by 0.1 %. Noise of
+// skewness g biases the rate by g / N standard deviations; for g = 2 and N = 20 / (q dt / R)^(1/4) that is a
+// tenth of the filter's noise.
 constexpr double kSteadyWindow = 1000.0, kSkewed = 20.0, kLongestWindow = 5 * kSteadyWindow;  // 120 kB
 
 FilterSettings in_force(FilterSettings settings, double period_s) {

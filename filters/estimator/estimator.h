@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter of one sensor: all its axes, one state model, one adaptation rule, one gain for all axes.
+// Filter of one sensor: all axes, one state model, one adaptation rule, one common gain.
 //
-// step() is the daemon's hot path: no allocation, no lock, no log, no exception. Everything it does depends
-// only on the settings and on the sequence of its arguments, so that a replay gives the same bits.
+// step() is the daemon's hot path: no allocation, lock, log or exception. The results depend only on the
+// settings and the sequence of arguments, so a replay reproduces them bit for bit.
 #pragma once
 
 #include <array>
@@ -18,26 +18,26 @@ namespace ifog {
 
 struct EstimatorInput {
   std::uint64_t sequence = 0;    // unwrapped; also the counter of the random weights
-  double dt_s = 0.0;             // time covered by this sample; after a gap, the whole gap
+  double dt_s = 0.0;             // time of this sample; after a gap, the whole gap
   Axes rate_radps{};             // compensated mean rate over dt
-  std::uint32_t valid_axes = 0;  // bit i; an axis that is not valid is only predicted
-  // By axis, of dt the time in which the rate was measured: what a gap hides is no angle, and none is owed
-  // for it. 0: all of dt.
+  std::uint32_t valid_axes = 0;  // bit i; other axes are only predicted
+  // By axis, the part of dt in which the rate was measured. Angle in gaps is unknown and not paid back. 0:
+  // all of dt.
   Axes covered_s{};
-  std::uint32_t stuck_axes = 0;  // whose sensor repeats one value: they are only predicted
-  double averaged_s = 0.0;  // time the rate is a mean over (white noise falls with it); 0: the nominal period
+  std::uint32_t stuck_axes = 0;  // bit i; axes whose sensor repeats one value; they are only predicted
+  double averaged_s = 0.0;       // averaging time of the rate (determines white noise); 0: the nominal period
 };
 
 enum EstimatorFlags : std::uint32_t {
-  kGated = 1,  // a measurement was kept out as an outlier
-  // A change of rate was detected, covariance raised. A filter that begins under way follows from its first
-  // measurement on, and says so once that is known.
+  kGated = 1,  // a measurement was rejected as an outlier
+  // A change of rate was detected and the covariance raised. After a start in motion the flag is set as soon
+  // as the motion is certain.
   kManoeuvre = 2,
-  kRestarted = 4,  // divergence: the filter started again from this measurement
+  kRestarted = 4,  // divergence: the filter restarted from this measurement
   kStuck = 8,      // the sensor repeats one value
-  // All axes rest: no change of rate is found or suspected, none has been for 64 measurements, and no axis
-  // turns faster than 0.02 rad/s. A rate that is constant, or drifts as slowly as the noise, is not told from
-  // rest. Never without FilterSettings::follow_manoeuvres.
+  // All axes are at rest: no change of rate is detected or suspected, none was for 64 measurements, and no
+  // axis exceeds 0.02 rad/s. A constant rate, or a drift as slow as the noise, is not distinguished from
+  // rest. Never set without FilterSettings::follow_manoeuvres.
   kAtRest = 16,
 };
 
@@ -50,46 +50,47 @@ struct EstimatorOutput {
   std::uint32_t flags = 0;
 };
 
-// Figures for the status message; counters only grow. NIS and whiteness are of the filter at rest, and stand
-// still in a manoeuvre.
+// Figures for the status message; counters only grow. NIS and whiteness are those of the filter at rest and
+// do not change in a manoeuvre.
 struct EstimatorHealth {
-  Axes nis_mean{};   // exponentially averaged, 1 when the filter believes itself rightly
-  Axes whiteness{};  // lag-1 autocorrelation of the innovations
+  Axes nis_mean{};   // exponentially averaged; 1 if the predicted variance is right
+  Axes whiteness{};  // autocorrelation of the innovations at lag 1
   Axes measurement_noise{};
-  Axes colour{1.0, 1.0, 1.0};  // variance of the innovations over that of white noise as rough as they are
+  // Variance of the innovations / that of white noise of the same third differences
+  Axes colour{1.0, 1.0, 1.0};
   double group_delay_s = 0.0;
   double correlation_time_s = 0.0;
   std::uint64_t gated = 0, manoeuvres = 0, floor_hits = 0, divergences = 0, restarts = 0;
 };
 
-// What is known of the noise besides FilterSettings.
+// Knowledge of the noise in addition to FilterSettings.
 struct KnownNoise {
-  // Each axis' own noise over FilterSettings::measurement_noise, by which it is judged until it is heard.
+  // Noise variance of each axis / FilterSettings::measurement_noise, used until it is learned.
   Axes share{1.0, 1.0, 1.0};
-  // Each axis' own driving noise over FilterSettings::process_noise. Empty: it goes with the axis' noise.
+  // Driving noise of each axis / FilterSettings::process_noise. nullopt: in proportion to the axis's noise.
   std::optional<Axes> walk_share;
-  // FilterSettings::process_noise is a first guess that is improved at rest; an earlier run has found it in so
-  // many samples, 0: nobody has.
+  // FilterSettings::process_noise is a start value that is improved at rest. samples: number of samples from
+  // which an earlier run has learned it, 0: none.
   bool learns_walk = false;
   double samples = 0.0;
 };
 
 class Estimator {
  public:
-  // Throws std::invalid_argument naming the setting, its value and what was expected.
-  // nominal_period_s > 0; axes 1 … kMaxAxes.
+  // Throws std::invalid_argument that names the setting, its value and what was expected. nominal_period_s >
+  // 0; axes 1 … kMaxAxes.
   Estimator(const FilterSettings& settings, int axes, double nominal_period_s, const KnownNoise& known = {});
   ~Estimator();
   Estimator(Estimator&&) noexcept;
   Estimator& operator=(Estimator&&) noexcept;
 
   void step(const EstimatorInput& in, EstimatorOutput& out) noexcept;
-  // Angle by which the denoised rate has fallen short of the measured one and which is still to be paid back,
-  // rad; 0 with conserve_angle off. A new estimator that takes the place of this one is told before its first
-  // step, so that a reload in a turn loses none.
+  // Angle still to be paid back, rad: measured minus denoised rate, integrated; 0 if conserve_angle is off. A
+  // new estimator that replaces this one gets it by owe() before its first step, so that a reload in a turn
+  // loses no angle.
   [[nodiscard]] Axes owed() const noexcept;
   void owe(const Axes& angle_rad) noexcept;
-  // The noise as it is known now.
+  // Current estimate of the noise.
   [[nodiscard]] LearnedNoise learned() const noexcept;
   [[nodiscard]] const EstimatorHealth& health() const noexcept;
 

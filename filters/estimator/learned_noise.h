@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a running filter has learned of its sensor's noise, and what another one may begin with.
+// Noise of a sensor as learned by a running filter, and used as start values by another one.
 #pragma once
 
 #include <algorithm>
@@ -13,11 +13,11 @@ namespace ifog {
 
 struct LearnedNoise {
   double process_noise = 0.0;      // of a random walk, (rad/s)^2/s
-  double measurement_noise = 0.0;  // per sample, mean over the axes, (rad/s)^2
-  Axes noise{};                    // the same of each axis
-  double samples = 0.0;            // at rest, that the walk stands on
-  // Identity of the model whose corrections were in; empty: none. What another one corrects
-  // is no part of this noise.
+  double measurement_noise = 0.0;  // per sample, mean of the axes, (rad/s)^2
+  Axes noise{};                    // of each axis
+  double samples = 0.0;            // number of samples at rest for the walk
+  // Identity of the model that corrected the rate; empty: none. Noise learned with another model is not
+  // valid.
   std::array<char, 16> model{};
 
   void set_model(std::string_view identity) noexcept {

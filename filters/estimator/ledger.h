@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps the angle: what the published rate has fallen short of the measured one, integrated, is paid back.
+// Conserves the angle: the integrated difference between measured and published rate is paid back.
 //
-// Every sample's shortfall goes to exactly one account, and leaves it by payment only:
+// Each sample's difference is booked to exactly one account and leaves it only by payment:
 //   debt    of a manoeuvre
-//   late    what came together before the manoeuvre was found
-//   tail    of a filter at rest that has not settled since it was moved
+//   late    accumulated before the manoeuvre was detected
+//   tail    of a filter at rest that has not settled since it was reset
 //   doubt   of outliers, until the next measurements show whether they were rotation
-// A settled filter of gain K owes T (1 - K) / K times the change of rate and gets it back by itself when the
-// rate returns. That is carried by the filter, and so is the angle of an outlier at rest. Once a manoeuvre is
-// found what of it was carried since that began is late.
+// A settled filter of gain K lags by T (1 - K) / K times the change of rate and recovers this when the rate
+// returns, so it is not booked; nor is the angle of an outlier at rest. When a manoeuvre is detected, the
+// part accumulated since its start is booked as late.
 //
-// Paid over n samples, shortfalls of a tracker of memory M at the frequency w turn 2 (w M)^3 w n of a cone
-// into drift. So a manoeuvre's debt is paid within half of what its followers look back on. What is late is
-// paid over as many samples as it came together in: at once it would put the rate off by more than the motion
-// did. Of the tail no more is paid than a part of the filter's own standard deviation.
+// Payment over n samples of a tracker of memory M turns 2 (w M)^3 w n of a cone of frequency w into drift. So
+// a manoeuvre's debt is paid within half of its trackers' memory. Late angle is paid over as many samples as
+// it accumulated; faster payment would distort the rate more than the motion did. Payments of the tail are
+// limited to a fraction of the filter's standard deviation.
 #pragma once
 
 #include <algorithm>
@@ -29,8 +29,8 @@ class Ledger {
   enum class Account { kDebt, kTail, kDoubt, kCarried };
   explicit Ledger(double period_s) noexcept : period_s_(period_s) {}
 
-  // Rate to be added to this sample's. most: of what is paid of the tail; lag: of the filter at rest, samples; dt_s: of
-  // the angle that is integrated with it, by axis.
+  // Rate to be added to this sample's. most: limit of the tail's payment; lag: of the filter at rest,
+  // samples; dt_s: integration time of the rate, by axis.
   [[nodiscard]] Lanes pay(const Lanes& most, double lag, const Lanes& dt_s) noexcept {
     if ((debt_.abs() + late_.abs() + tail_.abs() < kNothing).all()) return Lanes::Zero();
     const Lanes debt = debt_ / dt_s.max(pace_ * period_s_), late = late_ / dt_s.max(late_pace_ * period_s_);
@@ -40,7 +40,7 @@ class Ledger {
     tail_ -= tail * dt_s;
     return debt + late + tail;
   }
-  // One sample's angle by which the rate without payments fell short of the measured one.
+  // Books one sample's angle: measured minus published rate (without payments), integrated.
   void book(const Lanes& short_by_rad, Account account) noexcept {
     if (account == Account::kDebt) debt_ += short_by_rad;
     if (account == Account::kTail) tail_ += short_by_rad;
@@ -49,28 +49,29 @@ class Ledger {
   }
   // The outliers were rotation.
   void admit() noexcept { debt_ += std::exchange(doubt_, Lanes::Zero()); }
-  // A usual measurement at rest: the outliers before it were none, the less in doubt the longer ago.
+  // A normal measurement at rest: the outliers before were no rotation, with certainty growing in time.
   void dismiss() noexcept {
     const Lanes dismissed = doubt_ / kShortGap;
     doubt_ -= dismissed;
     at_rest_ += dismissed;
   }
-  // What the filter at rest has fallen short of since this was asked last.
-  [[nodiscard]] Lanes take_short_at_rest() noexcept { return std::exchange(at_rest_, Lanes::Zero()); }
-  // Another filter's debt.
+  // Angle error of the filter at rest since the last call.
+  [[nodiscard]] Lanes shortfall_at_rest() noexcept { return std::exchange(at_rest_, Lanes::Zero()); }
+  // Takes over another filter's debt.
   void owe(const Lanes& angle_rad) noexcept {
     debt_ += angle_rad;
     pace_ = std::max(pace_, kOwedSamples);
   }
-  // A manoeuvre was found that has gone on for so many samples. settled: the filter at rest carried the angle.
+  // A manoeuvre was detected that began `samples` ago. settled: the filter at rest would have recovered the
+  // angle.
   void owe_late(const Lanes& angle_rad, double samples, bool settled) noexcept {
     late_ += angle_rad;
     if (!settled) tail_ -= angle_rad;
     late_pace_ = std::max(kQuickest, samples);
   }
-  // Samples that the followers of a manoeuvre look back on.
+  // followers: memory of the manoeuvre's trackers, samples.
   void pace(double followers) noexcept { pace_ = pace_of(followers); }
-  // Samples over which their debt is paid.
+  // Samples over which the debt is paid.
   [[nodiscard]] static double pace_of(double followers) noexcept {
     return std::max(kQuickest, 0.5 * followers);
   }
@@ -78,7 +79,7 @@ class Ledger {
 
  private:
   static constexpr double kQuickest = 16.0, kOwedSamples = 1024.0;  // samples
-  static constexpr double kNothing = 1e-18;                         // rad: what is less stays owed
+  static constexpr double kNothing = 1e-18;                         // rad; smaller debts are not paid
 
   double period_s_, pace_ = kQuickest, late_pace_ = kQuickest;
   Lanes debt_ = Lanes::Zero(), late_ = Lanes::Zero(), tail_ = Lanes::Zero(), doubt_ = Lanes::Zero(),

@@ -11,16 +11,17 @@
 namespace ifog {
 namespace {
 
-// Nats by which the longer of two neighbours is likelier, as motions are smooth more often than not, and by which the
-// filter at rest is less likely than they are, as something moved.
+// Prior in nats: the longer of two neighbours is more likely, as motions are mostly smooth; the filter at
+// rest is less likely, as motion was detected.
 constexpr double kPrior = 2.0;
-// Share of the difference of two neighbours' variances that white noise makes in their difference.
+// Variance of the difference of two neighbours due to white noise, as a share of the difference of their
+// variances.
 constexpr double kCommon = 0.65;
-// Twice the correlation of neighbours' errors, 1.26 to 1.45 of the longer one's variance; and the variance, of R / n, that
-// it adds to pay over n samples what noise made the rate fall short of.
+// kCorrelated: twice the correlation of neighbours' errors, 1.26 to 1.45 of the longer one's variance. kPaid:
+// variance, in R / n, of a payment over n samples of the noise's shortfall.
 constexpr double kCorrelated = 2.8, kPaid = 0.75;
 
-// More than an output filter makes of white noise, so that what was given says that it is no motion.
+// More than an output filter makes of white noise, so the given R says that it is not motion.
 constexpr double kStronglyColoured = 8.0;
 
 double certain(double nats) { return 1.0 / (1.0 + exponential(-std::clamp(nats, -30.0, 30.0))); }
@@ -69,8 +70,8 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   }
   mean /= 1.0 - rest_weight_;
   output /= 1.0 - rest_weight_;
-  // No follower of a motion in white noise does better than this. In coloured noise it follows the noise, and strongly
-  // coloured noise nearly as the raw measurement does.
+  // Lower limit of the residual for a tracker in white noise. In coloured noise it follows the noise, in
+  // strongly coloured noise almost like the raw measurement.
   mean = (colour > kColoured).select(mean.max(1.0 + output), mean);
   mean = (colour > kStronglyColoured).select(mean.max(2.0 - (1.0 - output) / colour), mean);
   const double kept = 1.0 / now.rest_factor;
@@ -78,8 +79,8 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   const Lanes ahead = (0.5 * (mean - rest)).max(-kMostNats).min(kMostNats);
   rest_ratio_ = (now.mask > 0.0).select((rest_ratio_ + ahead).min(kMostNats), rest_ratio_);
   rest_age_ += 1.0;
-  // Whether the raw measurement is better is asked at once, as broadband motion stays no longer; among trackers
-  // the choice does not depend on the noise of what it is made for.
+  // The raw measurement is tested without delay, since broadband motion may be short. The choice between
+  // trackers is independent of the present sample's noise.
   const auto compare = [&](std::size_t j) {
     link_[j] += now.mask * (0.5 * (risk[j - 1] - risk[j])).max(-kMostNats).min(kMostNats) -
                 link_[j] * (1.0 / std::max(5.0, 3.0 * trackers.length(j - 1)));
@@ -97,7 +98,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   }
   for (std::size_t j = 2; j < size; ++j) compare(j);
   for (std::size_t j = 1; j < size; ++j) {
-    // Chance of their difference is an eighth of R at most.
+    // The difference scatters by at most R / 8.
     compared_[j] = std::min(compared_[j] + 1.0, std::max(2.0 * kRestMemory, trackers.horizon(j)));
     const Lanes apart = trackers.rate(j) - trackers.rate(j - 1);
     const double common = kCommon * std::max(0.0, trackers.gains(j - 1).output - trackers.gains(j).output);
@@ -111,7 +112,7 @@ Mix::Published Mix::publish(const Trackers& trackers, const Lanes& rest, const L
   double shorter = 0.0, gain = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     const double weight = weight_[j];
-    // Where nothing is measured the parabola's variance grows with the fourth power of its reach, and what it lacks, a
+    // Without measurements the parabola's variance grows with the fourth power of its reach, and its bias, a
     // cube, with the sixth.
     const Lanes reach = trackers.prolonged(j), fourth = reach.square().square();
     if (j > 0) bias += (1.0 - shorter) * (1.0 - shorter) * bias_[j] * fourth * reach.square();

@@ -6,8 +6,8 @@
 namespace ifog {
 namespace {
 
-// Louder noise than is known has to be white for so long, and for two stretches.
-constexpr double kLouder_s = 60.0;
+// Higher noise must be white for this time and for two stretches.
+constexpr double kHigherNoise_s = 60.0;
 
 }  // namespace
 
@@ -32,16 +32,16 @@ void SensorNoise::take(const Sample& now, const Lanes& since) noexcept {
 }
 
 void SensorNoise::learn(const Axes& rate, std::uint32_t valid, bool at_rest, RestFilter& filter) noexcept {
-  walk_.set_stretch(at_rest ? Walk::kStretch : std::max(2.0 * Walk::kStretch, kLouder_s / period_s_));
+  walk_.set_stretch(at_rest ? Walk::kStretch : std::max(2.0 * Walk::kStretch, kHigherNoise_s / period_s_));
   const std::optional<Walk::Found> found = walk_.take(rate, valid, at_rest);
   if (!found) return;
   bool other = false;
   for (std::size_t a = 0; a < axes_; ++a) {
     if (!(found->noise[a] > 0.0) || !found->white) continue;
-    // What a coarse converter leaves depends on the level: less than its steps' own variance is not R.
-    const double heard = std::max(found->noise[a], noise_[a].of_steps()), known = noise_[a].known();
-    if (at_rest ? kOtherNoise * heard < known : heard > kOtherNoise * known) {
-      noise_[a].set_known(heard);
+    // With a coarse converter the result depends on the level; less than its rounding variance is not R.
+    const double level = std::max(found->noise[a], noise_[a].of_steps()), known = noise_[a].known();
+    if (at_rest ? kOtherNoise * level < known : level > kOtherNoise * known) {
+      noise_[a].set_known(level);
       other = true;
     }
   }

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise of one axis, R as it is known and what third differences say beside it, and of all axes of a sensor.
+// Noise of one axis (known R and third differences) and of all axes of a sensor.
 //
-// R is what the filter was given or has learned at rest; only walk.h changes it, by stretches that are white
-// over every octave. Third differences do not see a parabola: for white noise they give R whatever moves
-// smoothly, for broadband motion an upper bound of R, for coloured noise less than R. So they say three
-// things and no more: how large a measurement's variance may be now, how coloured the known noise is, and how
-// coarse the converter is.
+// R is configured or learned at rest; only walk.h changes it, with stretches that are white in every octave.
+// Third differences cancel a parabola. For white noise they give R in any smooth motion; for broadband motion
+// an upper bound of R; for coloured noise less than R. They are used only for the present variance of a
+// measurement, the colour of the known noise, and the converter's step.
 #pragma once
 
 #include <algorithm>
@@ -22,15 +21,15 @@
 
 namespace ifog {
 
-inline constexpr double kColoured = 1.1;    // noise is coloured if Noise::colour() is above this
-inline constexpr double kOtherNoise = 2.0;  // known noise is replaced where a stretch differs by this factor
+inline constexpr double kColoured = 1.1;    // threshold of Noise::colour() for coloured noise
+inline constexpr double kOtherNoise = 2.0;  // known noise is replaced if a stretch differs by this factor
 
 class Noise {
  public:
   // known: R, (rad/s)^2.
   explicit Noise(double known = 1.0) noexcept : known_(known), slow_(known), fast_(known) {}
 
-  // The next measurement, rad/s, that follows the last one after so many nominal samples.
+  // Adds a measurement, rad/s. steps: nominal samples since the last one.
   void take(double rate, double steps) noexcept {
     const double step = std::abs(rate - last_[2]);
     if (in_row_ > 0 && step > 0.0) digit_ = std::min(digit_, step);
@@ -40,8 +39,8 @@ class Noise {
       // An outlier counts for at most five standard deviations.
       const double square = third * third * (1.0 / kThird);
       fast_ += (std::min(square, kMostSquare * fast_) - fast_) / std::min(kFast, taken_ + 4.0);
-      // The usual level is not learned while it is surely exceeded.
-      if (louder() == 1.0)
+      // The usual level is not learned while the present one is significantly higher.
+      if (significant_excess() == 1.0)
         slow_ += (std::min(square, kMostSquare * slow_) - slow_) / std::min(kSlow, taken_ + 1.0);
       taken_ += 1.0;
       refresh_colour();
@@ -55,31 +54,31 @@ class Noise {
     refresh_colour();
   }
   [[nodiscard]] double known() const noexcept { return known_; }
-  // R for tests of motion: a rate halfway between two steps of the converter has d^2 / 4 about its mean.
+  // R for motion tests: a rate halfway between two steps d of the converter has the variance d^2 / 4.
   [[nodiscard]] double tested() const noexcept { return std::max(known_, 0.25 * digit() * digit()); }
-  // By which third differences are now above their usual level: 1 unless by more than chance.
-  [[nodiscard]] double louder() const noexcept {
-    return taken_ > kFast && fast_ > kSurelyLouder * usual() ? heard() : 1.0;
+  // Ratio of third differences to their usual level, if significant; else 1.
+  [[nodiscard]] double significant_excess() const noexcept {
+    return taken_ > kFast && fast_ > kSignificant * usual() ? excess() : 1.0;
   }
-  // The same without that doubt, 1 at least: for who takes all that is louder for noise.
-  [[nodiscard]] double heard() const noexcept { return std::max(1.0, fast_ / usual()); }
-  // By which third differences are now above the known noise, 1 at least: broadband motion is in them.
-  [[nodiscard]] double shaken() const noexcept { return std::max(1.0, fast_ / known_); }
-  // Variance of the known noise over that of equally rough white noise; 1 within chance.
+  // The same without the significance test, at least 1; for filters that treat any excess as noise.
+  [[nodiscard]] double excess() const noexcept { return std::max(1.0, fast_ / usual()); }
+  // Ratio of third differences to the known noise, at least 1; includes broadband motion.
+  [[nodiscard]] double over_known() const noexcept { return std::max(1.0, fast_ / known_); }
+  // Variance of the known noise / that of white noise with the same third differences; 1 within chance.
   [[nodiscard]] double colour() const noexcept { return colour_; }
-  // Variance of a mean of coarse steps d, averaged over the true level: that of the sawtooth's first harmonic,
-  // d / pi exp(-2 pi^2 R / d^2) (Widrow and Kollar, "Quantization Noise", 2008).
+  // Mean error variance of an average of values rounded to steps d, over all true levels: first harmonic of
+  // the sawtooth, d / pi exp(-2 pi^2 R / d^2) (Widrow and Kollar, "Quantization Noise", 2008).
   [[nodiscard]] double rounding() const noexcept {
-    // R that was learned includes the steps' own d^2 / 12; one that is less than that is of the sensor alone.
+    // A learned R includes the rounding variance d^2 / 12; a smaller R is that of the sensor alone.
     const double d2 = digit() * digit(), own = of_steps(), white = known_ > 1.2 * own ? known_ - own : known_;
     const double pi_squared = std::numbers::pi * std::numbers::pi, exponent = 4.0 * pi_squared * white / d2;
     return exponent < 600.0 ? d2 / (2.0 * pi_squared) * exponential(-exponent) : 0.0;
   }
-  // Variance of one of the converter's steps.
+  // Rounding variance of the converter, d^2 / 12.
   [[nodiscard]] double of_steps() const noexcept { return digit() * digit() / 12.0; }
 
  private:
-  // The cube root of a mean square of n degrees of freedom is nearly normal about 1 - 2 / 9n with variance 2 / 9n
+  // The cube root of a mean square with n d.o.f. is nearly normal with mean 1 - 2 / 9n and variance 2 / 9n
   // (Wilson and Hilferty, PNAS 17, 1931).
   void refresh_colour() noexcept {
     if (taken_ <= kSlow) {
@@ -89,16 +88,16 @@ class Noise {
     }
     colour_ = usual() < least_ * known_ ? known_ / usual() : 1.0;
   }
-  // The converter's step, rad/s; 0 until the rate has changed.
+  // Converter's step, rad/s; 0 until the rate has changed.
   [[nodiscard]] double digit() const noexcept { return std::isfinite(digit_) ? digit_ : 0.0; }
-  // R by third differences. A converter at rest between two changes of its last digit shows none.
+  // R from third differences, limited because a converter between two steps shows none.
   [[nodiscard]] double usual() const noexcept { return std::max({slow_, 1e-9 * known_, of_steps()}); }
   static constexpr double kThird = 20.0;                 // 1 + 9 + 9 + 1
   static constexpr double kFast = 32.0, kSlow = 1024.0;  // samples
-  // n overlapping third differences of white noise have a mean square of variance 2 (1 + 1.3) / n R^2.
+  // Variance of the mean square of n overlapping third differences of white noise: 2 (1 + 1.3) / n R^2.
   static constexpr double kThirdVariance = 4.6, kSurely = 3.0;
-  // The mean square of 32 overlapping third differences scatters by 0.4: four standard deviations.
-  static constexpr double kSurelyLouder = 2.6;
+  // Four standard deviations: the mean square of 32 overlapping third differences scatters by 0.4.
+  static constexpr double kSignificant = 2.6;
 
   double known_, slow_, fast_, taken_ = 0.0, least_ = 0.0, colour_ = 1.0,
                                digit_ = std::numeric_limits<double>::infinity();
@@ -106,32 +105,32 @@ class Noise {
   int in_row_ = 0;
 };
 
-// The noise of all axes of a sensor: R of each and how quickly the rates walk, as given and as learned since.
+// Noise of all axes: R of each and the walk of the rates, as given and learned.
 class SensorNoise {
  public:
   SensorNoise(const FilterSettings& settings, const KnownNoise& known, std::size_t axes,
               double period_s) noexcept;
 
-  // The next measurements, rad/s; since: nominal samples since each axis was measured.
+  // Adds measurements, rad/s. since: nominal samples since each axis was measured.
   void take(const Sample& now, const Lanes& since) noexcept;
-  // A measurement at rest, or in what is taken for a motion. The filter is told what that shows: at rest the walk,
-  // and R where it is less than is known; in a manoeuvre R, where what looks like one is white for a minute.
+  // Learns from a measurement and updates the filter. At rest: the walk, and R if it is lower than known. In
+  // a manoeuvre: R, if the apparent motion is white for a minute.
   void learn(const Axes& rate, std::uint32_t valid, bool at_rest, RestFilter& filter) noexcept;
-  // Behind a gap, or where the sensor averages otherwise, a stretch begins anew.
+  // Starts a new stretch, after a gap or a change of the averaging time.
   void break_off() noexcept { walk_.break_off(); }
 
-  // One figure of each axis; 1 where the sensor has no axis.
+  // One figure of each axis; 1 for lanes without axis.
   [[nodiscard]] Lanes each(double (Noise::*figure)() const noexcept) const noexcept {
     Lanes all = Lanes::Ones();
     for (std::size_t a = 0; a < axes_; ++a) all[static_cast<Eigen::Index>(a)] = (noise_[a].*figure)();
     return all;
   }
-  // Over the axes of the sensor.
+  // Mean over the sensor's axes.
   [[nodiscard]] double mean(const Lanes& of) const noexcept {
     return (of * mask_of(axes_of_sensor(axes_))).sum() / static_cast<double>(axes_);
   }
   [[nodiscard]] double mean_known() const noexcept { return mean_; }  // (rad/s)^2
-  // R of each axis over its mean, and the same of the walk.
+  // R of each axis / mean R, and the same for the walk.
   [[nodiscard]] const Lanes& share() const noexcept { return share_; }
   [[nodiscard]] Lanes walk_share() const noexcept { return walk_share_ ? to_lanes(*walk_share_) : share_; }
   [[nodiscard]] LearnedNoise learned() const noexcept;

@@ -14,10 +14,10 @@
 namespace ifog {
 namespace {
 
-// Large enough to be forgotten after one measurement, small enough to leave the covariance ten digits.
+// Large enough to be forgotten after one measurement, small enough to leave ten digits.
 constexpr double kDiffuse = 1e6;
 
-// Calls f with the number of states as a constant. Only what every step does is compiled for each.
+// Calls f with the number of states as a template argument, for the code of every step.
 template <int n = 1, class F>
 [[gnu::always_inline]] inline auto sized(Eigen::Index states, const F& f) {
   if constexpr (n < kMaxStates) {
@@ -91,8 +91,8 @@ void RestFilter::predict(double dt_s) noexcept {
 }
 
 void RestFilter::update(const Measured& m, std::uint64_t sequence, bool learn) noexcept {
-  // The innovation published is that of the weighted mean of predictions; each core's own covariance and
-  // its distance from that mean make its variance, under the weights from before this measurement.
+  // The published innovation is that of the weighted mean prediction. Its variance is made of each core's
+  // covariance and its distance from the mean, with the weights before this measurement.
   const bool alike = (m.share == 1.0).all();
   const Lanes predicted = measured().value;
   double mixture = 0.0;
@@ -149,7 +149,7 @@ void RestFilter::set_variance(double variance) noexcept {
   refresh();
 }
 
-// The weighted mean of a bank: where the model holds a constant rate every G(1) is one, and the delay of a sum of
+// Weighted mean of a bank: if the model keeps a constant rate every G(1) is one, and the delay of a sum of
 // filters is the sum of their delays.
 Settled RestFilter::settled() const noexcept {
   Settled mean;
@@ -176,7 +176,7 @@ void RestFilter::refresh() noexcept {
 
 RestFilter::Reading RestFilter::read(const FewStatesVector& of, const Core& core) const noexcept {
   return sized(model_.states, [&](auto n) {
-    // A single state is the rate itself: no product, each of which the next step would wait for.
+    // A single state is the rate itself, so no product is needed.
     if constexpr (n == 1)
       return Reading{{core.x(0, 0), core.x(0, 1), core.x(0, 2), 0.0}, core.p(0, 0), core.gain[0]};
     const auto h = of.template head<n>();
@@ -202,7 +202,7 @@ RestFilter::Reading RestFilter::read(const FewStatesVector& of) const noexcept {
   return mean;
 }
 
-// Mean square over the measured axes of what a core says against this; zero by itself for a single core.
+// Mean square, over measured axes, of the distance from the mean prediction; zero for a single core.
 double RestFilter::apart(const Lanes& one, const Lanes& mean) const noexcept {
   if (hypotheses_.size() == 1 || valid_ == 0) return 0.0;
   double sum = 0.0;

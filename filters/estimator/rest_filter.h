@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// State model, Kalman core and rule put together: the filter at rest. One core for most rules; for a rule with several
-// hypotheses about the noise, one core each and their weighted mean.
+// Filter at rest: state model, Kalman core and rule. One core for most rules; for a rule with several noise
+// hypotheses one core each, and their weighted mean.
 #pragma once
 
 #include <array>
@@ -17,49 +17,48 @@ namespace ifog {
 
 class RestFilter {
  public:
-  // Throws std::invalid_argument when the model has too many states.
+  // Throws std::invalid_argument if the model has too many states.
   RestFilter(std::unique_ptr<StateModel> model, std::unique_ptr<Rule> rule, double process_noise,
              double measurement_noise);
 
   void restart() noexcept;
-  // Another driving noise from the next prediction on.
+  // Changes the driving noise from the next prediction on.
   void retune(double process_noise) noexcept {
     process_noise_ = process_noise;
     discretised_dt_s_ = -1.0;
   }
-  // Eqs. (9), (10) of the paper over dt.
+  // Equations (9), (10) of the paper over dt.
   void predict(double dt_s) noexcept;
-  // One sample. noise_scale: mean R of the valid axes over the R that the filter was made with; share: R of
-  // each axis over that mean, by which the rule's innovations are normalised.
+  // One sample. noise_scale: mean R of the valid axes / R of the constructor; share: R of each axis / that
+  // mean, by which innovations are normalised for the rule.
   struct Measured {
     Lanes rate = Lanes::Zero();
     std::uint32_t valid = 0;
     double noise_scale = 1.0;
     Lanes share = Lanes::Ones();
   };
-  // Corrects with a measurement. With learn off the rule keeps its R: the innovations of a filter that is catching
-  // up say nothing about it.
+  // Corrects with a measurement. With learn off the rule keeps its R, because innovations of a filter that is
+  // still settling are not representative.
   void update(const Measured& m, std::uint64_t sequence, bool learn) noexcept;
-  // No measurement at this step.
+  // A step without measurement.
   void skip() noexcept;
-  // Moves the level of the axes in `which` until the measurement would be this. A line or a slope of the model stays.
+  // Shifts the level of the axes in `which` so that the predicted measurement is `rate`. Other states remain.
   void shift_to(const Lanes& rate, std::uint32_t which) noexcept;
-  // Makes this the variance of the rate.
+  // Sets the variance of the rate.
   void set_variance(double variance) noexcept;
-  // Lag and correlation if the gain stayed as it is.
+  // Lag and correlation for the present gain in steady state.
   [[nodiscard]] Settled settled() const noexcept;
-  // False when the covariance is none any more or the state no number.
+  // False if the covariance is invalid or the state is not finite.
   [[nodiscard]] bool sound() const noexcept;
 
-  // As the last of the calls above left them. Rate, its variance and its gain are of StateModel::rate(), what
-  // is published; the measurement's are of everything that is measured, the noise's colour and lines
-  // included.
+  // Results of the last call. Rate, variance and gain are those of StateModel::rate(), which is published;
+  // measurement() includes the noise's colour and lines.
   [[nodiscard]] const Lanes& rate() const noexcept { return rate_.value; }
   [[nodiscard]] double variance() const noexcept { return rate_.variance; }
   [[nodiscard]] double gain() const noexcept { return rate_.gain; }
   [[nodiscard]] const Lanes& measurement() const noexcept { return measured().value; }
   [[nodiscard]] double measurement_variance() const noexcept { return measured().variance; }
-  // The rate is all that is measured: the model knows no colour and no line.
+  // True if the model has no coloured noise or lines, so measurement() equals rate().
   [[nodiscard]] bool rate_alone() const noexcept { return model_.rate_alone; }
   [[nodiscard]] double covariance() const noexcept { return covariance_; }  // of the innovation, as used
   [[nodiscard]] Rule& rule() noexcept { return *rule_; }
@@ -73,7 +72,7 @@ class RestFilter {
     FewStatesMatrix start;  // covariance
     bool rate_alone;
   };
-  // The state of KalmanCore<n>: one column an axis, and what is common to all axes.
+  // State of KalmanCore<n>: one column per axis, and the parts common to all axes.
   struct Core {
     Eigen::Matrix<double, Eigen::Dynamic, kMaxAxes, Eigen::ColMajor, kMaxStates, kMaxAxes> x;
     FewStatesMatrix p;
@@ -85,7 +84,7 @@ class RestFilter {
   };
 
   [[nodiscard]] std::span<Core> cores() noexcept { return {cores_.data(), hypotheses_.size()}; }
-  // What a core, and what all of them together, say of `of`'x.
+  // Value, variance and gain of `of`'x in one core, and in the weighted mean.
   [[nodiscard]] Reading read(const FewStatesVector& of, const Core& core) const noexcept;
   [[nodiscard]] Reading read(const FewStatesVector& of) const noexcept;
   [[nodiscard]] const Reading& measured() const noexcept { return model_.rate_alone ? rate_ : measured_; }

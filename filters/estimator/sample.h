@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One measurement of all axes as the tests of motion see it, in the units of the known noise.
+// One measurement of all axes for the motion tests, in units of the known noise.
 #pragma once
 
 #include <Eigen/Core>
@@ -10,8 +10,7 @@
 
 namespace ifog {
 
-// One number of each axis side by side, so that a step of all axes is one of vector registers. The last has no
-// axis.
+// One value per axis in a vector register. The last lane has no axis.
 using Lanes = Eigen::Array<double, 4, 1>;
 static_assert(kMaxAxes < Lanes::SizeAtCompileTime);
 
@@ -22,33 +21,33 @@ static_assert(kMaxAxes < Lanes::SizeAtCompileTime);
   return {static_cast<double>(axes & 1U), static_cast<double>(axes >> 1U & 1U),
           static_cast<double>(axes >> 2U & 1U), 0.0};
 }
-// The axes that a sensor of so many has, bit i.
+// Axes of a sensor with this number of axes, bit i.
 [[nodiscard]] constexpr std::uint32_t axes_of_sensor(std::size_t axes) noexcept { return (1U << axes) - 1U; }
 
-// An innovation counts for five standard deviations at most where it is taken in or summed: as a square, and as
-// nats. One beyond is an outlier.
+// An innovation is limited to five standard deviations where it is used or summed: as a square and in nats.
+// Beyond that it is an outlier.
 inline constexpr double kMostDeviations = 5.0;
 inline constexpr double kMostSquare = kMostDeviations * kMostDeviations;
 inline constexpr double kMostNats = 0.5 * kMostSquare;
-// Where outliers are frequent, and where sizes are compared, those up to 20 standard deviations are measurements.
+// Limit if outliers are frequent, and for comparisons of size: 20 standard deviations.
 inline constexpr double kFarSquare = 400.0;
-inline constexpr double kEvidence = 18.0;  // nats that decide: by chance once in 6e7 samples
-// Samples after which a filter that was moved is one at rest again; and that may be lost in a row, or pass until
-// an outlier is explained.
+inline constexpr double kEvidence = 18.0;  // nats for a decision: by chance once in 6e7 samples
+// Samples until a reset filter counts as at rest; samples that may be lost, or pass until an outlier is
+// explained.
 inline constexpr double kRestMemory = 64.0, kShortGap = 16.0;
-inline constexpr double kTailMemory = 8192.0;  // samples over which tails and outliers are averaged
+inline constexpr double kTailMemory = 8192.0;  // averaging time of tails and outliers, samples
 
 struct Sample {
   std::uint32_t valid = 0;
-  Lanes mask = Lanes::Zero();        // 1 where valid
-  Lanes rate = Lanes::Zero();        // rad/s; where not valid, any number
-  Lanes innovation = Lanes::Zero();  // of the filter at rest, rad/s; 0 where not valid
+  Lanes mask = Lanes::Zero();        // 1 for valid axes
+  Lanes rate = Lanes::Zero();        // rad/s; arbitrary for axes that are not valid
+  Lanes innovation = Lanes::Zero();  // of the filter at rest, rad/s; 0 if not valid
   Lanes scale = Lanes::Ones();       // R of this measurement, (rad/s)^2
-  Lanes inverse = Lanes::Zero();     // 1 / scale; 0 where not valid
-  Lanes surprise = Lanes::Zero();    // square of the innovation over its predicted variance
+  Lanes inverse = Lanes::Zero();     // 1 / scale; 0 if not valid
+  Lanes surprise = Lanes::Zero();    // squared innovation / its predicted variance
   Lanes covered_s = Lanes::Zero();
-  Lanes short_rad = Lanes::Zero();  // angle that the filter at rest has fallen short of before it
-  double rest_factor = 1.0;         // variance of the filter's innovations over R
+  Lanes short_rad = Lanes::Zero();  // angle error of the filter at rest before this sample
+  double rest_factor = 1.0;         // variance of the filter's innovations / R
 };
 
 [[nodiscard]] inline double greatest(const Lanes& lanes) noexcept { return lanes.maxCoeff(); }

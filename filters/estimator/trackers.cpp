@@ -9,12 +9,12 @@
 namespace ifog {
 namespace {
 
-// Half a decade between memories: the mix of two neighbours is within 5 % of the best memory between them.
+// Memories half a decade apart: the mixture of two neighbours is within 5 % of the best memory between them.
 constexpr double kSpacing = 3.1622776601683795;
-// Memory, samples, of the second one: half of the raw measurement's weight. Shorter ones differ from that by
-// nothing.
+// Memory of the second tracker, samples: it weighs the raw measurement by one half. Shorter ones would hardly
+// differ from the raw measurement.
 constexpr double kSecond = 4.5;
-// The shortest four follow any motion that 200 samples show, whatever the filter at rest is.
+// The shortest four, which follow any motion over 200 samples, are always enabled.
 constexpr std::size_t kAlways = 4;
 
 Trackers::Gains fading_gains(double memory) {
@@ -51,7 +51,7 @@ void Trackers::grow_to(State& state, std::size_t j, double age) const noexcept {
 }
 
 void Trackers::begin_from(std::size_t tracker, std::size_t from) noexcept {
-  // As old as what it starts from is long: the parabola through so many measurements.
+  // Age equal to the other's length: parabola through as many measurements.
   const double age = std::max(kParabola, state_[from].length);
   const std::size_t end = std::max(size_, tracker + 1);
   for (std::size_t j = tracker; j < end; ++j) {
@@ -61,7 +61,8 @@ void Trackers::begin_from(std::size_t tracker, std::size_t from) noexcept {
   }
 }
 
-// Gains of the growing-memory filter until the fading ones are larger. The first two are a point and a line.
+// Gains of the growing-memory filter until the fading-memory gains are larger. The first two are a point and
+// a line.
 void Trackers::set_gains(State& state, std::size_t j) const noexcept {
   const double n = state.age;
   if (n < 2.0) {
@@ -79,7 +80,7 @@ void Trackers::set_gains(State& state, std::size_t j) const noexcept {
   state.gains = {g, 18.0 * (2.0 * n + 1.0) / product, 30.0 / product, factor, logarithm(factor), g};
 }
 
-// An axis that has been missing for longer than its parabola reaches keeps the rate at which that ended.
+// An axis that is missing for longer than the parabola's reach keeps the last extrapolated rate.
 void Trackers::prolong(State& state, double steps) const noexcept {
   state.slope = ended(state).select(0.0, state.slope);
   state.curvature = ended(state).select(0.0, state.curvature);
@@ -121,13 +122,12 @@ void Trackers::prolong(State& state, double steps) const noexcept {
   since_ *= 1.0 - mask;
 }
 
-// The gains are those of steps of one sample. In units of nominal samples those of slope and curvature fall
-// with the distance of the measurements; left as they are, longer steps would put the poles outside the unit
-// circle.
+// The gains are for steps of one sample. The gains of slope and curvature decrease with the distance of the
+// measurements; otherwise longer steps would be unstable.
 void Trackers::correct_some(State& state, const Lanes& rate, const Lanes& mask) noexcept {
   const Gains& g = state.gains;
   const Lanes innovation = mask * (rate - state.rate), step = since_.max(1.0);
-  // What a parabola that has ended holds is not corrected but begun again.
+  // After the end of its extrapolation a parabola restarts instead of being corrected.
   state.rate += ended(state).select(innovation, g.rate * innovation);
   state.slope += ended(state).select(0.0, g.slope / step * innovation);
   state.curvature += ended(state).select(0.0, g.curvature / (step * step) * innovation);

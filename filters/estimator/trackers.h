@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trackers of rate, slope and curvature that forget at different speeds: from one sample, which is the
-// measured rate itself, to as long as the filter at rest, half a power of ten apart.
+// Trackers of rate, slope and curvature with memories half a decade apart, from one sample (the measured
+// rate) up to that of the filter at rest.
 //
-// A tracker is the fading-memory polynomial filter of second degree (Morrison, "Introduction to Sequential
+// A tracker is a fading-memory polynomial filter of second degree (Morrison, "Introduction to Sequential
 // Smoothing and Prediction", 1969; Brookner, "Tracking and Kalman Filtering Made Easy", 1998, section 7):
-// three equal poles at theta, gains 1 - theta^3, 3/2 (1 - theta)^2 (1 + theta), (1 - theta)^3. Of rate to
-// output 1 - H is the cube of a first difference: no lag on a constant slope or curvature, and a gain that
-// departs from one only with the fourth power of frequency, which is what keeps coning out of the angle. A
-// young tracker is the least-squares parabola through all measurements since it began. All axes share the
-// gains.
+// three equal poles at theta, gains 1 - theta^3, 3/2 (1 - theta)^2 (1 + theta), (1 - theta)^3. 1 - H is the
+// cube of a first difference: no lag for constant slope or curvature, and a gain that differs from one only
+// with the fourth power of frequency, which keeps coning out of the angle. A young tracker is the
+// least-squares parabola through all measurements since its start. All axes share the gains.
 #pragma once
 
 #include <array>
@@ -22,55 +21,55 @@ class Trackers {
  public:
   // Up to 1.4e5 samples.
   static constexpr std::size_t kMost = 11;
-  // Measurements that a parabola goes through: a younger tracker predicts nothing.
+  // Measurements that define a parabola; a younger tracker predicts nothing.
   static constexpr double kParabola = 3.0;
-  // Prediction variance over R of a tracker that knows nothing.
+  // Prediction variance / R of a tracker without data.
   static constexpr double kUnknown = 1e6;
 
   struct Gains {
     double rate = 1.0, slope = 0.0, curvature = 0.0;
-    double factor = kUnknown, log_factor = 13.8;  // variance of an innovation over R
-    double output = 1.0;                          // variance of the filtered rate over R
+    double factor = kUnknown, log_factor = 13.8;  // variance of an innovation / R
+    double output = 1.0;                          // variance of the filtered rate / R
   };
 
-  // axes: of the sensor, the first lanes.
+  // axes: number of the sensor's axes, the first lanes.
   explicit Trackers(std::size_t axes = kMaxAxes) noexcept;
 
-  // Trackers as long as this many samples take part; once in they stay.
+  // Enables trackers up to this memory; they are not disabled again.
   void reach(double samples) noexcept;
-  // All of them afresh: they know nothing.
+  // Restarts all trackers without data.
   void begin() noexcept;
-  // This one and all longer ones continue from the state of a shorter one.
+  // This tracker and all longer ones continue from the state of a shorter one.
   void begin_from(std::size_t tracker, std::size_t from) noexcept;
-  // One step of so many nominal samples.
+  // Predicts over `steps` nominal samples.
   void predict(double steps) noexcept;
-  // mask: 1 for the axes that are measured, else 0.
+  // mask: 1 for measured axes, else 0.
   void correct(const Lanes& rate, const Lanes& mask) noexcept;
-  // First measurements of the axes with mask 1: they have no slope yet.
+  // First measurements of the axes with mask 1; their slope is unknown.
   void seed(const Lanes& rate, const Lanes& mask) noexcept;
 
   [[nodiscard]] std::size_t size() const noexcept { return size_; }
-  // After predict() the rate one step ahead, after correct() the filtered one.
+  // After predict() the predicted rate, after correct() the filtered one.
   [[nodiscard]] const Lanes& rate(std::size_t j) const noexcept { return state_[j].rate; }
   [[nodiscard]] const Gains& gains(std::size_t j) const noexcept { return state_[j].gains; }
-  // Prediction variance over R of each axis, whose last measurement is since() samples old.
+  // Prediction variance / R of each axis, whose last measurement is since() samples old.
   [[nodiscard]] Lanes factor(std::size_t j) const noexcept;
   [[nodiscard]] bool predicts(std::size_t j) const noexcept { return state_[j].age >= kParabola; }
-  // What it has of its memory by now, samples.
+  // Effective memory so far, samples.
   [[nodiscard]] double length(std::size_t j) const noexcept { return state_[j].length; }
-  // Samples over which it is compared with another filter: its impulse response has decayed.
+  // Samples over which it is compared with another filter; its impulse response has decayed then.
   [[nodiscard]] double horizon(std::size_t j) const noexcept { return horizon_[j]; }
-  // By how much the parabola's reach is longer than itself for each axis; 1 for one that has just been measured.
+  // Ratio of each axis's parabola including extrapolation to its length; 1 if just measured.
   [[nodiscard]] Lanes prolonged(std::size_t j) const noexcept {
     return 1.0 + (since_ / state_[j].length).min(kMostLengths);
   }
-  // Nominal samples since each axis was corrected; 1 when none is missing.
+  // Nominal samples since each axis was corrected; 1 if none is missing.
   [[nodiscard]] const Lanes& since() const noexcept { return since_; }
 
  private:
   struct State {
     Lanes rate = Lanes::Zero(), slope = Lanes::Zero(),
-          curvature = Lanes::Zero();  // per sample, half per sample^2
+          curvature = Lanes::Zero();  // per sample; half per sample^2
     double age = 0.0, length = 1.0;
     bool settled = false;
     Gains gains{};
@@ -80,15 +79,14 @@ class Trackers {
   void set_gains(State& state, std::size_t j) const noexcept;
   void prolong(State& state, double steps) const noexcept;
   void correct_some(State& state, const Lanes& rate, const Lanes& mask) noexcept;
-  // Every axis was corrected at the last nominal sample.
+  // True if every axis was corrected at the last nominal sample.
   [[nodiscard]] bool all_since_last() const noexcept { return (axes_ * (since_ - 1.0)).abs().sum() == 0.0; }
-  // Axes that have been missing for longer than the parabola reaches.
+  // Axes that have been missing for longer than a parabola is extrapolated.
   [[nodiscard]] auto ended(const State& state) const noexcept { return since_ > kMostLengths * state.length; }
 
-  // A parabola is prolonged over so many of its lengths at most: beyond, its variance exceeds a thousand times
-  // R.
+  // Largest extrapolation in units of the parabola's length; beyond, the variance exceeds 1000 R.
   static constexpr double kMostLengths = 4.0;
-  Lanes axes_;  // 1 for those that the sensor has
+  Lanes axes_;  // 1 for the sensor's axes
   std::array<double, kMost> memory_{}, horizon_{};
   std::array<Gains, kMost> fading_{};
   std::array<State, kMost> state_{};

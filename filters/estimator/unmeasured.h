@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// By how much less an axis is known than the filter's variance says, which falls with every axis that is measured.
+// Extra variance of axes that are not measured. The filter's common variance falls with every measured axis.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@ namespace ifog {
 
 class Unmeasured {
  public:
-  // One sample. rate, variance, gain: as the filter has them after it; grown: by which the walk of each axis raises its
-  // variance; started: axes that have ever been measured.
+  // Adds one sample. rate, variance, gain: of the filter after it; grown: increase of each axis's variance by
+  // its walk; started: axes that have ever been measured.
   void take(const Sample& now, const Lanes& rate, const Lanes& variance, double gain, const Lanes& grown,
             std::uint32_t started, bool moving) noexcept {
     for (std::size_t a = 0; a < kMaxAxes; ++a) {
@@ -22,14 +22,14 @@ class Unmeasured {
       if ((now.valid >> a & 1U) != 0) {
         others_[a] = rate;
         if (more == 0.0) continue;
-        // Whatever was not known before, the rate is off by no more than its distance from the measurement and that
-        // one's noise make.
+        // After a measurement the rate error is at most its distance from the measurement plus that one's
+        // noise.
         const double apart = now.rate[i] - rate[i];
         more = std::min(more * (1.0 - gain) * (1.0 - gain), apart * apart + now.scale[i]);
         if (more < 1e-3 * variance[i]) more = 0.0;
       } else if ((started >> a & 1U) != 0) {
         more = std::max(0.0, more + last_[i] + grown[i] - variance[i]);
-        // What turns about the other axes, by more than their noise, may turn about this one.
+        // A significant rotation about the other axes may also be about this one.
         const Lanes turned = now.mask * (rate - others_[a]).square();
         if (moving)
           more = std::max(more, greatest((turned > kMostSquare * 2.0 * variance).select(turned, 0.0)));
@@ -41,7 +41,7 @@ class Unmeasured {
 
  private:
   Lanes more_ = Lanes::Zero(), last_ = Lanes::Zero();
-  std::array<Lanes, kMaxAxes> others_{};  // rates when the axis was measured last
+  std::array<Lanes, kMaxAxes> others_{};  // rates when the axis was last measured
 };
 
 }  // namespace ifog

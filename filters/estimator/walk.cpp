@@ -11,34 +11,33 @@
 namespace ifog {
 namespace {
 
-// Differences of neighbouring blocks, of which each is in two, count for two thirds of their number.
+// Overlapping differences of neighbouring blocks count for two thirds of their number.
 constexpr double kIndependent = 2.0 / 3.0;
-// An octave with fewer says nothing.
+// Octaves with fewer differences are not used.
 constexpr double kFewest = 5.0;
-// Standard deviations: one octave in a thousand, of ten in a stretch, is further off by chance.
+// Standard deviations: by chance one of 1000 octaves, in stretches of ten, exceeds it.
 constexpr double kChance = 3.3;
-// Octaves that colour may fill, and by how much the noise of long means may exceed that of differences of
-// samples: a correlation of one half, an output filter with its corner at a sixth of the sample rate. What is
-// slower is not told from the motion of a hand.
+// Octaves that colour may fill, and limit of the noise of long means over that of single differences: a
+// correlation of 0.5, i.e. an output filter with its corner at 1/6 of the sample rate. Slower colour cannot
+// be distinguished from the motion of a hand.
 constexpr std::size_t kMostColour = 3;
 constexpr double kMostExcess = 6.7;
-// Octaves from here on, 64 samples, are long: the angle of shaking is bounded there, and a sensor's output
-// filter is quicker.
+// First long octave, 64 samples: there the angle of shaking is bounded, and output filters are faster.
 constexpr std::size_t kLong = 6;
-// -2 log-likelihood that surely contradicts: e^6.
+// Difference of -2 log-likelihood that refutes: e^6.
 constexpr double kSurely = 12.0;
-// Difference of -2 log-likelihood that is one standard error wide.
+// Difference of -2 log-likelihood of one standard error.
 constexpr double kNearly = 1.0;
-// Stretches that are remembered: a million samples, which show a walk of 1e-9.
+// Stretches averaged: a million samples, which show a walk of 1e-9.
 constexpr double kMemory = 256.0;
-// Ratios that are tried: down from the greatest by halves, to 1e-12.
+// Ratios tried: from the largest by halves down to 1e-12.
 constexpr std::size_t kTrials = 31;
 
 double ratio_of(std::size_t trial) noexcept {
   return std::ldexp(kMostRatio, static_cast<int>(trial) - static_cast<int>(kTrials - 1));
 }
 
-// Allan variance of noise and walk by octave, R being 1, and its logarithm.
+// Allan variance of noise and walk by octave for R = 1, and its logarithm.
 struct Shape {
   double variance = 0.0, log = 0.0;
 };
@@ -86,7 +85,7 @@ std::optional<Walk::Found> Walk::take(const Axes& rate, std::uint32_t valid_axes
 
 void Walk::add(std::size_t axis, double rate) noexcept {
   double mean = rate;
-  // A single one that is far off says nothing of the others' noise.
+  // An axis whose present level differs does not count for the others.
   if (const Allan& now = lately_[axis]; now.counts[0] >= kFewest && now.sums[0] > 0.0) {
     const double most = kMostDeviations * std::sqrt(2.0 * now.sums[0] / now.counts[0]);
     const double last = blocks_[axis][0].mean;
@@ -148,15 +147,14 @@ double Walk::white_noise(const Allan& allan, std::size_t trial, std::size_t firs
   double long_off = 0.0, long_count = 0.0;
   for (std::size_t k = first; k < kOctaves && allan.counts[k] >= kFewest; ++k) {
     const double count = allan.counts[k];
-    // The logarithm of a mean of n squares is near normal: mean -1 / n, variance 2 / n.
+    // The logarithm of a mean of n squares is nearly normal: mean -1 / n, variance 2 / n.
     const double off = logarithm(allan.sums[k] / count / (noise * shapes[k].variance)) + 1.0 / count;
     if (off * off * count / 2.0 > kChance * kChance) return 0.0;
     if (k < kLong) continue;
     long_off += off * count;
     long_count += 2.0 * count;
   }
-  // What is bounded is below in all long octaves, what turns above in all: together that shows sooner than in
-  // one.
+  // A bounded angle is low in all long octaves, a turn high in all, so their sum is a sharper test.
   if (long_off * long_off > kChance * kChance * long_count) return 0.0;
   return noise;
 }
@@ -180,7 +178,7 @@ std::optional<Walk::Found> Walk::judge() noexcept {
   }
   if (noise && learn_) believe();
   found.ratio = ratio_;
-  // The long blocks go on where it was noise.
+  // The long blocks continue if it was noise.
   if (!noise) blocks_ = {};
   lately_ = {};
   in_stretch_ = 0.0;
@@ -195,7 +193,7 @@ void Walk::believe() noexcept {
       all_[a].counts[k] = kept * all_[a].counts[k] + lately_[a].counts[k];
     }
   samples_ = kept * samples_ + in_stretch_;
-  // What was recalled stands until this run has had as much, or contradicts it.
+  // The recalled ratio is valid until this run has as many samples or contradicts it.
   std::size_t recalled = 0;
   while (recalled + 1 < kTrials && ratio_of(recalled + 1) <= ratio_) ++recalled;
   if (samples_ >= recalled_samples_ || misfit(all_, recalled) - misfit(all_, likeliest(all_, 0.0)) > kSurely)

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a stream says of a sensor's noise: how strong the white noise of each axis is, and how quickly the
-// rate walks.
+// Learns a sensor's noise from its data: white noise of each axis and the random walk of the rate.
 //
-// One learner for the start, for rest, and for louder noise. A stretch of some thousand samples is judged as
-// a whole by its Allan variance. It is noise if it is white over every octave: means over m samples have the
-// Allan variance R / m + q dt m / 3, q dt <= 1e-3 R, within chance at each m from one sample to a sixteenth
-// of the stretch. Shaking whose angle is bounded falls faster with m, turns rise, and neither is taken for
-// noise.
+// Used at the start, at rest, and for higher noise. A stretch of some thousand samples is noise if its Allan
+// variance over means of m samples is R / m + q dt m / 3 with q dt <= 1e-3 R, within chance at each m from
+// one sample to 1/16 of the stretch. Shaking of bounded angle falls faster with m, turns rise; neither is
+// mistaken for noise.
 //
-// The walk is found by the likelihood of the long octaves, over the stretches of a million samples together, for
-// each ratio q dt / R on a grid; R is left open. Of ratios nearly as likely as the best the quickest is taken, as
-// a filter that is a little too quick is a little noisier and one that is too slow takes the walk for motion.
+// The walk is the ratio q dt / R, on a grid, with the largest likelihood of the long octaves over a million
+// samples; R is free. Of nearly equally likely ratios the largest is used: a filter that is slightly too fast
+// is slightly noisier, but one that is too slow mistakes the walk for motion.
 #pragma once
 
 #include <array>
@@ -22,43 +20,43 @@
 
 namespace ifog {
 
-// Driving noise of a sample over R, at most: ten thousand times any gyro's. What looks quicker is a motion.
+// Upper limit of driving noise per sample / R: 10^4 times that of any gyro. Faster changes are motion.
 inline constexpr double kMostRatio = 1e-3;
 
 class Walk {
  public:
   struct Found {
-    Axes noise{};        // R of each axis in the last stretch, per sample, (rad/s)^2; 0: not known
+    Axes noise{};        // R of each axis in the last stretch, per sample, (rad/s)^2; 0: unknown
     double ratio = 0.0;  // q dt / R
-    bool white = false;  // from one sample on; else from eight on, and the noise is coloured
+    bool white = false;  // white from one sample on; else from eight on, i.e. coloured
   };
 
-  // Samples of a stretch at rest: octaves up to 256 samples, and R to 2 %.
+  // Samples of a stretch at rest: octaves up to 256 samples, R to 2 %.
   static constexpr double kStretch = 4096.0;
-  // Blocks of up to 5e5 samples, in which a walk of 1e-10 shows.
+  // Blocks of up to 5e5 samples, which show a walk of 1e-10.
   static constexpr std::size_t kOctaves = 20;
 
-  // A stretch has so many samples.
+  // stretch: samples per stretch.
   explicit Walk(double stretch = kStretch) noexcept;
-  // The walk as an earlier run has found it, in so many samples: stands until this run has had as many or
-  // contradicts it.
+  // Sets the ratio learned by an earlier run from `samples`; valid until this run has as many or contradicts
+  // it.
   void recall(double ratio, double samples) noexcept;
-  // The next measurements, rad/s; returns what a stretch that ends with them shows, if it is noise. The walk is learned
-  // only with `learn`.
+  // Adds measurements, rad/s. If a stretch ends with them and is noise, returns its result. The walk is
+  // learned only with `learn`.
   std::optional<Found> take(const Axes& rate, std::uint32_t valid_axes, bool learn) noexcept;
-  // A motion or a gap: the stretch begins anew.
+  // Starts a new stretch after a motion or gap.
   void break_off() noexcept;
   void set_stretch(double samples) noexcept { stretch_ = samples; }
-  // Samples that the ratio stands on.
+  // Number of samples behind the ratio.
   [[nodiscard]] double samples() const noexcept { return samples_ + recalled_samples_; }
 
  private:
-  // The last mean of 2^k samples, and the first half of the next.
+  // Last mean of 2^k samples, and the first half of the next one.
   struct Block {
     double mean = 0.0, half = 0.0;
     bool has_mean = false, has_half = false;
   };
-  // Allan variance of one axis by octave, times how many independent differences it is of.
+  // Allan variance of one axis by octave, times its number of independent differences.
   struct Allan {
     std::array<double, kOctaves> sums{}, counts{};
   };
@@ -66,20 +64,20 @@ class Walk {
 
   void add(std::size_t axis, double rate) noexcept;
   [[nodiscard]] std::optional<Found> judge() noexcept;
-  // R of an axis if it is white noise and this walk from that octave on; 0 if it is not, NaN if nothing was
-  // measured.
+  // R of an axis if its noise is white plus this walk from octave `first` on; 0 if not, NaN if there are no
+  // data.
   [[nodiscard]] static double white_noise(const Allan& allan, std::size_t trial, std::size_t first) noexcept;
   void believe() noexcept;
-  // -2 log-likelihood of a ratio, R of each axis being the likeliest.
+  // -2 log-likelihood of a ratio, with the most likely R of each axis.
   [[nodiscard]] static double misfit(const Octaves& of, std::size_t trial) noexcept;
-  // nearly: the quickest of those within so much of the least misfit.
+  // Largest ratio whose misfit is within `nearly` of the smallest.
   [[nodiscard]] static std::size_t likeliest(const Octaves& of, double nearly) noexcept;
 
   std::array<std::array<Block, kOctaves>, kMaxAxes> blocks_{};
   Octaves lately_{}, all_{};
   double stretch_, in_stretch_ = 0.0, samples_ = 0.0;
   double ratio_ = kMostRatio;
-  double recalled_samples_ = 0.0;  // that ratio_ was recalled with; 0: it is this run's
+  double recalled_samples_ = 0.0;  // samples of the recalled ratio_; 0: learned by this run
   bool learn_ = true;
 };
 
