@@ -26,7 +26,7 @@ Engine::Engine(const FilterSettings& settings, const KnownNoise& known, std::uni
       axes_(static_cast<std::size_t>(axes)),
       period_s_(period_s),
       rest_(std::move(rest)),
-      noise_(settings, known, axes_, period_s),
+      noise_(settings, known, axes_, period_s, rest_->colour_variance()),
       follow_(axes_, period_s, follows_) {}
 
 void Engine::restart() noexcept {
@@ -126,7 +126,7 @@ void Engine::begin_axes(const Step& s) noexcept {
 
 void Engine::weigh(Step& s) noexcept {
   Sample& m = s.sample;
-  m.rest_factor = 1.0 + rest_->measurement_variance() / (noise_.mean_known() * s.noise_scale);
+  m.rest_factor = noise_.white() + rest_->measurement_variance() / (noise_.mean_known() * s.noise_scale);
   m.scale = noise_.each(&Noise::tested) * s.noise_scale;
   if (smooths_) m.scale *= noise_.each(&Noise::excess);
   m.innovation = m.mask * (m.rate - rest_->measurement());
@@ -159,8 +159,7 @@ void Engine::follow(Step& s) noexcept {
       s.variance += s.sample.innovation * s.sample.innovation;
       return;
     case Outliers::Verdict::jump:
-      jump(s);
-      break;
+      return jump(s);
     case Outliers::Verdict::usual:
       if (f.outliers.run() > 0) break;
       // In a manoeuvre an outlier may be rotation.
@@ -170,15 +169,11 @@ void Engine::follow(Step& s) noexcept {
   follow_.moving ? follow_manoeuvre(s) : follow_rest(s);
 }
 
-// Enough unpredicted measurements are a new rate: trackers restart with this one.
+// Enough unpredicted measurements are a new rate.
 void Engine::jump(Step& s) noexcept {
-  Follower& f = follow_;
-  f.trackers.begin();
-  f.trackers.seed(f.published, Lanes::Ones());
-  f.trackers.predict(1.0);
-  f.change.forget_angle();
-  f.outliers.end_run();
-  move_rest((s.sample.mask > 0.0).select(s.sample.rate, f.published), s.sample.scale);
+  follow_.change.forget_angle();
+  follow_.outliers.end_run();
+  move_rest((s.sample.mask > 0.0).select(s.sample.rate, follow_.published), s.sample.scale);
   weigh(s);
   begin_manoeuvre(s, ChangeTest::kShaking);
 }
@@ -187,15 +182,11 @@ void Engine::follow_rest(Step& s) noexcept {
   Follower& f = follow_;
   s.sample.short_rad = f.ledger.shortfall_at_rest();
   std::optional<std::size_t> found =
-      f.change.take(f.trackers, s.sample, noise_.each(&Noise::colour), f.outliers.rarity(), f.lag());
+      f.change.take(f.trackers, s.sample, rest_->rate_alone() ? noise_.each(&Noise::colour) : Lanes::Ones(),
+                    f.outliers.rarity(), f.lag());
   if (found == ChangeTest::kShaking && smooths_) found.reset();
   f.trackers.correct(s.sample.rate, s.sample.mask);
-  if (found) {
-    begin_manoeuvre(s, *found);
-    take(s, false);
-    publish_mix(s);
-    return;
-  }
+  if (found) return begin_manoeuvre(s, *found);
   take(s, f.since_moved > kRestMemory);
   publish_rest(s);
 }
@@ -213,15 +204,25 @@ void Engine::begin_manoeuvre(Step& s, std::size_t tracker) noexcept {
   f.failed_nats = kEvidence;
   f.mix.begin(shaking ? 0 : tracker);
   f.change.begin();
-  if (shaking) return;
-  if (tracker + 1 < f.trackers.size()) f.trackers.begin_from(tracker + 1, tracker);
-  move_rest(f.trackers.rate(tracker), f.trackers.gains(tracker).output * s.sample.scale);
+  if (shaking) {  // no tracker predicts it, so what they remember is of no use
+    f.trackers.begin();
+    f.trackers.seed((s.sample.mask > 0.0).select(s.sample.rate, f.published), Lanes::Ones());
+  } else {
+    if (tracker + 1 < f.trackers.size()) f.trackers.begin_from(tracker + 1, tracker);
+    move_rest(f.trackers.rate(tracker), f.trackers.gains(tracker).output * s.sample.scale);
+  }
+  take(s, false);
+  publish_mix(s);
 }
 
 void Engine::follow_manoeuvre(Step& s) noexcept {
   Follower& f = follow_;
-  f.mix.take(f.trackers, s.sample, noise_.each(&Noise::colour));
   take(s, false);
+  const RestFilter::Reading rest = rest_->without_colour();
+  // Covariance of the error and the measurement's noise, over R: of white noise the gain, whatever the rule's R.
+  const double common =
+      rest_->rate_alone() ? rest.gain : rest.variance / (noise_.mean_known() * s.noise_scale);
+  f.mix.take(f.trackers, s.sample, noise_.each(&Noise::colour), rest.value, common);
   publish_mix(s);
   if (f.mix.rest_failed()) {
     move_rest(s.rate, s.variance.min(s.sample.scale));
@@ -252,7 +253,7 @@ void Engine::take(Step& s, bool learn) noexcept {
     if (smooths_) measured.share *= noise_.each(&Noise::excess);
     const double more = smooths_ ? noise_.mean(measured.share) : 1.0;
     measured.share *= 1.0 / more;
-    measured.noise_scale *= more * noise_.mean_known() / settings_.measurement_noise;
+    measured.noise_scale *= more * noise_.over_given();
   }
   // The first measurement sets the state; its innovation is zero and no evidence.
   rest_->update(measured, s.in.sequence, learn && follow_.since_moved > 0.0);
@@ -351,7 +352,7 @@ void Engine::learn(const Step& s) noexcept {
 }
 
 void Engine::publish(const Step& s) noexcept {
-  const Lanes known = noise_.each(&Noise::known), colour = noise_.each(&Noise::colour);
+  const Lanes colour = noise_.each(&Noise::colour);
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     const double variance = s.variance[i] + unmeasured_.more()[i];
@@ -362,7 +363,7 @@ void Engine::publish(const Step& s) noexcept {
     s.out.innovation_variance[a] =
         rest_->covariance() * (settings_.follow_manoeuvres ? noise_.share()[i] : 1.0);
     health_.measurement_noise[a] = rest_->rule().measurement_noise();
-    if (settings_.follow_manoeuvres) health_.measurement_noise[a] *= known[i] / settings_.measurement_noise;
+    if (settings_.follow_manoeuvres) health_.measurement_noise[a] *= noise_.share()[i] * noise_.over_given();
     health_.colour[a] = colour[i];
   }
   health_.floor_hits = rest_->rule().floor_hits();

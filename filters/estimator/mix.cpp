@@ -54,7 +54,8 @@ bool Mix::rest_found() const noexcept {
   return least(rest_ratio_) > kFound && rest_age_ >= std::max(kRestMemory, 3.0 * failed_after_);
 }
 
-void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexcept {
+void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour, const Lanes& rest,
+               double common) noexcept {
   const std::size_t size = trackers.size();
   seen_ = seen_.max(now.mask);
   std::array<Lanes, Trackers::kMost> risk;
@@ -74,9 +75,8 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour) noexc
   // strongly coloured noise almost like the raw measurement.
   mean = (colour > kColoured).select(mean.max(1.0 + output), mean);
   mean = (colour > kStronglyColoured).select(mean.max(2.0 - (1.0 - output) / colour), mean);
-  const double kept = 1.0 / now.rest_factor;
-  const Lanes left = kept * now.innovation, rest = left * left * now.inverse + 2.0 * (1.0 - kept);
-  const Lanes ahead = (0.5 * (mean - rest)).max(-kMostNats).min(kMostNats);
+  const Lanes left = (now.rate - rest).square() * now.inverse;
+  const Lanes ahead = (0.5 * (mean - left) - common).max(-kMostNats).min(kMostNats);
   rest_ratio_ = (now.mask > 0.0).select((rest_ratio_ + ahead).min(kMostNats), rest_ratio_);
   rest_age_ += 1.0;
   // The raw measurement is tested without delay, since broadband motion may be short. The choice between

@@ -36,7 +36,9 @@ class Mix {
     rest_ratio_.setConstant(kFound);
   }
   // Corrects the trackers. coloured: 1 for axes whose R is above that of third differences.
-  void take(Trackers& trackers, const Sample& now, const Lanes& colour) noexcept;
+  // rest: corrected rate of the filter at rest; common: covariance of its error and the noise of `now`, over R.
+  void take(Trackers& trackers, const Sample& now, const Lanes& colour, const Lanes& rest,
+            double common) noexcept;
   // rest, rest_variance, lag: of the filter at rest; scale: R.
   [[nodiscard]] Published publish(const Trackers& trackers, const Lanes& rest, const Lanes& rest_variance,
                                   const Lanes& scale, double lag) const noexcept;

@@ -12,16 +12,17 @@ constexpr double kHigherNoise_s = 60.0;
 }  // namespace
 
 SensorNoise::SensorNoise(const FilterSettings& settings, const KnownNoise& known, std::size_t axes,
-                         double period_s) noexcept
+                         double period_s, double colour_variance) noexcept
     : axes_(axes),
       period_s_(period_s),
       process_noise_(settings.process_noise),
+      given_(settings.measurement_noise + colour_variance),
+      white_(settings.measurement_noise / given_),
       learns_walk_(known.learns_walk),
       walk_share_(known.walk_share) {
-  for (std::size_t a = 0; a < axes_; ++a) noise_[a] = Noise(known.share[a] * settings.measurement_noise);
+  for (std::size_t a = 0; a < axes_; ++a) noise_[a] = Noise(known.share[a] * given_);
   refresh_share();
-  if (known.samples > 0.0)
-    walk_.recall(process_noise_ * period_s / settings.measurement_noise, known.samples);
+  if (known.samples > 0.0) walk_.recall(process_noise_ * period_s / given_, known.samples);
 }
 
 void SensorNoise::take(const Sample& now, const Lanes& since) noexcept {
@@ -63,8 +64,8 @@ void SensorNoise::refresh_share() noexcept {
 LearnedNoise SensorNoise::learned() const noexcept {
   LearnedNoise out;
   out.process_noise = process_noise_;
-  for (std::size_t a = 0; a < axes_; ++a) out.noise[a] = noise_[a].known();
-  out.measurement_noise = mean_;
+  for (std::size_t a = 0; a < axes_; ++a) out.noise[a] = white_ * noise_[a].known();
+  out.measurement_noise = white_ * mean_;
   out.samples = learns_walk_ ? walk_.samples() : 0.0;
   return out;
 }

@@ -108,8 +108,9 @@ class Noise {
 // Noise of all axes: R of each and the walk of the rates, as given and learned.
 class SensorNoise {
  public:
-  SensorNoise(const FilterSettings& settings, const KnownNoise& known, std::size_t axes,
-              double period_s) noexcept;
+  // colour_variance: of the state model's coloured noise, (rad/s)^2. The known R includes it.
+  SensorNoise(const FilterSettings& settings, const KnownNoise& known, std::size_t axes, double period_s,
+              double colour_variance) noexcept;
 
   // Adds measurements, rad/s. since: nominal samples since each axis was measured.
   void take(const Sample& now, const Lanes& since) noexcept;
@@ -130,6 +131,9 @@ class SensorNoise {
     return (of * mask_of(axes_of_sensor(axes_))).sum() / static_cast<double>(axes_);
   }
   [[nodiscard]] double mean_known() const noexcept { return mean_; }  // (rad/s)^2
+  [[nodiscard]] double over_given() const noexcept { return mean_ / given_; }
+  // Share of R that is white by the state model.
+  [[nodiscard]] double white() const noexcept { return white_; }
   // R of each axis / mean R, and the same for the walk.
   [[nodiscard]] const Lanes& share() const noexcept { return share_; }
   [[nodiscard]] Lanes walk_share() const noexcept { return walk_share_ ? to_lanes(*walk_share_) : share_; }
@@ -139,7 +143,7 @@ class SensorNoise {
   void refresh_share() noexcept;
 
   std::size_t axes_;
-  double period_s_, process_noise_, mean_ = 1.0;
+  double period_s_, process_noise_, given_, white_, mean_ = 1.0;
   bool learns_walk_;
   std::optional<Axes> walk_share_;
   std::array<Noise, kMaxAxes> noise_;

@@ -52,8 +52,15 @@ RestFilter::RestFilter(std::unique_ptr<StateModel> model, std::unique_ptr<Rule> 
             model->measurement(),
             model->level(),
             model->rate(),
+            model->measurement(),
+            FewStatesVector::Ones(n) - model->colour(),
             process_noise * model->stationary(),
-            model->rate() == model->measurement()};
+            process_noise * model->stationary(),
+            model->rate() == model->measurement(),
+            0.0};
+  model_.clean = model_.h.cwiseProduct(model_.kept);
+  model_.colour -= model_.kept.asDiagonal() * model_.colour * model_.kept.asDiagonal();
+  model_.colour_variance = model_.h.dot(model_.colour * model_.h);
   model_.start.diagonal() += kDiffuse * measurement_noise * model->start();
   model_.form = std::move(model);
   transition_.resize(n, n);
@@ -130,10 +137,13 @@ void RestFilter::skip() noexcept {
 
 void RestFilter::shift_to(const Lanes& rate, std::uint32_t which) noexcept {
   for (Core& core : cores()) {
-    const Lanes now = read(model_.h, core).value;
+    const Lanes now = read(model_.clean, core).value;
     for (int axis = 0; axis < kMaxAxes; ++axis)
       if ((which >> static_cast<unsigned>(axis) & 1U) != 0)
-        core.x.col(axis) += model_.level * (rate[axis] - now[axis]);
+        core.x.col(axis) =
+            model_.kept.cwiseProduct(core.x.col(axis)) + model_.level * (rate[axis] - now[axis]);
+    if (model_.colour_variance > 0.0)
+      core.p = model_.kept.asDiagonal() * core.p * model_.kept.asDiagonal() + model_.colour;
   }
   refresh();
 }

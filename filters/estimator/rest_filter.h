@@ -42,7 +42,8 @@ class RestFilter {
   void update(const Measured& m, std::uint64_t sequence, bool learn) noexcept;
   // A step without measurement.
   void skip() noexcept;
-  // Shifts the level of the axes in `which` so that the predicted measurement is `rate`. Other states remain.
+  // Sets the level of the axes in `which` so that the predicted measurement is `rate`. Lines remain; the colour
+  // begins again with its stationary variance.
   void shift_to(const Lanes& rate, std::uint32_t which) noexcept;
   // Sets the variance of the rate.
   void set_variance(double variance) noexcept;
@@ -60,6 +61,16 @@ class RestFilter {
   [[nodiscard]] double measurement_variance() const noexcept { return measured().variance; }
   // True if the model has no coloured noise or lines, so measurement() equals rate().
   [[nodiscard]] bool rate_alone() const noexcept { return model_.rate_alone; }
+  struct Reading {
+    Lanes value = Lanes::Zero();
+    double variance = 0.0, gain = 0.0;
+  };
+  // The rate and the lines of the model, but not its coloured noise.
+  [[nodiscard]] Reading without_colour() const noexcept {
+    return model_.rate_alone ? rate_ : read(model_.clean);
+  }
+  // Variance of the model's coloured noise, (rad/s)^2.
+  [[nodiscard]] double colour_variance() const noexcept { return model_.colour_variance; }
   [[nodiscard]] double covariance() const noexcept { return covariance_; }  // of the innovation, as used
   [[nodiscard]] Rule& rule() noexcept { return *rule_; }
   [[nodiscard]] const Rule& rule() const noexcept { return *rule_; }
@@ -69,8 +80,10 @@ class RestFilter {
     std::unique_ptr<StateModel> form;
     Eigen::Index states;
     FewStatesVector h, level, readout;
-    FewStatesMatrix start;  // covariance
+    FewStatesVector clean, kept;    // h without the colour; 0 for the colour's states, else 1
+    FewStatesMatrix start, colour;  // covariance at the start, and of the colour in steady state
     bool rate_alone;
+    double colour_variance;
   };
   // State of KalmanCore<n>: one column per axis, and the parts common to all axes.
   struct Core {
@@ -78,11 +91,6 @@ class RestFilter {
     FewStatesMatrix p;
     FewStatesVector gain;
   };
-  struct Reading {
-    Lanes value = Lanes::Zero();
-    double variance = 0.0, gain = 0.0;
-  };
-
   [[nodiscard]] std::span<Core> cores() noexcept { return {cores_.data(), hypotheses_.size()}; }
   // Value, variance and gain of `of`'x in one core, and in the weighted mean.
   [[nodiscard]] Reading read(const FewStatesVector& of, const Core& core) const noexcept;

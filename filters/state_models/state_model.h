@@ -51,6 +51,8 @@ class StateModel {
   // Stationary covariance for unit q, with zero rows for states that have none (those are listed in
   // diffuse()).
   [[nodiscard]] virtual Eigen::MatrixXd stationary() const = 0;
+  // 1 for the states of stationary noise that is not part of the rate (the colour), 0 for the others.
+  [[nodiscard]] virtual Eigen::VectorXd colour() const { return Eigen::VectorXd::Zero(states()); }
   // For each state that wanders without bound its variance before the first measurement, as a multiple of the
   // rate's; zero for the others.
   [[nodiscard]] virtual Eigen::VectorXd diffuse() const = 0;

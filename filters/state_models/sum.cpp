@@ -33,11 +33,21 @@ Eigen::VectorXd Sum::measurement() const {
 
 Eigen::VectorXd Sum::rate() const {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(states_);
-  const bool said = carries_level();
   int first = 0;
   for (const Term& term : terms_) {
     const int n = term.model->states();
-    if (said ? term.model->carries_level() : first == 0) all.segment(first, n) = term.model->rate();
+    if (is_rate(term, first)) all.segment(first, n) = term.model->rate();
+    first += n;
+  }
+  return all;
+}
+
+Eigen::VectorXd Sum::colour() const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(states_);
+  int first = 0;
+  for (const Term& term : terms_) {
+    const int n = term.model->states();
+    if (!is_rate(term, first) && term.model->stationary().trace() > 0.0) all.segment(first, n).setOnes();
     first += n;
   }
   return all;

@@ -24,10 +24,16 @@ class Sum final : public StateModel {
   [[nodiscard]] Eigen::VectorXd level() const override;
   [[nodiscard]] bool carries_level() const noexcept override;
   [[nodiscard]] Eigen::MatrixXd stationary() const override;
+  [[nodiscard]] Eigen::VectorXd colour() const override;
   [[nodiscard]] Eigen::VectorXd diffuse() const override;
   [[nodiscard]] Eigen::VectorXd start() const override;
 
  private:
+  // True for the terms that are the rate; `first` is the term's first state.
+  [[nodiscard]] bool is_rate(const Term& term, int first) const {
+    return carries_level() ? term.model->carries_level() : first == 0;
+  }
+
   std::vector<Term> terms_;
   int states_ = 0;
 };
