@@ -22,6 +22,7 @@ constexpr double kDwell_s = 1.0;     // with references, slower samples may be d
 constexpr double kAround_s = 10.0;   // either side, of the running median
 constexpr double kTurned = 20.0;     // times the usual step of quiet windows
 constexpr double kLeastTurn = 1e-3;  // rad/s
+constexpr double kMostStep = 10.0 * kMostNoise_radps;  // of the means of a sensor at rest
 constexpr double kShaken = 4.0;
 constexpr double kQuieter = 0.3;                              // share of windows assumed quiet
 constexpr std::size_t kShortestRest = 8;                      // windows between two moving ones
@@ -92,7 +93,7 @@ std::vector<double> running_median(const std::vector<Window>& windows, std::size
 }
 
 // leap: by window, the largest step of all axes that exceeds noise and is no turn.
-void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<State>& state,
+void mark_axis(const std::vector<Window>& windows, double period_s, std::vector<State>& state,
                std::vector<double>& leap) {
   std::vector<double> scatters, steps;
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -104,7 +105,8 @@ void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<
   // Quantile of the quieter windows, so that rest is found in a record that mostly moves. A normal variable
   // is within 0.385 standard deviations in 30 % of cases.
   const double usual = quantile(steps, kQuieter) / 0.385;
-  const double quiet = quantile(scatters, kQuieter);
+  const double quiet = std::min(quantile(scatters, kQuieter), kMostNoise_radps / std::sqrt(period_s));
+  const double window_s = static_cast<double>(samples_of_window(period_s)) * period_s;
   const auto around = static_cast<std::size_t>(std::lround(kAround_s / window_s));
   const std::vector<double> level = running_median(windows, std::max<std::size_t>(4, around));
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -114,7 +116,7 @@ void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<
     const double across = between ? std::abs(windows[i + 1].mean - windows[i - 1].mean) : 0.0;
     const double away = std::abs(windows[i].mean - level[i]);
     const double most = std::max(away, std::isfinite(across) ? across : 0.0);
-    if (most > std::max(kLeastTurn, kTurned * usual))
+    if (most > std::max(kLeastTurn, std::min(kTurned * usual, kMostStep)))
       state[i] = State::kTurning;
     else if (usual > 0.0 && most > kTurned * usual)
       leap[i] = std::max(leap[i], most);
@@ -275,8 +277,7 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
   share_out(axes.size(), samples < kWorthThreads ? 1 : 0,
             [&](std::size_t a) { windows[a] = rest_windows(axes[a], period_s); });
   std::vector<double> leap(count);
-  for (const std::vector<Window>& of_axis : windows)
-    mark_axis(of_axis, static_cast<double>(window) * period_s, state, leap);
+  for (const std::vector<Window>& of_axis : windows) mark_axis(of_axis, period_s, state, leap);
   widen(state);
   for (const std::vector<Window>& of_axis : windows) mark_steady_turns(of_axis, state);
   Rest rest = as_samples(state, window, samples);
@@ -320,7 +321,7 @@ void require_rest(const Rest& rest, double period_s, double first_s) {
   if (rest.turned == 0) return;
   if (static_cast<double>(rest.resting()) >= kEnoughOfRecord * static_cast<double>(rest.samples)) return;
   throw std::invalid_argument("the sensor was " + in_words(rest, period_s, first_s) +
-                              "; expected a record that is mostly at rest");
+                              "; expected a record that is mostly at rest, in the right unit");
 }
 
 std::vector<Stretch> common(std::span<const Stretch> a, std::span<const Stretch> b) {

@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "filters/rest/rest.h"
 #include "filters/rest/runs.h"
 #include "filters/units/told_time.h"
 
@@ -15,7 +16,7 @@ namespace {
 
 constexpr std::size_t kMostSamples = 1'000'000, kFewSamples = 256;
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kMostBias_radps = 5.0 * kDegree, kMostNoise_radps = 0.2 * kDegree;
+constexpr double kMostBias_radps = 5.0 * kDegree;
 
 std::string six(double value) { return formatted("%.6g", value); }
 
@@ -103,11 +104,9 @@ void find_interleaved(const std::vector<double>& values, std::vector<ValueFault>
 void find_implausible(const std::vector<double>& values, double period_s, std::vector<ValueFault>& found) {
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   if (std::abs(mean) > kMostBias_radps)
-    found.push_back(
-        {"unit",
-         "the mean at rest is " + six(mean / kDegree) +
-             " °/s, more than the bias of any gyro: is it at rest, and is the unit right (°/h: --column "
-             "rate_radps=rate_radps:deg/h)?"});
+    found.push_back({"unit", "the mean at rest is " + six(mean / kDegree) +
+                                 " °/s, more than the bias of any gyro: is it at rest, and is the unit right "
+                                 "(deg/h by --column)?"});
   const auto second = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / period_s)));
   double before = 0.0, squares = 0.0;
   std::size_t count = 0;

@@ -53,7 +53,7 @@ class Noise:
         """10.3 °/h of the Earth in a column of rad/s, and read as what it is."""
         hourly = self.folder / "hourly.csv"
         hourly.write_text("time_s,rate_radps\n" + "".join(f"{i / 100},{10.3 + 0.1 * math.sin(7919 * i)}\n" for i in range(3000)))
-        asked = "more than the bias of any gyro: is it at rest, and is the unit right (°/h: --column rate_radps=rate_radps:deg/h)?"
+        asked = "more than the bias of any gyro: is it at rest, and is the unit right (deg/h by --column)?"
         for command in (["allan"], ["tune"], ["diagnose", "--quiet"]):
             def said(*words):
                 done = ran(*command, *words)
