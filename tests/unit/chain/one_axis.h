@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <random>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "filters/chain/incrementer.h"
@@ -21,6 +24,19 @@ inline ChainSettings settings(double q = 1e-10, double r = 1e-8) {
   out.filter.process_noise = q;
   out.filter.measurement_noise = r;
   return out;
+}
+
+// A model with one effect.
+inline std::shared_ptr<const Model> linear_in(const std::string& channel, double reference,
+                                              ModelParameter coefficient) {
+  Effect effect;
+  effect.form = "linear";
+  effect.channel = channel;
+  effect.reference = reference;
+  effect.parameters = {std::move(coefficient)};
+  Model model;
+  model.effects = {std::move(effect)};
+  return std::make_shared<const Model>(std::move(model));
 }
 
 inline std::vector<Increment> increments(int n, unsigned seed) {

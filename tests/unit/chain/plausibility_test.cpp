@@ -11,6 +11,7 @@
 
 #include "filters/chain/incrementer.h"
 #include "filters/chain/signal_chain.h"
+#include "tests/unit/chain/one_axis.h"
 
 namespace ifog {
 namespace {
@@ -66,6 +67,7 @@ TEST(Plausibility, ARateThatCannotBeIsInvalidUncoveredAndCounted) {
       EXPECT_EQ(increment.valid_axes, 0U) << huge;
       EXPECT_NE(increment.flags & kInvalid, 0U) << huge;
       EXPECT_EQ(increment.covered_s[0], 0.0);
+      EXPECT_TRUE(std::isnan(increment.rate_radps[0])) << huge;
       feed.next(1.0);
       EXPECT_EQ(feed.angle, 2e-3) << huge;
       EXPECT_EQ(feed.covered, 2e-3) << huge;
@@ -132,10 +134,11 @@ TEST(Plausibility, AChannelKeepsItsLastValueAndGrowsOld) {
   of.channel[0] = {-40.0, 85.0, 5.0};
   Feed feed(of);
   feed.next(0.0, 25.0);
+  double age_s = 0.0;
   for (const double bad : {1e200, kInfinity, -41.0, 86.0, 40.0}) {
     const Increment& increment = feed.next(0.0, bad);
     EXPECT_EQ(increment.channel[0], 25.0) << bad;
-    EXPECT_GT(increment.channel_age_s[0], 0.0F) << bad;
+    EXPECT_NEAR(increment.channel_age_s[0], age_s += kMillisecond_s, 1e-8) << bad;
   }
   EXPECT_EQ(feed.counts().channel_implausible, 5U);
   EXPECT_EQ(feed.next(0.0, 41.0).channel[0], 41.0);  // two that agree: it did go up
@@ -165,14 +168,8 @@ TEST(Plausibility, NoiseIsLearnedInSpiteOfHugeValues) {
 }
 
 TEST(Plausibility, ACorrectionThatIsNoRateIsRefused) {
-  Effect effect;
-  effect.form = "linear";
-  effect.channel = "temperature_degC";
-  effect.reference = 25.0;
-  effect.parameters = {{"coefficient", 1e-6, 0.0, "rad/s/degC"}};
-  Model model;
-  model.effects = {effect};
-  ChainSettings settings = chain_settings(std::make_shared<const Model>(model));
+  ChainSettings settings =
+      chain_settings(linear_in("temperature_degC", 25.0, {"coefficient", 1e-6, 0.0, "rad/s/degC"}));
   settings.filter.process_noise = 1e-10;
   settings.filter.measurement_noise = 1e-8;
   SignalChain chain(std::make_unique<ChainParts>(settings));
@@ -180,6 +177,7 @@ TEST(Plausibility, ACorrectionThatIsNoRateIsRefused) {
   ChainOutput out;
   chain.process(feed.next(0.5, 26.0), out);
   EXPECT_EQ(out.flags & kNotCompensated, 0U);
+  EXPECT_NEAR(out.compensated_radps[0], 0.5 - 1e-6, 1e-15);
   EXPECT_NEAR(out.angle_rad[0], (0.5 - 1e-6) * kMillisecond_s, 1e-15);
   chain.process(feed.next(0.5, 1e19), out);  // a channel that nobody limits
   EXPECT_NE(out.flags & kNotCompensated, 0U);

@@ -10,27 +10,13 @@
 
 #include "filters/chain/incrementer.h"
 #include "tests/unit/chain/one_axis.h"
+#include "tests/unit/refusal.h"
 #include "tests/unit/sanitized.h"
 
 namespace ifog {
 namespace {
 
 std::uint64_t bits(double value) { return std::bit_cast<std::uint64_t>(value); }
-
-TEST(SignalChain, TheSameIncrementsGiveTheSameBits) {
-  for (const double q : {1e-10, 0.0}) {  // noise given, and learned from the first seconds
-    SignalChain one(std::make_unique<ChainParts>(settings(q))),
-        other(std::make_unique<ChainParts>(settings(q)));
-    ChainOutput a, b;
-    for (const Increment& increment : increments(6000, 1)) {
-      one.process(increment, a);
-      other.process(increment, b);
-      ASSERT_EQ(bits(a.estimate.denoised_radps[0]), bits(b.estimate.denoised_radps[0]));
-      ASSERT_EQ(bits(a.angle_rad[0]), bits(b.angle_rad[0]));
-    }
-    EXPECT_EQ(a.flags & kNoiseUnknown, 0U);
-  }
-}
 
 TEST(SignalChain, DuringStartUpTheCompensatedRateIsPublishedAndSaidSo) {
   ChainSettings unknown = settings(0.0, 0.0);
@@ -99,6 +85,16 @@ TEST(SignalChain, AWarmUpBeginsAtPowerUpWhicheverWayThatIsSaid) {
     // A sample from before power-up is a recording's, and nobody knows when that was switched on.
     ASSERT_EQ(bits(c.compensated_radps[0]), bits(increment.rate_radps[0]));
   }
+}
+
+TEST(SignalChain, AModelOnAChannelTheSensorDoesNotHaveIsRefusedByName) {
+  ChainSettings wrong = settings();
+  wrong.channels = {"supply_V"};
+  wrong.facts.frame_channels = wrong.facts.channels = 1;
+  wrong.model = linear_in("temperature_degC", 25.0, {"coefficient", 1e-6, 1e-8, "rad/s/degC"});
+  const std::string said = test::refusal([&] { const ChainParts parts(wrong); });
+  EXPECT_NE(said.find("temperature_degC"), std::string::npos) << said;
+  EXPECT_NE(said.find("it has: supply_V"), std::string::npos) << said;
 }
 
 TEST(SignalChain, NewPartsGoOnWithTheAngle) {
@@ -216,59 +212,6 @@ TEST(SignalChain, AGapOwesNoAngle) {
     }
   }
   EXPECT_NEAR(apart_rad, 0.0, 1e-4);
-}
-
-TEST(SignalChain, AModelOnAChannelTheSensorDoesNotHaveIsRefusedByName) {
-  ChainSettings wrong = settings();
-  wrong.channels = {"supply_V"};
-  wrong.facts.frame_channels = wrong.facts.channels = 1;
-  auto model = std::make_shared<Model>();
-  Effect effect;
-  effect.form = "linear";
-  effect.channel = "temperature_degC";
-  effect.reference = 25.0;
-  effect.parameters = {{"coefficient", 1e-6, 1e-8, "rad/s/degC"}};
-  model->effects.push_back(effect);
-  wrong.model = model;
-  try {
-    ChainParts parts(wrong);
-    FAIL() << "accepted";
-  } catch (const std::exception& error) {
-    EXPECT_NE(std::string(error.what()).find("temperature_degC"), std::string::npos) << error.what();
-    EXPECT_NE(std::string(error.what()).find("supply_V"), std::string::npos) << error.what();
-  }
-}
-
-TEST(SignalChain, ALinearEffectIsTakenOutOfRateAndAngle) {
-  ChainSettings with = settings();
-  with.channels = {"temperature_degC"};
-  with.channel_max_age_s = {0.0};
-  with.facts.frame_channels = with.facts.channels = 1;
-  auto model = std::make_shared<Model>();
-  Effect effect;
-  effect.form = "linear";
-  effect.channel = "temperature_degC";
-  effect.reference = 25.0;
-  effect.parameters = {{"coefficient", 1e-6, 1e-8, "rad/s/degC"}};
-  model->effects.push_back(effect);
-  with.model = model;
-  SignalChain chain(std::make_unique<ChainParts>(with));
-  Incrementer incrementer(with.facts);
-  Increment increment;
-  ChainOutput out;
-  for (int i = 0; i < 1000; ++i) {
-    Reading reading;
-    reading.sequence = static_cast<std::uint32_t>(i % 128);
-    reading.has_sequence = true;
-    reading.valid_axes = 1;
-    reading.fresh_channels = 1;
-    reading.channel[0] = 35.0;
-    reading.value[0] = 0.02 + 1e-5;  // 10 degC above the reference
-    incrementer.next(reading, increment);
-    chain.process(increment, out);
-    ASSERT_NEAR(out.compensated_radps[0], 0.02, 1e-15);
-  }
-  EXPECT_NEAR(out.angle_rad[0], 0.02, 1e-14);
 }
 
 }  // namespace

@@ -6,12 +6,12 @@
 #include <cstdint>
 
 #include "filters/chain/incrementer.h"
+#include "tests/unit/chain/sent_times.h"
 
 namespace ifog {
 namespace {
 
 constexpr double kRate_hz = 100.0;
-constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;
 
 enum class Tells { nothing, counter, counter_and_clock };
 

@@ -17,6 +17,14 @@
 namespace ifog {
 namespace {
 
+Increment without_value(Increment in) {
+  in.valid_axes = 0;
+  in.covered_s[0] = in.delta_theta_rad[0] = 0.0;
+  in.rate_radps[0] = std::numeric_limits<double>::quiet_NaN();
+  in.flags |= kInvalid;
+  return in;
+}
+
 // Also of a filter that is begun with it: at start-up, by what was learned there, or by a reload.
 TEST(SignalChain, AnAxisThatHasHadValuesKeepsOneOverAnInvalidSample) {
   for (const double noise : {0.0, 1e-8}) {
@@ -27,12 +35,7 @@ TEST(SignalChain, AnAxisThatHasHadValuesKeepsOneOverAnInvalidSample) {
     const std::vector<Increment> all = increments(2500, 2);
     for (std::size_t i = 0; i < all.size(); ++i) {
       Increment in = all[i];
-      if (i % 9 == 5 || (i > 990 && i < 1010) || (i >= 1800 && i < 1820)) {
-        in.valid_axes = 0;
-        in.covered_s[0] = in.delta_theta_rad[0] = 0.0;
-        in.rate_radps[0] = std::numeric_limits<double>::quiet_NaN();
-        in.flags |= kInvalid;
-      }
+      if (i % 9 == 5 || (i > 990 && i < 1010) || (i >= 1800 && i < 1820)) in = without_value(in);
       if (i == 1800) static_cast<void>(chain.swap(std::make_unique<ChainParts>(with)));
       chain.process(in, out);
       ASSERT_NEAR(out.estimate.denoised_radps[0], 0.01, 1e-3) << noise << ", sample " << i;
@@ -60,10 +63,7 @@ TEST(SignalChain, WhatIsLearnedAtRestIsTheSameWhetherSamplesAreLostOrInvalid) {
           ++missing;
           continue;
         }
-        in.valid_axes = 0;
-        in.covered_s[0] = in.delta_theta_rad[0] = 0.0;
-        in.rate_radps[0] = std::numeric_limits<double>::quiet_NaN();
-        in.flags |= kInvalid;
+        in = without_value(in);
       }
       if (missing > 0) {
         in.flags |= kGapBefore;
@@ -87,14 +87,8 @@ TEST(SignalChain, AStuckSensorIsFlaggedBehindACorrectionThatIsAlive) {
   plain.channels = {"accel_x_mps2"};
   plain.channel_max_age_s = {0.0};
   plain.facts.frame_channels = plain.facts.channels = 1;
-  auto model = std::make_shared<Model>();
-  Effect effect;
-  effect.form = "linear";
-  effect.channel = "accel_x_mps2";
-  effect.parameters = {{"coefficient", 1e-6, 1e-8, "rad/s/(m/s^2)"}};
-  model->effects.push_back(effect);
   ChainSettings with = plain, learning = plain;
-  with.model = learning.model = model;
+  with.model = learning.model = linear_in("accel_x_mps2", 0.0, {"coefficient", 1e-6, 1e-8, "rad/s/(m/s^2)"});
   learning.filter = FilterChoice{};
   std::mt19937_64 engine(9);
   std::normal_distribution<double> normal;
