@@ -14,17 +14,13 @@ using namespace ifog::test;
 std::uint64_t allocations_of(const ifog::FilterSettings& settings) {
   const Record r =
       record(3, 4000, 1e-3, [](int i) { return i < 2000 ? 0.0 : (i < 2500 ? 30.0 : 0.05 * (i - 2500)); });
-  ifog::Estimator estimator(settings, 3, kPeriod);
-  ifog::EstimatorInput in;
-  ifog::EstimatorOutput out;
+  Fed filter(settings, 3);
   count_allocations(true);
   for (std::size_t i = 0; i < r.measured.size(); ++i) {
-    in.sequence = i;
-    in.dt_s = i % 701 == 700 ? 20 * kPeriod : kPeriod;
-    in.valid_axes = i % 97 == 5 ? 5 : 7;
+    filter.in.dt_s = i % 701 == 700 ? 20 * kPeriod : kPeriod;
+    filter.in.valid_axes = i % 97 == 5 ? 5 : 7;
     const double rate = i == 1500 ? 1e4 : (i % 501 == 7 ? std::nan("") : r.measured[i]);
-    in.rate_radps = {rate, -rate, 0.5 * rate};
-    estimator.step(in, out);
+    filter.step({rate, -rate, 0.5 * rate});
   }
   count_allocations(false);
   return take_allocations();

@@ -31,17 +31,12 @@ TEST(Heading, IsKeptOverTurnsByHand) {
     for (std::size_t i = 1; i < 1500; ++i)  // before the first turn
       settings.measurement_noise += std::pow(axis[i] - axis[i - 1], 2) / 2.0 / 1499.0 / 3.0;
   settings.process_noise = 1e-6 * settings.measurement_noise / period;
-  ifog::Estimator estimator(settings, 3, period);
-  ifog::EstimatorInput in;
-  ifog::EstimatorOutput out;
+  Fed filter(settings, 3, period);
   std::array<double, 3> lost{};
   for (std::size_t i = 0; i < capture.size(); ++i) {
-    in.sequence = i;
-    in.dt_s = period;
-    in.valid_axes = 7;
-    for (std::size_t a = 0; a < 3; ++a) in.rate_radps[a] = capture.rate_radps[a][i];
-    estimator.step(in, out);
-    for (std::size_t a = 0; a < 3; ++a) lost[a] += (out.denoised_radps[a] - in.rate_radps[a]) * period;
+    const ifog::Axes rate{capture.rate_radps[0][i], capture.rate_radps[1][i], capture.rate_radps[2][i]};
+    const ifog::EstimatorOutput& out = filter.step(rate);
+    for (std::size_t a = 0; a < 3; ++a) lost[a] += (out.denoised_radps[a] - rate[a]) * period;
     ASSERT_EQ(out.gain[0], out.gain[1]);
     ASSERT_EQ(out.gain[0], out.gain[2]);
   }
@@ -69,19 +64,12 @@ TEST(Heading, IsKeptOnABridgeUnderHammerBlows) {
   ifog::FilterSettings settings;
   settings.process_noise = 1.517e-19;
   settings.measurement_noise = 4.154e-11;
-  ifog::Estimator estimator(settings, 1, kStep);
-  ifog::EstimatorInput in;
-  ifog::EstimatorOutput out;
+  Fed filter(settings, 1, kStep);
   std::vector<double> denoised{0.0}, measured{0.0};
   double apart = 0.0;
-  in.dt_s = kStep;
-  in.valid_axes = 1;
-  for (std::size_t i = 0; i < capture.size(); ++i) {
-    in.sequence = i;
-    in.rate_radps[0] = capture.rate_radps[0][i];
-    estimator.step(in, out);
-    denoised.push_back(denoised.back() + out.denoised_radps[0]);
-    measured.push_back(measured.back() + in.rate_radps[0]);
+  for (const double rate : capture.rate_radps[0]) {
+    denoised.push_back(denoised.back() + filter.step({rate}).denoised_radps[0]);
+    measured.push_back(measured.back() + rate);
     apart = std::max(apart, std::abs(denoised.back() - measured.back()) * kStep);
   }
   EXPECT_LT(apart, 0.04 * kDegree);
@@ -99,26 +87,21 @@ TEST(Heading, IsKeptWhereAFilterIsNewAtTheStartOfATurn) {
   for (std::uint64_t reload = kStart - 160; reload < kStart + 20; ++reload) {
     std::mt19937_64 random(reload);
     std::normal_distribution<double> normal;
-    auto estimator = std::make_unique<ifog::Estimator>(settings, 2, kStep);
-    ifog::EstimatorInput in;
-    ifog::EstimatorOutput out;
+    Fed filter(settings, 2, kStep);
     std::array<double, 2> lost{};
     for (std::uint64_t i = 0; i < kEnd; ++i) {
       if (i == reload) {
-        const ifog::Axes owed = estimator->owed();
-        estimator = std::make_unique<ifog::Estimator>(settings, 2, kStep);
-        estimator->owe(owed);
+        const ifog::Axes owed = filter.estimator.owed();
+        filter.estimator = ifog::Estimator(settings, 2, kStep);
+        filter.estimator.owe(owed);
       }
-      in.sequence = i;
-      in.dt_s = kStep;
-      in.valid_axes = 3;
       const double t = static_cast<double>(i) * kStep;
-      in.rate_radps[0] = (i < kStart ? 0.0 : kTurn) + kNoise * normal(random);
-      in.rate_radps[1] = 0.1 * std::sin(0.7 * t) + kNoise * normal(random);
-      estimator->step(in, out);
-      for (std::size_t a = 0; a < 2; ++a) lost[a] += (out.denoised_radps[a] - in.rate_radps[a]) * kStep;
+      const double turn = (i < kStart ? 0.0 : kTurn) + kNoise * normal(random);
+      const ifog::Axes rate{turn, 0.1 * std::sin(0.7 * t) + kNoise * normal(random)};
+      const ifog::EstimatorOutput& out = filter.step(rate);
+      for (std::size_t a = 0; a < 2; ++a) lost[a] += (out.denoised_radps[a] - rate[a]) * kStep;
     }
-    const ifog::Axes owed = estimator->owed();
+    const ifog::Axes owed = filter.estimator.owed();
     for (std::size_t a = 0; a < 2; ++a) most = std::max(most, std::abs(lost[a] + owed[a]));
   }
   EXPECT_LT(most, 6.0 * kNoise * kStep);
@@ -127,23 +110,18 @@ TEST(Heading, IsKeptWhereAFilterIsNewAtTheStartOfATurn) {
 // Jumps of one axis beside one that has noise only. The first measurement of each is kept out of both until
 // it is known what it was, and then is owed: once, whatever comes at rest afterwards.
 TEST(Heading, WhatWasKeptOutOfAJumpIsOwedOnce) {
-  ifog::Estimator estimator(told(1e-6), 2, kPeriod);
-  ifog::EstimatorInput in;
-  ifog::EstimatorOutput out;
+  Fed filter(told(1e-6), 2);
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
   std::array<double, 2> lost{};
   for (std::uint64_t i = 0; i < 200'000; ++i) {
-    in.sequence = i;
-    in.dt_s = kPeriod;
-    in.valid_axes = 3;
-    in.rate_radps[0] = (i / 2000 % 2 == 0 ? 0.0 : 20.0) + std::clamp(normal(random), -4.0, 4.0);
-    in.rate_radps[1] = std::clamp(normal(random), -4.0, 4.0);
-    estimator.step(in, out);
-    for (std::size_t a = 0; a < 2; ++a) lost[a] += (out.denoised_radps[a] - in.rate_radps[a]) * kPeriod;
+    const double jumps = (i / 2000 % 2 == 0 ? 0.0 : 20.0) + std::clamp(normal(random), -4.0, 4.0);
+    const ifog::Axes rate{jumps, std::clamp(normal(random), -4.0, 4.0)};
+    const ifog::EstimatorOutput& out = filter.step(rate);
+    for (std::size_t a = 0; a < 2; ++a) lost[a] += (out.denoised_radps[a] - rate[a]) * kPeriod;
   }
-  EXPECT_GT(estimator.health().gated, 50U);
-  for (std::size_t a = 0; a < 2; ++a) EXPECT_NEAR(lost[a] + estimator.owed()[a], 0.0, 1e-6) << a;
+  EXPECT_GT(filter.estimator.health().gated, 50U);
+  for (std::size_t a = 0; a < 2; ++a) EXPECT_NEAR(lost[a] + filter.estimator.owed()[a], 0.0, 1e-6) << a;
 }
 
 TEST(Heading, IsKeptOverATurnWithASharpStartAndASlowStop) {
@@ -153,11 +131,9 @@ TEST(Heading, IsKeptOverATurnWithASharpStartAndASlowStop) {
     ifog::FilterSettings settings;
     settings.measurement_noise = noise * noise;
     settings.process_noise = ratio * noise * noise / period;
-    ifog::Estimator estimator(settings, 1, period);
+    Fed filter(settings, 1, period);
     std::mt19937_64 random(8);
     std::normal_distribution<double> normal;
-    ifog::EstimatorInput in;
-    ifog::EstimatorOutput out;
     double lost = 0.0, mean = 0.0;
     for (int i = 0; i < 60'000; ++i) {
       const double t = i * period - 5.0;
@@ -165,17 +141,13 @@ TEST(Heading, IsKeptOverATurnWithASharpStartAndASlowStop) {
           t < 0 || t > 15
               ? 0.0
               : 50 * kDegree * (t < 5 ? 1.0 : 0.5 + 0.5 * std::cos((t - 5) / 10 * std::numbers::pi));
-      in.sequence = static_cast<std::uint64_t>(i);
-      in.dt_s = period;
-      in.valid_axes = 1;
-      in.rate_radps[0] = turn + noise * normal(random);
-      estimator.step(in, out);
-      lost += (out.denoised_radps[0] - in.rate_radps[0]) * period;
+      const double rate = turn + noise * normal(random);
+      lost += (filter.step({rate}).denoised_radps[0] - rate) * period;
       // What is left wanders with the noise the filter has not yet taken in; a mean over ten seconds tells it
       // from loss.
       if (i >= 50'000) mean += lost / 10'000;
     }
-    EXPECT_GT(estimator.health().manoeuvres, 0U);
+    EXPECT_GT(filter.estimator.health().manoeuvres, 0U);
     EXPECT_LT(std::abs(mean), 0.001 * kDegree) << "Q/R " << ratio;
   }
 }
@@ -188,12 +160,9 @@ TEST(Heading, IsKeptWhereSamplesAreMergedUnevenly) {
   settings.measurement_noise = noise * noise;
   settings.process_noise = 1e-3 * noise * noise / period;
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
-    ifog::Estimator estimator(settings, 1, period);
+    Fed filter(settings, 1, period);
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
-    ifog::EstimatorInput in;
-    ifog::EstimatorOutput out;
-    in.valid_axes = 1;
     double lost = 0.0;
     for (int i = 0; i < 40'000;) {
       const int merged = i < 10'000 ? 1 + static_cast<int>(random() % 9) : 1;
@@ -204,12 +173,10 @@ TEST(Heading, IsKeptWhereSamplesAreMergedUnevenly) {
                  noise * normal(random)) /
                 merged;
       }
-      in.sequence = static_cast<std::uint64_t>(i);
-      in.dt_s = merged * period;
-      in.averaged_s = merged > 1 ? in.dt_s : 0.0;
-      in.rate_radps[0] = mean;
-      estimator.step(in, out);
-      lost += (out.denoised_radps[0] - mean) * in.dt_s;
+      filter.in.sequence = static_cast<std::uint64_t>(i);
+      filter.in.dt_s = merged * period;
+      filter.in.averaged_s = merged > 1 ? filter.in.dt_s : 0.0;
+      lost += (filter.step({mean}).denoised_radps[0] - mean) * filter.in.dt_s;
     }
     EXPECT_LT(std::abs(lost), 0.001 * kDegree) << "seed " << seed;
   }
@@ -255,6 +222,9 @@ Quaternion turned(double x, double y, double z) {
   const double s = angle > 0 ? std::sin(angle / 2) / angle : 0.5;
   return {std::cos(angle / 2), x * s, y * s, z * s};
 }
+Quaternion turned(const ifog::Axes& rate, double dt_s) {
+  return turned(rate[0] * dt_s, rate[1] * dt_s, rate[2] * dt_s);
+}
 
 // Drift, deg/h, that the filter adds to an attitude integrated from its output, 300 s of a motion.
 std::array<double, 3> added_drift(const std::function<Quaternion(double envelope, double t)>& attitude,
@@ -268,11 +238,9 @@ std::array<double, 3> added_drift(const std::function<Quaternion(double envelope
   ifog::FilterSettings settings;
   settings.measurement_noise = noise * noise;
   settings.process_noise = 1e-3 * noise * noise / period;
-  ifog::Estimator estimator(settings, 3, period);
+  Fed filter(settings, 3, period);
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
-  ifog::EstimatorInput in;
-  ifog::EstimatorOutput out;
   Quaternion measured{1, 0, 0, 0}, denoised{1, 0, 0, 0}, before = at(0);
   const int length = static_cast<int>((moving + 2 * still) / period);
   for (int i = 1; i < length; ++i) {
@@ -281,15 +249,10 @@ std::array<double, 3> added_drift(const std::function<Quaternion(double envelope
     before = now;
     const double sine = std::sqrt(step[1] * step[1] + step[2] * step[2] + step[3] * step[3]);
     const double scale = sine > 0 ? 2 * std::atan2(sine, step[0]) / sine / period : 0.0;
-    for (std::size_t a = 0; a < 3; ++a) in.rate_radps[a] = scale * step[a + 1] + noise * normal(random);
-    in.sequence = static_cast<std::uint64_t>(i);
-    in.dt_s = period;
-    in.valid_axes = 7;
-    estimator.step(in, out);
-    measured = times(measured,
-                     turned(in.rate_radps[0] * period, in.rate_radps[1] * period, in.rate_radps[2] * period));
-    denoised = times(denoised, turned(out.denoised_radps[0] * period, out.denoised_radps[1] * period,
-                                      out.denoised_radps[2] * period));
+    ifog::Axes rate{};
+    for (std::size_t a = 0; a < 3; ++a) rate[a] = scale * step[a + 1] + noise * normal(random);
+    measured = times(measured, turned(rate, period));
+    denoised = times(denoised, turned(filter.step(rate).denoised_radps, period));
   }
   const Quaternion apart = times(inverse(measured), denoised);
   const double per_hour = 2 / kDegree * 3600 / moving;

@@ -25,7 +25,7 @@ struct Said {
 };
 
 // walk: of each axis over the white noise of the first, a sample.
-Said filter(std::uint64_t seed, const Axes& walk) {
+Said filtered(std::uint64_t seed, const Axes& walk) {
   std::array<test::Record, kAxes> axes;
   for (std::size_t a = 0; a < kAxes; ++a) {
     axes[a] = test::record(100 * seed + a, kEnd, walk[a] / (kLoud[a] * kLoud[a]));
@@ -46,23 +46,18 @@ Said filter(std::uint64_t seed, const Axes& walk) {
   FilterSettings settings;
   settings.process_noise = mean_walk / kPeriod;
   settings.measurement_noise = mean_noise;
-  Estimator estimator(settings, kAxes, kPeriod, {.share = share, .walk_share = walk_share});
-  EstimatorInput in;
-  EstimatorOutput out;
-  in.dt_s = kPeriod;
-  in.valid_axes = 7;
+  test::Fed filter(settings, kAxes, kPeriod, {.share = share, .walk_share = walk_share});
+  filter.in.sequence = kStartUp;
   Said said;
   for (std::size_t i = kStartUp; i < kEnd; ++i) {
-    in.sequence = i;
-    for (std::size_t a = 0; a < kAxes; ++a) in.rate_radps[a] = axes[a].measured[i];
-    estimator.step(in, out);
+    const EstimatorOutput& out = filter.step({axes[0].measured[i], axes[1].measured[i], axes[2].measured[i]});
     for (std::size_t a = 0; i >= kSettledAt && a < kAxes; ++a) {
       const double square = std::pow(out.denoised_radps[a] - axes[a].truth[i], 2) / (kEnd - kSettledAt);
       said.errors[a] += square;
       said.squares[a] += square / out.variance_rad2ps2[a];
     }
   }
-  said.health = estimator.health();
+  said.health = filter.estimator.health();
   return said;
 }
 
@@ -73,7 +68,7 @@ TEST(UnlikeAxes, EachVarianceIsThatOfItsOwnAxis) {
     constexpr int kSeeds = 6;
     Axes squares{};
     for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
-      const Said said = filter(seed, walk);
+      const Said said = filtered(seed, walk);
       for (std::size_t a = 0; a < kAxes; ++a) {
         squares[a] += said.squares[a] / kSeeds;
         // What the gain is too small for is in the innovations, and no noise.
@@ -92,19 +87,16 @@ TEST(UnlikeAxes, EachVarianceIsThatOfItsOwnAxis) {
 // One axis that is five times as loud as the two others is no louder than it was where it comes alone: the
 // gain, which is one for all, is the same for it.
 TEST(UnlikeAxes, TheLoudOneAloneHasNotBecomeLouder) {
-  Estimator estimator(test::told(1e-4, 9.0), kAxes, kPeriod);
-  EstimatorInput in;
-  EstimatorOutput out;
-  in.dt_s = kPeriod;
+  test::Fed filter(test::told(1e-4, 9.0), kAxes);
   std::mt19937_64 random(7);
   std::normal_distribution<double> normal;
   double alone = 0.0, together = 0.0;
   for (std::size_t i = 0; i < 40'000; ++i) {
-    in.sequence = i;
-    in.valid_axes = i % 4 == 3 ? 4U : 7U;
-    for (std::size_t a = 0; a < kAxes; ++a) in.rate_radps[a] = (a == 2 ? 5.0 : 1.0) * normal(random);
-    estimator.step(in, out);
-    if (i >= 20'000) (i % 4 == 3 ? alone : together) += out.gain[2];
+    filter.in.valid_axes = i % 4 == 3 ? 4U : 7U;
+    Axes rate{};
+    for (std::size_t a = 0; a < kAxes; ++a) rate[a] = (a == 2 ? 5.0 : 1.0) * normal(random);
+    filter.step(rate);
+    if (i >= 20'000) (i % 4 == 3 ? alone : together) += filter.out.gain[2];
   }
   EXPECT_NEAR(alone * 3.0 / together, 1.0, 0.1);
 }
@@ -115,22 +107,20 @@ TEST(UnlikeAxes, OneThatIsNotMeasuredIsKnownEverLess) {
   constexpr double kWalk = 1e-4;
   for (const bool stuck : {false, true}) {
     for (const int axes : {1, 3}) {
-      Estimator estimator(test::told(kWalk), axes, kPeriod);
+      test::Fed filter(test::told(kWalk), axes);
       const auto last = static_cast<std::size_t>(axes - 1);
       std::array<test::Record, kAxes> records;
       for (std::size_t a = 0; a < kAxes; ++a) records[a] = test::record(a + 1, 30'000, kWalk);
-      EstimatorInput in;
-      EstimatorOutput out;
-      in.dt_s = kPeriod;
+      const EstimatorOutput& out = filter.out;
       double early = 0.0;
       for (std::size_t i = 0; i < 30'000; ++i) {
         const bool lost = i >= 10'000 && i < 20'000;
-        in.sequence = i;
-        in.valid_axes = (1U << axes) - 1U - (lost && !stuck ? 1U << last : 0U);
-        for (std::size_t a = 0; a <= last; ++a) in.rate_radps[a] = records[a].measured[i];
-        in.stuck_axes = lost && stuck ? 1U << last : 0U;
-        if (lost && stuck) in.rate_radps[last] = records[last].measured[9'999];
-        estimator.step(in, out);
+        Axes rate{};
+        for (std::size_t a = 0; a <= last; ++a) rate[a] = records[a].measured[i];
+        if (lost && stuck) rate[last] = records[last].measured[9'999];
+        filter.in.valid_axes = (1U << axes) - 1U - (lost && !stuck ? 1U << last : 0U);
+        filter.in.stuck_axes = lost && stuck ? 1U << last : 0U;
+        filter.step(rate);
         if (i == 12'000) early = out.variance_rad2ps2[last];
         if (i == 10'500 && !stuck) {
           EXPECT_NEAR(out.variance_rad2ps2[last], 0.01 + 500 * kWalk, 0.015) << axes;

@@ -78,56 +78,25 @@ TEST(SlowMotion, IsFollowedBesideALongLag) {
   EXPECT_LT(over_the_truth(record(26, 60'000, 1e-6, ramp), 1e-6, kFrom), 0.25);
 }
 
-// Payments are errors until they are paid, and the variance says so: the mean of error^2 / variance is one at
-// rest. Where a ramp is followed the members of the mean have noise in common, which their spread counts
-// twice.
-TEST(Variance, IsThatOfWhatIsPublished) {
-  for (const bool moving : {false, true}) {
-    double sum = 0.0, count = 0.0;
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
-      const Record r = record(seed, 60'000, 1e-4,
-                              [moving](int i) { return moving ? 2e-2 * std::max(0, i - 20'000) : 0.0; });
-      ifog::Estimator estimator(told(1e-4), 1, kPeriod);
-      ifog::EstimatorInput in;
-      ifog::EstimatorOutput out;
-      in.dt_s = kPeriod;
-      in.valid_axes = 1;
-      for (std::size_t i = 0; i < r.truth.size(); ++i) {
-        in.sequence = i;
-        in.rate_radps[0] = r.measured[i];
-        estimator.step(in, out);
-        if (i < 22'000) continue;
-        sum += std::pow(out.denoised_radps[0] - r.truth[i], 2) / out.variance_rad2ps2[0];
-        count += 1.0;
-      }
-    }
-    EXPECT_GT(sum / count, moving ? 0.5 : 0.75) << (moving ? "ramp" : "rest");
-    EXPECT_LT(sum / count, 1.25) << (moving ? "ramp" : "rest");
-  }
-}
-
 // Missing while the others' noise is learned, an axis must not be believed to be without noise for ever.
 TEST(AMissingAxis, HasItsOwnNoiseWhenItComes) {
   std::mt19937_64 random(27);
   std::normal_distribution<double> normal;
-  ifog::Estimator estimator(told(1e-6), 2, kPeriod);
-  ifog::EstimatorInput in;
-  ifog::EstimatorOutput out;
-  in.dt_s = kPeriod;
+  Fed filter(told(1e-6), 2);
+  const ifog::EstimatorOutput& out = filter.out;
   double squares = 0.0;
   for (int i = 0; i < 40'000; ++i) {
-    in.sequence = static_cast<std::uint64_t>(i);
-    in.valid_axes = i < 1000 ? 1 : 3;
-    in.rate_radps = {normal(random), i < 1000 ? std::nan("") : normal(random), 0.0};
+    filter.in.valid_axes = i < 1000 ? 1 : 3;
+    ifog::Axes rate{normal(random), i < 1000 ? std::nan("") : normal(random)};
     // A turn about the late axis is found, as about the other.
-    if (i >= 39'000) in.rate_radps[1] += 40.0;
-    estimator.step(in, out);
+    if (i >= 39'000) rate[1] += 40.0;
+    filter.step(rate);
     if (i >= 5000 && i < 39'000) squares += out.denoised_radps[1] * out.denoised_radps[1];
     ASSERT_GT(out.variance_rad2ps2[1], 0.0) << i;
   }
   EXPECT_LT(std::sqrt(squares / 34'000), 0.06);
   EXPECT_NEAR(out.denoised_radps[1], 40.0, 0.3);
-  EXPECT_EQ(estimator.health().manoeuvres, 1U);
+  EXPECT_EQ(filter.estimator.health().manoeuvres, 1U);
 }
 
 // The delay of a slow ramp, measured: what is published for it is what the filter does with the ledger on.
@@ -154,33 +123,6 @@ TEST(Plain, IsTheRulesFilterAndNothingElse) {
     ASSERT_NEAR(got.denoised[i], kalman[i], 1e-9 * (1.0 + std::abs(kalman[i]))) << i;
   settings.rule = "irwe-akfg";
   EXPECT_EQ(run(settings, r.measured).health.restarts, 0U);
-}
-
-// Colour and lines of the model are the sensor's, not the vehicle's.
-TEST(PublishedRate, IsTheLevelWithoutTheModelsColour) {
-  constexpr double kWalk = 1e-6, kCorrelation = 0.9;
-  std::mt19937_64 random(30);
-  std::normal_distribution<double> normal;
-  std::vector<double> truth, measured;
-  double walk = 0.0, colour = 0.0;
-  for (int i = 0; i < 60'000; ++i) {
-    walk += std::sqrt(kWalk) * normal(random);
-    colour = kCorrelation * colour + normal(random);
-    truth.push_back(walk);
-    measured.push_back(walk + colour + 0.5 * normal(random));
-  }
-  ifog::FilterSettings settings;
-  settings.state = "random-walk + ar(1)";
-  settings.state_parameters = {kCorrelation, 1.0 / kWalk};
-  settings.process_noise = kWalk / kPeriod;
-  settings.measurement_noise = 0.25;
-  for (const bool follows : {true, false}) {
-    settings.follow_manoeuvres = settings.conserve_angle = follows;
-    const Filtered got = run(settings, measured);
-    // The filter leaves (Q R)^(1/4) of white noise of the colour's spectral density at zero, 100.
-    EXPECT_LT(std::sqrt(mean_square_error(got.denoised, truth, 20'000)), 1.6 * std::pow(kWalk * 100.25, 0.25))
-        << follows;
-  }
 }
 
 }  // namespace

@@ -41,6 +41,25 @@ inline FilterSettings told(double walk_over_noise, double noise = 1.0) {
   return settings;
 }
 
+// An estimator that is given one sample after another, a period apart and with all axes, unless `in` is changed.
+struct Fed {
+  explicit Fed(const FilterSettings& settings, int axes = 1, double period_s = kPeriod,
+               const KnownNoise& known = {})
+      : estimator(settings, axes, period_s, known) {
+    in.dt_s = period_s;
+    in.valid_axes = (1U << axes) - 1U;
+  }
+  const EstimatorOutput& step(const Axes& rates) {
+    in.rate_radps = rates;
+    estimator.step(in, out);
+    ++in.sequence;
+    return out;
+  }
+  Estimator estimator;
+  EstimatorInput in;
+  EstimatorOutput out;
+};
+
 struct Filtered {
   std::vector<double> denoised;
   std::vector<std::uint32_t> flags;
@@ -48,20 +67,14 @@ struct Filtered {
 };
 
 inline Filtered run(const FilterSettings& settings, const std::vector<double>& measured) {
-  Estimator estimator(settings, 1, kPeriod);
-  EstimatorInput in;
-  EstimatorOutput out;
+  Fed filter(settings);
   Filtered result;
-  for (std::size_t i = 0; i < measured.size(); ++i) {
-    in.sequence = i;
-    in.dt_s = kPeriod;
-    in.valid_axes = 1;
-    in.rate_radps[0] = measured[i];
-    estimator.step(in, out);
+  for (const double rate : measured) {
+    const EstimatorOutput& out = filter.step({rate});
     result.denoised.push_back(out.denoised_radps[0]);
     result.flags.push_back(out.flags);
   }
-  result.health = estimator.health();
+  result.health = filter.estimator.health();
   return result;
 }
 

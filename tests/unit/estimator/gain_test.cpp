@@ -21,19 +21,13 @@ constexpr int kSettled = 2000;  // samples in which a covariance that begins els
 // Largest relative difference at rest of the published gain and that of the equations.
 double worst(const FilterSettings& settings, std::uint64_t seed, double walk_over_noise) {
   const Record made = record(seed, 12'000, walk_over_noise);
-  Estimator estimator(settings, 1, kPeriod);
+  Fed filter(settings);
   DeviateStream weights(settings.seed, 0, DeviateStream::Law::kExponential);
   std::deque<std::pair<double, double>> window;  // weight, squared innovation
   double p = std::sqrt(walk_over_noise), far = 0.0;
   int compared = 0;
   for (std::size_t i = 0; i < made.measured.size(); ++i) {
-    EstimatorInput in;
-    in.sequence = i;
-    in.dt_s = kPeriod;
-    in.valid_axes = 1;
-    in.rate_radps[0] = kNoise * made.measured[i];
-    EstimatorOutput out;
-    estimator.step(in, out);
+    const EstimatorOutput& out = filter.step({kNoise * made.measured[i]});
     const double innovation = out.innovation_radps[0] / kNoise;
     window.emplace_back(weights.at(i, 0), innovation * innovation);
     if (window.size() > kWindow) window.pop_front();

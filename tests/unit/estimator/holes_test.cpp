@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "filters/estimator/estimator.h"
+#include "tests/unit/estimator/drive.h"
 #include "tests/unit/sanitized.h"
 
 namespace {
@@ -21,6 +22,13 @@ constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // What becomes of a sample of an axis.
 enum class Sample { good, missing, invalid };
+
+ifog::FilterSettings settings() {
+  ifog::FilterSettings settings;
+  settings.process_noise = 1e-13;
+  settings.measurement_noise = kNoise * kNoise;
+  return settings;
+}
 
 struct Seen {
   double square = 0.0, normalised = 0.0, worst = 0.0, worst_sigmas = 0.0, angle = 0.0;
@@ -62,12 +70,6 @@ class Turning {
   [[nodiscard]] const ifog::EstimatorOutput& out() const { return out_; }
 
  private:
-  static ifog::FilterSettings settings() {
-    ifog::FilterSettings settings;
-    settings.process_noise = 1e-13;
-    settings.measurement_noise = kNoise * kNoise;
-    return settings;
-  }
   void measure(ifog::EstimatorInput& in, std::size_t axis, int i, Sample fate) {
     in.rate_radps[axis] = motion_(i) + kNoise * normal_(random_);
     in.covered_s[axis] = kPeriod;
@@ -102,6 +104,25 @@ class Turning {
   ifog::Estimator estimator_;
   ifog::EstimatorOutput out_;
   std::mt19937_64 random_{4};
+  std::normal_distribution<double> normal_;
+};
+
+// Two axes, of which the first one has all its samples.
+class TwoAxes {
+ public:
+  explicit TwoAxes(unsigned seed) : filter_(settings(), 2, kPeriod), random_(seed) {}
+  const ifog::EstimatorOutput& step(double first, double second, Sample of_second = Sample::good) {
+    const bool good = of_second == Sample::good;
+    const double noise = kNoise * normal_(random_), other = kNoise * normal_(random_);
+    filter_.in.valid_axes = good ? 3 : 1;
+    filter_.in.covered_s = {kPeriod, good ? kPeriod : 0.0};
+    return filter_.step({first + noise, good ? second + other : kMissing});
+  }
+  [[nodiscard]] const ifog::EstimatorHealth& health() const { return filter_.estimator.health(); }
+
+ private:
+  ifog::test::Fed filter_;
+  std::mt19937_64 random_;
   std::normal_distribution<double> normal_;
 };
 
@@ -208,34 +229,18 @@ TEST(Holes, AStepIsFollowedWithEveryOtherSample) {
 // One axis jumps while another that turns has no measurement.
 TEST(Holes, AnAxisThatIsNotMeasuredWhileAnotherJumpsStaysWhereItIs) {
   for (const bool under_way : {false, true}) {
-    ifog::FilterSettings settings;
-    settings.process_noise = 1e-13;
-    settings.measurement_noise = kNoise * kNoise;
-    ifog::Estimator estimator(settings, 2, kPeriod);
-    std::mt19937_64 random(3);
-    std::normal_distribution<double> normal;
-    ifog::EstimatorOutput out;
+    TwoAxes sensor(3);
     for (int i = 0; i < 4000; ++i) {
-      ifog::EstimatorInput in;
-      in.sequence = static_cast<std::uint64_t>(i);
-      in.dt_s = kPeriod;
-      in.covered_s = {kPeriod, kPeriod, 0.0};
-      in.valid_axes = 3;
       const double x =
           (under_way && i >= 2000 ? 0.05 * std::sin((i - 2000) * 3e-3) : 0.0) + (i >= 2100 ? 0.05 : 0.0);
-      in.rate_radps = {x + kNoise * normal(random), 0.5 + kNoise * normal(random), 0.0};
-      if (i >= 2095 && i < 2105) {
-        in.valid_axes = 1;
-        in.rate_radps[1] = kMissing;
-        in.covered_s[1] = 0.0;
-      }
-      estimator.step(in, out);
+      const ifog::EstimatorOutput& out =
+          sensor.step(x, 0.5, i >= 2095 && i < 2105 ? Sample::invalid : Sample::good);
       ASSERT_NEAR(out.denoised_radps[1], 0.5, 20 * kNoise) << i << ", under way " << under_way;
       if (i >= 2200) {
         ASSERT_NEAR(out.denoised_radps[0], x, 10 * kNoise) << i << ", under way " << under_way;
       }
     }
-    EXPECT_EQ(estimator.health().divergences, 0U);
+    EXPECT_EQ(sensor.health().divergences, 0U);
   }
 }
 
@@ -245,25 +250,14 @@ TEST(Holes, AnAxisWithoutANumberWhileAnotherJumpsFollowsItsOwnStepAfterwards) {
   for (const double missing : {kMissing, HUGE_VAL, -HUGE_VAL})
     for (const int from : {2090, 2099, 2100, 2101, 2110})
       for (const int length : {1, 10, 200}) {
-        ifog::FilterSettings settings;
-        settings.process_noise = 1e-13;
-        settings.measurement_noise = kNoise * kNoise;
-        ifog::Estimator estimator(settings, 2, kPeriod);
-        std::mt19937_64 random(5);
-        std::normal_distribution<double> normal;
-        ifog::EstimatorOutput out;
+        TwoAxes sensor(5);
+        double variance = 0.0;
         for (int i = 0; i < 4000; ++i) {
-          ifog::EstimatorInput in;
-          in.sequence = static_cast<std::uint64_t>(i);
-          in.dt_s = kPeriod;
-          in.covered_s = {kPeriod, kPeriod, 0.0};
-          in.valid_axes = 3;  // the device calls it good
           const double step = i >= 3000 ? 50.0 * kNoise : 0.0;
-          in.rate_radps = {(i >= 2100 ? 0.05 : 0.0) + kNoise * normal(random), step + kNoise * normal(random),
-                           0.0};
-          if (i >= from && i < from + length) in.rate_radps[1] = missing;
-          estimator.step(in, out);
-          const double variance = out.variance_rad2ps2[1];
+          // The device calls every sample good.
+          const ifog::EstimatorOutput& out =
+              sensor.step(i >= 2100 ? 0.05 : 0.0, i >= from && i < from + length ? missing : step);
+          variance = out.variance_rad2ps2[1];
           ASSERT_TRUE(std::isfinite(out.denoised_radps[1])) << i;
           ASSERT_GT(variance, 0.0) << i;
           // Little is known of an axis that is not measured while another jumps, and of its own step at
@@ -276,7 +270,7 @@ TEST(Holes, AnAxisWithoutANumberWhileAnotherJumpsFollowsItsOwnStepAfterwards) {
           }
         }
         // It has had 1000 samples since its step: no less than a mean of five times as many.
-        EXPECT_GT(out.variance_rad2ps2[1], kNoise * kNoise / 5000.0);
+        EXPECT_GT(variance, kNoise * kNoise / 5000.0);
       }
 }
 
@@ -311,31 +305,15 @@ TEST(Holes, TheVarianceOfAnAxisInARhythmIsItsOwn) {
 TEST(Holes, ATurnAboutAnAxisInARhythmIsSeen) {
   for (const int n : {2, 3, 4, 7}) {
     for (const double slope_s : {0.0, 0.05, 0.3, 2.0}) {
-      ifog::FilterSettings settings;
-      settings.process_noise = 1e-13;
-      settings.measurement_noise = kNoise * kNoise;
-      ifog::Estimator estimator(settings, 2, kPeriod);
-      std::mt19937_64 random(5);
-      std::normal_distribution<double> normal;
-      ifog::EstimatorOutput out;
+      TwoAxes sensor(5);
       double angle = 0.0;
       for (int i = 0; i < 30'000; ++i) {
         const double into_s = (i - 5000) * kPeriod, left_s = (9000 - i) * kPeriod;
         const double share = into_s < 0 || left_s <= 0 ? 0.0
                              : slope_s > 0             ? std::min({1.0, into_s / slope_s, left_s / slope_s})
                                                        : 1.0;
-        ifog::EstimatorInput in;
-        in.sequence = static_cast<std::uint64_t>(i);
-        in.dt_s = kPeriod;
-        in.rate_radps = {kNoise * normal(random), 1.5 * share + kNoise * normal(random), 0.0};
-        in.covered_s = {kPeriod, kPeriod, 0.0};
-        in.valid_axes = 3;
-        if (i % n != 0) {
-          in.rate_radps[1] = kMissing;
-          in.covered_s[1] = 0.0;
-          in.valid_axes = 1;
-        }
-        estimator.step(in, out);
+        const ifog::EstimatorOutput& out =
+            sensor.step(0.0, 1.5 * share, i % n == 0 ? Sample::good : Sample::invalid);
         angle += (out.denoised_radps[1] - 1.5 * share) * kPeriod;
         if (i > 8500 && i < 8600) {
           ASSERT_NEAR(out.denoised_radps[1], 1.5 * share, 0.01) << n << ", " << slope_s << ", " << i;

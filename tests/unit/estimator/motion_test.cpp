@@ -99,15 +99,6 @@ TEST(AfterAManoeuvre, TheRuleUnlearnsWhatItTookForNoise) {
   }
 }
 
-TEST(StartInMotion, DoesNotTakeTheMotionForNoise) {
-  const auto ramps = [](int i) {
-    return i < 50 ? 6.0 * i : (i < 3000 ? 300.0 : (i < 3050 ? 300.0 - 6.0 * (i - 3000) : 0.0));
-  };
-  const Record r = record(2, 4000, 1e-3, ramps);
-  const Filtered got = run(told(1e-3), r.measured);
-  EXPECT_LT(std::sqrt(mean_square_error(got.denoised, r.truth, 2900)), 1.0);
-}
-
 // A filter that begins in the middle of a turn, told a noise half as loud again as it is. What it lags behind
 // by, before it knows its noise, is motion, not colour: of forty records none is still more than three sigma
 // off after 400 samples, and the angle is all there after 4000.

@@ -25,22 +25,17 @@ constexpr double kForgotten = 45.0;
 int apart(const FilterSettings& settings, int samples, bool carries) {
   constexpr int kBefore = 20'000;
   const Record r = record(77, kBefore + samples, kRatio);
-  Estimator whole(settings, 1, kPeriod), part(settings, 1, kPeriod);
-  EstimatorInput in;
-  EstimatorOutput of_whole, of_part;
-  in.dt_s = kPeriod;
-  in.valid_axes = 1;
+  Fed whole(settings), part(settings);
+  if (carries) part.in.sequence = kBefore;
   const auto differ = [](double a, double b) {
     return std::bit_cast<std::uint64_t>(a) != std::bit_cast<std::uint64_t>(b);
   };
   int last = 0;
   for (int i = 0; i < kBefore + samples; ++i) {
-    in.sequence = static_cast<std::uint64_t>(i);
-    in.rate_radps[0] = r.measured[static_cast<std::size_t>(i)];
-    whole.step(in, of_whole);
+    const Axes rate{r.measured[static_cast<std::size_t>(i)]};
+    const EstimatorOutput& of_whole = whole.step(rate);
     if (i < kBefore) continue;
-    if (!carries) in.sequence -= kBefore;
-    part.step(in, of_part);
+    const EstimatorOutput& of_part = part.step(rate);
     if (differ(of_whole.denoised_radps[0], of_part.denoised_radps[0]) ||
         differ(of_whole.variance_rad2ps2[0], of_part.variance_rad2ps2[0]) ||
         differ(of_whole.gain[0], of_part.gain[0]))

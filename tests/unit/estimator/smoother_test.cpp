@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The smoother against the least squares it stands for, and against the measurements and the causal filter in
-// motions of many kinds.
+// The smoother against the measurements and the causal filter in motions of many kinds.
 #include "filters/smoother/smoother.h"
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -23,42 +21,6 @@ namespace {
 using namespace ifog::test;
 using ifog::Axes;
 using ifog::FilterSettings;
-
-// The smoothed walk is the least-squares solution of measurements and steps: solved densely.
-TEST(Smoother, IsTheLeastSquaresSolution) {
-  constexpr int kLength = 60;
-  constexpr double kNoise = 0.7;
-  Record r = record(31, kLength, 0.1);
-  r.measured[20] = r.measured[21] = std::nan("");
-  std::vector<double> walk(kLength);
-  for (std::size_t i = 0; i < walk.size(); ++i)
-    walk[i] = i == 40 ? 25.0 : 0.05 + 0.001 * static_cast<double>(i);
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(kLength, kLength);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(kLength);
-  for (int i = 0; i < kLength; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (std::isfinite(r.measured[k])) {
-      normal(i, i) += 1.0 / kNoise;
-      right(i) += r.measured[k] / kNoise;
-    }
-    if (i == 0) continue;
-    normal(i, i) += 1.0 / walk[k];
-    normal(i - 1, i - 1) += 1.0 / walk[k];
-    normal(i, i - 1) -= 1.0 / walk[k];
-    normal(i - 1, i) -= 1.0 / walk[k];
-  }
-  const Eigen::MatrixXd covariance = normal.inverse();
-  const Eigen::VectorXd solution = covariance * right;
-  const ifog::Smoothed got = ifog::smooth_course({r.measured, walk, {}, {}}, kNoise);
-  double owed = 0.0;
-  for (int i = 0; i < kLength; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    EXPECT_NEAR(got.rate_radps[k], solution(i), 1e-10) << i;
-    EXPECT_NEAR(got.variance_rad2ps2[k], covariance(i, i), 1e-10) << i;
-    if (std::isfinite(r.measured[k])) owed += r.measured[k] - got.rate_radps[k];
-  }
-  EXPECT_NEAR(owed, 0.0, 1e-9);
-}
 
 TEST(Smoother, BeatsTheFilterAtRestAndInMotionAndKeepsTheAngle) {
   constexpr int kLength = 60'000;
@@ -80,63 +42,6 @@ TEST(Smoother, BeatsTheFilterAtRestAndInMotionAndKeepsTheAngle) {
       EXPECT_LT(smoothed, 0.7 * filtered) << ratio << (moving ? " moving" : " at rest");
     }
   }
-}
-
-// Rest, a motion whose memory changes and that is not sampled evenly, and rest again: of motion slope and
-// curvature are unknowns beside the level, white noise drives the latter. Solved densely.
-TEST(Smoother, IsTheLeastSquaresSolutionInMotion) {
-  constexpr int kLength = 60;
-  constexpr double kNoise = 0.7, kSlopeBefore = 100.0;
-  Record r = record(33, kLength, 0.1, [](int i) { return i > 20 && i < 45 ? 0.3 * (i - 20) : 0.0; });
-  r.measured[30] = r.measured[31] = std::nan("");
-  std::vector<double> walk(kLength, 0.01), steps(kLength, 1.0);
-  std::vector<float> memories(kLength, ifog::pace::kRest);
-  for (std::size_t i = 15; i < 50; ++i) memories[i] = 2.0F + 0.1F * static_cast<float>(std::min(i, 65 - i));
-  steps[25] = 2.0;
-  steps[35] = 0.5;
-  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(3 * kLength, 3 * kLength);
-  Eigen::VectorXd right = Eigen::VectorXd::Zero(3 * kLength);
-  for (int i = 0; i < kLength; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    const bool moves = memories[k] > 0.0F, moved = i > 0 && memories[k - 1] > 0.0F;
-    if (!moves) normal.block<2, 2>(3 * i + 1, 3 * i + 1) += Eigen::Matrix2d::Identity();
-    if (std::isfinite(r.measured[k])) {
-      normal(3 * i, 3 * i) += 1.0 / kNoise;
-      right(3 * i) += r.measured[k] / kNoise;
-    }
-    if (i == 0) continue;
-    const double t = steps[k];
-    Eigen::Matrix3d from = Eigen::Vector3d::UnitX() * Eigen::RowVector3d::UnitX();
-    if (moved) from << 1.0, t, 0.5 * t * t, 0.0, 1.0, t, 0.0, 0.0, 1.0;
-    Eigen::Matrix3d driving = Eigen::Matrix3d::Zero();
-    if (moves || moved) {
-      const double memory = !moves   ? memories[k - 1]
-                            : !moved ? memories[k]
-                                     : std::min(memories[k], memories[k - 1]);
-      driving << std::pow(t, 5) / 20, std::pow(t, 4) / 8, std::pow(t, 3) / 6, std::pow(t, 4) / 8,
-          std::pow(t, 3) / 3, t * t / 2, std::pow(t, 3) / 6, t * t / 2, t;
-      driving *= kNoise * std::pow(1.5 / memory, 6);
-    }
-    driving(0, 0) += walk[k];
-    if (moves && !moved) driving(1, 1) += kSlopeBefore * kNoise, driving(2, 2) += kSlopeBefore * kNoise;
-    // A sample at rest has a level and nothing else.
-    const int n = moves ? 3 : 1;
-    const Eigen::MatrixXd weight = driving.topLeftCorner(n, n).inverse();
-    Eigen::MatrixXd step(n, 6);
-    step << -from.topRows(n), Eigen::MatrixXd::Identity(n, 3);
-    normal.block<6, 6>(3 * i - 3, 3 * i - 3) += step.transpose() * weight * step;
-  }
-  const Eigen::MatrixXd covariance = normal.inverse();
-  const Eigen::VectorXd solution = covariance * right;
-  const ifog::Smoothed got = ifog::smooth_course({r.measured, walk, steps, memories}, kNoise);
-  double owed = 0.0;
-  for (int i = 0; i < kLength; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    EXPECT_NEAR(got.rate_radps[k], solution(3 * i), 1e-8) << i;
-    EXPECT_NEAR(got.variance_rad2ps2[k], covariance(3 * i, 3 * i), 1e-8) << i;
-    if (std::isfinite(r.measured[k])) owed += r.measured[k] - got.rate_radps[k];
-  }
-  EXPECT_NEAR(owed, 0.0, 1e-9);
 }
 
 // Filtered states are worked out again piece by piece: what is smoothed there is what a part of the record
