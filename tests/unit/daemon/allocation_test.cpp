@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <filesystem>
 #include <fstream>
 #include <thread>
 
@@ -18,14 +17,14 @@
 #include "tests/unit/daemon/kvh_frames.h"
 #include "tests/unit/daemon/private_network.h"
 #include "tests/unit/malloc_counter.h"
+#include "tests/unit/own_folder.h"
 
 namespace ifog {
 namespace {
 
-std::string recording(int count) {
+std::string recording(const test::OwnFolder& folder, int count) {
   const std::vector<std::uint8_t> bytes = kvh_frames(0, count, [](int n) { return 0.01 + 1e-5 * (n % 17); });
-  std::string path =
-      std::filesystem::temp_directory_path() / ("ifog-allocation-" + std::to_string(getpid()) + ".kvh");
+  std::string path = folder.path("gyro.kvh");
   std::ofstream(path, std::ios::binary)
       .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return path;
@@ -38,7 +37,8 @@ TEST(Allocation, NoneBetweenTheFirstAndTheLastSample) {
   if (const std::string why = enter_private_network(); !why.empty())
     GTEST_SKIP() << "no private network namespace (" << why << "); runs as root or with user namespaces";
   constexpr int kCount = 2000;
-  const std::string path = recording(kCount);
+  const test::OwnFolder folder;
+  const std::string path = recording(folder, kCount);
   DriverInstance driver = make_driver("kvh1750", {});
   // Recorded, too; the recorder thread, which may allocate, does not run here.
   Tape tape(1U << 20U);
@@ -87,7 +87,6 @@ TEST(Allocation, NoneBetweenTheFirstAndTheLastSample) {
   test::count_allocations(false);
   const std::uint64_t to = published.value();
   pipeline.stop();
-  std::filesystem::remove(path);
   EXPECT_EQ(test::take_allocations(), 0U);
   EXPECT_GT(to - from, static_cast<std::uint64_t>(kCount) / 2);
   EXPECT_TRUE(answered);

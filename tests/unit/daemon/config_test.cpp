@@ -11,6 +11,7 @@
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/transport/clock.h"
 #include "tests/unit/daemon/config_complaint.h"
+#include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 
 namespace ifog {
@@ -60,11 +61,10 @@ scale = 1e-3
 
 // Wherever the daemon was started: a service starts in the root folder.
 TEST(Config, AFileNamedAmongTheDriversOptionsLiesBesideTheConfiguration) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::path(testing::TempDir()) / "config_beside";
-  fs::create_directories(folder / "bus");
-  std::ofstream(folder / "bus" / "gyro.dbc")
-      << "BU_: G\nBO_ 1 Rate: 8 G\n SG_ Rate_z : 0|16@1- (0.01,0) [-300|300] \"deg/s\" G\n";
+  const test::OwnFolder folder;
+  std::filesystem::create_directory(folder.path("bus"));
+  folder.write("bus/gyro.dbc",
+               "BU_: G\nBO_ 1 Rate: 8 G\n SG_ Rate_z : 0|16@1- (0.01,0) [-300|300] \"deg/s\" G\n");
   const Config config = parse_config(R"(
 [[sensor]]
 name = "nose"
@@ -77,10 +77,9 @@ interface = "can0"
 dbc = "bus/gyro.dbc"
 z = "Rate_z"
 )",
-                                     (folder / "ifogd.toml").string());
+                                     folder.path("ifogd.toml"));
   const DriverInstance driver = make_sensor_driver(config.sensors.at(0), {});
   EXPECT_EQ(driver.description().axes, 1U);
-  fs::remove_all(folder);
 }
 
 SensorConfig serial_sensor(const std::string& keys, const std::string& driver = "kvh1750") {

@@ -10,14 +10,13 @@
 
 #include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "tests/unit/daemon/private_network.h"
+#include "tests/unit/own_folder.h"
 
 namespace ifog {
 
@@ -25,31 +24,19 @@ namespace fs = std::filesystem;
 
 inline constexpr const char* kUrl = "udpm://239.255.76.67:7667?ttl=0";
 
-inline std::string text_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-class DaemonProcess : public testing::Test {
+class DaemonProcess : public testing::Test, protected test::OwnFolder {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("daemon-process-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
     if (const std::string why = enter_private_network(); !why.empty())
       GTEST_SKIP() << "no private network namespace (" << why << "); runs as root or with user namespaces";
   }
   void TearDown() override {
     if (child_ > 0) kill(child_, SIGKILL);
     if (child_ > 0) waitpid(child_, nullptr, 0);
-    fs::remove_all(folder_);
-  }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  void write(const std::string& name, const std::string& text) const {
-    std::ofstream(path(name), std::ios::binary) << text;
   }
 
   // All that the daemon has said to the file `said`.
-  std::string said() const { return text_of(path("said")); }
+  std::string said() const { return content("said"); }
   std::vector<std::string> lines_said() const {
     std::istringstream in(said());
     std::vector<std::string> lines;
@@ -91,7 +78,6 @@ class DaemonProcess : public testing::Test {
     return wait_for_the_end();
   }
 
-  fs::path folder_;
   pid_t child_ = -1;
 };
 

@@ -30,20 +30,6 @@ std::string recording(int count) {
   return {bytes.begin(), bytes.end()};
 }
 
-TEST_F(Ifogd, AWrongConfigurationIsRefusedInOneLine) {
-  for (const auto& [more, what] :
-       {std::pair{"speed = 3\n", ":6: sensor.speed: unknown key; known here: "},
-        {"[$ensor]\n", ":6: Error while parsing key: "},
-        {"\"mo\\ndel\" = 3\n", ":6: sensor.mo\\ndel: unknown key, did you mean 'model'? Known here: "},
-        {"x\n", ":6: Error while parsing key-value pair: expected '=', saw '\\n'"}}) {
-    configure(more);
-    EXPECT_EQ(ifogd(), 2);
-    EXPECT_EQ(times_said(path("ifogd.toml") + what), 1) << said();
-    // A table that is missing because of the broken line may be complained of as well, a line each.
-    EXPECT_EQ(times_said(path("ifogd.toml") + ":"), static_cast<int>(lines_said().size())) << said();
-  }
-}
-
 // By the line of the key that is due to it, not of the sensor; the same with --check.
 TEST_F(Ifogd, WhatShowsOnlyInThePartsIsToldByItsKeysLine) {
   write("model.toml",
@@ -169,13 +155,6 @@ TEST_F(Ifogd, WithoutItsOnlyDeviceItIsReadyAndWaits) {
       << said();
   EXPECT_EQ(times_said("nose: trying again to open /dev/no-gyro at "), 1) << said();
   EXPECT_EQ(times_said("stopping on SIGTERM"), 1) << said();
-}
-
-TEST_F(Ifogd, AFileIsReadToItsEnd) {
-  configure(kFile);
-  write("flight.kvh", recording(300));
-  EXPECT_EQ(ifogd(), 0) << said();
-  EXPECT_EQ(times_said("300 samples read, 300 published, 0 missing, 0 merged"), 1) << said();
 }
 
 TEST_F(Ifogd, AFileCutOffWithinAFrameIsToldInOneLineAndCounted) {

@@ -4,8 +4,8 @@
 #include <random>
 #include <thread>
 
-#include "tests/unit/daemon/messages.h"
 #include "tests/unit/daemon/running_daemon.h"
+#include "tests/unit/messages.h"
 
 namespace ifog {
 namespace {
@@ -182,12 +182,12 @@ TEST_F(RunningDaemon, NoiseIsKeptOverRestartsWithItsDate) {
   const std::string config =
       "[daemon]\nlock_memory = false\nstate_folder = \"state\"\n[[sensor]]\nname = \"nose\"\ndriver = "
       "\"kvh1750\"\nnominal_rate_hz = 1000\n[sensor.transport]\ntype = \"file\"\npath = \"frames\"\n";
-  fs::create_directories(folder_ / "state");
+  fs::create_directories(path("state"));
   const auto run_to_the_end = [&](const std::string& more) {
     write("ifogd.toml", config + more);
     return ifogd();
   };
-  const auto kept = [&] { return text_of(path("state/nose.noise.toml")); };
+  const auto kept = [&] { return content("state/nose.noise.toml"); };
   const auto samples = [&] {
     const std::string text = kept();
     return std::strtod(text.c_str() + text.find("\nsamples = ") + 11, nullptr);
@@ -215,11 +215,11 @@ TEST_F(RunningDaemon, NoiseIsKeptOverRestartsWithItsDate) {
   EXPECT_EQ(samples(), first) << kept();
 
   // A folder that is not there is made; where none can be, it is said once.
-  fs::remove_all(folder_ / "state");
+  fs::remove_all(path("state"));
   ASSERT_EQ(run_to_the_end(""), 0) << said();
   EXPECT_GE(samples(), 4096.0) << said();
-  EXPECT_EQ(fs::status(folder_ / "state").permissions(), fs::perms(02775));
-  fs::remove_all(folder_ / "state");
+  EXPECT_EQ(fs::status(path("state")).permissions(), fs::perms(02775));
+  fs::remove_all(path("state"));
   write("state", "");
   ASSERT_EQ(run_to_the_end(""), 0) << said();
   EXPECT_EQ(times_said("daemon.state_folder = \"" + path("state") + "\": cannot be made"), 1) << said();

@@ -11,7 +11,7 @@ class SecondDaemon : public RunningDaemon {
  protected:
   // Exit status of another daemon; what it says goes to `second`.
   int run_second(const std::string& configuration) const { return ifogd("", configuration, "second"); }
-  std::string second_said() const { return text_of(path("second")); }
+  std::string second_said() const { return content("second"); }
 };
 
 TEST_F(SecondDaemon, OneFifoIsOneDaemons) {

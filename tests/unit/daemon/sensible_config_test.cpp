@@ -13,6 +13,7 @@
 #include "daemon/config/config.h"
 #include "daemon/config/lcm_url.h"
 #include "tests/unit/daemon/config_complaint.h"
+#include "tests/unit/own_folder.h"
 
 namespace ifog {
 namespace {
@@ -76,7 +77,8 @@ TEST(SensibleConfig, TheFieldOfAnLcmChannelIsOneThatMessagesHave) {
   const std::string hull = "name = \"hull_degC\"\nsource = \"lcm\"\nlcm_channel = \"HULL\"\n";
   for (const char* const good : {"hull_degC", "raw[2]", "channel_value[coil_degC]", "nis_mean[0]"})
     EXPECT_EQ(complaint(channel(hull + "field = \"" + good + "\"\n")), "") << good;
-  for (const char* const bad : {"raw[3]", "raw[", "raw[0]x", "channel_value[]", "foo[0]"})
+  for (const char* const bad : {"raw[3]", "raw[x]", "raw[", "raw[0]x", "angle[0]", "channel_value[]",
+                                "clock_offset_ppm[0]", "foo[0]"})
     EXPECT_EQ(complaint(channel(hull + "field = \"" + bad + "\"\n"))
                   .rfind("f.toml:11: sensor.channel.field = '" + std::string(bad) +
                              "': expected the name in an ifog.channel_t; raw[i]",
@@ -106,9 +108,9 @@ std::string shared(const std::string& key, const std::string& value) {
 }
 
 TEST(SensibleConfig, TwoSensorsDoNotReadOneSource) {
-  const std::string folder = testing::TempDir() + "ifog-shared-" + std::to_string(getpid());
-  std::filesystem::create_directory(folder);
-  const std::string fifo = folder + "/fifo", link = folder + "/link", file = folder + "/file";
+  const test::OwnFolder own;
+  const std::string folder = own.folder(), fifo = folder + "/fifo", link = folder + "/link",
+                    file = folder + "/file";
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   std::filesystem::create_symlink("fifo", link);
   struct Case {
@@ -151,7 +153,6 @@ TEST(SensibleConfig, TwoSensorsDoNotReadOneSource) {
     EXPECT_EQ(without_line, each.told) << each.first << each.second;
   }
   EXPECT_EQ(complaint(sensor("a", udp("")) + sensor("b", udp(""))), "f.toml:12" + shared("port", "5000"));
-  std::filesystem::remove_all(folder);
 }
 
 // Whatever it is called; the test's own is a pipe while it is asked.

@@ -8,15 +8,12 @@
 #include <unistd.h>
 
 #include <atomic>
-#include <cstdio>
-#include <cstdlib>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <thread>
 
+#include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 
 namespace ifog {
@@ -24,27 +21,18 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class StateFile : public testing::Test {
+class StateFile : public testing::Test, protected test::OwnFolder {
  protected:
   StateFile() {
-    std::string name = "/tmp/state_file.XXXXXX";
-    root_ = ::mkdtemp(name.data());
-    fs::create_directory(root_ / "state");
-    std::ofstream(victim()) << "secret";
+    fs::create_directory(path("state"));
+    write("victim", "secret");
   }
-  ~StateFile() override { fs::remove_all(root_); }
 
-  [[nodiscard]] fs::path victim() const { return root_ / "victim"; }
-  [[nodiscard]] fs::path file() const { return root_ / "state" / "nose.model.toml"; }
-  static std::string text_of(const fs::path& path) {
-    std::ifstream in(path);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
+  [[nodiscard]] fs::path victim() const { return path("victim"); }
+  [[nodiscard]] fs::path file() const { return path("state/nose.model.toml"); }
   [[nodiscard]] std::string refusal() const {
     return test::refusal([&] { (void)read_state_file(file().string(), 100); }, "read");
   }
-
-  fs::path root_;
 };
 
 TEST_F(StateFile, IsWrittenAndReadWhole) {
@@ -60,13 +48,13 @@ TEST_F(StateFile, ALinkIsNeitherFollowedNorRead) {
   fs::create_symlink(victim(), file());
   EXPECT_NE(refusal().find("is a link"), std::string::npos);
   EXPECT_THROW(write_state_file(file().string(), "ours"), std::runtime_error);
-  EXPECT_EQ(text_of(victim()), "secret");
+  EXPECT_EQ(content("victim"), "secret");
   fs::remove(file());
   fs::create_hard_link(victim(), file());
   EXPECT_NE(refusal().find("other names"), std::string::npos);
   write_state_file(file().string(), "ours");
-  EXPECT_EQ(text_of(victim()), "secret");
-  EXPECT_EQ(text_of(file()), "ours");
+  EXPECT_EQ(content("victim"), "secret");
+  EXPECT_EQ(content("state/nose.model.toml"), "ours");
   fs::remove(file());
   ASSERT_EQ(::mkfifo(file().c_str(), 0600), 0);
   EXPECT_NE(refusal().find("no regular file"), std::string::npos);
@@ -75,7 +63,7 @@ TEST_F(StateFile, ALinkIsNeitherFollowedNorRead) {
 // Somebody swaps the file with a link to another's at each moment.
 TEST_F(StateFile, ASwapBetweenLookingAndWritingGainsNothing) {
   write_state_file(file().string(), "ours");
-  const fs::path link = root_ / "state" / "link";
+  const fs::path link = path("state/link");
   fs::create_symlink(victim(), link);
   std::atomic<bool> done = false;
   std::thread swaps([&] {
@@ -89,7 +77,7 @@ TEST_F(StateFile, ASwapBetweenLookingAndWritingGainsNothing) {
   }
   done = true;
   swaps.join();
-  EXPECT_EQ(text_of(victim()), "secret");
+  EXPECT_EQ(content("victim"), "secret");
 }
 
 }  // namespace

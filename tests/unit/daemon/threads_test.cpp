@@ -14,7 +14,7 @@
 #include <system_error>
 #include <thread>
 
-#include "daemon/pipeline/pipeline.h"
+#include "tests/unit/daemon/rig.h"
 
 namespace {
 
@@ -32,39 +32,6 @@ extern "C" int pthread_create(pthread_t* thread, const pthread_attr_t* attribute
 
 namespace ifog {
 namespace {
-
-class SilentTransport final : public Transport {
- public:
-  SilentTransport() : Transport("silent") {}
-  bool connect(std::string&, std::int64_t) override { return true; }
-  Delivery receive(std::int64_t until_ns) noexcept override {
-    short happened = 0;
-    waiting_.wait(-1, 0, until_ns, happened);
-    return {};
-  }
-};
-
-class NoPublisher final : public Publisher {
- public:
-  bool publish(const char*, std::span<const std::uint8_t>) noexcept override { return true; }
-};
-
-std::unique_ptr<Pipeline> pipeline() {
-  DriverInstance driver = make_driver("kvh1750", {});
-  PipelinePlan plan;
-  plan.lcm_channel = "test";
-  plan.facts = sensor_facts(driver.description(), 1000.0, 0);
-  ChainSettings chain;
-  chain.facts = plan.facts;
-  chain.axes = {"x", "y", "z"};
-  chain.channels.assign(driver.description().environments, "channel_V");
-  chain.channel_max_age_s.assign(driver.description().environments, 10.0);
-  auto made =
-      std::make_unique<Pipeline>(plan, std::make_unique<SilentTransport>(), std::move(driver), nullptr,
-                                 std::make_unique<ChainParts>(chain), std::make_unique<NoPublisher>());
-  made->open();
-  return made;
-}
 
 std::ptrdiff_t threads() {
   const std::filesystem::directory_iterator tasks("/proc/self/task");
@@ -85,10 +52,10 @@ TEST(Threads, APipelineThatCannotHaveBothHasNone) {
   std::ptrdiff_t before = 0;
   std::thread([&] { before = threads() - 1; }).join();
   for (const int left : {0, 1}) {
-    const std::unique_ptr<Pipeline> one = pipeline();
+    Rig rig({}, kFrame, true);
     threads_left = left;
     try {
-      one->start();
+      rig.pipeline->start();
       ADD_FAILURE() << "started with " << left;
     } catch (const std::system_error& error) {
       EXPECT_EQ(error.code().value(), EAGAIN);

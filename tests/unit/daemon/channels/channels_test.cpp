@@ -16,6 +16,7 @@
 
 #include "drivers/transport/clock.h"
 #include "tests/unit/daemon/channels/awaited.h"
+#include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 
 namespace ifog {
@@ -31,15 +32,14 @@ ChannelConfig config(ChannelConfig::Source source) {
 }
 
 // A channel that reads a file of its own a hundred times a second.
-class FileChannel : public testing::Test {
+class FileChannel : public testing::Test, protected test::OwnFolder {
  protected:
   FileChannel() {
-    one.path = path;
+    one.path = path("value");
     one.period_s = 0.01;
   }
   ~FileChannel() override {
     if (sources_) sources_->stop();
-    std::filesystem::remove(path);
   }
   void start() {
     sources_ = std::make_unique<ChannelSources>(std::vector{ChannelSources::Wanted{one, table, 0}}, kUrl);
@@ -47,12 +47,10 @@ class FileChannel : public testing::Test {
   }
   // Half-written files are seen by nobody.
   void put(const std::string& text) const {
-    std::ofstream(path.string() + ".new") << text;
-    std::filesystem::rename(path.string() + ".new", path);
+    write("new", text);
+    std::filesystem::rename(path("new"), one.path);
   }
 
-  const std::filesystem::path path =
-      std::filesystem::temp_directory_path() / ("ifog-channel-" + std::to_string(getpid()));
   ChannelConfig one = config(ChannelConfig::Source::file);
   std::shared_ptr<ChannelTable> table = std::make_shared<ChannelTable>(1);
 
@@ -114,8 +112,8 @@ ifog_can_frame environment(std::uint32_t id, float temperature_degC, float suppl
 }
 
 TEST(ChannelSources, AFifoInTheFilesPlaceHoldsNothingUp) {
-  const std::string folder = std::filesystem::temp_directory_path().string();
-  const std::string fifo = folder + "/ifog-fifo-" + std::to_string(getpid()), file = fifo + "-file";
+  const test::OwnFolder folder;
+  const std::string fifo = folder.path("fifo"), file = folder.path("file");
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   std::ofstream(file) << "7\n";
   ChannelConfig waits = config(ChannelConfig::Source::file), works = waits;
@@ -132,8 +130,6 @@ TEST(ChannelSources, AFifoInTheFilesPlaceHoldsNothingUp) {
   }
   EXPECT_EQ(value, 7.0);
   sources.stop();  // hung, as the reader did
-  std::filesystem::remove(fifo);
-  std::filesystem::remove(file);
 }
 
 TEST_F(FileChannel, AValueThatCannotBeIsLeftOutAndCounted) {
@@ -154,17 +150,17 @@ TEST_F(FileChannel, AValueThatCannotBeIsLeftOutAndCounted) {
     for (int n = 0; n < 500 && table->fault(0).kind != kind; ++n) std::this_thread::sleep_for(10ms);
     return describe(one, table->fault(0));
   };
-  const std::string name = "channel 'coil_degC': " + path.string();
+  const std::string name = "channel 'coil_degC': " + one.path;
   put("");
   EXPECT_EQ(left(ChannelFault::Kind::empty), name + ": is empty, expected a file that holds one number");
   const std::uint64_t counted = table->refused();
-  std::filesystem::remove(path);
+  std::filesystem::remove(one.path);
   EXPECT_EQ(left(ChannelFault::Kind::unreadable),
             name + ": cannot read: No such file or directory, expected a file that holds one number");
-  std::filesystem::create_directory(path);
+  std::filesystem::create_directory(one.path);
   EXPECT_EQ(left(ChannelFault::Kind::no_file),
             name + ": is no regular file, expected a file that holds one number");
-  std::filesystem::remove(path);
+  std::filesystem::remove(one.path);
   EXPECT_EQ(table->refused(), counted);
   put("\t+21.5\r\n");
   EXPECT_EQ(await(*table, 21.5).value, 21.5);

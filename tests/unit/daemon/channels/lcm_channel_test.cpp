@@ -13,8 +13,8 @@
 #include "daemon/channels/channel_sources.h"
 #include "drivers/transport/clock.h"
 #include "tests/unit/daemon/channels/awaited.h"
-#include "tests/unit/daemon/messages.h"
 #include "tests/unit/daemon/private_network.h"
+#include "tests/unit/messages.h"
 
 namespace ifog {
 namespace {

@@ -9,7 +9,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "tests/unit/daemon/messages.h"
+#include "tests/unit/messages.h"
 #include "tests/unit/refusal.h"
 
 namespace ifog {

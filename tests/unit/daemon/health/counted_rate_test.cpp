@@ -29,34 +29,24 @@ TEST(CountedRate, IsThatOfTheSensorHoweverSlowItIs) {
   }
 }
 
-struct Case {
-  double rate_hz;
-  const char* words;
-};
-
-// The intervals in use are 1/200 s, so an angle is wrong by f / 200 - 1.
+// The intervals in use are 1/200 s, so an angle is wrong by f / 200 - 1. The fit follows a period to half and to twice
+// the nominal one; beyond, the samples are counted.
 TEST(WrongRate, TheFiguresAreOfTheIntervalsInUse) {
-  for (const auto& [rate_hz, words] : {Case{400.0, "100 % too large"}, Case{220.0, "10 % too large"},
-                                       Case{180.0, "10 % too small"}, Case{100.0, "50 % too small"}}) {
-    const std::string said = wrong_rate_in_words(200.0, 200.0 / rate_hz - 1.0, rate_hz + 1.0);
-    EXPECT_NE(said.find(words), std::string::npos) << rate_hz << ": " << said;
-  }
-  EXPECT_EQ(wrong_rate_in_words(200.0, 200.0 / 220.0 - 1.0, 221.0),
-            "samples come at 220 Hz by their arrival, expected 200 Hz: intervals, and angles made of a rate, "
-            "are 10 % too large");
-}
-
-// The fit follows a period to half and to twice the nominal one.
-TEST(WrongRate, BeyondWhatTheFitFollowsTheSamplesAreCounted) {
-  for (const auto& [rate_hz, words] :
-       {Case{600.0,
-             "come at 600 Hz by their arrival, expected 200 Hz: intervals, and angles made of a rate, "
-             "are 200 % too large"},
-        Case{800.0, "300 % too large"}, Case{50.0, "come at 50 Hz"}, Case{50.0, "75 % too small"}}) {
-    const std::string said = wrong_rate_in_words(200.0, rate_hz > 200.0 ? -0.5 : 1.0, rate_hz);
-    EXPECT_NE(said.find(words), std::string::npos) << rate_hz << ": " << said;
-  }
-  EXPECT_NE(wrong_rate_in_words(200.0, -0.5, 0.0).find("come at 400 Hz"), std::string::npos);
+  struct Row {
+    double interval_error, counted_hz;
+    const char *rate, *angles;
+  };
+  for (const Row& row :
+       {Row{200.0 / 400.0 - 1.0, 401.0, "401", "100 % too large"},
+        Row{200.0 / 220.0 - 1.0, 221.0, "220", "10 % too large"},
+        Row{200.0 / 180.0 - 1.0, 181.0, "180", "10 % too small"},
+        Row{200.0 / 100.0 - 1.0, 101.0, "100", "50 % too small"}, Row{-0.5, 600.0, "600", "200 % too large"},
+        Row{-0.5, 800.0, "800", "300 % too large"}, Row{1.0, 50.0, "50", "75 % too small"},
+        Row{-0.5, 0.0, "400", "100 % too large"}})
+    EXPECT_EQ(wrong_rate_in_words(200.0, row.interval_error, row.counted_hz),
+              std::string("samples come at ") + row.rate +
+                  " Hz by their arrival, expected 200 Hz: intervals, " + "and angles made of a rate, are " +
+                  row.angles);
 }
 
 }  // namespace

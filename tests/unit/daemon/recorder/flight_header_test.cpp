@@ -3,21 +3,19 @@
 #include "daemon/sensor/flight_header.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-#include <filesystem>
 #include <fstream>
 
 #include "drivers/host/driver_instance.h"
+#include "tests/unit/own_folder.h"
 
 namespace ifog {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A log's frames go back onto the interface that they came on: by the first that the driver wants.
 TEST(RecordedHeader, OfALogOfCandumpTheInterfaceIsKept) {
-  const fs::path log = fs::temp_directory_path() / ("ifog-header-" + std::to_string(getpid()) + ".log");
+  const test::OwnFolder folder;
+  const std::string log = folder.path("frames.log");
   const DriverInstance driver = make_driver(
       "dbc", {{"dbc", std::string(IFOG_SOURCE_DIR) + "/drivers/dbc/examples/goetting_hg_g_84300.dbc"},
               {"signal", "Angle"},
@@ -31,7 +29,7 @@ TEST(RecordedHeader, OfALogOfCandumpTheInterfaceIsKept) {
   sensor.driver = "dbc";
   sensor.transport.kind = TransportConfig::Kind::file;
   sensor.transport.candump = true;
-  sensor.transport.path = log.string();
+  sensor.transport.path = log;
   Config config;
   config.file = "ifogd.toml";
   const auto interface = [&] { return flight_header(sensor, config, driver, "").interface; };
@@ -42,9 +40,8 @@ TEST(RecordedHeader, OfALogOfCandumpTheInterfaceIsKept) {
   EXPECT_EQ(interface(), "can1");
   sensor.transport.kind = TransportConfig::Kind::file;
   sensor.transport.interface.clear();
-  sensor.transport.path = log.string() + ".not-there";
+  sensor.transport.path = log + ".not-there";
   EXPECT_EQ(interface(), "");
-  fs::remove(log);
 }
 
 }  // namespace

@@ -78,7 +78,7 @@ class RecordedFlight : public DaemonProcess {
   int ifog(const std::string& arguments) {
     const int status = std::system(
         (IFOG_BINARY_DIR "/tools/ifog/ifog " + arguments + " >/dev/null 2>" + path("complaint")).c_str());
-    complaint_ = text_of(path("complaint"));
+    complaint_ = content("complaint");
     return status;
   }
   // What `ifog denoise` says of the samples that were published before the channel from elsewhere had a
@@ -94,7 +94,7 @@ class RecordedFlight : public DaemonProcess {
   }
   // Two columns of every axis; NaN where a cell is empty.
   std::vector<std::vector<double>> rows_of(const std::string& name) const {
-    std::istringstream in(text_of(path(name)));
+    std::istringstream in(content(name));
     std::vector<std::vector<double>> out;
     std::string line, cell;
     for (bool header = true; std::getline(in, line); header = false) {

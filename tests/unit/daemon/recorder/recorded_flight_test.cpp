@@ -68,7 +68,7 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   ASSERT_TRUE(send_and_await(200)) << said();
   for (std::size_t n = unchanged; n < published_.size(); ++n)
     ASSERT_EQ(published_[n].flags & static_cast<std::int32_t>(rate_t::FLAG_NOISE_UNKNOWN), 0) << n;
-  std::string other = text_of(path("model.toml"));
+  std::string other = content("model.toml");
   other.replace(other.find("1e-3"), 4, "4e-3");
   write("model.toml", other);
   reload("reloaded: model");
@@ -104,12 +104,12 @@ TEST_F(RecordedFlight, DenoiseGivesWhatWasPublishedThroughReloadsAndRestarts) {
   EXPECT_TRUE(corrected);
   // Every command reads it as a capture, the channel from elsewhere among its columns.
   ASSERT_EQ(ifog("convert " + path("record/nose") + " " + path("capture.csv")), 0) << complaint_;
-  EXPECT_NE(text_of(path("capture.csv")).substr(0, 200).find("supply_V"), std::string::npos);
+  EXPECT_NE(content("capture.csv").substr(0, 200).find("supply_V"), std::string::npos);
   EXPECT_EQ(rows_of("capture.csv").size(), published_.size());
   EXPECT_EQ(ifog("allan " + path("record/nose") + " --json " + path("allan.json")), 0) << complaint_;
   // And it is sent again as it came, to the bit.
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
-  EXPECT_EQ(text_of(path("again")), sent_);
+  EXPECT_EQ(content("again"), sent_);
   // Without its beginning nobody knows how the filter stood: that is said.
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(path("record/nose"))) files.push_back(entry.path());
@@ -164,7 +164,7 @@ TEST_F(RecordedFlight, DenoiseLooksForDriversWhereTheConfigurationSays) {
     if (entry.path().filename().string().find("kvh1750") != std::string::npos) plugin = entry.path();
   fs::create_directories(path("plugins"));
   fs::copy(plugin, path("plugins") / plugin.filename());
-  std::string configuration = text_of(path("ifogd.toml"));
+  std::string configuration = content("ifogd.toml");
   configuration.replace(0, 8, "[daemon]\nplugin_folder = \"plugins\"");
   write("ifogd.toml", configuration);
   for (const std::string recording : {"record/nose", "raw.bin"}) {
@@ -172,7 +172,7 @@ TEST_F(RecordedFlight, DenoiseLooksForDriversWhereTheConfigurationSays) {
         std::system((path("bin/ifog") + " denoise " + path(recording) + " --config " + path("ifogd.toml") +
                      " --output " + path("out.csv") + " >/dev/null 2>" + path("complaint"))
                         .c_str());
-    EXPECT_EQ(status, 0) << recording << ": " << text_of(path("complaint"));
+    EXPECT_EQ(status, 0) << recording << ": " << content("complaint");
   }
 }
 
@@ -184,7 +184,7 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
   std::this_thread::sleep_for(std::chrono::milliseconds(1500));
   ASSERT_EQ(end(SIGKILL), 1000 + SIGKILL);
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
-  EXPECT_EQ(text_of(path("again")), sent_);
+  EXPECT_EQ(content("again"), sent_);
   EXPECT_NE(complaint_.find("without an end"), std::string::npos) << complaint_;
   published_.clear();
   start();
@@ -202,7 +202,7 @@ TEST_F(RecordedFlight, AfterAKillAllButTheLastSecondIsThereAndTheNextRunGoesOn) 
   }
   EXPECT_NE(rows_of("denoised.csv").size(), 0U);
   ASSERT_EQ(ifog("replay " + path("record/nose") + " --speed 0 --to file:" + path("again")), 0) << complaint_;
-  EXPECT_EQ(text_of(path("again")), sent_);
+  EXPECT_EQ(content("again"), sent_);
 }
 
 // Bursts that the ring has no room for: as many rows more than were published are reported, and where.
@@ -247,8 +247,7 @@ TEST_F(RecordedFlight, WhatTheRingMergedIsToldByDenoise) {
       << complaint_;
   EXPECT_NE(complaint_.find("were published as one with others (the ring was full)"), std::string::npos)
       << complaint_;
-  EXPECT_NE(text_of(path("denoised.json")).find("\"merged\": " + std::to_string(merged) + ","),
-            std::string::npos);
+  EXPECT_NE(content("denoised.json").find("\"merged\": " + std::to_string(merged) + ","), std::string::npos);
   // Until the first of them, every row is what was published.
   const auto rows = rows_of("denoised.csv");
   for (std::size_t n = 0; n < 200; ++n) ASSERT_EQ(rows[n][3], published_[n].denoised[0]) << n;
@@ -286,7 +285,7 @@ TEST_F(RecordedFlight, LcmIsRecordedOnAnotherComputerWithItsChannels) {
   waitpid(recorder, &status, 0);
   EXPECT_EQ(status, 0);
   ASSERT_EQ(ifog("convert " + path("heard") + " " + path("capture.csv")), 0) << complaint_;
-  const std::string capture = text_of(path("capture.csv"));
+  const std::string capture = content("capture.csv");
   EXPECT_NE(capture.substr(0, 200).find("supply_V"), std::string::npos) << capture.substr(0, 200);
   const auto rows = rows_of("capture.csv");
   ASSERT_EQ(rows.size(), published_.size());

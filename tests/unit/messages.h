@@ -2,6 +2,7 @@
 // Messages of each type, and their bytes.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <ifog/channel_t.hpp>
 #include <ifog/rate_t.hpp>
@@ -26,15 +27,14 @@ inline channel_t channel(const std::string& name, double value, std::int64_t uti
   return out;
 }
 
-// Two axes, each field with numbers of its own.
-inline rate_t rate() {
+// Each field with numbers of its own, from `next` on.
+inline rate_t rate(int axes = 2, double next = 1.0) {
   rate_t out{};
   out.utime = 7;
-  out.axes = 2;
-  double next = 0.0;
+  out.axes = static_cast<std::int8_t>(axes);
   for (auto* field : {&out.raw, &out.compensated, &out.denoised, &out.variance, &out.delta_theta,
                       &out.covered, &out.angle, &out.innovation, &out.innovation_variance, &out.gain})
-    for (int axis = 0; axis < 2; ++axis) field->push_back(++next);
+    for (int axis = 0; axis < axes; ++axis) field->push_back(next++);
   return out;
 }
 
