@@ -7,7 +7,7 @@
 
 #include "drivers/timeline/timeline.h"
 #include "filters/chain/incrementer.h"
-#include "tests/unit/chain/sent_times.h"
+#include "tests/unit/chain/one_axis.h"
 
 namespace ifog {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/unit/chain/sent_times.h"
+#include "tests/unit/chain/one_axis.h"
 
 namespace ifog {
 namespace {

@@ -9,7 +9,7 @@
 #include <numbers>
 #include <vector>
 
-#include "tests/unit/chain/sent_times.h"
+#include "tests/unit/chain/one_axis.h"
 
 namespace ifog {
 namespace {

@@ -15,6 +15,8 @@
 namespace ifog {
 
 inline constexpr double kPeriod_s = 1e-3;
+inline constexpr std::int64_t kStart_ns = 1'700'000'000'000'000'000;  // where the tests of clocks begin
+inline constexpr double kTurning = 0.1;                               // rad/s, how fast their device turns
 
 inline ChainSettings settings(double q = 1e-10, double r = 1e-8) {
   ChainSettings out;

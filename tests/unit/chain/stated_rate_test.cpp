@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "filters/chain/incrementer.h"
-#include "tests/unit/chain/sent_times.h"
+#include "tests/unit/chain/one_axis.h"
 
 namespace ifog {
 namespace {

@@ -13,6 +13,7 @@
 #include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
 #include "filters/model_file/toml_text.h"
+#include "tests/unit/diagnosis/findings.h"
 
 namespace ifog {
 namespace {
@@ -32,12 +33,6 @@ struct Rows {
   }
 };
 
-const FoundEffect* effect_of(const Diagnosis& found, std::string_view form) {
-  const auto at = std::find_if(found.effects.begin(), found.effects.end(),
-                               [&](const FoundEffect& each) { return each.effect.form == form; });
-  return at == found.effects.end() ? nullptr : &*at;
-}
-
 // A rate that swings, read by a gyro with a bias and a scale factor of -14 %. The reference has white noise
 // of a third of the rate, as one has that is interpolated from angles.
 TEST(Basics, AScaleFactorIsFoundBesideANoisyReference) {
@@ -52,9 +47,9 @@ TEST(Basics, AScaleFactorIsFoundBesideANoisyReference) {
       rows.reference.push_back(truth + 0.08 * normal(random));
     }
     const Diagnosis found = diagnose({rows.record()}, {});
-    const FoundEffect* scale = effect_of(found, "linear");
+    const Effect* scale = effect_of(found, "linear");
     ASSERT_NE(scale, nullptr) << seed;
-    EXPECT_NEAR(parameter(scale->effect, "coefficient"), -0.14, 0.02) << seed;
+    EXPECT_NEAR(parameter(*scale, "coefficient"), -0.14, 0.02) << seed;
     ASSERT_TRUE(found.bias);
     EXPECT_NEAR(found.bias->value, 0.02, 0.003) << seed;
   }
@@ -71,9 +66,9 @@ TEST(Basics, ARateTableOfAFewPointsIsAccepted) {
     rows.rate.push_back(0.1 * i * 1.02 + 1e-4 * normal(random));
   }
   const Diagnosis found = diagnose({rows.record()}, {});
-  const FoundEffect* scale = effect_of(found, "linear");
+  const Effect* scale = effect_of(found, "linear");
   ASSERT_NE(scale, nullptr);
-  EXPECT_NEAR(parameter(scale->effect, "coefficient"), 0.02, 0.001);
+  EXPECT_NEAR(parameter(*scale, "coefficient"), 0.02, 0.001);
   rows.time.resize(10), rows.rate.resize(10), rows.reference.resize(10);
   EXPECT_THROW(diagnose({rows.record()}, {}), std::invalid_argument);
 }
@@ -176,9 +171,9 @@ TEST(Proxies, AreShownAndNotWritten) {
     rows.rate.push_back(1e-3 * normal(random) + 8.7e-3 * drift);
   }
   const Diagnosis found = diagnose({rows.record()}, {});
-  const FoundEffect* proxy = effect_of(found, "linear");
+  const Effect* proxy = effect_of(found, "linear");
   ASSERT_NE(proxy, nullptr);
-  EXPECT_TRUE(proxy->effect.shown_only);
+  EXPECT_TRUE(proxy->shown_only);
   Model model;
   add_to_model(found, "", model);
   EXPECT_TRUE(model.effects.empty());
@@ -186,7 +181,7 @@ TEST(Proxies, AreShownAndNotWritten) {
   asked.allow_proxies = true;
   const Diagnosis written = diagnose({rows.record()}, asked);
   ASSERT_NE(effect_of(written, "linear"), nullptr);
-  EXPECT_FALSE(effect_of(written, "linear")->effect.shown_only);
+  EXPECT_FALSE(effect_of(written, "linear")->shown_only);
 }
 
 // TOML's integers have 64 bits: what is larger is a number with a point.

@@ -129,33 +129,6 @@ TEST(Diagnose, NamesALoopAndLeavesItAlone) {
   EXPECT_GT(with_loop, 3.0 * predict_heading(without, s.record(), 150.0, {600.0}).sigma_rad[0]);
 }
 
-// The model it writes corrects the sensor's next record by the code the daemon runs.
-TEST(Diagnose, ItsModelCorrectsTheNextRecord) {
-  Sensor first = quiet(23);
-  Sensor next = quiet(24);
-  for (Sensor* s : {&first, &next}) {
-    for (std::size_t i = 0; i < s->rate.size(); ++i) s->rate[i] += 5e-8 * (s->temperature[i] - 25.0);
-  }
-  Model model;
-  add_to_model(diagnose({first.record()}, {}), "", model);
-  Compensator compensator(model, {""});
-  double left = 0.0;
-  double was = 0.0;
-  for (std::size_t i = 0; i < next.rate.size(); ++i) {
-    CompensatorInput in;
-    in.dt_s = 0.1;
-    in.rate_radps[0] = next.rate[i];
-    const std::vector<double> channel = {next.temperature[i]};
-    in.channels = channel;
-    CompensatorOutput out;
-    compensator.step(in, out);
-    const double effect = 5e-8 * (next.temperature[i] - 25.0);
-    was += effect * effect;
-    left += (effect - out.correction_radps[0]) * (effect - out.correction_radps[0]);
-  }
-  EXPECT_LT(left, 0.02 * was);
-}
-
 TEST(Diagnose, SeveralRecordsHaveASwitchOnBiasEach) {
   Sensor a = quiet(25);
   Sensor b = quiet(26);

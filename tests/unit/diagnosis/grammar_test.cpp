@@ -12,6 +12,7 @@
 #include "filters/diagnosis/regression/candidates.h"
 #include "filters/effects/compensator.h"
 #include "filters/effects/form.h"
+#include "tests/unit/diagnosis/findings.h"
 #include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
@@ -66,19 +67,6 @@ Diagnosis diagnosed(const Record& record, const DiagnoseOptions& options = {}) {
   Diagnosis found = diagnose({record}, options);
   std::erase_if(found.effects, [](const FoundEffect& each) { return each.effect.form == "bias"; });
   return found;
-}
-
-const Effect* effect_of(const Diagnosis& diagnosis, const std::string& form, const std::string& channel) {
-  for (const FoundEffect& found : diagnosis.effects)
-    if (found.effect.form == form && found.effect.channel == channel) return &found.effect;
-  return nullptr;
-}
-
-std::string all_in_words(const Diagnosis& diagnosis) {
-  std::string words;
-  for (const FoundEffect& found : diagnosis.effects)
-    words += found.effect.form + " of " + found.effect.channel + "; ";
-  return words;
 }
 
 // Within four standard errors, which are no larger than a tenth of the value.

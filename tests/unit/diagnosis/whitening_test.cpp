@@ -7,21 +7,11 @@
 
 #include "filters/diagnosis/regression/noise_fit.h"
 #include "filters/diagnosis/report/prediction.h"
+#include "tests/unit/diagnosis/blocks_by_hand.h"
 #include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
 namespace {
-
-BlockGrid even_grid(std::size_t n) {
-  BlockGrid grid;
-  grid.block_s = 1.0;
-  grid.fine_s = 1.0;
-  grid.records = {{0, n}};
-  grid.valid.assign(n, 1);
-  for (std::size_t i = 0; i < n; ++i) grid.time_s.push_back(static_cast<double>(i));
-  grid.sample_s = 1.0;
-  return grid;
-}
 
 double gaussian(std::uint32_t counter, std::uint32_t stream) {
   return gaussian_deviate(counter, stream, 7, 11);
@@ -66,7 +56,7 @@ TEST(Whitening, LeastSquaresOfInnovationsIsGeneralisedLeastSquares) {
             .ldlt()
             .solve(x.transpose() * factor.solve(Eigen::VectorXd(columns.col(0))));
 
-    const BlockGrid grid = even_grid(n);
+    const BlockGrid grid = grid_of({n});
     Columns white = columns;
     Whitening(grid, shape).apply(white);
     const Eigen::VectorXd found =
@@ -79,7 +69,7 @@ TEST(Whitening, LeastSquaresOfInnovationsIsGeneralisedLeastSquares) {
 
 TEST(NoiseFit, FindsTheWalkItWasGiven) {
   constexpr std::size_t n = 4000;
-  const BlockGrid grid = even_grid(n);
+  const BlockGrid grid = grid_of({n});
   Columns columns(n, 2);
   double walk = 0.0;
   for (std::uint32_t i = 0; i < n; ++i) {
@@ -94,12 +84,10 @@ TEST(NoiseFit, FindsTheWalkItWasGiven) {
   EXPECT_NEAR(*terms.K, 0.06, 0.02);
 }
 
-// Integral of white noise less its mean over the alignment: N^2 (T + T^2/A); of a walk held from the end of
-// the alignment onwards K^2 (T^3/3 + T^2 A/3).
 // A search that climbs "while it is no worse" never ends where every comparison is false.
 TEST(NoiseFit, ComesToAnEndWhereTheLikelihoodIsNoNumber) {
   constexpr std::size_t n = 200;
-  const BlockGrid grid = even_grid(n);
+  const BlockGrid grid = grid_of({n});
   for (const double bad : {std::nan(""), HUGE_VAL, 1e200}) {
     Columns columns(n, 2);
     for (std::uint32_t i = 0; i < n; ++i) {
@@ -117,6 +105,8 @@ TEST(NoiseFit, ComesToAnEndWhereTheLikelihoodIsNoNumber) {
   }
 }
 
+// Integral of white noise less its mean over the alignment: N^2 (T + T^2/A); of a walk held from the end of
+// the alignment onwards K^2 (T^3/3 + T^2 A/3).
 TEST(Prediction, IsTheClosedFormOfWhiteNoiseAndWalk) {
   const double aligned = 200.0;
   const double horizon = 3600.0;

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -14,6 +13,7 @@
 #include "drivers/capture/capture.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/units/field_units.h"
+#include "tests/unit/diagnosis/findings.h"
 
 namespace ifog {
 
@@ -45,35 +45,22 @@ inline std::unique_ptr<Measured> diagnosed_first_half(bool with_ramp) {
   return made;
 }
 
-// Rotation that is added keeps its size within 2 % and its phase within 2 degrees, from a tenth of a hertz to 0.8
-// of half the sample rate, about each of these mean rates. compensated: of the second half, with a rotation (rad/s
-// by sample) added to it, or with none.
-template <class Compensated>
-void expect_transparent(Compensated&& compensated, std::initializer_list<double> mean_rates) {
-  const std::vector<double> still = compensated(nullptr);
-  double worst_gain = 0.0, worst_phase = 0.0;
-  for (const double mean : mean_rates) {
-    for (const double frequency : {0.1, 1.0, 5.0, 20.0, 50.0, 80.0}) {
-      const double amplitude = 2e-5;
-      std::vector<double> rotation(still.size());
-      for (std::size_t i = 0; i < rotation.size(); ++i)
-        rotation[i] = mean + amplitude * std::sin(2.0 * M_PI * frequency * kStep_s * static_cast<double>(i));
-      const std::vector<double> turning = compensated(&rotation);
-      std::complex<double> in = 0.0, out = 0.0;
-      for (std::size_t i = 0; i < rotation.size(); ++i) {
-        const std::complex<double> carrier =
-            std::polar(1.0, -2.0 * M_PI * frequency * kStep_s * static_cast<double>(i));
-        in += (rotation[i] - mean) * carrier;
-        out += (turning[i] - still[i] - mean) * carrier;
-      }
-      EXPECT_NEAR(std::abs(out / in), 1.0, 0.02) << mean << " rad/s, " << frequency << " Hz";
-      EXPECT_NEAR(std::arg(out / in), 0.0, 2.0 * kDegree) << mean << " rad/s, " << frequency << " Hz";
-      worst_gain = std::max(worst_gain, std::abs(std::abs(out / in) - 1.0));
-      worst_phase = std::max(worst_phase, std::abs(std::arg(out / in)));
-    }
-  }
-  std::printf("gain within %.3f %%, phase within %.3f degrees\n", 100.0 * worst_gain, worst_phase / kDegree);
+// Read and diagnosed once for all tests of a program.
+template <bool with_ramp>
+const Measured* measured_half() {
+  static const std::unique_ptr<Measured> once = diagnosed_first_half(with_ramp);
+  return once.get();
 }
+
+template <bool with_ramp>
+class MeasuredHalf : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (measured_half<with_ramp>() == nullptr)
+      GTEST_SKIP() << "no " << kBlueseis
+                   << ": the measured captures belong beside the project, in ../shared/data";
+  }
+};
 
 // Figures of a record straight from their definitions: a second method next to the project's own.
 inline double deviation(const std::vector<double>& x) {

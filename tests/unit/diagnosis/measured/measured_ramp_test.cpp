@@ -6,7 +6,6 @@
 
 #include <cmath>
 #include <complex>
-#include <memory>
 #include <unsupported/Eigen/FFT>
 
 #include "filters/effects/compensator.h"
@@ -19,20 +18,9 @@ namespace {
 constexpr double kPerCount = -79.2e-9;  // rad/s per count per sample: the loop's own measure of rotation
 constexpr double kRampHz = 4.17;        // of the Earth's rate
 
-// Read and diagnosed once for all tests.
-const Measured* measured() {
-  static const std::unique_ptr<Measured> once = diagnosed_first_half(true);
-  return once.get();
-}
+using MeasuredRamp = MeasuredHalf<true>;
 
-class MeasuredRamp : public testing::Test {
- protected:
-  void SetUp() override {
-    if (measured() == nullptr)
-      GTEST_SKIP() << "no " << kBlueseis
-                   << ": the measured captures belong beside the project, in ../shared/data";
-  }
-};
+const Measured* measured() { return measured_half<true>(); }
 
 const std::vector<double>& ramp() {
   for (const CaptureColumn& column : measured()->capture.channels) {
@@ -134,7 +122,8 @@ TEST_F(MeasuredRamp, TakesTheHarmonicsOutOfTheSpectrum) {
 // at a stall, turning back, and wrapping several times a sample.
 TEST_F(MeasuredRamp, IsTransparentToRotation) {
   const double earth = kRampHz * kRampPeriod / 200.0 * kPerCount;  // rad/s
-  expect_transparent(compensated, {0.0, -earth, -2.0 * earth, 20.0 * earth, 3.3 * kRampPeriod * kPerCount});
+  expect_transparent(compensated, kStep_s,
+                     {0.0, -earth, -2.0 * earth, 20.0 * earth, 3.3 * kRampPeriod * kPerCount});
 }
 
 }  // namespace

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 
 #include "filters/effects/compensator.h"
 #include "filters/effects/form.h"
@@ -15,20 +14,9 @@
 namespace ifog {
 namespace {
 
-// Read and diagnosed once for all tests.
-const Measured* measured() {
-  static const std::unique_ptr<Measured> once = diagnosed_first_half(false);
-  return once.get();
-}
+using MeasuredRebuiltRamp = MeasuredHalf<false>;
 
-class MeasuredRebuiltRamp : public testing::Test {
- protected:
-  void SetUp() override {
-    if (measured() == nullptr)
-      GTEST_SKIP() << "no " << kBlueseis
-                   << ": the measured captures belong beside the project, in ../shared/data";
-  }
-};
+const Measured* measured() { return measured_half<false>(); }
 
 struct SecondHalf {
   std::vector<double> left;  // rad/s
@@ -97,7 +85,7 @@ TEST_F(MeasuredRebuiltRamp, LeavesWhatIsPromisedOnTheSecondHalf) {
 
 TEST_F(MeasuredRebuiltRamp, IsTransparentToRotation) {
   const double earth = 5.4e-5;  // rad/s
-  expect_transparent([](const std::vector<double>* rotation) { return compensated(rotation).left; },
+  expect_transparent([](const std::vector<double>* rotation) { return compensated(rotation).left; }, kStep_s,
                      {0.0, -earth, -2.0 * earth, 20.0 * earth, 8.6e-3});
 }
 

@@ -4,10 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <complex>
 #include <limits>
 
 #include "filters/effects/compensator.h"
+#include "tests/unit/diagnosis/findings.h"
 #include "tests/unit/diagnosis/made_capture.h"
 
 namespace ifog {
@@ -50,39 +50,32 @@ Record record_of(const Loop& made) {
 }
 
 // Rotation put into the rate and, as the loop would, into the ramp's slope comes out with its gain and phase,
-// from a stalled ramp to many wraps a sample and up to 0.8 of the Nyquist frequency.
+// from a stalled ramp to many wraps a sample.
 TEST(Ramp, TheCorrectionIsTransparentToRotation) {
   const auto fit = fit_ramp({record_of(loop(40000, 5.4e-5, 4e-7))}, "ramp_counts", 0.01);
   ASSERT_TRUE(fit.has_value());
   Model model;
   model.effects = {fit->found.effect};
-  for (const double bias : {0.0, 5.4e-5, 2.6e-3, 9.7e-3}) {
-    for (const double frequency : {0.05, 1.0, 20.0, 80.0}) {
-      const double amplitude = 1e-4;
-      Compensator compensator(model, {""});
-      double position = 500.0;
-      std::complex<double> in_sum;
-      std::complex<double> out_sum;
-      for (int i = 0; i < 8000; ++i) {
-        const double w = bias + amplitude * std::sin(2.0 * M_PI * frequency * kStep_s * i);
-        position += w / kPerCount;
-        position -= kPeriod * std::floor(position / kPeriod);
-        CompensatorInput in;
-        in.dt_s = kStep_s;
-        in.rate_radps[0] = w;
-        const std::vector<double> channel = {std::floor(position)};
-        in.channels = channel;
-        CompensatorOutput out;
-        compensator.step(in, out);
-        const std::complex<double> carrier = std::polar(1.0, -2.0 * M_PI * frequency * kStep_s * i);
-        in_sum += w * carrier;
-        out_sum += out.compensated_radps[0] * carrier;
-      }
-      EXPECT_NEAR(std::abs(out_sum / in_sum), 1.0, 0.02) << bias << " rad/s, " << frequency << " Hz";
-      EXPECT_NEAR(std::arg(out_sum / in_sum), 0.0, 2.0 * M_PI / 180.0)
-          << bias << " rad/s, " << frequency << " Hz";
+  const auto compensated = [&](const std::vector<double>* rotation) {
+    Compensator compensator(model, {""});
+    std::vector<double> left;
+    double position = 500.0;
+    for (std::size_t i = 0; i < 8000; ++i) {
+      const double w = rotation != nullptr ? (*rotation)[i] : 0.0;
+      position += w / kPerCount;
+      position -= kPeriod * std::floor(position / kPeriod);
+      CompensatorInput in;
+      in.dt_s = kStep_s;
+      in.rate_radps[0] = w;
+      const std::vector<double> channel = {std::floor(position)};
+      in.channels = channel;
+      CompensatorOutput out;
+      compensator.step(in, out);
+      left.push_back(out.compensated_radps[0]);
     }
-  }
+    return left;
+  };
+  expect_transparent(compensated, kStep_s, {0.0, 5.4e-5, 2.6e-3, 9.7e-3});
 }
 
 }  // namespace
