@@ -3,7 +3,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
-#include <unistd.h>
 #include <zlib.h>
 
 #include <cmath>
@@ -14,6 +13,7 @@
 #include "drivers/capture/csv/csv_writer.h"
 #include "drivers/capture/files/input_file.h"
 #include "tests/unit/capture/refusal.h"
+#include "tests/unit/own_folder.h"
 
 namespace {
 
@@ -84,8 +84,8 @@ TEST(CaptureText, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
     time_s.push_back(i / 3.0);
     rate_radps.push_back(std::sin(i * 0.7) * 1e-5);
   }
-  const std::string name =
-      fs::temp_directory_path() / ("ifog-capture-" + std::to_string(getpid()) + ".csv.gz");
+  const ifog::test::OwnFolder folder;
+  const std::string name = folder.path("a.csv.gz");
   ifog::CsvWriter file(name, "", {"time_s", "rate_radps"});
   file.rows(std::vector<std::span<const double>>{time_s, rate_radps});
   file.finish();
@@ -100,7 +100,6 @@ TEST(CaptureText, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
   ASSERT_FALSE(cut.faults.empty());
   EXPECT_EQ(cut.faults.back(),
             name + ": the gzip stream ends early (truncated file); the rows until there are read");
-  fs::remove(name);
 }
 
 TEST(CaptureText, ARowsLineIsKnownWithoutASecondLook) {
@@ -114,19 +113,12 @@ TEST(CaptureText, ARowsLineIsKnownWithoutASecondLook) {
 
 // What a hostile file may cost: a line, a cell, a name or an unpacked stream of any size is refused with one
 // short line.
-class HostileFile : public testing::Test {
+class HostileFile : public testing::Test, protected ifog::test::OwnFolder {
  protected:
-  void SetUp() override { path_ = fs::temp_directory_path() / ("ifog-hostile-" + std::to_string(getpid())); }
-  void TearDown() override { fs::remove(path_); }
   template <typename Read>
   std::string refusal(Read&& read) {
-    try {
-      (void)read(path_.string());
-    } catch (const std::exception& error) {
-      const std::string what = error.what();
-      return what.starts_with(path_.string()) ? what.substr(path_.string().size()) : what;
-    }
-    return "accepted";
+    const std::string what = ifog::test::refusal([&] { (void)read(path_); });
+    return what.starts_with(path_) ? what.substr(path_.size()) : what;
   }
   // `times` times the block, packed: gigabytes on some hundred kilobytes.
   void pack(const std::string& block, int times) {
@@ -134,7 +126,7 @@ class HostileFile : public testing::Test {
     for (int i = 0; i < times; ++i) gzwrite(file, block.data(), static_cast<unsigned>(block.size()));
     gzclose(file);
   }
-  fs::path path_;
+  const std::string path_ = path("hostile");
 };
 
 TEST_F(HostileFile, ALongCellIsNamedAndNotEchoed) {
@@ -166,7 +158,7 @@ TEST_F(HostileFile, AGzipBombOfShortLinesStopsToo) {
   EXPECT_EQ(refusal(ifog::read_capture), said);
   EXPECT_EQ(refusal(ifog::read_whole_file), said);
   pack(lines, 200);
-  EXPECT_EQ(ifog::read_whole_file(path_.string()).size(), 200 * lines.size());
+  EXPECT_EQ(ifog::read_whole_file(path_).size(), 200 * lines.size());
 }
 
 // A wide header over short rows must not ask for rows × columns before it has seen them.

@@ -2,8 +2,6 @@
 #include "drivers/capture/csv/csv_rows.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-#include <zlib.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +10,9 @@
 #include <random>
 
 #include "drivers/capture/files/input_file.h"
+#include "drivers/capture/files/output_file.h"
+#include "tests/unit/own_folder.h"
+#include "tests/unit/refusal.h"
 
 namespace {
 
@@ -46,8 +47,9 @@ struct Reading {
   std::string refused;
 };
 
-Reading in_pieces(const std::string& text, std::size_t piece, const CsvLayout& layout = {}) {
-  Reading out;
+// What it is refused with, or "".
+std::string read_by(ifog::RowSink& sink, const std::string& text, std::size_t piece, ifog::RowNotes& notes,
+                    const CsvLayout& layout = {}) {
   std::size_t at = 0;
   const auto read = [&](char* to, std::size_t most) {
     const std::size_t n = std::min(most, text.size() - at);
@@ -55,11 +57,12 @@ Reading in_pieces(const std::string& text, std::size_t piece, const CsvLayout& l
     at += n;
     return n;
   };
-  try {
-    out.notes = ifog::read_csv_rows(read, "a.csv", layout, out.got, piece);
-  } catch (const std::runtime_error& error) {
-    out.refused = error.what();
-  }
+  return ifog::test::refusal([&] { notes = ifog::read_csv_rows(read, "a.csv", layout, sink, piece); }, "");
+}
+
+Reading in_pieces(const std::string& text, std::size_t piece, const CsvLayout& layout = {}) {
+  Reading out;
+  out.refused = read_by(out.got, text, piece, out.notes, layout);
   return out;
 }
 
@@ -227,23 +230,6 @@ struct Choosy final : ifog::RowSink {
   }
 };
 
-std::string read_by(Choosy& sink, const std::string& text, std::size_t piece, ifog::RowNotes& notes,
-                    const CsvLayout& layout = {}) {
-  std::size_t at = 0;
-  const auto read = [&](char* to, std::size_t most) {
-    const std::size_t n = std::min(most, text.size() - at);
-    std::memcpy(to, text.data() + at, n);
-    at += n;
-    return n;
-  };
-  try {
-    notes = ifog::read_csv_rows(read, "a.csv", layout, sink, piece);
-  } catch (const std::runtime_error& error) {
-    return error.what();
-  }
-  return "";
-}
-
 TEST(CsvRows, WhatNobodyWantsIsCheckedAllTheSame) {
   const std::string text = long_text(12000);
   const Reading whole = in_pieces(text, kWhole);
@@ -281,27 +267,23 @@ TEST(CsvRows, SeparatorsThatAreBlanksCountAsSeparators) {
 }
 
 TEST(CsvRows, ATruncatedPackedFileIsSaid) {
-  const auto path =
-      std::filesystem::temp_directory_path() / ("ifog-rows-" + std::to_string(getpid()) + ".csv.gz");
-  const std::string text = long_text(60000);
-  gzFile file = gzopen(path.c_str(), "wb");
-  ASSERT_EQ(gzwrite(file, text.data(), static_cast<unsigned>(text.size())), static_cast<int>(text.size()));
-  gzclose(file);
+  const ifog::test::OwnFolder folder;
+  const std::string path = folder.path("rows.csv.gz");
+  ifog::write_file(path, long_text(60000));
   const auto refused = [&] {
-    ifog::InputFile input(path.string());
+    ifog::InputFile input(path);
     Gathered got;
-    try {
-      (void)ifog::read_csv_rows([&](char* to, std::size_t most) { return input.read(to, most); }, "a.csv", {},
-                                got, std::size_t{1} << 16U);
-    } catch (const std::runtime_error& error) {
-      return std::string(error.what());
-    }
-    return "rows: " + std::to_string(got.rows.size());
+    const std::string refusal = ifog::test::refusal(
+        [&] {
+          (void)ifog::read_csv_rows([&](char* to, std::size_t most) { return input.read(to, most); }, "a.csv",
+                                    {}, got, std::size_t{1} << 16U);
+        },
+        "");
+    return refusal.empty() ? "rows: " + std::to_string(got.rows.size()) : refusal;
   };
   EXPECT_EQ(refused(), "rows: 60000");
   std::filesystem::resize_file(path, std::filesystem::file_size(path) * 3 / 4);
-  EXPECT_EQ(refused(), path.string() + ": cannot read: the gzip stream ends early (truncated file)");
-  std::filesystem::remove(path);
+  EXPECT_EQ(refused(), path + ": cannot read: the gzip stream ends early (truncated file)");
 }
 
 }  // namespace

@@ -9,12 +9,13 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "drivers/capture/files/output_file.h"
 #include "drivers/capture/recording.h"
+#include "tests/unit/own_folder.h"
+#include "tests/unit/refusal.h"
 
 namespace {
 
@@ -49,7 +50,8 @@ void through_a_pipe(const std::string& bytes, Use&& use) {
 }
 
 TEST(InputFile, TheSameTextFromAFileAPackedOneAndPipes) {
-  const std::string plain = fs::temp_directory_path() / ("ifog-input-" + std::to_string(getpid()));
+  const ifog::test::OwnFolder folder;
+  const std::string plain = folder.path("input");
   const std::string packed = plain + ".gz", misnamed = plain + ".csv", text = long_text();
   ifog::write_file(plain, text);
   ifog::write_file(packed, text);
@@ -72,7 +74,6 @@ TEST(InputFile, TheSameTextFromAFileAPackedOneAndPipes) {
       EXPECT_EQ(begin + file.bytes(), text);
       EXPECT_EQ(file.bytes(), "");
     });
-  for (const std::string& name : {plain, packed, misnamed}) fs::remove(name);
 }
 
 TEST(InputFile, ATextAtHandAndAnEmptyOne) {
@@ -85,20 +86,16 @@ TEST(InputFile, ATextAtHandAndAnEmptyOne) {
 }
 
 TEST(InputFile, SaysWhatIsInTheWay) {
-  const auto refusal = [](const std::string& path) -> std::string {
-    try {
-      InputFile(path).bytes();
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "accepted";
+  const auto refusal = [](const std::string& path) {
+    return ifog::test::refusal([&] { InputFile(path).bytes(); });
   };
   EXPECT_EQ(refusal("/nowhere/f"), "/nowhere/f: cannot open: No such file or directory");
   EXPECT_EQ(
       refusal("/proc/self"),
       "/proc/self: is a folder, expected a file, or the folder of one sensor's flight recordings (.ifr)");
   // The folder that a configuration names: each sensor has its own in it.
-  const std::string all = fs::temp_directory_path() / ("ifog-input-recordings-" + std::to_string(getpid()));
+  const ifog::test::OwnFolder folder;
+  const std::string all = folder.folder();
   for (const std::string sensor : {"/empty", "/tail", "/nose"}) fs::create_directories(all + sensor);
   for (const std::string name :
        {"/nose/00000001-20231114T221320Z.ifr.open", "/tail/00000001-20231114T221320Z.ifr"})
@@ -107,7 +104,6 @@ TEST(InputFile, SaysWhatIsInTheWay) {
       refusal(all),
       all + ": is a folder, expected a file, or the folder of one sensor's flight recordings (.ifr), as " +
           all + "/nose");
-  fs::remove_all(all);
 }
 
 TEST(FileKind, ByNameAndContent) {

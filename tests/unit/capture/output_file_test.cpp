@@ -11,9 +11,10 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <sstream>
-#include <stdexcept>
 #include <thread>
+
+#include "tests/unit/own_folder.h"
+#include "tests/unit/refusal.h"
 
 namespace {
 
@@ -21,31 +22,11 @@ namespace fs = std::filesystem;
 using ifog::OutputFile;
 using ifog::write_file;
 
-class Output : public testing::Test {
+class Output : public testing::Test, protected ifog::test::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("ifog-output-" + std::to_string(getpid()));
-    fs::create_directory(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  [[nodiscard]] std::string path(const std::string& name) const { return folder_ / name; }
-  [[nodiscard]] static std::string text(const std::string& file) {
-    std::ostringstream out;
-    out << std::ifstream(file).rdbuf();
-    return out.str();
-  }
-  [[nodiscard]] std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
-  }
   static std::string refusal(const std::string& file) {
-    try {
-      write_file(file, "new");
-    } catch (const std::runtime_error& error) {
-      return error.what();
-    }
-    return "accepted";
+    return ifog::test::refusal([&] { write_file(file, "new"); });
   }
-  fs::path folder_;
 };
 
 TEST_F(Output, IsNotSeenBeforeItIsWhole) {
@@ -53,15 +34,15 @@ TEST_F(Output, IsNotSeenBeforeItIsWhole) {
   {
     OutputFile file(path("f"));
     file.write("half of the n");
-    EXPECT_EQ(text(path("f")), "old");
+    EXPECT_EQ(content("f"), "old");
     EXPECT_EQ(files(), 1U) << "a file beside it is to be seen";
   }
-  EXPECT_EQ(text(path("f")), "old") << "given up, yet changed";
+  EXPECT_EQ(content("f"), "old") << "given up, yet changed";
   OutputFile file(path("f"));
   file.write("ne");
   file.write("w");
   file.finish();
-  EXPECT_EQ(text(path("f")), "new");
+  EXPECT_EQ(content("f"), "new");
   EXPECT_EQ(files(), 1U);
 }
 
@@ -84,11 +65,11 @@ TEST_F(Output, FollowsLinksToFilesThereAreAndThatAreYetToBe) {
   write_file(path("far"), "new");
   EXPECT_TRUE(fs::is_symlink(path("far")));
   EXPECT_TRUE(fs::is_symlink(path("near")));
-  EXPECT_EQ(text(path("there/f")), "new");
+  EXPECT_EQ(content("there/f"), "new");
   fs::create_symlink("there/g", path("dangling"));
   write_file(path("dangling"), "new");
   EXPECT_TRUE(fs::is_symlink(path("dangling")));
-  EXPECT_EQ(text(path("there/g")), "new");
+  EXPECT_EQ(content("there/g"), "new");
   fs::create_symlink("round", path("round"));
   EXPECT_NE(refusal(path("round")).find("cannot create: Too many levels of symbolic links"),
             std::string::npos)
@@ -106,7 +87,7 @@ TEST_F(Output, DevicesAndPipesAreWrittenNotReplaced) {
   }
   ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
   std::string got;
-  std::thread reader([&] { got = text(path("fifo")); });
+  std::thread reader([&] { got = content("fifo"); });
   write_file(path("fifo"), "new");
   reader.join();
   EXPECT_EQ(got, "new");
@@ -116,11 +97,11 @@ TEST_F(Output, DevicesAndPipesAreWrittenNotReplaced) {
 TEST_F(Output, OpenDescriptorsAreWrittenWhereTheyAre) {
   const int fd = open(path("f").c_str(), O_WRONLY | O_CREAT, 0600);
   ASSERT_GE(fd, 0);
-  ASSERT_EQ(write(fd, "one ", 4), 4);
+  ASSERT_EQ(::write(fd, "one ", 4), 4);
   write_file("/dev/fd/" + std::to_string(fd), "two ");
   write_file("/proc/self/fd/" + std::to_string(fd), "three");
   close(fd);
-  EXPECT_EQ(text(path("f")), "one two three");
+  EXPECT_EQ(content("f"), "one two three");
   EXPECT_TRUE(ifog::is_standard_output("-"));
   EXPECT_TRUE(ifog::is_standard_output("/dev/stdout"));
   EXPECT_FALSE(ifog::is_standard_output("/dev/stderr"));
@@ -136,7 +117,7 @@ TEST_F(Output, OneFileHasOneIdentityUnderAllItsNames) {
   ASSERT_TRUE(file);
   EXPECT_EQ(ifog::file_identity(path("link")), file);
   EXPECT_EQ(ifog::file_identity(path("hard")), file);
-  EXPECT_EQ(ifog::file_identity(path("../") + folder_.filename().string() + "/file"), file);
+  EXPECT_EQ(ifog::file_identity(path("../") + fs::path(folder()).filename().string() + "/file"), file);
   const int opened = ::open(path("file").c_str(), O_RDONLY | O_CLOEXEC);
   EXPECT_EQ(ifog::file_identity("/dev/fd/" + std::to_string(opened)), file);
   ::close(opened);
@@ -150,13 +131,13 @@ TEST_F(Output, OneFileHasOneIdentityUnderAllItsNames) {
   EXPECT_NE(yet, file);
 
   EXPECT_FALSE(ifog::file_identity("/dev/null"));
-  EXPECT_FALSE(ifog::file_identity(folder_));
+  EXPECT_FALSE(ifog::file_identity(folder()));
   EXPECT_FALSE(ifog::file_identity(path("none/file")));
 }
 
 TEST_F(Output, SaysWhatIsInTheWay) {
   EXPECT_EQ(refusal(path("no/f")), path("no/f") + ": cannot create: No such file or directory");
-  EXPECT_EQ(refusal(folder_), folder_.string() + ": is a folder, expected a file to write");
+  EXPECT_EQ(refusal(folder()), folder() + ": is a folder, expected a file to write");
   EXPECT_EQ(refusal(path("x/")), path("x/") + ": cannot create: No such file or directory");
   int ends[2];
   ASSERT_EQ(pipe(ends), 0);
