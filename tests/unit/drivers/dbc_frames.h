@@ -3,16 +3,15 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <bit>
-#include <filesystem>
-#include <fstream>
 #include <initializer_list>
 #include <string>
 #include <vector>
 
 #include "drivers/host/driver_instance.h"
+#include "tests/unit/own_folder.h"
+#include "tests/unit/refusal.h"
 
 namespace ifog {
 
@@ -43,32 +42,20 @@ inline std::vector<ifog_sample> decode(DriverInstance& driver, const std::vector
 }
 
 // A DBC file that a test writes.
-class DbcText : public testing::Test {
+class DbcText : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override {
-    path_ = std::filesystem::temp_directory_path() / ("ifog-dbc-" + std::to_string(getpid()) + ".dbc");
-  }
-  void TearDown() override { std::filesystem::remove(path_); }
   DriverInstance driver(const std::string& text, DriverSettings settings) {
-    std::ofstream(path_, std::ios::binary) << text;
-    settings["dbc"] = path_.string();
+    write("bus.dbc", text);
+    settings["dbc"] = path("bus.dbc");
     return make_driver("dbc", settings);
   }
   std::string refusal(const std::string& text, const DriverSettings& settings) {
-    try {
-      driver(text, settings);
-    } catch (const std::runtime_error& error) {
-      std::string what = error.what();
-      for (std::size_t at = what.find(path_.string()); at != std::string::npos;
-           at = what.find(path_.string()))
-        what.replace(at, path_.string().size(), "F");
-      return what;
-    }
-    return "accepted";
+    std::string what = test::refusal([&] { driver(text, settings); });
+    const std::string file = path("bus.dbc");
+    for (std::size_t at = what.find(file); at != std::string::npos; at = what.find(file))
+      what.replace(at, file.size(), "F");
+    return what;
   }
-
- private:
-  std::filesystem::path path_;
 };
 
 }  // namespace ifog
