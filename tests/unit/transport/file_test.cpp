@@ -19,6 +19,8 @@
 #include "drivers/capture/files/output_file.h"
 #include "drivers/transport/file/byte_file.h"
 #include "drivers/transport/sole_reader.h"
+#include "tests/unit/own_folder.h"
+#include "tests/unit/refusal.h"
 #include "tests/unit/transport/forever.h"
 
 namespace {
@@ -29,20 +31,13 @@ using ifog::FileSettings;
 using ifog::kForever;
 using ifog::TransportState;
 
-// Long enough that a test which waits for it has failed.
-
-class FileTransport : public testing::Test {
+class FileTransport : public testing::Test, protected ifog::test::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("ifog-transport-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-    settings_.path = (folder_ / "source").string();
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  void content(const std::string& text) const { std::ofstream(settings_.path, std::ios::binary) << text; }
+  FileTransport() { settings_.path = path("source"); }
+  void put(const std::string& text) const { std::ofstream(settings_.path, std::ios::binary) << text; }
   void fifo() const { ASSERT_EQ(mkfifo(settings_.path.c_str(), 0600), 0); }
   void candump(const std::string& text) {
-    content(text);
+    put(text);
     settings_.format = FileSettings::Format::candump;
   }
   std::unique_ptr<ifog::Transport> opened() const {
@@ -51,13 +46,8 @@ class FileTransport : public testing::Test {
     return transport;
   }
   std::string refusal() const {
-    try {
-      ifog::make_file_transport(settings_)->open({});
-    } catch (const std::runtime_error& error) {
-      const std::string what = error.what();
-      return what.starts_with(folder_.string()) ? what.substr(folder_.string().size() + 1) : what;
-    }
-    return "accepted";
+    const std::string what = ifog::test::refusal([&] { ifog::make_file_transport(settings_)->open({}); });
+    return what.starts_with(folder()) ? what.substr(folder().size() + 1) : what;
   }
   static std::string all_bytes(ifog::Transport& transport) {
     std::string text;
@@ -76,7 +66,6 @@ class FileTransport : public testing::Test {
     return frames;
   }
 
-  fs::path folder_;
   FileSettings settings_;
 };
 
@@ -89,7 +78,7 @@ std::string pattern(std::size_t n) {
 
 TEST_F(FileTransport, DeliversEveryByteOfAFileLongerThanItsBuffer) {
   const std::string text = pattern(300'001);
-  content(text);
+  put(text);
   const auto transport = opened();
   EXPECT_TRUE(transport->holds_back());
   EXPECT_EQ(all_bytes(*transport), text);
@@ -115,7 +104,7 @@ TEST_F(FileTransport, ReadsGzipAndSaysWhenItIsCutOff) {
 
 TEST_F(FileTransport, RecordedBytesComeInBlocksNeverEarly) {
   const std::string text = pattern(100);
-  content(text);
+  put(text);
   settings_.pace = FileSettings::Pace::recorded;
   settings_.bytes_per_second = 1000;
   settings_.block_bytes = 30;
@@ -335,7 +324,7 @@ TEST_F(FileTransport, AFileThatIsMissingIsAwaited) {
   EXPECT_EQ(transport->state(), TransportState::gone);
   EXPECT_EQ(transport->reason(), ENOENT);
   EXPECT_TRUE(transport->read(1ms).empty());
-  content("late");
+  put("late");
   ifog::Delivery d;
   while (d.empty()) d = transport->read(kForever);
   EXPECT_EQ(std::string(d.bytes.begin(), d.bytes.end()), "late");

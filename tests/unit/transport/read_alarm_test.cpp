@@ -7,7 +7,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <filesystem>
 #include <random>
 #include <string>
 #include <thread>
@@ -16,6 +15,8 @@
 #include "drivers/transport/file/file.h"
 #include "drivers/transport/network/udp.h"
 #include "drivers/transport/stoppable_wait.h"
+#include "tests/unit/own_folder.h"
+#include "tests/unit/transport/forever.h"
 #include "tests/unit/transport/loopback.h"
 
 namespace ifog {
@@ -24,12 +25,6 @@ namespace {
 using namespace std::chrono_literals;
 
 constexpr std::int64_t kLong_ns = 600'000'000'000;
-
-FileSettings at(const std::string& path) {
-  FileSettings settings;
-  settings.path = path;
-  return settings;
-}
 
 TEST(ReadAlarm, RungOutsideACallKeepsTheThreadFromEnteringOne) {
   ReadAlarm& alarm = ReadAlarm::of_this_thread();
@@ -47,15 +42,16 @@ TEST(ReadAlarm, RungOutsideACallKeepsTheThreadFromEnteringOne) {
 // The reader is caught everywhere between the look whether it is stopped and deep in its call. One that was
 // missed would hang for ten minutes.
 TEST(ReadAlarm, StopEndsAReadWheneverItComes) {
-  const std::string fifo =
-      std::filesystem::temp_directory_path() / ("ifog-alarm-" + std::to_string(getpid()) + ".fifo");
+  const test::OwnFolder folder;
+  const std::string fifo = folder.path("fifo");
   ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
   std::mt19937 random(7);
   std::uniform_int_distribution<int> moment(0, 4000);
   for (int n = 0; n < 400; ++n) {
     const bool network = n % 2 == 1;
     const std::uint16_t port = network ? free_port(AF_INET, SOCK_DGRAM) : std::uint16_t{0};
-    const auto transport = network ? make_udp_transport(on_loopback(port)) : make_file_transport(at(fifo));
+    const auto transport =
+        network ? make_udp_transport(on_loopback(port)) : make_file_transport(of_file(fifo));
     transport->open({});
     const int writer = open(fifo.c_str(), O_RDWR | O_CLOEXEC);
     // What has come once is read with calls that wait.
@@ -77,7 +73,6 @@ TEST(ReadAlarm, StopEndsAReadWheneverItComes) {
     reader.join();
     close(writer);
   }
-  std::filesystem::remove(fifo);
 }
 
 }  // namespace

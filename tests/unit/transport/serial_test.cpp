@@ -27,20 +27,11 @@ namespace {
 using namespace std::chrono_literals;
 using ifog::Gyro;
 using ifog::kForever;
+using ifog::read_some;
 using ifog::SerialSettings;
 using ifog::TransportState;
 
 SerialSettings settings() { return {.device = "gyro", .baud = 921600}; }
-
-std::string read_some(ifog::Transport& transport, std::size_t n, bool* restarted = nullptr) {
-  std::string text;
-  while (text.size() < n && !transport.stopped()) {
-    const ifog::Delivery d = transport.read(kForever);
-    if (restarted != nullptr) *restarted = *restarted || d.restarted;
-    text.append(d.bytes.begin(), d.bytes.end());
-  }
-  return text;
-}
 
 TEST(SerialTransport, DeliversEveryByteWithItsArrival) {
   Gyro gyro;
@@ -187,11 +178,7 @@ TEST(SerialTransport, RefusesInOneLine) {
 }
 
 TEST(SerialTransport, LibserialportRefusesAPseudoTerminal) {
-  Gyro gyro;
-  const int fd = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-  ASSERT_GE(fd, 0);
-  ASSERT_EQ(grantpt(fd), 0);
-  ASSERT_EQ(unlockpt(fd), 0);
+  const int fd = ifog::open_line();
   const std::string path = ptsname(fd);
   EXPECT_EQ(refusal({.device = path, .baud = 9600}).substr(0, path.size() + 15), path + ": cannot open: ");
   close(fd);
@@ -199,10 +186,7 @@ TEST(SerialTransport, LibserialportRefusesAPseudoTerminal) {
 
 // What the port asks for on whatever line it has opened.
 TEST(SerialTransport, ALineIsOneReaders) {
-  const int master = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-  ASSERT_GE(master, 0);
-  ASSERT_EQ(grantpt(master), 0);
-  ASSERT_EQ(unlockpt(master), 0);
+  const int master = ifog::open_line();
   const auto line = [&] { return open(ptsname(master), O_RDWR | O_NOCTTY | O_CLOEXEC); };
   const int first = line(), second = line();
   ifog::SoleReader one, other;

@@ -10,7 +10,6 @@
 
 #include <atomic>
 #include <chrono>
-#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -19,6 +18,8 @@
 #include "drivers/transport/file/file.h"
 #include "drivers/transport/network/tcp.h"
 #include "drivers/transport/network/udp.h"
+#include "tests/unit/own_folder.h"
+#include "tests/unit/transport/forever.h"
 #include "tests/unit/transport/loopback.h"
 #include "tests/unit/transport/terminal.h"
 
@@ -62,12 +63,6 @@ void expect_no_look(Transport& transport, const std::function<void()>& send) {
   reader.join();
 }
 
-FileSettings at(const std::string& path) {
-  FileSettings settings;
-  settings.path = path;
-  return settings;
-}
-
 void write_byte(int fd) {
   const char byte = 'x';
   ASSERT_EQ(write(fd, &byte, 1), 1);
@@ -75,22 +70,21 @@ void write_byte(int fd) {
 
 TEST(SystemCalls, TheCountSeesALook) {
   const int before = polled;
-  const auto transport = make_file_transport(at("/dev/null"));
+  const auto transport = make_file_transport(of_file("/dev/null"));
   transport->open({});
   transport->read(1ms);
   EXPECT_GT(polled, before) << "a device is no pipe: polled";
 }
 
 TEST(SystemCalls, AFifoIsReadWithoutALook) {
-  const std::string path =
-      std::filesystem::temp_directory_path() / ("ifog-calls-" + std::to_string(getpid()) + ".fifo");
+  const test::OwnFolder folder;
+  const std::string path = folder.path("fifo");
   ASSERT_EQ(mkfifo(path.c_str(), 0600), 0);
-  const auto transport = make_file_transport(at(path));
+  const auto transport = make_file_transport(of_file(path));
   transport->open({});
   const int writer = open(path.c_str(), O_WRONLY | O_CLOEXEC);
   expect_no_look(*transport, [&] { write_byte(writer); });
   close(writer);
-  std::filesystem::remove(path);
 }
 
 TEST(SystemCalls, ASerialLineIsReadWithoutALook) {

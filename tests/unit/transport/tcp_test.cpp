@@ -12,6 +12,7 @@
 #include <string>
 #include <thread>
 
+#include "tests/unit/refusal.h"
 #include "tests/unit/transport/forever.h"
 #include "tests/unit/transport/loopback.h"
 
@@ -101,16 +102,6 @@ TEST(TcpServer, WhichSpeaksTelnetIsRecognised) {
   EXPECT_NE(std::string(transport->fault().what).find("telnet"), std::string::npos);
 }
 
-std::string read_some(Transport& transport, std::size_t n, bool* restarted = nullptr) {
-  std::string text;
-  while (text.size() < n && !transport.stopped()) {
-    const Delivery d = transport.read(kForever);
-    if (restarted != nullptr) *restarted = *restarted || d.restarted;
-    text.append(d.bytes.begin(), d.bytes.end());
-  }
-  return text;
-}
-
 class Tcp : public testing::TestWithParam<int> {
  protected:
   void SetUp() override {
@@ -174,14 +165,10 @@ TEST_P(Tcp, ConnectsAgainWhenTheOtherEndCloses) {
 TEST_P(Tcp, ADeviceThatIsNotThereYetIsAwaited) {
   const std::uint16_t port = free_port(GetParam(), SOCK_STREAM);
   const auto transport = make_tcp_transport(at(port));
-  try {
-    transport->open({});
-    FAIL();
-  } catch (const OpenError& error) {
-    EXPECT_EQ(error.reason, ECONNREFUSED);
-    EXPECT_NE(std::string(error.what()).find("expected a device or server that listens there"),
-              std::string::npos);
-  }
+  EXPECT_NE(
+      test::refusal([&] { transport->open({}); }).find("expected a device or server that listens there"),
+      std::string::npos);
+  EXPECT_EQ(transport->reason(), ECONNREFUSED);
   EXPECT_TRUE(transport->read(30ms).empty());
   EXPECT_EQ(transport->state(), TransportState::gone);
   Server gyro(GetParam(), port);
@@ -220,12 +207,8 @@ TEST(TcpTransport, AnAttemptWithoutAnAnswerHoldsNobodyUp) {
   first->open({});  // fills the queue
   const auto transport = make_tcp_transport(settings);
   const std::int64_t begin = monotonic_ns();
-  try {
-    transport->open({});
-    FAIL() << "the queue was not full";
-  } catch (const OpenError& error) {
-    EXPECT_EQ(error.reason, ETIMEDOUT);
-  }
+  EXPECT_THROW(transport->open({}), OpenError) << "the queue was not full";
+  EXPECT_EQ(transport->reason(), ETIMEDOUT);
   const std::int64_t tried = monotonic_ns();
   EXPECT_GE(tried - begin, 400'000'000);
   EXPECT_TRUE(transport->read(20ms).empty());  // an attempt continues meanwhile, and nobody waits for it

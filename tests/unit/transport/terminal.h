@@ -45,6 +45,15 @@ class Terminal final : public SerialPort {
   int fd_;
 };
 
+// The other end of a new line, whose name ptsname() tells.
+inline int open_line() {
+  const int fd = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
+  EXPECT_GE(fd, 0);
+  EXPECT_EQ(grantpt(fd), 0);
+  EXPECT_EQ(unlockpt(fd), 0);
+  return fd;
+}
+
 // The gyro's end of a line that can be pulled out and put back.
 class Gyro {
  public:
@@ -53,10 +62,7 @@ class Gyro {
   Gyro(const Gyro&) = delete;
   Gyro& operator=(const Gyro&) = delete;
   void plug() {
-    fd_ = posix_openpt(O_RDWR | O_NOCTTY | O_CLOEXEC);
-    ASSERT_GE(fd_, 0);
-    ASSERT_EQ(grantpt(fd_), 0);
-    ASSERT_EQ(unlockpt(fd_), 0);
+    fd_ = open_line();
     path_ = ptsname(fd_);
     // What is sent before the other end is opened would come back as an echo.
     termios raw{};

@@ -101,9 +101,16 @@ TEST_P(Udp, WhatTheKernelDroppedIsCounted) {
   EXPECT_EQ(transport->counters().kernel_drops, kSent - got);
 }
 
+// Datagrams of 127.0.0.2 to any address of this computer.
+UdpSettings from_one_host() {
+  UdpSettings settings;
+  settings.port = free_port(AF_INET, SOCK_DGRAM);
+  settings.host = "127.0.0.2";
+  return settings;
+}
+
 TEST(UdpTransport, DatagramsFromElsewhereAreLeftOutAndCounted) {
-  UdpSettings settings{
-      .port = free_port(AF_INET, SOCK_DGRAM), .bind = "", .group = "", .interface = "", .host = "127.0.0.2"};
+  const UdpSettings settings = from_one_host();
   const auto transport = make_udp_transport(settings);
   transport->open({});
   LoopbackSocket gyro(AF_INET, SOCK_DGRAM), other(AF_INET, SOCK_DGRAM);
@@ -120,8 +127,7 @@ TEST(UdpTransport, DatagramsFromElsewhereAreLeftOutAndCounted) {
 
 // Whoever floods the port with datagrams of his own cannot keep read() from returning at its time.
 TEST(UdpTransport, AReadThatFindsOnlyForeignDatagramsReturns) {
-  UdpSettings settings{
-      .port = free_port(AF_INET, SOCK_DGRAM), .bind = "", .group = "", .interface = "", .host = "127.0.0.2"};
+  const UdpSettings settings = from_one_host();
   const auto transport = make_udp_transport(settings);
   transport->open({});
   LoopbackSocket other(AF_INET, SOCK_DGRAM);
@@ -130,11 +136,8 @@ TEST(UdpTransport, AReadThatFindsOnlyForeignDatagramsReturns) {
 }
 
 TEST(UdpTransport, TheOpeningGoesToTheHost) {
-  UdpSettings settings{.port = free_port(AF_INET, SOCK_DGRAM),
-                       .bind = "127.0.0.1",
-                       .group = "",
-                       .interface = "",
-                       .host = "127.0.0.2"};
+  UdpSettings settings = on_loopback(free_port(AF_INET, SOCK_DGRAM));
+  settings.host = "127.0.0.2";
   LoopbackSocket gyro(AF_INET, SOCK_DGRAM);
   ASSERT_TRUE(gyro.bind(settings.port, "127.0.0.2"));
   const std::string opening = "ZZR";
@@ -143,7 +146,6 @@ TEST(UdpTransport, TheOpeningGoesToTheHost) {
   EXPECT_EQ(recv(gyro.fd(), got, sizeof got, 0), 3);
   EXPECT_EQ(std::string(got, 3), opening);
   settings.host = "";
-  settings.bind = "127.0.0.1";
   EXPECT_NE(test::refusal([&] {
               make_udp_transport(settings)->open(
                   {reinterpret_cast<const std::uint8_t*>(opening.data()), opening.size()});
@@ -152,10 +154,9 @@ TEST(UdpTransport, TheOpeningGoesToTheHost) {
 }
 
 TEST(UdpTransport, APortThatIsTakenIsAwaited) {
-  UdpSettings settings{.port = 0, .bind = "127.0.0.1", .group = "", .interface = "", .host = ""};
   auto squatter = std::make_unique<LoopbackSocket>(AF_INET, SOCK_DGRAM);
   ASSERT_TRUE(squatter->bind(0));
-  settings.port = squatter->port();
+  const UdpSettings settings = on_loopback(squatter->port());
   const auto transport = make_udp_transport(settings);
   EXPECT_THROW(transport->open({}), OpenError);
   EXPECT_EQ(transport->reason(), EADDRINUSE);
@@ -171,11 +172,10 @@ TEST(UdpTransport, APortThatIsTakenIsAwaited) {
 }
 
 TEST(UdpTransport, AGroupIsJoinedOnItsInterface) {
-  UdpSettings settings{.port = free_port(AF_INET, SOCK_DGRAM),
-                       .bind = "",
-                       .group = "239.255.12.34",
-                       .interface = "lo",
-                       .host = ""};
+  UdpSettings settings;
+  settings.port = free_port(AF_INET, SOCK_DGRAM);
+  settings.group = "239.255.12.34";
+  settings.interface = "lo";
   const auto transport = make_udp_transport(settings);
   transport->open({});
   LoopbackSocket gyro(AF_INET, SOCK_DGRAM);
