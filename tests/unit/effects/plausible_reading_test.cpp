@@ -96,20 +96,5 @@ TEST(Compensator, HoldsAChannelThatIsNoReading) {
   EXPECT_EQ(out.flags, static_cast<std::uint32_t>(kStaleChannel));
 }
 
-TEST(Compensator, HoldsADifferenceThatIsNoReading) {
-  Model model;
-  model.effects = {linear(1e-6)};
-  model.effects[0].channel = "temperature_a_degC - temperature_b_degC";
-  model.effects[0].reference = 0.0;
-  model.ranges = {{model.effects[0].channel, -2.0, 2.0}};
-  Compensator compensator(model, {""});
-  ASSERT_EQ(compensator.channels().size(), 2U);
-  for (int i = 0; i < 100; ++i) step(compensator, 0.0, {25.0 + 0.001 * i, 24.0});
-  const double before = step(compensator, 0.0, {25.1, 24.0}).correction_radps[0];
-  const CompensatorOutput out = step(compensator, 0.0, {85.0, 24.0});
-  EXPECT_DOUBLE_EQ(out.correction_radps[0], before);
-  EXPECT_EQ(out.flags, static_cast<std::uint32_t>(kStaleChannel));
-}
-
 }  // namespace
 }  // namespace ifog

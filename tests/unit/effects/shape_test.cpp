@@ -36,7 +36,6 @@ TEST(Shape, TheAbsoluteValueHasItsKinkAtTheReference) {
   EXPECT_DOUBLE_EQ(shape.left_behind(below), 0.0);
 }
 
-// The response of a first-order lag to a step is 1 - exp(-t/tau), exactly at the sample times.
 TEST(Shape, ADeadZoneIsTheChannelWithinItsHalfWidth) {
   ShapeSettings settings;
   settings.form = Form::kDeadZone;
@@ -66,6 +65,7 @@ TEST(Shape, TheMeanInADeadZoneIsThatOfWhatPassesThrough) {
   EXPECT_DOUBLE_EQ(mean_in_dead_zone(0.3, 0.0, 0.5), 0.3);
 }
 
+// The response of a first-order lag to a step is 1 - exp(-t/tau), exactly at the sample times.
 TEST(Shape, LagAnswersAStepExponentially) {
   Shape lag(of(Form::kLagged, 40.0));
   lag.step(25.0, 0.5);
