@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // A capture whose times are large numbers: they are told, cut and written as they stand in it.
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
 
 #include "drivers/capture/files/input_file.h"
+#include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/capture_output.h"
@@ -28,12 +26,10 @@ LongTable table_of(const std::string& text) {
 }
 
 std::string written(const LongTable& table, const std::string& ending = ".csv") {
-  const auto path =
-      std::filesystem::temp_directory_path() / ("epoch_times_" + std::to_string(getpid()) + ending);
-  write_columns(table, "a.csv", path.string());
-  const std::string text = read_whole_file(path.string());
-  std::filesystem::remove(path);
-  return text;
+  const test::OwnFolder folder;
+  const std::string path = folder.path("times" + ending);
+  write_columns(table, "a.csv", path);
+  return read_whole_file(path);
 }
 
 TEST(EpochTimes, AreWrittenWithTheDigitsTheyCameWith) {

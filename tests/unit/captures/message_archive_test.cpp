@@ -3,17 +3,14 @@
 #include "tools/ifog/captures/lcm/message_archive.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cerrno>
-#include <filesystem>
 
 #include "tests/unit/flight/recordings.h"
+#include "tests/unit/messages.h"
 
 namespace ifog::tools {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::int64_t kSecond = 1'000'000'000, kWall = 1'700'000'000 * kSecond;
 
@@ -23,19 +20,13 @@ FlightHeader of_messages() {
   return out;
 }
 
-std::vector<std::uint8_t> rate(std::int64_t seq) {
-  rate_t message{};
-  message.axes = 1;
-  message.raw = message.compensated = message.denoised = message.variance = message.delta_theta =
-      message.covered = message.angle = message.innovation = message.innovation_variance =
-          message.gain = {0.0};
+std::vector<std::uint8_t> message_of(std::int64_t seq) {
+  rate_t message = rate(1);
   message.seq = seq;
   message.utime = kWall / 1000 + seq * 1000;
   message.sensor_time_ns = -1;
   message.dt = 1e-3;
-  std::vector<std::uint8_t> out(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(out.data(), 0, static_cast<int>(out.size()));
-  return out;
+  return encoded(message);
 }
 
 // A disk that takes nothing for a while, and messages that LCM lost before and after, while the disk was
@@ -50,7 +41,7 @@ TEST(MessageArchive, WhatIsLostHereIsNotLostOnTheWayAsWell) {
     disk.refuses = seq >= 5000 && seq < 12'000 ? ENOSPC : 0;
     now_ns += kSecond / 1000;
     if ((seq >= 1000 && seq < 1100) || (seq >= 15'000 && seq < 15'007)) continue;
-    archive.take("IFOG_NOSE", rate(seq), (kWall + now_ns) / 1000, now_ns, kWall + now_ns);
+    archive.take("IFOG_NOSE", message_of(seq), (kWall + now_ns) / 1000, now_ns, kWall + now_ns);
     archive.turn(now_ns, kWall + now_ns);
     ++heard;
   }

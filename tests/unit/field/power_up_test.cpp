@@ -3,22 +3,19 @@
 #include "tools/ifog/diagnose/power_up.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <array>
 #include <cmath>
-#include <filesystem>
 #include <string>
 
 #include "drivers/flight/archive.h"
 #include "drivers/flight/folder.h"
 #include "drivers/transport/clock.h"
+#include "tests/unit/own_folder.h"
 #include "tools/ifog/field/recorded.h"
 
 namespace ifog::tools {
 namespace {
-
-namespace fs = std::filesystem;
 
 Diagnosis found(double coefficient, double time_constant_s) {
   Diagnosis out;
@@ -89,15 +86,12 @@ TEST(PowerUp, ItIsThatOfThePartThatWasFitted) {
   EXPECT_FALSE(began_after_power_up({one, longer}, 0.25));
 }
 
-class PoweredRecordings : public testing::Test {
+class PoweredRecordings : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("powered-recordings-" + std::to_string(getpid()));
-    fs::create_directories(folder_ / "nose");
+  PoweredRecordings() {
     sensor_.name = "nose";
-    sensor_.record.folder = folder_.string();
+    sensor_.record.folder = folder();
   }
-  void TearDown() override { fs::remove_all(folder_); }
   // A closed file of so many bytes, of a sensor that was switched on then.
   void record(std::optional<std::int64_t> powered_ns, std::size_t bytes, const std::string& boot = "") {
     FlightHeader header;
@@ -105,7 +99,7 @@ class PoweredRecordings : public testing::Test {
     header.driver = "kvh1750";
     header.powered_ns = powered_ns;
     header.boot = boot;
-    FlightArchive archive(make_flight_folder((folder_ / "nose").string()), {}, header);
+    FlightArchive archive(make_flight_folder(path("nose")), {}, header);
     std::vector<std::uint8_t> payload(bytes);
     // That no compression makes smaller.
     for (std::uint32_t i = 0; i < bytes; ++i)
@@ -118,7 +112,6 @@ class PoweredRecordings : public testing::Test {
     for (const RecordedFile& file : of_one_power_up(recorded_files(sensor_))) out.push_back(file.number);
     return out;
   }
-  fs::path folder_;
   SensorConfig sensor_;
 };
 

@@ -8,13 +8,12 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 
 #include "daemon/config/config.h"
 #include "daemon/state/running_mark.h"
 #include "daemon/state/state_folder.h"
+#include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 #include "tools/ifog/field/bookmark.h"
 #include "tools/ifog/field/field.h"
@@ -25,29 +24,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class StateFolder : public testing::Test {
+class StateFolder : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("state-folder-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  [[nodiscard]] std::string state() const { return folder_.string(); }
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  void write(const std::string& name, const std::string& text) const { std::ofstream(path(name)) << text; }
-  [[nodiscard]] std::string text(const std::string& name) const {
-    std::ifstream in(path(name));
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
-  [[nodiscard]] std::size_t files() const {
-    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), {}));
-  }
   template <typename Call>
   static std::string complaint(Call&& call) {
     return test::refusal([&] { call(); }, "");
   }
-
-  fs::path folder_;
 };
 
 Model model_with(double coefficient) {
@@ -82,8 +64,8 @@ Proposal proposal_of(const Model& model, const ModelName& against) {
 
 TEST_F(StateFolder, AProposalComesBackAsItWasWritten) {
   const Model model = model_with(4e-8);
-  write_proposal(state(), proposal_of(model, {"abc", "abcdef"}), model, "<html>");
-  const std::optional<Proposal> back = read_proposal(state(), "nose");
+  write_proposal(folder(), proposal_of(model, {"abc", "abcdef"}), model, "<html>");
+  const std::optional<Proposal> back = read_proposal(folder(), "nose");
   ASSERT_TRUE(back);
   EXPECT_EQ(back->against, (ModelName{"abc", "abcdef"}));
   EXPECT_EQ(back->model, name_of(model));
@@ -91,10 +73,10 @@ TEST_F(StateFolder, AProposalComesBackAsItWasWritten) {
   ASSERT_EQ(back->gain.size(), 1U);
   EXPECT_EQ(back->gain[0].kept.share, 0.98);
   EXPECT_EQ(back->gain[0].kept.errors[0].after_radps, 1e-8);
-  EXPECT_EQ(name_of(proposed_model(state(), *back)), name_of(model));
-  EXPECT_EQ(text(back->report_file), "<html>");
-  EXPECT_EQ(sensors_with_proposal(state()), std::vector<std::string>{"nose"});
-  EXPECT_FALSE(read_proposal(state(), "tail"));
+  EXPECT_EQ(name_of(proposed_model(folder(), *back)), name_of(model));
+  EXPECT_EQ(content(back->report_file), "<html>");
+  EXPECT_EQ(sensors_with_proposal(folder()), std::vector<std::string>{"nose"});
+  EXPECT_FALSE(read_proposal(folder(), "tail"));
 }
 
 // What `ifog proposals` and `status` print to be copied is about the field that they were asked about.
@@ -112,19 +94,19 @@ TEST_F(StateFolder, ACommandToBeCopiedLooksAfterTheSameField) {
 
 TEST_F(StateFolder, ANewProposalTakesTheOldOnesPlaceAndRemovalLeavesNothing) {
   const Model first = model_with(4e-8), second = model_with(5e-8);
-  write_proposal(state(), proposal_of(first, {}), first, "1");
-  write_proposal(state(), proposal_of(second, {}), second, "2");
+  write_proposal(folder(), proposal_of(first, {}), first, "1");
+  write_proposal(folder(), proposal_of(second, {}), second, "2");
   EXPECT_EQ(files(), 3U);
-  EXPECT_EQ(read_proposal(state(), "nose")->model, name_of(second));
-  remove_proposal(state(), "nose");
+  EXPECT_EQ(read_proposal(folder(), "nose")->model, name_of(second));
+  remove_proposal(folder(), "nose");
   EXPECT_EQ(files(), 0U);
 }
 
 TEST_F(StateFolder, BookmarksComeBack) {
-  EXPECT_FALSE(read_bookmark(state(), "nose"));
-  write_bookmark(state(), "nose", {17, "2026-01-31T02:30:00Z", "nothing found"});
-  EXPECT_EQ(read_bookmark(state(), "nose")->until, 17U);
-  EXPECT_EQ(read_bookmark(state(), "nose")->said, "nothing found");
+  EXPECT_FALSE(read_bookmark(folder(), "nose"));
+  write_bookmark(folder(), "nose", {17, "2026-01-31T02:30:00Z", "nothing found"});
+  EXPECT_EQ(read_bookmark(folder(), "nose")->until, 17U);
+  EXPECT_EQ(read_bookmark(folder(), "nose")->said, "nothing found");
 }
 
 // A night whose disk is full, at whichever of the three files: the proposal that waited stands, and nothing
@@ -133,33 +115,33 @@ TEST_F(StateFolder, AProposalThatCouldNotBeWrittenLeavesNothing) {
   const Model first = model_with(4e-8), second = model_with(5e-8);
   const Proposal wanted = proposal_of(second, {});
   for (const std::string& refuses : {wanted.report_file, std::string("nose.proposal.json")}) {
-    fs::create_directory(fs::path(state()) / refuses);
-    EXPECT_THROW(write_proposal(state(), wanted, second, "2"), std::runtime_error);
-    fs::remove(fs::path(state()) / refuses);
+    fs::create_directory(fs::path(folder()) / refuses);
+    EXPECT_THROW(write_proposal(folder(), wanted, second, "2"), std::runtime_error);
+    fs::remove(fs::path(folder()) / refuses);
     EXPECT_EQ(files(), 0U) << refuses;
   }
-  write_proposal(state(), proposal_of(first, {}), first, "1");
-  fs::create_directory(fs::path(state()) / wanted.report_file);
-  EXPECT_THROW(write_proposal(state(), wanted, second, "2"), std::runtime_error);
-  fs::remove(fs::path(state()) / wanted.report_file);
+  write_proposal(folder(), proposal_of(first, {}), first, "1");
+  fs::create_directory(fs::path(folder()) / wanted.report_file);
+  EXPECT_THROW(write_proposal(folder(), wanted, second, "2"), std::runtime_error);
+  fs::remove(fs::path(folder()) / wanted.report_file);
   EXPECT_EQ(files(), 3U);
-  EXPECT_EQ(read_proposal(state(), "nose")->model, name_of(first));
+  EXPECT_EQ(read_proposal(folder(), "nose")->model, name_of(first));
 }
 
 TEST_F(StateFolder, ADamagedProposalIsOneLine) {
   const Model model = model_with(4e-8);
-  write_proposal(state(), proposal_of(model, {}), model, "");
-  const std::string whole = text("nose.proposal.json");
+  write_proposal(folder(), proposal_of(model, {}), model, "");
+  const std::string whole = content("nose.proposal.json");
   for (const std::size_t length : {std::size_t{0}, whole.size() / 2, whole.size() - 3}) {
     write("nose.proposal.json", whole.substr(0, length));
-    EXPECT_EQ(complaint([&] { (void)read_proposal(state(), "nose"); }),
+    EXPECT_EQ(complaint([&] { (void)read_proposal(folder(), "nose"); }),
               path("nose.proposal.json") + ": is no JSON object, expected schema ifog.proposal/1");
   }
   const auto with = [&](const std::string& from, const std::string& to) {
     std::string changed = whole;
     changed.replace(changed.find(from), from.size(), to);
     write("nose.proposal.json", changed);
-    const std::string said = complaint([&] { (void)read_proposal(state(), "nose"); });
+    const std::string said = complaint([&] { (void)read_proposal(folder(), "nose"); });
     EXPECT_EQ(said.find('\n'), std::string::npos);
     return said;
   };
@@ -173,9 +155,9 @@ TEST_F(StateFolder, ADamagedProposalIsOneLine) {
 TEST_F(StateFolder, AProposalWhoseModelWasChangedIsRefused) {
   const Model model = model_with(4e-8);
   const Proposal proposal = proposal_of(model, {});
-  write_proposal(state(), proposal, model, "");
+  write_proposal(folder(), proposal, model, "");
   write(proposal.model_file, model_text(model_with(9e-8)));
-  EXPECT_NE(complaint([&] { (void)proposed_model(state(), proposal); }).find("is another model"),
+  EXPECT_NE(complaint([&] { (void)proposed_model(folder(), proposal); }).find("is another model"),
             std::string::npos);
 }
 
@@ -185,13 +167,13 @@ TEST_F(StateFolder, TheHistoryKeepsEveryModelAndRevertsCloseLikeBrackets) {
     return ModelChange{what, "2026-01-31T08:00:00Z", model, replaced, "why", {}, ""};
   };
   {
-    History history(state(), "nose");
+    History history(folder(), "nose");
     EXPECT_EQ(history.in_force(), nullptr);
     history.add(change("adopt", name_of(a), {}), std::nullopt);
     history.add(change("adopt", name_of(b), name_of(a)), a);
     history.set_outcome("the promise came true");
   }
-  History history(state(), "nose");
+  History history(folder(), "nose");
   ASSERT_EQ(history.changes().size(), 2U);
   EXPECT_EQ(history.changes().back().outcome, "the promise came true");
   ASSERT_NE(history.in_force(), nullptr);
@@ -205,12 +187,12 @@ TEST_F(StateFolder, TheHistoryKeepsEveryModelAndRevertsCloseLikeBrackets) {
   EXPECT_EQ(history.in_force(), nullptr);
   history.take_back();
   EXPECT_EQ(history.in_force()->model, name_of(a));
-  EXPECT_EQ(History(state(), "nose").changes().size(), 3U);
+  EXPECT_EQ(History(folder(), "nose").changes().size(), 3U);
 }
 
 TEST_F(StateFolder, OneCommandAtATime) {
-  const StateInHand mine(state());
-  EXPECT_NE(complaint([&] { const StateInHand other(state()); }).find("another command works in it"),
+  const StateInHand mine(folder());
+  EXPECT_NE(complaint([&] { const StateInHand other(folder()); }).find("another command works in it"),
             std::string::npos);
   EXPECT_NE(
       complaint([&] { const StateInHand other(path("none")); }).find("expected the daemon's state folder"),
@@ -218,25 +200,25 @@ TEST_F(StateFolder, OneCommandAtATime) {
 }
 
 TEST_F(StateFolder, TheMarkIsThereAsLongAsItsProcess) {
-  EXPECT_FALSE(running_daemon(state()));
+  EXPECT_FALSE(running_daemon(folder()));
   int ready[2];
   ASSERT_EQ(pipe(ready), 0);
   const pid_t child = fork();
   if (child == 0) {
     static RunningMark mark;
-    (void)!::write(ready[1], mark.set(state()).empty() ? "y" : "n", 1);
+    (void)!::write(ready[1], mark.set(folder()).empty() ? "y" : "n", 1);
     pause();
     _exit(0);
   }
   char said = 0;
   ASSERT_EQ(::read(ready[0], &said, 1), 1);
   EXPECT_EQ(said, 'y');
-  EXPECT_EQ(running_daemon(state()), child);
+  EXPECT_EQ(running_daemon(folder()), child);
   RunningMark second;
-  EXPECT_NE(second.set(state()).find("process " + std::to_string(child)), std::string::npos);
+  EXPECT_NE(second.set(folder()).find("process " + std::to_string(child)), std::string::npos);
   kill(child, SIGKILL);
   waitpid(child, nullptr, 0);
-  EXPECT_FALSE(running_daemon(state()));
+  EXPECT_FALSE(running_daemon(folder()));
   close(ready[0]);
   close(ready[1]);
 }
@@ -252,22 +234,22 @@ TEST_F(StateFolder, AMarkThatIsNoDaemonsIsNotTakenForOne) {
     lock.l_type = type;
     lock.l_whence = SEEK_SET;
     ASSERT_EQ(::fcntl(fd, F_OFD_SETLK, &lock), 0);
-    EXPECT_NE(complaint([&] { (void)running_daemon(state()); }).find("by no process that can be seen"),
+    EXPECT_NE(complaint([&] { (void)running_daemon(folder()); }).find("by no process that can be seen"),
               std::string::npos);
     RunningMark mark;
-    EXPECT_NE(mark.set(state()), "");
+    EXPECT_NE(mark.set(folder()), "");
     EXPECT_FALSE(mark.is_set());
   }
   ::close(fd);
   fs::remove(path("ifogd.lock"));
   ASSERT_EQ(mkfifo(path("ifogd.lock").c_str(), 0644), 0);
-  EXPECT_NE(complaint([&] { (void)running_daemon(state()); }), "");
+  EXPECT_NE(complaint([&] { (void)running_daemon(folder()); }), "");
   fs::remove(path("ifogd.lock"));
   write("private", "mine");
   fs::permissions(path("private"), fs::perms::owner_read | fs::perms::owner_write);
   fs::create_symlink("private", path("ifogd.lock"));
   RunningMark mark;
-  EXPECT_NE(mark.set(state()), "");
+  EXPECT_NE(mark.set(folder()), "");
   EXPECT_EQ(fs::status(path("private")).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
@@ -276,16 +258,16 @@ TEST_F(StateFolder, NothingIsWrittenThroughALink) {
   write("elsewhere", "mine");
   fs::create_symlink("elsewhere", path("nose.night.json"));
   EXPECT_NE(complaint([&] {
-              write_bookmark(state(), "nose", {1, "now", "said"});
+              write_bookmark(folder(), "nose", {1, "now", "said"});
             }).find("no regular file"),
             std::string::npos);
-  EXPECT_EQ(text("elsewhere"), "mine");
+  EXPECT_EQ(content("elsewhere"), "mine");
 }
 
 // Killed between the history and the model: the model before is in use, so the change never was.
 TEST_F(StateFolder, AChangeThatNeverCameAboutIsForgotten) {
   const Model first = model_with(1e-8), second = model_with(2e-8);
-  History history(state(), "nose");
+  History history(folder(), "nose");
   history.add({"adopt", "a", name_of(first), {}, "", {}, ""}, std::nullopt);
   history.add({"adopt", "b", name_of(second), name_of(first), "", {}, ""}, first);
   history.forget_what_never_was(name_of(second));
@@ -300,7 +282,7 @@ TEST_F(StateFolder, ASensorWithoutAModelHasTheAdoptedOne) {
       "[[sensor]]\nname = \"nose\"\ndriver = \"kvh1750\"\n[sensor.transport]\ntype = \"file\"\npath = \"a\"\n"
       "[[sensor]]\nname = \"tail\"\nmodel = \"own.toml\"\ndriver = \"kvh1750\"\n[sensor.transport]\ntype = "
       "\"file\"\npath = \"a\"\n";
-  write("ifogd.toml", "[daemon]\nstate_folder = \"" + state() + "\"\n" + sensors);
+  write("ifogd.toml", "[daemon]\nstate_folder = \"" + folder() + "\"\n" + sensors);
   EXPECT_EQ(read_config(path("ifogd.toml")).sensors[0].model, "");
   write("nose.model.toml", model_text(model_with(4e-8)));
   write("tail.model.toml", model_text(model_with(4e-8)));

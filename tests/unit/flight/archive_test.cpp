@@ -4,11 +4,11 @@
 
 #include <unistd.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <set>
 
 #include "tests/unit/flight/archived.h"
+#include "tests/unit/own_folder.h"
 
 namespace ifog {
 namespace {
@@ -98,13 +98,7 @@ TEST(FlightArchive, EachFileBeginsWithTheStateOfTheChannels) {
   ASSERT_GT(bench.disk.files.size(), 4U);
   double last = 0.0;
   for (const auto& [name, bytes] : bench.disk.files) {
-    std::size_t at = 0;
-    FlightReader reader([&, &file = bytes](char* to, std::size_t most) {
-      const std::size_t n = std::min(most, file.size() - at);
-      std::copy_n(file.begin() + static_cast<std::ptrdiff_t>(at), n, to);
-      at += n;
-      return n;
-    });
+    FlightReader reader(bytes);
     ASSERT_EQ(reader.next(), FlightReader::Item::header);
     ASSERT_EQ(reader.next(), FlightReader::Item::entry);
     ASSERT_EQ(reader.entry().head.kind, FlightKind::channel) << name;
@@ -192,7 +186,8 @@ TEST(FlightArchive, WhatTheDiskDidNotTakeAtTheEndIsLost) {
 
 // On a real disk: who comes second is refused, and has the folder once the first is gone.
 TEST(FlightArchive, OneRecorderAFolder) {
-  const std::string path = testing::TempDir() + "one-recorder-" + std::to_string(::getpid());
+  const test::OwnFolder own;
+  const std::string path = own.path("record");
   std::vector<FlightFolder::File> files;
   auto first = make_flight_folder(path);
   EXPECT_EQ(first->list(files), 0);
@@ -217,7 +212,6 @@ TEST(FlightArchive, OneRecorderAFolder) {
   EXPECT_EQ(second.error(), 0);
   EXPECT_EQ(second.taken_away().deliveries, 1U);
   EXPECT_EQ(second.close(8 * kSecond, kWall), 0U);
-  std::filesystem::remove_all(path);
 }
 
 // As the folders of those that did not lock have them: read as one they are two gyros.

@@ -11,6 +11,7 @@
 #include <iterator>
 
 #include "tests/unit/flight/recordings.h"
+#include "tests/unit/own_folder.h"
 
 namespace ifog {
 namespace {
@@ -44,8 +45,8 @@ std::vector<std::uint8_t> all_in(const std::string& folder) {
 }
 
 TEST(FlightKilled, WhatWasWrittenIsThereToTheBit) {
-  const std::string folder =
-      (fs::temp_directory_path() / ("ifog-killed-" + std::to_string(getpid()))).string();
+  const test::OwnFolder own;
+  const std::string folder = own.path("record");
   std::mt19937 random(40);
   std::uint64_t from = 0;  // what the folder holds
   for (int kills = 0; kills < 40; ++kills) {
@@ -86,7 +87,6 @@ TEST(FlightKilled, WhatWasWrittenIsThereToTheBit) {
     from = read.payloads.size();
   }
   EXPECT_GT(from, 1000U);
-  fs::remove_all(folder);
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -21,6 +20,7 @@
 #include "drivers/capture/hdf5/hdf5_id.h"
 #include "drivers/capture/hdf5/hdf5_text.h"
 #include "drivers/capture/hdf5/hdf5_writer.h"
+#include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 
 namespace {
@@ -28,7 +28,7 @@ namespace {
 using namespace ifog;
 
 // As time and as rate.
-void write(const std::string& path, const std::vector<double>& values, const std::string& comments) {
+void put(const std::string& path, const std::vector<double>& values, const std::string& comments) {
   Hdf5Writer writer(path, comments, {"time_s", "rate_radps"});
   writer.rows(std::vector<std::span<const double>>{values, values});
   writer.finish();
@@ -39,18 +39,7 @@ Table read(const std::string& path) {
   return table_of([&](RowSink& sink) { return read_hdf5_rows(input, "", {}, sink); });
 }
 
-class Hdf5Folder : public testing::Test {
- protected:
-  void SetUp() override {
-    folder_ = std::filesystem::temp_directory_path() / ("ifog-hdf5-" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
- private:
-  std::filesystem::path folder_;
-};
+class Hdf5Folder : public testing::Test, protected test::OwnFolder {};
 
 // More than a block, so that there are several.
 TEST_F(Hdf5Folder, GivesBackWhatWasWrittenToTheBit) {
@@ -82,7 +71,7 @@ TEST_F(Hdf5Folder, GivesBackWhatWasWrittenToTheBit) {
 TEST_F(Hdf5Folder, ManyLongCommentsAreKept) {
   std::string comments;
   for (int i = 0; i < 6000; ++i) comments += std::to_string(i) + std::string(100, 'x') + "\n";
-  write(path("c.h5"), {0.0, 1.0}, comments);
+  put(path("c.h5"), {0.0, 1.0}, comments);
   EXPECT_EQ(read(path("c.h5")).comments, comments);
 }
 
@@ -95,7 +84,7 @@ struct LeftAtOnce final : RowSink {
 TEST_F(Hdf5Folder, ALeftReaderIsGone) {
   std::vector<double> time;
   for (int i = 0; i < 400'000; ++i) time.push_back(i * 1e-3);
-  write(path("c.h5"), time, "");
+  put(path("c.h5"), time, "");
   for (int i = 0; i < 5; ++i) {
     InputFile input(path("c.h5"));
     LeftAtOnce sink;

@@ -2,30 +2,25 @@
 #include "tools/ifog/captures/lcm/lcm_events.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <lcm/lcm-cpp.hpp>
 #include <numeric>
 #include <string>
 #include <vector>
 
+#include "tests/unit/own_folder.h"
+
 namespace ifog::tools {
 namespace {
 
-namespace fs = std::filesystem;
-
 // A log as LCM writes it, then damaged.
-class DamagedLog : public testing::Test {
+class DamagedLog : public testing::Test, protected test::OwnFolder {
  protected:
   static constexpr int kEvents = 12;
   static constexpr std::size_t kData = 300;
 
   void SetUp() override {
-    path_ = fs::temp_directory_path() / ("ifog-lcm-events-" + std::to_string(getpid()));
     {
       lcm::LogFile log(path_, "w");
       for (int n = 0; n < kEvents; ++n) {
@@ -38,11 +33,9 @@ class DamagedLog : public testing::Test {
         ASSERT_EQ(log.writeEvent(&event), 0);
       }
     }
-    std::ifstream file(path_, std::ios::binary);
-    whole_.assign(std::istreambuf_iterator<char>(file), {});
+    whole_ = content("log");
     event_ = whole_.size() / kEvents;
   }
-  void TearDown() override { fs::remove(path_); }
 
   struct Found {
     std::vector<int> events;
@@ -51,7 +44,7 @@ class DamagedLog : public testing::Test {
   // These bytes instead of so many at `at`.
   Found with(std::size_t at, const std::string& bytes, std::size_t instead_of) const {
     std::string damaged = whole_;
-    std::ofstream(path_, std::ios::binary) << damaged.replace(at, instead_of, bytes);
+    write("log", damaged.replace(at, instead_of, bytes));
     LcmEvents log(path_);
     Found found;
     while (const LcmEvents::Event* event = log.next()) {
@@ -74,7 +67,8 @@ class DamagedLog : public testing::Test {
     return all;
   }
 
-  std::string path_, whole_;
+  const std::string path_ = path("log");
+  std::string whole_;
   std::size_t event_ = 0;
 };
 

@@ -17,6 +17,8 @@
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/files/output_file.h"
+#include "tests/unit/messages.h"
+#include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 
 namespace ifog::tools {
@@ -24,19 +26,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class LcmLog : public testing::Test {
+class LcmLog : public testing::Test, protected test::OwnFolder {
  protected:
   void SetUp() override {
-    path_ = fs::temp_directory_path() / ("ifog-lcm-log-" + std::to_string(getpid()));
     writer_ = std::make_unique<lcm::LogFile>(path_, "w");
     ASSERT_TRUE(writer_->good());
   }
-  void TearDown() override { fs::remove(path_); }
 
   template <typename Message>
   void add(const std::string& channel, const Message& message, std::int64_t came_utime = 0) {
-    std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-    message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
+    std::vector<std::uint8_t> bytes = encoded(message);
     lcm::LogEvent event{};
     event.timestamp = came_utime;
     event.channel = channel;
@@ -46,15 +45,10 @@ class LcmLog : public testing::Test {
   }
   // Sample n of a sensor with so many axes; every number in it is another.
   static rate_t sample(int n, int axes, std::int64_t sensor_time_ns = -1) {
-    rate_t out{};
+    rate_t out = rate(axes, 100.0 * n);
     out.utime = 1'700'000'000'000'000 + n * 1000;
     out.sensor_time_ns = sensor_time_ns;
     out.dt = 0.001;
-    out.axes = static_cast<std::int8_t>(axes);
-    double next = 100.0 * n;
-    for (auto* field : {&out.raw, &out.compensated, &out.denoised, &out.variance, &out.delta_theta,
-                        &out.covered, &out.angle, &out.innovation, &out.innovation_variance, &out.gain})
-      for (int axis = 0; axis < axes; ++axis) field->push_back(next++);
     return out;
   }
   void finish() { writer_.reset(); }
@@ -78,7 +72,7 @@ class LcmLog : public testing::Test {
     return test::refusal([&] { read(channel); });
   }
 
-  std::string path_;
+  const std::string path_ = path("log");
   std::unique_ptr<lcm::LogFile> writer_;
 };
 
@@ -150,7 +144,6 @@ TEST_F(LcmLog, RefusesMessagesThatCannotBe) {
 // times, and by a device's own clock.
 TEST_F(LcmLog, WhatCameTwiceIsLeftOutAndSaid) {
   for (const std::int64_t clock_ns : {std::int64_t{-1}, std::int64_t{5'000'000'000}}) {
-    TearDown();
     SetUp();
     const auto put = [&](int n) {
       rate_t message = sample(n, 1, clock_ns < 0 ? -1 : clock_ns + n * 1'000'000LL);
@@ -253,7 +246,6 @@ TEST_F(LcmLog, ALabelThatDoesNotGoOnIsNoEndOfTheRecording) {
 
 TEST_F(LcmLog, AWallClockThatWasSetMovesNoTime) {
   for (const std::int64_t set_us : {-5'000'000, 5'000'000}) {
-    TearDown();
     SetUp();
     for (int n = 0; n < 10; ++n) {
       rate_t message = sample(n, 1);
@@ -337,7 +329,6 @@ TEST_F(LcmLog, ReadsAPackedLogAndATextAtHand) {
   write_file(packed, text);
   InputFile file(packed);
   EXPECT_EQ(read(file, "").rate_radps, read("").rate_radps);
-  fs::remove(packed);
 }
 
 }  // namespace

@@ -6,27 +6,23 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdlib>
-#include <fstream>
 #include <ifog/rate_t.hpp>
 #include <ifog/status_t.hpp>
 #include <lcm/lcm-cpp.hpp>
-#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "tests/unit/daemon/private_network.h"
+#include "tests/unit/messages.h"
+#include "tests/unit/own_folder.h"
 
 namespace {
 
 constexpr const char* kUrl = "udpm://239.255.76.67:7667?ttl=0";
 
-ifog::rate_t rate() {
-  ifog::rate_t out{};
-  out.axes = 1;
-  for (auto* field : {&out.raw, &out.compensated, &out.denoised, &out.variance, &out.delta_theta,
-                      &out.covered, &out.angle, &out.innovation, &out.innovation_variance, &out.gain})
-    field->push_back(1e-6);
+ifog::rate_t sample() {
+  ifog::rate_t out = ifog::rate(1);
   out.model = "\x1b]52;c;aWZvZw==\x07";  // writes the terminal's clipboard
   return out;
 }
@@ -55,38 +51,31 @@ ifog::status_t status() {
   return out;
 }
 
-std::string text_of(const std::string& path) {
-  std::ostringstream text;
-  text << std::ifstream(path, std::ios::binary).rdbuf();
-  return text.str();
-}
-
 TEST(Monitor, ShowsNamesFromTheNetworkAndObeysNone) {
   if (const std::string why = ifog::enter_private_network(); !why.empty())
     GTEST_SKIP() << "no network namespace of its own (" << why << "); run as root";
-  const std::string out = ::testing::TempDir() + "monitor_out";
+  const ifog::test::OwnFolder folder;
   std::string command = IFOG_BINARY_DIR "/tools/ifog/ifog monitor --seconds 3 --lcm-url '";
-  command.append(kUrl).append("' >").append(out).append(" 2>&1");
+  command.append(kUrl).append("' >").append(folder.path("out")).append(" 2>&1");
   int result = -1;
   std::thread monitor([&] { result = std::system(command.c_str()); });
   lcm::LCM lcm(kUrl);
-  const ifog::rate_t sample = rate();
+  const ifog::rate_t one = sample();
   const ifog::status_t health = status();
   // Cut off, and with a number of axes that no vector can have.
-  std::vector<unsigned char> broken(static_cast<std::size_t>(sample.getEncodedSize()));
-  sample.encode(broken.data(), 0, static_cast<int>(broken.size()));
+  std::vector<std::uint8_t> broken = ifog::encoded(one);
   constexpr std::size_t kAxesAt = 8 + 5 * 8 + 3 * 4;  // behind the type's hash and what stands before
   ASSERT_EQ(broken[kAxesAt], 1);
   broken[kAxesAt] = 0xFF;
   for (int i = 0; i < 60; ++i) {
-    lcm.publish("IFOG_NO\x1b[31mSE,", &sample);
+    lcm.publish("IFOG_NO\x1b[31mSE,", &one);
     lcm.publish("IFOG_NO\x1b[31mSE,_STATUS", &health);
     lcm.publish("IFOG_BAD", broken.data(), static_cast<unsigned>(broken.size()));
     lcm.publish("IFOG_BAD_STATUS", broken.data(), 5);
     std::this_thread::sleep_for(std::chrono::milliseconds(50));
   }
   monitor.join();
-  const std::string said = text_of(out);
+  const std::string said = folder.content("out");
   EXPECT_EQ(result, 0) << said;
   for (const char c : said)
     EXPECT_TRUE(c == '\n' ||

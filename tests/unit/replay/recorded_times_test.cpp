@@ -8,9 +8,6 @@
 
 #include <cstdint>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <thread>
 #include <utility>
@@ -18,25 +15,17 @@
 
 #include "drivers/flight/archive.h"
 #include "drivers/transport/clock.h"
+#include "tests/unit/own_folder.h"
 
 namespace ifog {
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::int64_t kMillisecond = 1'000'000, kBegan = 1'700'000'000'000'000'000;
 // When the deliveries came, behind the first: evenly, two at once, and after a pause.
 const std::vector<std::int64_t> kCame_ms{0, 20, 40, 40, 41, 190, 200};
 
-class RecordedTimes : public testing::Test {
+class RecordedTimes : public testing::Test, protected test::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("ifog-recorded-times-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-
   // Delivery n is n + 1 bytes 'a' + n, or a CAN frame with n.
   void record(FlightHeader::Carries carries) const {
     FlightHeader header;
@@ -57,18 +46,12 @@ class RecordedTimes : public testing::Test {
       archive.turn(came_ns, came_ns, true);
     }
   }
-  [[nodiscard]] std::string content(const std::string& name) const {
-    std::ifstream in(path(name), std::ios::binary);
-    return {std::istreambuf_iterator<char>(in), {}};
-  }
   // Exit status; what it prints goes to the file `said`.
   [[nodiscard]] int replay(const std::string& arguments) const {
     return WEXITSTATUS(std::system(
         (IFOG_PROGRAM " replay " + path("record") + " " + arguments + " >" + path("said") + " 2>&1")
             .c_str()));
   }
-
-  fs::path folder_;
 };
 
 TEST_F(RecordedTimes, BytesIntoAFifo) {

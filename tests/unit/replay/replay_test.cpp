@@ -15,13 +15,13 @@
 #include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <thread>
 #include <vector>
 
 #include "daemon/sensor/duration_histogram.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/file/pace.h"
+#include "tests/unit/own_folder.h"
 
 namespace {
 
@@ -63,20 +63,8 @@ TEST(Pace, DeadlinesComeFromTheFirstAndKeepNanosecondsForDays) {
   EXPECT_EQ(slow.due_ns(200), 1200);
 }
 
-class Replay : public testing::Test {
+class Replay : public testing::Test, protected ifog::test::OwnFolder {
  protected:
-  void SetUp() override {
-    folder_ = fs::temp_directory_path() / ("ifog-replay-" + std::to_string(getpid()));
-    fs::create_directories(folder_);
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-  std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  std::string content(const std::string& name) const {
-    std::ifstream in(path(name), std::ios::binary);
-    std::ostringstream text;
-    text << in.rdbuf();
-    return text.str();
-  }
   // Exit status; what it prints goes to the file `out`.
   int ifog(const std::string& arguments) const {
     const std::string command = IFOG_PROGRAM " replay " + arguments + " >" + path("out") + " 2>&1";
@@ -109,7 +97,7 @@ class Replay : public testing::Test {
       for (const auto& one : fs::directory_iterator("/proc/" + std::to_string(child) + "/fd")) {
         struct stat file {};
         std::error_code gone;
-        if (!fs::read_symlink(one.path(), gone).string().starts_with(folder_.string())) continue;
+        if (!fs::read_symlink(one.path(), gone).string().starts_with(folder())) continue;
         if (stat(one.path().c_str(), &file) == 0 && S_ISREG(file.st_mode) && file.st_nlink == 0)
           most = std::max(most, static_cast<std::uintmax_t>(file.st_size));
       }
@@ -130,8 +118,6 @@ class Replay : public testing::Test {
       out << "(1700000000." << (100'000 + i * 1000) << ") can3 12345678#" << std::to_string(1000 + i) << "\n";
     return path("gyro.log");
   }
-
-  fs::path folder_;
 };
 
 TEST_F(Replay, WritesTheSameLogNeverEarly) {

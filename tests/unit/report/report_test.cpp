@@ -9,6 +9,7 @@
 #include <regex>
 #include <stdexcept>
 
+#include "tests/unit/own_folder.h"
 #include "tests/unit/report/example.h"
 #include "tools/report/chart.h"
 #include "tools/report/pages/diagnosis_page.h"
@@ -100,7 +101,6 @@ TEST(ReportChart, GapsAndImpossibleValuesAreLeftOut) {
   EXPECT_EQ(nothing.svg(), "");
 }
 
-// A band is drawn from its lower to its upper edge and widens the axis; a guide does not.
 // Nothing is drawn across a hole in the rows; a sample or two that are missing are none.
 TEST(ReportChart, ALineInTimeIsOpenWhereThereIsAHole) {
   std::vector<double> time, y;
@@ -124,6 +124,7 @@ TEST(ReportChart, ALineInTimeIsOpenWhereThereIsAHole) {
   EXPECT_EQ(strokes(false), 1);
 }
 
+// A band is drawn from its lower to its upper edge and widens the axis; a guide does not.
 TEST(ReportChart, BandsWidenTheAxesAndGuidesDoNot) {
   Chart chart("t", "d", {"x", false, 0.0, 10.0}, {"y", false, {}, {}});
   chart.line(Role::kAfter, "", {0.0, 10.0}, {1.0, 1.0});
@@ -162,11 +163,6 @@ TEST(ReportChart, LegendsThatAreLongTakeAnotherRow) {
   }
 }
 
-std::string bytes_of(const std::string& path) {
-  std::ifstream file(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
 // The output of librsvg is tested by its bytes: the curve's blue is there, and nothing is black but
 // ink.
 TEST(ReportPicture, SvgAndPngByTheName) {
@@ -177,11 +173,11 @@ TEST(ReportPicture, SvgAndPngByTheName) {
   EXPECT_EQ(svg.find("var("), std::string::npos) << "librsvg knows no variables";
   for (const char c : svg) EXPECT_TRUE(static_cast<unsigned char>(c) >= 0x20 || c == '\n');
   EXPECT_NE(svg.find("a &lt;b&gt; &amp; \\x1b[31m \\xff"), std::string::npos);
-  const std::string folder = ::testing::TempDir();
-  write_picture(folder + "picture.svg", svg);
-  EXPECT_EQ(bytes_of(folder + "picture.svg"), svg);
-  write_picture(folder + "picture.png", svg);
-  const std::string png = bytes_of(folder + "picture.png");
+  const ifog::test::OwnFolder folder;
+  write_picture(folder.path("picture.svg"), svg);
+  EXPECT_EQ(folder.content("picture.svg"), svg);
+  write_picture(folder.path("picture.png"), svg);
+  const std::string png = folder.content("picture.png");
   ASSERT_GT(png.size(), 5000U) << "an empty page packs to less";
   EXPECT_EQ(png.substr(0, 8), "\x89PNG\r\n\x1a\n");
   // The header has width and height, two dots a pixel.
@@ -190,7 +186,7 @@ TEST(ReportPicture, SvgAndPngByTheName) {
   };
   EXPECT_EQ(word(16), 1200);
   EXPECT_EQ(word(20), 2 * (10 + 30 + 200 + 6 + 100 + 6 + 10));
-  EXPECT_THROW(write_picture(folder + "broken.png", "<svg"), std::runtime_error);
+  EXPECT_THROW(write_picture(folder.path("broken.png"), "<svg"), std::runtime_error);
   EXPECT_EQ(wrong_picture_name("a.svg"), "");
   EXPECT_NE(wrong_picture_name("a.jpeg"), "");
 }

@@ -11,6 +11,7 @@
 #include <random>
 
 #include "filters/series/series_view.h"
+#include "tests/unit/refusal.h"
 
 namespace {
 
@@ -85,12 +86,7 @@ TEST(LongSeries, SaysWhereThereIsNoRoomForTheFile) {
   const std::string kept = before == nullptr ? "" : before;
   setenv("TMPDIR", "/nonexistent", 1);
   LongSeries series(1);
-  std::string said;
-  try {
-    series.add(std::vector<double>(10));
-  } catch (const std::runtime_error& error) {
-    said = error.what();
-  }
+  const std::string said = ifog::test::refusal([&] { series.add(std::vector<double>(10)); });
   kept.empty() ? unsetenv("TMPDIR") : setenv("TMPDIR", kept.c_str(), 1);
   EXPECT_EQ(
       said,

@@ -2,13 +2,14 @@
 #include "tools/simulate/simulator.h"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <numbers>
+
+#include "tests/unit/own_folder.h"
+#include "tests/unit/refusal.h"
 
 namespace {
 
@@ -16,29 +17,17 @@ namespace fs = std::filesystem;
 using ifog::simulate::Scenario;
 using ifog::simulate::Simulation;
 
-class ScenarioFile : public testing::Test {
+class ScenarioFile : public testing::Test, protected ifog::test::OwnFolder {
  protected:
-  void SetUp() override {
-    path_ = fs::temp_directory_path() / ("ifog-scenario-" + std::to_string(getpid()) + ".toml");
-  }
-  void TearDown() override { fs::remove(path_); }
   Scenario read(const std::string& text) const {
-    std::ofstream(path_) << text;
-    return ifog::simulate::read_scenario(path_.string());
+    write("scenario.toml", text);
+    return ifog::simulate::read_scenario(path("scenario.toml"));
   }
   Simulation simulate(const std::string& text) const { return ifog::simulate::simulate(read(text)); }
   std::string refusal(const std::string& text) const {
-    try {
-      (void)simulate(text);
-    } catch (const std::exception& error) {
-      const std::string line = error.what();
-      return line.starts_with(path_.string()) ? line.substr(path_.string().size()) : line;
-    }
-    return "accepted";
+    const std::string line = ifog::test::refusal([&] { (void)simulate(text); }), file = path("scenario.toml");
+    return line.starts_with(file) ? line.substr(file.size()) : line;
   }
-
- private:
-  fs::path path_;
 };
 
 const std::string kTemperature =
