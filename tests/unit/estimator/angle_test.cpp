@@ -7,7 +7,6 @@
 #include <cmath>
 #include <complex>
 #include <filesystem>
-#include <memory>
 #include <numbers>
 
 #include "drivers/capture/capture.h"

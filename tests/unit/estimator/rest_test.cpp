@@ -8,6 +8,7 @@
 
 #include "filters/chain/signal_chain.h"
 #include "filters/estimator/estimator.h"
+#include "tests/unit/estimator/drive.h"
 
 namespace ifog {
 namespace {
@@ -27,16 +28,10 @@ template <class Motion>
 double share_at_rest(const FilterSettings& settings, int from, int samples, const Motion& motion) {
   std::mt19937_64 engine(20261122);
   std::normal_distribution<double> noise(0.0, kSigma_radps);
-  Estimator estimator(settings, 1, kPeriod_s);
-  EstimatorInput in;
-  EstimatorOutput out;
-  in.dt_s = kPeriod_s;
-  in.valid_axes = 1;
+  test::Fed filter(settings, 1, kPeriod_s);
   int flagged = 0;
   for (int i = 0; i < samples; ++i) {
-    in.sequence = static_cast<std::uint64_t>(i);
-    in.rate_radps[0] = kSigma_radps * motion(i) + noise(engine);
-    estimator.step(in, out);
+    const EstimatorOutput& out = filter.step({kSigma_radps * motion(i) + noise(engine)});
     if (i >= from && (out.flags & kAtRest) != 0) ++flagged;
   }
   return static_cast<double>(flagged) / (samples - from);

@@ -9,6 +9,7 @@
 
 #include "filters/estimator/estimator.h"
 #include "filters/rules/rule.h"
+#include "tests/unit/estimator/drive.h"
 
 namespace {
 
@@ -46,17 +47,11 @@ void expect_equal(const char* rule, const std::function<void(Scalar&, double, in
   settings.measurement_noise = kR;
   settings.window = kWindow;
   settings.follow_manoeuvres = settings.conserve_angle = false;
-  ifog::Estimator estimator(settings, 1, kPeriod);
-  ifog::EstimatorInput in;
-  ifog::EstimatorOutput out;
+  ifog::test::Fed filter(settings, 1, kPeriod);
   const std::vector<double> z = measurements();
   Scalar state{z[0], first_variance};
   for (std::size_t k = 0; k < z.size(); ++k) {
-    in.sequence = k;
-    in.dt_s = kPeriod;
-    in.valid_axes = 1;
-    in.rate_radps[0] = z[k];
-    estimator.step(in, out);
+    const ifog::EstimatorOutput& out = filter.step({z[k]});
     if (k > 0) published(state, z[k], static_cast<int>(k));
     ASSERT_NEAR(out.denoised_radps[0], state.x, 1e-9) << "step " << k;
     ASSERT_NEAR(out.variance_rad2ps2[0] / state.p, 1.0, 1e-9) << "step " << k;
