@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of a driver as a capture: the devices that the chain's tests have, too
-// (tests/unit/chain/held_up_test.cpp).
+// (tests/unit/drivers/timeline_truth_test.cpp).
 #include "drivers/capture/capture_builder.h"
 
 #include <gtest/gtest.h>
