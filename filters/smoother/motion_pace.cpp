@@ -9,27 +9,25 @@
 namespace ifog {
 namespace {
 
-// Memories that are tried: as the trackers' half a power of ten apart. Of a sample, how many of them hold.
+// Index of a memory, half a decade apart like the trackers'; for a sample, the number of memories accepted.
 using Level = std::uint8_t;
 constexpr Level kLevels = 12;
 double memory_of(Level level) { return std::pow(10.0, 0.5 * (level - 1)) / 0.7; }
 
-// Half of the window, in the longer memory. Where that is as good as the other the sum of risks over it is
-// -11 +- 3.5 variances of the noise. One that is above the bound by chance makes the memory shorter for as
-// many samples as it takes to grow again, thousands in a slow motion: not one in a million may be.
+// Half of the window in units of the longer memory. If both are equally good the sum of risk differences is
+// -11 +- 3.5 noise variances. A false rejection shortens the memory for as long as it takes to grow again, so
+// its probability must be below 1e-6.
 constexpr double kHalfWindow = 6.0;
 constexpr double kAsGood = 24.0;
 constexpr double kUsed = 0.8;
-// A memory grows by this, a sample, from where the rate is quicker.
+// Growth of the memory per sample after faster motion.
 constexpr float kGrows = 0.1F;
-// A long run is looked at in pieces, of which so much at either end is asked twice; and the longest memory
-// that these are enough for.
+// Long runs are processed in pieces with this overlap, and with a corresponding longest memory.
 constexpr std::size_t kPiece = std::size_t{1} << 16U;
 constexpr std::size_t kOverlap = std::size_t{1} << 14U;
 constexpr double kMostMemory = 2000.0;
 
-// Estimated squared error of each sample, less what all memories have in common, over R. Level 0:
-// the measurement itself.
+// Estimated squared error of each sample / R, without a common constant. Level 0: the measurement itself.
 std::vector<double> risks(const RateCourse& part, double noise, Level level) {
   const std::size_t length = part.rate.size();
   std::vector<double> risk(length, 2.0);
@@ -45,7 +43,7 @@ std::vector<double> risks(const RateCourse& part, double noise, Level level) {
   return risk;
 }
 
-// Whether the longer of two is as good, of each sample that all before it are. Gives how often.
+// Marks samples at which the longer memory is accepted like all before it; returns their number.
 std::size_t compare(const RateCourse& part, const std::vector<double>& shorter,
                     const std::vector<double>& longer, Level level, std::vector<Level>& levels) {
   const std::size_t length = part.rate.size();
@@ -83,7 +81,7 @@ RateCourse part_of(const RateCourse& course, std::size_t begin, std::size_t end)
           {}};
 }
 
-// Finds the memories within one run of motion.
+// Determines the memories in one run of motion.
 void find_in(const RateCourse& run, double noise, double longest, std::span<float> memories) {
   const std::size_t length = memories.size();
   for (std::size_t begin = 0; begin < length; begin += kPiece) {

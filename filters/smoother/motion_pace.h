@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// How quickly the rate of a recording moves, sample by sample, where it is known to move at all.
+// Selects the smoothing memory for each sample of a recording in motion.
 //
-// From the measurement itself on, each longer memory is compared with the one before it: both smooth the
-// part, and the longer one is taken where the squares of what it leaves, over twelve memories about the
-// sample, say that it is no further from the truth. Of a linear smoother the sum of (measured - smoothed)^2 +
-// 2 P is the sum of its squared errors and a constant, on average (Mallows, "Some comments on Cp",
-// Technometrics 15(4), 1973), P being its variance. It stops at the first that is not as good, so that what
-// is spoiled by a corner far away is not asked (Lepski, Theory of Probability and its Applications 35(3),
-// 1991). Four fifths of the memory that was found are used: what is left of a motion goes, squared, with the
-// twelfth power of it, so that it is small beside the variance, as that says nothing of it.
+// Starting with the measurement itself, each longer memory is compared with the one before over twelve
+// memories about the sample. The longer one is accepted if its estimated risk is not higher: for a linear
+// smoother of variance P the sum of (measured - smoothed)^2 + 2 P is on average its sum of squared errors
+// plus a constant (Mallows, Technometrics 15(4), 1973). The search stops at the first rejection, so a distant
+// corner has no influence (Lepski, Theory of Probability and its Applications 35(3), 1991). Four fifths of
+// the memory found are used: the squared motion error falls with its twelfth power and becomes small against
+// the variance, which does not include it.
 #pragma once
 
 #include <span>
@@ -17,8 +16,8 @@
 
 namespace ifog {
 
-// course: whose memories are not looked at. memories: of each sample that is not pace::kRest it is found, in
-// runs of such. longest: that is tried, samples. Allocates.
+// Sets the memory of each sample that is not pace::kRest; runs of such samples are treated separately.
+// course: its memories are ignored. longest: largest memory tried, samples. Allocates.
 void find_paces(const RateCourse& course, double noise, double longest, std::span<float> memories);
 
 }  // namespace ifog

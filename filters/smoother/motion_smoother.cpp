@@ -10,28 +10,29 @@
 namespace ifog {
 namespace {
 
-using Vector = Eigen::Vector3d;  // level, slope, curvature; by nominal sample
+using Vector = Eigen::Vector3d;  // level, slope, curvature; per nominal sample
 using Matrix = Eigen::Matrix3d;
 
-// Bandwidth times memory: the Kalman filter of three integrators has gain 2 w, the fading parabola 3 / M.
+// Bandwidth times memory: the Kalman filter of three integrators has gain 2 w, the fading-memory parabola 3 /
+// M.
 constexpr double kBandwidth = 1.5;
-// After so many samples that nobody has seen a motion may be any other.
+// After this many samples without measurement the motion may have changed.
 constexpr double kGapEnds = 16.0;
-// Samples whose filtered states are held at once.
+// Number of filtered states stored at a time.
 constexpr std::size_t kHeldAtOnce = 4096;
-// Variance of slope and curvature where a motion begins.
+// Variance of slope and curvature at the start of a motion.
 constexpr double kAnySlope = 100.0;
-// Variance of what may be anything, over the distance of neighbours: it pulls by the inverse of this at most.
-// By its square it would be 1e16 behind a jump of 1e8, and rounding all that is left of it.
+// Variance for an arbitrary change relative to the distance of neighbours: its influence is at most the
+// inverse. The square would be 1e16 after a jump of 1e8, and only rounding would remain.
 constexpr double kAnything = 1e3;
 
-// A sample's estimate, of which at rest only the level counts.
+// Estimate of a sample; at rest only the level is used.
 struct State {
   Vector x = Vector::Zero();
   Matrix p = Matrix::Zero();
 };
 
-// From a sample to the next, with the covariance of what drives it.
+// Transition between samples and the covariance of its driving noise.
 struct Step {
   Matrix transition = Matrix::Zero(), driving = Matrix::Zero();
   void predict(State& state) const {
@@ -48,7 +49,7 @@ class Course {
   [[nodiscard]] bool moving(std::size_t i) const {
     return !of_.memories.empty() && of_.memories[i] > pace::kRest;
   }
-  // From i - 1 to i.
+  // Step from i - 1 to i.
   [[nodiscard]] Step step(std::size_t i) const {
     Step out;
     out.transition(0, 0) = 1.0;
@@ -64,8 +65,7 @@ class Course {
     if (!std::isfinite(of_.rate[i])) return;
     const Vector gain = state.p.col(0) / (state.p(0, 0) + 1.0);
     state.x += gain * (of_.rate[i] / std::sqrt(noise_) - state.x[0]);
-    // Joseph's form: where a rate that may be anything is measured, the difference of two large covariances
-    // would be of any sign.
+    // Joseph form: after an arbitrary change the difference of two large covariances could become negative.
     Matrix kept = Matrix::Identity();
     kept.col(0) -= gain;
     state.p = (kept * state.p * kept.transpose() + gain * gain.transpose()).eval();
@@ -106,7 +106,7 @@ class Course {
   double noise_;
 };
 
-// The state at i by all measurements, from the filtered one and the smoothed one of the next sample.
+// Smoothed state at i, from its filtered state and the next sample's smoothed state.
 void smooth_back(const Course& course, std::size_t i, State& filtered, const State& next) {
   const Step step = course.step(i + 1);
   State predicted = filtered;
@@ -118,16 +118,16 @@ void smooth_back(const Course& course, std::size_t i, State& filtered, const Sta
   else
     gain.col(0) = cross.col(0) / predicted.p(0, 0);
   filtered.x += gain * (next.x - predicted.x);
-  // A sum as in correct(): none of its parts takes from another what both have too much of.
+  // A sum, as in correct(), to avoid cancellation.
   const Matrix kept = Matrix::Identity() - gain * step.transition;
   filtered.p =
       (kept * filtered.p * kept.transpose() + gain * (step.driving + next.p) * gain.transpose()).eval();
 }
 
-// At rest to rest a single state is all there is.
+// Between rest samples there is a single state.
 bool rests(const Course& course, std::size_t i) { return !course.moving(i) && !course.moving(i - 1); }
 
-// The filtered state at i - 1 taken to i.
+// Filters from i - 1 to i.
 void filter(const RateCourse& of, const Course& course, double noise, std::size_t i, State& now) {
   if (!rests(course, i)) {
     course.step(i).predict(now);
@@ -141,7 +141,7 @@ void filter(const RateCourse& of, const Course& course, double noise, std::size_
   now.p(0, 0) *= 1.0 - gain;
 }
 
-// The filtered state at i made the smoothed one.
+// Smooths one sample.
 void smooth_one(const RateCourse& of, const Course& course, double noise, std::size_t i, State& filtered,
                 const State& next) {
   if (!rests(course, i + 1)) {
@@ -174,7 +174,7 @@ Smoothed smooth_course(const RateCourse& of, double noise) {
   now.x[0] = of.rate[first] / sigma;
   now.p(0, 0) = 1.0;
   if (course.moving(first)) now.p(1, 1) = now.p(2, 2) = course.anything(first);
-  std::vector<State> begun{now};  // filtered, at the beginning of each piece
+  std::vector<State> begun{now};  // filtered, at the start of each piece
   for (std::size_t i = first + 1; i < length; ++i) {
     filter(of, course, noise, i, now);
     if ((i - first) % kHeldAtOnce == 0) begun.push_back(now);

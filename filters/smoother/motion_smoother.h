@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fixed-interval smoothing (Rauch, Tung and Striebel, AIAA Journal 3(8), 1965) of a rate that rests here and
-// moves there.
+// Fixed-interval smoothing (Rauch, Tung and Striebel, AIAA Journal 3(8), 1965) of a rate with rest and
+// motion.
 //
-// At rest the rate is a random walk. Where it moves it has a slope and a curvature beside its level, and
-// white noise drives the curvature: how strongly, the memory of a sample says. Level goes on from rest to
-// motion and back, slope and curvature are of the motion alone. Any constant added to the level is as likely
-// as none, so the sum of (measured - smoothed) over a record is zero: the angle is conserved to rounding.
+// At rest the rate is a random walk. In motion it has level, slope and curvature, and white noise drives the
+// curvature with a strength that follows from the sample's memory. The level continues between rest and
+// motion. The model is invariant to a constant added to the level, so the sum of (measured - smoothed) over a
+// record is zero: the angle is conserved to rounding.
 #pragma once
 
 #include <span>
@@ -18,27 +18,28 @@ struct Smoothed {
   Samples rate_radps, variance_rad2ps2;
 };
 
-// How quickly the rate moves at a sample: the memory of what follows it, in nominal samples.
+// Memory of the tracker that follows the motion, in nominal samples.
 namespace pace {
-inline constexpr float kRest = 0.0F;    // as the walk says
-inline constexpr float kBroken = 0.5F;  // anything may be between the sample and its neighbours; most of such
-// Driving noise of the curvature over R, by nominal sample: of the Kalman filter whose gain is that of the
-// fading parabola (trackers.h) of that memory.
+inline constexpr float kRest = 0.0F;  // at rest
+// This and smaller values: any change is possible between the sample and its neighbours.
+inline constexpr float kBroken = 0.5F;
+// Driving noise of the curvature / R, per nominal sample, for which the Kalman filter has the gain of the
+// fading-memory parabola (trackers.h) of that memory.
 [[nodiscard]] double jerk(double memory) noexcept;
 }  // namespace pace
 
-// One axis of a record, one of all spans a sample. All but the rate say how the rate comes from the sample
-// before, and the first of each is of no meaning. What the smoothed rate is off by in a motion x is
-// D^3 (D^3 x / jerk): the memory is to change slowly.
+// One axis of a record; one value per sample. Except the rate, values describe the step from the sample
+// before; the first ones are ignored. The smoothing error of a motion x is D^3 (D^3 x / jerk), so the memory
+// must change slowly.
 struct RateCourse {
-  std::span<const double> rate;     // rad/s, NaN where missing
-  std::span<const double> walk;     // variance the level walks by, (rad/s)^2, > 0
-  std::span<const double> steps;    // time, nominal samples, > 0; empty: all are 1
+  std::span<const double> rate;     // rad/s, NaN if missing
+  std::span<const double> walk;     // variance of the level's random walk, (rad/s)^2, > 0
+  std::span<const double> steps;    // nominal samples, > 0; empty: all 1
   std::span<const float> memories;  // empty: all at rest
 };
 
-// noise: R, (rad/s)^2. Beside what it gives it keeps one filtered state in thousands, and works out the
-// others again. Before the first measurement as there; NaN where there is none.
+// Smooths one axis. noise: R, (rad/s)^2. Stores every few thousandth filtered state and recomputes the
+// others. Samples before the first measurement get its value; all NaN without measurements.
 [[nodiscard]] Smoothed smooth_course(const RateCourse& course, double noise);
 
 }  // namespace ifog

@@ -11,21 +11,20 @@
 namespace ifog {
 namespace {
 
-// A gain of one has no walk that makes it; this one follows every sample.
+// Limit: no random walk has a gain of one.
 constexpr double kMostGain = 0.999;
-// Between where a manoeuvre is found forwards and where it is found backwards it is under way; further apart
-// they are two.
+// The sensor moves between the forward and the backward detection of a manoeuvre; if they are further apart
+// they are two manoeuvres.
 constexpr std::size_t kFurthest = 100'000;
-// An outlier that is one whatever the other direction says of it, sigma.
+// sigma; an outlier regardless of the other direction.
 constexpr double kFarAway = 20.0;
-// A motion is looked at over this many samples at least, however quick the filter at rest is.
+// Smallest horizon of a motion in samples, for any filter at rest.
 constexpr double kLeastBehind = 48.0;
 
-// What one direction finds of a sample of one axis.
+// Flags of a sample in one direction.
 using Found = std::uint8_t;
 constexpr Found kMotion = 1, kOutlier = 2, kFarOutlier = 4;
 
-// One direction of one axis.
 struct Pass {
   FiledVector<Found> found;
   double least_gain = kMostGain;
@@ -57,7 +56,7 @@ Pass run(const FilterSettings& settings, const Axis& axis, bool learn_walk, bool
   for (std::size_t k = 0; k < length; ++k) {
     const std::size_t i = backwards ? length - 1 - k : k;
     in.sequence = i;
-    // Backwards the time to this sample is what forwards is the time to the one after it.
+    // Backwards, the time step of a sample is that of the one after it.
     in.dt_s = backwards && i + 1 < length ? axis.dt_s[i + 1] : axis.dt_s[i];
     in.covered_s[0] = std::min(in.dt_s, axis.period_s);
     in.valid_axes = std::isfinite(axis.rate[i]) ? 1U : 0U;
@@ -72,11 +71,10 @@ Pass run(const FilterSettings& settings, const Axis& axis, bool learn_walk, bool
   return pass;
 }
 
-// The walk that would settle the filter's gain at K: Q/R = K^2 / (1-K).
+// Walk for which the filter's steady-state gain is K: Q/R = K^2 / (1-K).
 double walk_of(double gain, double noise) { return noise * gain * gain / (1.0 - gain); }
 
-// Where it moves in either direction, and from where a change was found forwards back to where it was found
-// backwards.
+// Moving in either direction, and between a forward detection and the backward detection before it.
 FiledVector<float> moving(const Pass& forwards, const Pass& backwards) {
   FiledVector<float> all(forwards.found.size(), pace::kRest);
   for (std::size_t i = 0; i < all.size(); ++i)
@@ -93,7 +91,7 @@ FiledVector<float> moving(const Pass& forwards, const Pass& backwards) {
   return all;
 }
 
-// Both directions reject it, or at rest one of them where it is far away. The first measurement of a jump is
+// Rejected in both directions, or at rest in one direction if far away. The first measurement of a jump is
 // rejected in one direction only.
 bool is_outlier(Found forwards, Found backwards, bool rests) {
   return (forwards & backwards & kOutlier) != 0 || (rests && ((forwards | backwards) & kFarOutlier) != 0);
@@ -103,7 +101,7 @@ bool is_outlier(Found forwards, Found backwards, bool rests) {
 Smoothed smooth_axis(FilterSettings settings, bool learn_walk, const Axis& axis,
                      std::span<const double> steps) {
   const std::size_t length = axis.rate.size();
-  // What the backward run learns of the noise is known to the forward run from its first sample on.
+  // The forward run starts with the noise learned by the backward run.
   const bool learns = learn_walk && settings.state == "random-walk";
   const Pass backwards = run(settings, axis, learns, true);
   settings.measurement_noise = backwards.learned.measurement_noise;
@@ -113,7 +111,7 @@ Smoothed smooth_axis(FilterSettings settings, bool learn_walk, const Axis& axis,
   Samples rate(axis.rate), walk(length);
   for (std::size_t i = 0; i < length; ++i)
     if (is_outlier(forwards.found[i], backwards.found[i], memories[i] <= pace::kRest)) rate[i] = std::nan("");
-  // A model with more states than the rate walks as its least gain says.
+  // For a model with more states the walk follows from its smallest gain.
   const double noise = settings.measurement_noise, walked = settings.state == "random-walk"
                                                                 ? settings.process_noise * axis.period_s
                                                                 : walk_of(forwards.least_gain, noise);

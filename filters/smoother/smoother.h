@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording smoothed: the rate at each sample from all measurements, the later ones too.
+// Smooths a recording: the rate at each sample from all measurements, including later ones.
 //
-// Whether an axis rests or moves is what the estimator finds of it, run over the record forwards and
-// backwards, so that a motion is known from its first sample and not from when it was found. The noise is what
-// the estimator knows of it at the end. How quickly the rate moves the record itself says (motion_pace.h), and
-// with that it is smoothed (motion_smoother.h). Outliers, which the estimator rejects, take no part.
+// The estimator runs over the record forwards and backwards to detect rest and motion, so a motion is known
+// from its first sample. The noise is the estimator's final estimate. The pace of the motion is determined
+// from the record (motion_pace.h) and used for smoothing (motion_smoother.h). Outliers that the estimator
+// rejects are ignored.
 #pragma once
 
 #include <optional>
@@ -17,18 +17,18 @@
 
 namespace ifog {
 
-// What is known of each axis beside FilterSettings.
+// Noise of each axis in addition to FilterSettings.
 struct AxisNoise {
-  // Its noise and its driving noise over the settings'. Not known: the former is the same for all axes, the
-  // latter in proportion to the noise.
+  // Ratio of the axes' noise and driving noise to the settings'. nullopt: equal noise; driving noise in
+  // proportion to the noise.
   std::optional<Axes> noise_share, walk_share;
-  // The driving noise is not given: the settings' is a first guess, and each axis' is learned at rest.
+  // The driving noise is not given: the settings' is a start value, and each axis's is learned at rest.
   bool learn_walk = false;
 };
 
-// All axes of a record, as long as each other: rates in rad/s with NaN where missing, dt_s the time each
-// sample covers. settings: with both noises. Throws std::invalid_argument as Estimator does,
-// std::runtime_error where a long record finds no room on disk.
+// Smooths all axes of a record, which are equally long. rates: rad/s, NaN if missing; dt_s: time of each
+// sample; settings: with both noises. Throws std::invalid_argument as Estimator does, and std::runtime_error
+// if a long record does not fit on disk.
 [[nodiscard]] std::vector<Smoothed> smooth(const FilterSettings& settings, const AxisNoise& noise,
                                            std::span<const std::span<const double>> rates,
                                            std::span<const double> dt_s, double nominal_period_s);
