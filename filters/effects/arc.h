@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An angle of which the fit saw a part of the circle: what repeats with it is extrapolated within that arc, whatever
-// the wraps, and is held at its nearer end elsewhere, for the rest of the circle was a guess.
+// Angle of which the fit saw only a part of the circle. A periodic effect is extrapolated within that arc,
+// modulo the turn; elsewhere it keeps its value at the nearer end.
 #pragma once
 
 #include <cmath>
@@ -17,7 +17,7 @@ namespace ifog {
   return form == Form::kCosine || form == Form::kSine;
 }
 
-// What the channel's wraps are: the period of a harmonic is a whole part of it.
+// Modulus of the channel's wraps; the period of a harmonic is a fraction of it.
 [[nodiscard]] inline double turn_of(const std::string& channel, double period) {
   const std::string unit = unit_of(channel);
   const double turn = unit == "deg" ? 360.0 : unit == "turns" ? 1.0 : 2.0 * std::numbers::pi;
@@ -25,8 +25,9 @@ namespace ifog {
   return std::abs(times - std::round(times)) < 1e-6 * times ? turn : period;
 }
 
-// As many turns away as brings the angle nearest to the middle of the arc. One without ends is all angles.
-[[nodiscard]] inline double beside_arc(double angle, const ChannelRange& arc, double turn) noexcept {
+// Adds whole turns so that the angle is nearest to the middle of the arc. Without limits the arc is the whole
+// circle.
+[[nodiscard]] inline double nearest_on_arc(double angle, const ChannelRange& arc, double turn) noexcept {
   if (!(turn > 0.0) || !std::isfinite(arc.high - arc.low)) return angle;
   const double middle = 0.5 * (arc.low + arc.high);
   return angle - turn * std::round((angle - middle) / turn);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The correction of a whole series, sample by sample as the daemon makes it.
+// Correction of a whole series, sample by sample as in the daemon.
 #pragma once
 
 #include <algorithm>
@@ -17,10 +17,10 @@ namespace ifog {
 struct SeriesToCompensate {
   std::span<const double> time_s;
   std::vector<std::span<const double>> rate_radps;  // by axis of the compensator
-  std::vector<std::span<const double>> channels;    // by Compensator::channels(); empty: never has a value
+  std::vector<std::span<const double>> channels;    // by Compensator::channels(); empty: no values
 };
 
-// The median step; what goes more than half a step beyond it is a gap. 0 of fewer than two samples.
+// Median step; a step more than half a step longer is a gap. 0 for fewer than two samples.
 inline double usual_step(std::span<const double> time_s) {
   constexpr std::size_t kInMemory = std::size_t{1} << 20U;
   if (time_s.size() > kInMemory) return median_step(time_s);
@@ -31,7 +31,7 @@ inline double usual_step(std::span<const double> time_s) {
   return median(std::move(steps));
 }
 
-// Calls use(sample, output) for every sample in turn. The first sample covers as much time as the second.
+// Calls use(sample, output) for every sample in order. The first sample covers as much time as the second.
 template <class Use>
 void compensate_series(Compensator& compensator, const SeriesToCompensate& series, Use&& use) {
   std::vector<double> now(series.channels.size());

@@ -11,7 +11,7 @@
 namespace ifog {
 namespace {
 
-// Scale factor errors are below a tenth, so each round gains a digit or more; twelve reach the last bit.
+// Scale factor errors are below 0.1, so each iteration gains a digit; twelve reach the last bit.
 constexpr int kRounds = 12;
 
 }  // namespace
@@ -23,14 +23,14 @@ Compensator::ChannelSet Compensator::hold_channels(const CompensatorInput& in,
     Held& held = held_[i];
     double value = i < in.channels.size() ? in.channels[i] : std::numeric_limits<double>::quiet_NaN();
     const double age = i < in.age_s.size() ? in.age_s[i] : 0.0;
-    bool told = held.readings.step(value, in.dt_s, ranges_[i]);
-    held.stale = !told || age > stale_after_s_;
-    if (DelayedReading& delayed = delayed_[i]; delayed.delays() && (told || delayed.begun())) {
-      value = told ? delayed.step(value, in.dt_s) : delayed.hold(in.dt_s);
-      told = true;
+    bool known = held.readings.step(value, in.dt_s, ranges_[i]);
+    held.stale = !known || age > stale_after_s_;
+    if (DelayedReading& delayed = delayed_[i]; delayed.delays() && (known || delayed.begun())) {
+      value = known ? delayed.step(value, in.dt_s) : delayed.hold(in.dt_s);
+      known = true;
     }
-    // By its bits: a zero has two signs.
-    if (told &&
+    // Compares bits, since zero has two signs.
+    if (known &&
         (!held.seen || std::bit_cast<std::uint64_t>(value) != std::bit_cast<std::uint64_t>(held.value))) {
       held.seen = true;
       held.value = value;
@@ -54,11 +54,11 @@ std::optional<Reach> Compensator::reach_of_factor(Factor& factor, double dt_s,
   const Held& held = held_[factor.channel];
   double value = 0.0;
   if (factor.less == kNone) {
-    value = beside_arc(held.value, factor.range, factor.turn);
+    value = nearest_on_arc(held.value, factor.range, factor.turn);
   } else {
     const double difference = held.value - held_[factor.less].value;
     if (factor.turn > 0.0)
-      factor.difference = beside_arc(difference, factor.range, factor.turn);
+      factor.difference = nearest_on_arc(difference, factor.range, factor.turn);
     else if (factor.readings.step(difference, dt_s, factor.range))
       factor.difference = difference;
     else
@@ -133,7 +133,7 @@ double Compensator::correction(std::size_t axis, const Axes& rates) const noexce
   return sum;
 }
 
-// By values_.
+// Uses values_.
 double Compensator::parameter_variance(std::size_t axis) const noexcept {
   if (covariance_.values.empty()) return 0.0;
   double variance = 0.0;
@@ -170,7 +170,7 @@ void Compensator::judge(std::size_t axis, const Axes& rates, CompensatorOutput& 
     const double bent = term.coefficient_error * value.unseen_curvature;
     inflation += left * left + bent * bent;
   }
-  // Any rate within is as likely: an even spread.
+  // Uniform distribution within the zone.
   if (of_axis_[axis].of_zone)
     for (const Zone& zone : zones_)
       if (zone.axis == axis && std::abs(rates[axis] - zone.middle) < zone.half_width)
@@ -178,7 +178,7 @@ void Compensator::judge(std::size_t axis, const Axes& rates, CompensatorOutput& 
   of_axis_[axis].variance = parameter_variance(axis) + inflation;
 }
 
-// What no channel has moved and no rate has a part in is as it was.
+// Only what depends on changed channels or on a rate is computed.
 void Compensator::solve(const CompensatorInput& in, ChannelSet moved, CompensatorOutput& out) noexcept {
   Axes rates = in.rate_radps;
   bool of_rate = false;
@@ -188,7 +188,7 @@ void Compensator::solve(const CompensatorInput& in, ChannelSet moved, Compensato
     rates[axis] = in.rate_radps[axis] - of.correction;
     of_rate |= of.of_rate;
   }
-  // Once a round leaves the rates as they are, so does every further one.
+  // The iteration stops when the rates no longer change.
   for (int round = 1; of_rate && round < kRounds; ++round) {
     of_rate = false;
     for (std::size_t axis = 0; axis < axes_; ++axis) {
@@ -225,7 +225,7 @@ void Compensator::step(const CompensatorInput& in, CompensatorOutput& out) noexc
   subtract_ramps(in, out);
 }
 
-// Last, for a ramp is found in what the other effects leave.
+// Last, since a ramp is detected in the residual of the other effects.
 void Compensator::subtract_ramps(const CompensatorInput& in, CompensatorOutput& out) noexcept {
   for (Ramp& ramp : ramps_) {
     const std::size_t axis = ramp.axis;

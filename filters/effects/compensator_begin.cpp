@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a compensator is made of a model, begins, restarts, and continues with the state of the one before it.
+// Construction, start and restart of a compensator, and takeover of the state of the one before.
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -14,7 +14,7 @@ namespace ifog {
 namespace {
 
 constexpr double kEverywhere = std::numeric_limits<double>::infinity();
-constexpr std::size_t kOwn = kMaxAxes;  // the rate of the axis that a term will be placed on
+constexpr std::size_t kOwn = kMaxAxes;  // placeholder for the rate of the term's own axis
 
 ChannelRange range_of(const std::string& channel, const std::vector<ChannelRange>& known) {
   ChannelRange found{channel, -kEverywhere, kEverywhere};
@@ -23,14 +23,14 @@ ChannelRange range_of(const std::string& channel, const std::vector<ChannelRange
   return found;
 }
 
-// Range of a channel that comes besides the rates.
+// Range of a channel that is not a rate.
 ChannelRange range_of_channel(const std::string& channel, const std::vector<ChannelRange>& known) {
   ChannelRange found = range_of(channel, known);
   found.fades = motion_of(channel) != Motion::kNone;
   return found;
 }
 
-// Whatever axis it is of.
+// For any axis.
 ChannelRange range_of_reference(const std::vector<ChannelRange>& known) {
   ChannelRange found{"", -kEverywhere, kEverywhere};
   for (const ChannelRange& range : known)
@@ -42,7 +42,7 @@ std::string label_of(const Effect& effect) {
   return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
 }
 
-// For a complaint; of a model file with its line.
+// For error messages; with the line in the model file.
 std::string place_of(const Effect& effect) {
   return "effect " + label_of(effect) + (effect.line > 0 ? " in line " + std::to_string(effect.line) : "");
 }
@@ -65,7 +65,7 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
   if (model.covariance.size() == covariance_.size * covariance_.size) covariance_.values = model.covariance;
   held_.resize(channels_.size());
   for (const std::string& name : channels_) ranges_.push_back(range_of_channel(name, model.ranges));
-  // Where an angle is in its arc, each effect of it says; what is nothing but an angle has no range.
+  // The arc is a property of each effect's angle; a channel that is only used as an angle has no range.
   for (const bool turns : {true, false})
     for (const Term& term : terms_)
       for (const Factor& factor : term.factors)
@@ -121,7 +121,7 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
   for (std::size_t i = 0; i < effect.parameters.size(); ++i) {
     if (effect.parameters[i].name != "coefficient" || *form == Form::kLookup) continue;
     term.parameter = first_row + i;
-    // nan stands for not known: nothing is added for it, rather than nothing corrected.
+    // nan means unknown: then nothing is added to the variance, and the correction is still applied.
     if (std::isfinite(effect.parameters[i].std_error))
       term.coefficient_error = effect.parameters[i].std_error;
   }
@@ -191,7 +191,7 @@ void Compensator::add_factor(Term& term, ShapeSettings settings, const std::stri
       factor.turn = turn_of(channel, factor.shape.settings().period);
   }
   term.of_rate |= rate;
-  // What depends on time, or judges each reading of a difference, is computed at each step.
+  // Evaluated at each step, since it depends on time or tests each difference.
   if (!rate) {
     const bool of_value = factor.channel != kNone && factor.less == kNone && !factor.shape.has_state();
     term.needs |= of_value ? set_of(factor.channel) : kAlways;

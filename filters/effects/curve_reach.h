@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A power above one is extrapolated by its tangent. Where a fit saw the curvature well, the form
-// itself is the better guess: a parameter of the effect says how far it is followed, in the unit of the
-// channel of that power. From there on the tangent is extrapolated as far as any other form (see reach.h).
+// Powers above one are extrapolated by their tangent, or by the power itself if its curvature is well known.
+// This parameter of the effect gives how far, in the channel's unit of that power; then the tangent continues
+// as for other forms (reach.h).
 #pragma once
 
 #include <string_view>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A channel whose effect comes after what it says: its reading of so long ago. A logger that buffers the
-// gyro's own data stamps the channels before them, and no lag is that: what leaps leaps later.
+// Reading of a channel delayed by a fixed time, for channels that are stamped too early, e.g. because the
+// logger buffers the gyro's data. A lag would not do: a jump must remain a jump.
 #pragma once
 
 #include <algorithm>
@@ -9,8 +9,8 @@
 
 namespace ifog {
 
-// A straight line between readings, of which those are kept that are a five-hundredth of the delay apart; the
-// first one until that is old enough. No allocation but in the constructor.
+// Linear interpolation between stored readings, which are 1/500 of the delay apart. Until one is old enough
+// the first is used. Allocates only in the constructor.
 class DelayedReading {
  public:
   DelayedReading() = default;
@@ -19,7 +19,7 @@ class DelayedReading {
   [[nodiscard]] bool delays() const noexcept { return delay_s_ > 0.0; }
   [[nodiscard]] bool begun() const noexcept { return count_ > 0; }
 
-  // dt_s: since the step before.
+  // dt_s: since the last step.
   double step(double value, double dt_s) noexcept {
     now_s_ = begun() ? now_s_ + dt_s : 0.0;
     latest_ = value;
@@ -38,10 +38,10 @@ class DelayedReading {
     if (!(wanted_s > before.time_s) || !(between_s > 0.0)) return before.value;
     return before.value + (after.value - before.value) * (wanted_s - before.time_s) / between_s;
   }
-  // There is no new reading: it stands at the last one.
+  // A step without a new reading; repeats the last one.
   double hold(double dt_s) noexcept { return step(latest_, dt_s); }
 
-  // Continues another compensator's reading, which has the same delay.
+  // Continues another compensator's reading if the delay is equal.
   void take_over(const DelayedReading& previous) noexcept {
     if (previous.delay_s_ != delay_s_) return;
     std::copy(previous.kept_.begin(), previous.kept_.end(), kept_.begin());
@@ -57,7 +57,7 @@ class DelayedReading {
   };
   static constexpr std::size_t kPieces = 500;
 
-  // In the order of their times.
+  // In order of time.
   [[nodiscard]] Reading& at(std::size_t i) noexcept { return kept_[(first_ + i) % kept_.size()]; }
 
   double delay_s_ = 0.0;

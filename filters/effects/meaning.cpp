@@ -19,7 +19,7 @@ std::string power_unit(const std::string& unit, int power) {
   return power == 1 ? unit : unit + "^" + std::to_string(power);
 }
 
-// Unit of a form's value, given the channel's.
+// Unit of a form's value for a channel's unit.
 std::string form_unit(Form form, const std::string& unit) {
   switch (form) {
     case Form::kRate:
@@ -195,8 +195,8 @@ std::string of_product(const Effect& effect, Form with_form) {
   return "product of " + effect.channel + " and " + effect.with_channel;
 }
 
-// k is the coil's diameter over the wavelength and the refractive index (a reset of 2 pi each time light
-// travels a wavelength further): 1.55 um and 1.45.
+// k is coil diameter / (wavelength × refractive index), since the ramp resets by 2 pi per wavelength: 1.55 um
+// and 1.45.
 std::string of_rebuilt_ramp(const Effect& effect) {
   const double k = std::abs(parameter(effect, "cycles_per_rad"));
   std::ostringstream words;
@@ -233,7 +233,8 @@ Motion motion_of(std::string_view channel) {
   if (kind == ChannelKind::kAcceleration || in({"_mg", "_ug"})) return Motion::kAcceleration;
   if (kind != ChannelKind::kOther) return Motion::kNone;
   if (in({"_radps", "_degps", "_dps"})) return Motion::kRate;
-  // Machines near a gyro at rest turn as well, and air and water go past.
+  // Rotation speed of machines next to a gyro at rest, and flow of air and water, are no motion of the
+  // sensor.
   if (in({"_rpm"}))
     return any({"motor", "wheel", "drive", "axle", "shaft", "servo", "gimbal", "mount", "winch"})
                ? Motion::kRate

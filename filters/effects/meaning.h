@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an effect means physically, from the kind of channel it was traced to. The kind is read off the
-// column's name (NAME_UNIT); an unknown name is no obstacle to the diagnosis, it only goes without a name for
-// the physics.
+// Physical meaning of an effect, from the kind of its channel. The kind follows from the column's name
+// (NAME_UNIT); an unknown name is allowed and only has no physical meaning.
 #pragma once
 
 #include <string>
@@ -25,27 +24,27 @@ enum class ChannelKind {
 
 [[nodiscard]] ChannelKind kind_of(std::string_view channel);
 
-// Degrees, radians or turns: what comes round.
+// True for degrees, radians or turns.
 [[nodiscard]] bool is_angle_by_unit(std::string_view channel);
 
-// What of the sensor's own motion a channel senses, by its unit and, where that leaves it open, its name.
+// Motion of the sensor that a channel senses, by unit and, if that is ambiguous, by name.
 enum class Motion { kNone, kAngle, kRate, kPosition, kVelocity, kAcceleration };
 [[nodiscard]] Motion motion_of(std::string_view channel);
 
-// The channel's value at which effects are zero by convention, so that coefficients of different records
-// compare: 25 degC, 12 V, 0 otherwise and for differences of two.
+// Value of the channel at which effects are zero by convention, so that coefficients are comparable: 25 degC,
+// 12 V, else 0; 0 for differences.
 [[nodiscard]] double reference_of(std::string_view channel);
 
-// The unit part of NAME_UNIT: "degC" of "case_temperature_degC"; "" when there is none.
+// Unit of NAME_UNIT: "degC" of "case_temperature_degC"; "" if none.
 [[nodiscard]] std::string unit_of(std::string_view channel);
 
-// One line in plain words.
+// Meaning in one line.
 [[nodiscard]] std::string meaning_of(const Effect& effect);
 
-// Likewise of an effect of an acceleration that is the Earth's rate by its first reading.
+// The same for an effect of acceleration that is interpreted as the Earth's rate.
 [[nodiscard]] std::string meaning_of_earth_rate(const Effect& effect);
 
-// The unit of the effect's coefficient, "rad/s/degC^2".
+// Unit of the effect's coefficient, e.g. "rad/s/degC^2".
 [[nodiscard]] std::string coefficient_unit(const Effect& effect);
 
 }  // namespace ifog

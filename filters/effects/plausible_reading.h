@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether what a channel says now may be the channel, as far as can be known without what comes after: a
-// logger writes 9999, 85 or -127 degC where it has no value, and a correction by that is worse than none.
+// Causal plausibility test of a channel's readings: loggers write 9999, 85 or -127 degC for missing values,
+// which must not be used for corrections.
 #pragma once
 
 #include <algorithm>
@@ -10,12 +10,11 @@
 
 namespace ifog {
 
-// Judges one channel's readings. One is refused that is outside the range of the fit by far more than a channel goes
-// there, or that leaps there as this channel never did; for a minute, and for as long as it is one number
-// again and again.
+// Rejects readings far outside the fitted range, or that jump out of it as this channel never did. Rejection
+// ends after a minute, unless the reading repeats one number.
 class PlausibleReading {
  public:
-  // value: NaN where there is none, which is no reading. dt_s: since the step before.
+  // True if the reading is plausible. value: NaN if missing (false). dt_s: since the last step.
   [[nodiscard]] bool step(double value, double dt_s, const ChannelRange& range) noexcept {
     away_s_ += dt_s;
     if (!std::isfinite(value)) return false;
@@ -40,8 +39,8 @@ class PlausibleReading {
  private:
   static constexpr double kBelievedAfter_s = 60.0;
   static constexpr double kFar = 20.0;  // spans outside
-  // For a channel that is slow: the most it moves in a reading, in spans, as many moves have shown; and the
-  // least leap, in spans and in the largest of those moves.
+  // For slow channels: the largest change per reading, in spans, after kMoves changes; and the smallest jump,
+  // in spans and in units of the largest change.
   static constexpr double kSlow = 0.15;
   static constexpr int kMoves = 8;
   static constexpr double kLeap = 0.2, kLeapOfMoves = 8.0;
@@ -49,7 +48,7 @@ class PlausibleReading {
   [[nodiscard]] bool leaps(double value, double outside, double span) const noexcept {
     if (outside > kFar * span) return true;
     if (!seen_) return false;
-    // Within a span of it a correction is extrapolated.
+    // Within one span a correction is extrapolated.
     return moves_ >= kMoves && outside > span && largest_ <= kSlow * span &&
            std::abs(value - last_) > std::max(kLeap * span, kLeapOfMoves * largest_);
   }
@@ -60,12 +59,12 @@ class PlausibleReading {
   }
 
   double last_ = 0.0;
-  double largest_ = 0.0;  // move in a reading
-  double away_s_ = 0.0;   // since the last one that was believed
+  double largest_ = 0.0;  // largest change per reading
+  double away_s_ = 0.0;   // since the last plausible reading
   double refused_ = std::nan("");
   int moves_ = 0;
   bool seen_ = false, was_inside_ = false;
-  bool settled_outside_ = false;  // it has gone on leaping there for too long to be refused
+  bool settled_outside_ = false;  // jumps outside have lasted too long to be rejected
 };
 
 }  // namespace ifog

@@ -14,23 +14,23 @@ namespace ifog {
 namespace {
 
 constexpr double kPi2 = 2.0 * std::numbers::pi;
-constexpr double kProof = 25.0;            // log-likelihood ratio of a phase over none
-constexpr double kMemory = 8.0 * kProof;   // energy of the table, in units of the noise, that is remembered
-constexpr double kLeastSamples = 32.0;     // to learn the noise of
-constexpr double kSlowSamples = 512.0;     // running mean that is removed, as by the fit of the table
-constexpr double kScatterSamples = 128.0;  // mean square of the noise
+constexpr double kProof = 25.0;            // log-likelihood ratio of a phase to none
+constexpr double kMemory = 8.0 * kProof;   // memory as energy of the table, in units of the noise
+constexpr double kLeastSamples = 32.0;     // for a noise estimate
+constexpr double kSlowSamples = 512.0;     // running mean that is removed, as in the fit of the table
+constexpr double kScatterSamples = 128.0;  // averaging of the noise's square
 constexpr double kRampUncertainty = 1e-5;  // of k, relative, over temperature
-constexpr double kFrequencyTimes = 4.0;    // a frequency offset is followed in so many memories of the phase
-constexpr double kFarOff = 10.0;           // noise of a sample; so many in a row are a new rate
+constexpr double kFrequencyTimes = 4.0;    // tracking time of a frequency offset in memories of the phase
+constexpr double kFarOff = 10.0;           // in sample noises; kInARow such samples are a new rate
 constexpr int kInARow = 3;
-constexpr double kMostInnovation = 4.0;  // noise of a sample: beyond, it counts no more
-constexpr int kDecideEvery = 8;          // samples, while acquiring
-constexpr int kLocateEvery = 16;         // while following
-constexpr std::size_t kLanes = 8;        // sums side by side, for the compiler's vectors
+constexpr double kMostInnovation = 4.0;  // in sample noises; limit of an innovation
+constexpr int kDecideEvery = 8;          // samples, in acquisition
+constexpr int kLocateEvery = 16;         // in tracking
+constexpr std::size_t kLanes = 8;        // parallel sums for vectorisation
 
 double wrapped(double cycles) noexcept { return cycles - std::floor(cycles); }
 
-// Cosine and sine parts of harmonics 1 … n/2 of n values at even steps of a cycle.
+// Cosine and sine parts of harmonics 1 … n/2 of n equidistant values of a cycle.
 std::vector<std::complex<double>> harmonics_of(const std::vector<double>& values) {
   const std::size_t n = values.size();
   std::vector<std::complex<double>> parts(n / 2);
@@ -47,14 +47,14 @@ std::vector<std::complex<double>> harmonics_of(const std::vector<double>& values
   return parts;
 }
 
-// Share of a harmonic's amplitude in the mean over phases of that standard deviation.
+// Factor of a harmonic's amplitude, averaged over phases of this standard deviation.
 double kept_of(std::size_t harmonic, double sigma) {
   const double radians = kPi2 * static_cast<double>(harmonic) * sigma;
   return std::exp(-0.5 * radians * radians);
 }
 
-// One sample of phases side by side: what each explains of the error is added to what it has explained so
-// far. Returns the mean energy of the table, in units of the noise.
+// Adds to each phase the energy that it explains of one sample. Returns the mean energy of the table, in
+// units of the noise.
 template <std::size_t count>
 double add_sample(const float* now, const float* before, double error, double weight, double covered_s,
                   float keep, std::array<float, count>& gained) noexcept {
@@ -73,7 +73,7 @@ double add_sample(const float* now, const float* before, double error, double we
   return information;
 }
 
-// Variance of the phase at which the mean over it has that share of the power of the table's slope.
+// Variance of the phase at which averaging keeps this share of the power of the table's slope.
 double variance_that_keeps(double share, const std::vector<std::complex<double>>& parts) {
   const auto kept = [&](double sigma) {
     double all = 0.0;
@@ -151,13 +151,13 @@ void RampTracker::build_tables() {
     }
   }
   wide_.set(exact, kSteps / kCells);
-  // Eight phases to the shortest wave of the table: closer ones cannot be distinguished, and 64 of them span
-  // four of its waves to either side.
+  // Eight phases per shortest wave of the table; closer ones cannot be distinguished. 64 of them cover four
+  // waves on either side.
   const std::size_t apart = std::bit_floor(kSteps / (8 * std::max<std::size_t>(parts.size() / 2, 1)));
   near_by_.set(exact, std::clamp<std::size_t>(apart, 1, kSteps / kNear));
   const double cell = static_cast<double>(near_by_.stride) / kSteps;
   least_variance_ = cell * cell / 12.0;
-  // The phases tried while acquiring are no closer than that, however sharp the table.
+  // Resolution of the acquisition, for any table.
   constexpr double kTwoCells = 2.0 / kCells;
   most_variance_ = std::max(variance_that_keeps(0.25, parts), kTwoCells * kTwoCells);
 }
@@ -175,8 +175,8 @@ double RampTracker::at(double cycles) const noexcept {
   return table[i] + (table[i + 1] - table[i]) * (position - static_cast<double>(i));
 }
 
-// Through time in which nothing was measured the angle is guessed from the mean rate, and no better than the
-// rate scatters.
+// Over a gap the angle is extrapolated with the mean rate; its uncertainty follows from the scatter of the
+// rate.
 void RampTracker::pass_over(double missed_s) noexcept {
   const double guess = std::abs(settings_.cycles_per_rad) * missed_s * std::sqrt(scatter_);
   phase_ = wrapped(phase_ + (turning_ + frequency_) * missed_s);
@@ -184,7 +184,7 @@ void RampTracker::pass_over(double missed_s) noexcept {
   if (locked_) angle_ = at(phase_ + offset_);
 }
 
-// k is not known to the last digit; an error that turning makes grows with the angle, not as noise does.
+// Error of k: proportional to the angle turned, unlike noise.
 void RampTracker::loosen_by_turning(double cycles, double covered_s) noexcept {
   if (!locked_) return;
   const double beyond = kRampUncertainty * std::abs(cycles - settled_ * covered_s);
@@ -192,8 +192,8 @@ void RampTracker::loosen_by_turning(double cycles, double covered_s) noexcept {
   loosen(beyond * (2.0 * std::sqrt(variance_) + beyond));
 }
 
-// The phase has moved by nobody knows how much, but for its variance: a likelihood to that power is as wide
-// as that.
+// The phase has changed by an unknown amount of this variance: the likelihood is raised to a power that
+// widens it accordingly.
 void RampTracker::loosen(double variance) noexcept {
   if (!locked_) {
     if (variance > most_variance_) lose();
@@ -244,17 +244,17 @@ double RampTracker::step(const RampSample& in) noexcept {
   return ramp;
 }
 
-// A mean of all samples so far, at last of 512. After a turn it begins at the new rate.
+// Running mean of at most 512 samples; restarts after a turn at the new rate.
 void RampTracker::learn_slow_part(double rest, double without_ramp, double turning,
                                   double variance) noexcept {
   const double off = without_ramp - slow_;
   const bool far = slow_weight_ > 0.0 && off * off > kFarOff * kFarOff * variance;
-  beside_ = far ? beside_ + 1 : 0;
-  if (slow_weight_ == 0.0 || beside_ >= kInARow) {
+  far_off_ = far ? far_off_ + 1 : 0;
+  if (slow_weight_ == 0.0 || far_off_ >= kInARow) {
     slow_ = locked_ ? without_ramp : rest;
     turning_ = turning;
     slow_weight_ = 1.0;
-    beside_ = 0;
+    far_off_ = 0;
     return;
   }
   slow_weight_ = std::min(slow_weight_ + 1.0, kSlowSamples);
@@ -336,7 +336,7 @@ double RampTracker::follow(const Sight& sight) noexcept {
   return correction;
 }
 
-// Mean and variance of the phase over those that are followed, and from the mean's drift the frequency.
+// Mean and variance of the phase over the tracked ones, and the frequency from the drift of the mean.
 void RampTracker::locate(double seconds) noexcept {
   undecided_ = 0;
   const float best = *std::max_element(near_.begin(), near_.end());
@@ -370,7 +370,7 @@ void RampTracker::locate(double seconds) noexcept {
   if (middle < kNear / 4 || middle > kNear - kNear / 4) recentre(middle);
 }
 
-// The phases that are followed move on with the likeliest; new ones begin as the outermost stands.
+// Shifts the tracked phases to the most likely one; new ones get the value of the outermost.
 void RampTracker::recentre(std::size_t middle) noexcept {
   std::array<float, kNear> moved{};
   for (std::size_t i = 0; i < kNear; ++i)

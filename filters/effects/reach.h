@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a model is extrapolated outside the range it was fitted on.
+// Extrapolation of a model outside its fitted range.
 //
-// Holding a well-known linear effect at the edge leaves the whole of what the channel does beyond it, so
-// polynomial forms are extrapolated: linear as they are, higher ones by their tangent (curve_reach.h), for as much again
-// as the range is wide. Beyond that, and for what is only known where it was looked up, the value is held.
-// What goes with the sensor's motion fades instead: what was fitted while it stood says nothing of a ride.
+// Polynomial forms are extrapolated over one more width of the range: linear ones as they are, higher powers
+// by their tangent (curve_reach.h). Beyond that, and for lookup tables, the value at the edge is held.
+// Effects of channels that sense motion fade out instead, because a fit at rest is not valid in motion.
 #pragma once
 
 #include <algorithm>
@@ -15,11 +14,11 @@
 namespace ifog {
 
 struct Reach {
-  double edge = 0.0;    // the value, or the nearest one inside the range
-  double value = 0.0;   // as far as a polynomial form follows
-  double beyond = 0.0;  // the channel less that
+  double edge = 0.0;    // the value limited to the range
+  double value = 0.0;   // the value limited to the extrapolated range
+  double beyond = 0.0;  // the channel minus `value`
   double span = 0.0;    // width of the range
-  double weight = 1.0;  // of the correction: of what fades 0 from one span beyond the range on
+  double weight = 1.0;  // of the correction; fades to 0 one span beyond the range
 
   [[nodiscard]] bool outside() const noexcept { return value != edge || beyond != 0.0; }
   [[nodiscard]] double past_the_edge() const noexcept { return value - edge; }
@@ -29,8 +28,7 @@ struct Reach {
   Reach reach;
   reach.edge = std::clamp(value, range.low, range.high);
   reach.span = range.high - range.low;
-  // A channel that did not move in the fit has taught nothing to extrapolate, and one without a range has no
-  // edge.
+  // No extrapolation of a channel that was constant in the fit; a channel without a range has no edge.
   const double more = std::isfinite(reach.span) ? reach.span : 0.0;
   reach.value = std::clamp(value, reach.edge - more, reach.edge + more);
   reach.beyond = value - reach.value;

@@ -13,22 +13,22 @@
 namespace ifog {
 namespace {
 
-// Share of the way a first-order low-pass goes in dt: exact for an input held over dt.
+// Fraction of the step response of a first-order low-pass after dt: exact for a constant input.
 double share(double dt, double time_constant) {
   return time_constant > 0.0 ? -std::expm1(-dt / time_constant) : 1.0;
 }
 
 bool is_periodic(Form form) { return form == Form::kCosine || form == Form::kSine; }
 
-// Bounded of itself: there is no edge beyond which it runs away.
+// Bounded forms need no limit of extrapolation.
 bool is_bounded(Form form) { return is_periodic(form) || form == Form::kTransition; }
 
-// How far beyond the range the form follows its own curve.
+// How far beyond the range the form's own curve is used.
 double curve_reach(const ShapeSettings& settings) noexcept {
   return power_of(settings.form) > 1 ? settings.half_width : 0.0;
 }
 
-// The channel as far as its reach.
+// The channel limited to its reach.
 double followed(const ShapeSettings& settings, const Reach& channel) noexcept {
   const double reach = curve_reach(settings);
   return channel.edge + std::clamp(channel.past_the_edge(), -reach, reach);
@@ -93,7 +93,7 @@ ShapeSettings with_shape_settings(const Effect& effect) {
 }
 
 double mean_in_dead_zone(double mean, double variance, double half_width) noexcept {
-  const double reach = std::sqrt(3.0 * std::max(variance, 0.0));  // of an even spread
+  const double reach = std::sqrt(3.0 * std::max(variance, 0.0));  // of a uniform distribution
   if (!(reach > 1e-9 * half_width)) return std::abs(mean) < half_width ? mean : 0.0;
   const double low = std::max(mean - reach, -half_width);
   const double high = std::min(mean + reach, half_width);
@@ -127,7 +127,7 @@ double Shape::table(double value) const noexcept {
   const auto& x = settings_.table_x;
   const auto& y = settings_.table_y;
   if (settings_.period > 0.0) value -= settings_.period * std::floor((value - x.front()) / settings_.period);
-  // Written so that what is no number is not looked up.
+  // NaN fails this comparison.
   if (!(value > x.front())) return y.front();
   if (value >= x.back()) return y.back();
   const auto above = std::upper_bound(x.begin(), x.end(), value);
@@ -200,7 +200,7 @@ double Shape::step_over(double value, double scatter, double dt_s) noexcept {
     case Form::kLagged:
       second_ += beta_ * (first_ - second_);
       return second_;
-    default: {  // band power
+    default: {  // band power: mean square of the high-passed channel
       const double high = c - first_;
       second_ += beta_ * (high * high + scatter - second_);
       return second_;
