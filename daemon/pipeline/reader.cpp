@@ -32,12 +32,12 @@ void Reader::take(const ifog_sample& sample) noexcept {
   ++now_.decoded;
   read_sample(sample, facts_.frame_channels, reading_);
   reading_.arrival_recorded = transport_->times_are_recorded();
-  reading_.came_ns = sample.arrival_ns != 0 ? sample.arrival_ns : turn_ns_;
+  reading_.read_ns = sample.arrival_ns != 0 ? sample.arrival_ns : turn_ns_;
   for (int i = facts_.frame_channels; i < facts_.channels; ++i) {
     const auto c = static_cast<std::size_t>(i);
     const ChannelValue& now = outside_now_[static_cast<std::size_t>(i - facts_.frame_channels)];
     reading_.channel[c] = now.value;
-    reading_.channel_age_s[c] = now.age_s(reading_.came_ns);
+    reading_.channel_age_s[c] = now.age_s(reading_.read_ns);
   }
   const IncrementerCounts before = incrementer_.counts();
   Increment& increment = links_.queue.next();

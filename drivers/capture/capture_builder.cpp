@@ -126,16 +126,16 @@ void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outs
 }
 
 std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible,
-                                               std::size_t untold) {
+                                               std::size_t ambiguous) {
   std::vector<std::string> lines;
   const auto say = [&](std::size_t samples, const char* what) {
     if (samples != 0) lines.push_back(std::to_string(samples) + " samples " + what + ", treated as missing");
   };
   say(at_full_scale, "at or beyond the sensor's full scale");
   say(implausible, "with a rate that no sensor measures");
-  if (untold != 0)
+  if (ambiguous != 0)
     lines.push_back(
-        std::to_string(untold) +
+        std::to_string(ambiguous) +
         " of the missing samples are so by the device's clock alone: where that was set, none is, "
         "and no counter or time of arrival tells");
   return lines;
@@ -153,7 +153,7 @@ std::vector<std::string> CaptureBuilder::remarks() const {
   say(counts().repeated, "", " samples came twice or after one that follows, and are dropped");
   say(counts().mixed, "", " samples come from two devices, mixed, and are dropped: which of them is wanted?");
   say(impossible_, "", " values of channels cannot be, in the unit of their name: dropped");
-  for (std::string& line : not_measured_in_words(at_full_scale_, implausible_, counts().untold))
+  for (std::string& line : not_measured_in_words(at_full_scale_, implausible_, counts().ambiguous))
     lines.push_back(std::move(line));
   return lines;
 }

@@ -68,7 +68,7 @@ class CaptureBuilder {
 // What every command says about samples without a rate: at full scale, beyond what a sensor measures, and missing
 // by a clock that may have been set instead. One line for each count that is not 0.
 std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible,
-                                               std::size_t untold);
+                                               std::size_t ambiguous);
 
 // Passes the rows of a builder to a sink, some thousand at a time.
 class BuiltRows {

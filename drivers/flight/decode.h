@@ -15,7 +15,7 @@ namespace ifog {
 
 struct RecordedSample {
   const ifog_sample& sample;
-  std::int64_t came_ns;                   // when it came, or was read where that is not known; arrival clock
+  std::int64_t read_ns;                   // when it came, or was read where that is not known; arrival clock
   std::span<const ChannelValue> outside;  // channels from elsewhere, as they were then; in the header's order
   std::int64_t wall_shift_ns;             // how far the wall clock had been set since the arrival clock began
 };

@@ -205,7 +205,7 @@ bool Timeline::by_clock(const Frame& frame, const Look& now, Step& step) noexcep
         ticks_.take(nanoseconds(now.passed_s), now.counted ? samples_by_clock(now) : 0);
     step.samples = by_ticks.samples;
     step.dt_s = by_ticks.dt_s;
-    step.untold = step.samples > 1 && !now.timed && (!now.counted || step.samples > modulus_);
+    step.ambiguous = step.samples > 1 && !now.timed && (!now.counted || step.samples > modulus_);
     return true;
   }
   ticks_.jumped();

@@ -46,7 +46,7 @@ class Timeline {
     double late_s = 0.0;       // delayed by this much on its way; its arrival tells nothing of its time
     bool by_count = false;     // dt_s is not what time_ns moved by
     bool clock_set = false;    // because the device's clock was set while it measured
-    bool untold = false;       // missing samples, or its clock was set: nothing known tells which
+    bool ambiguous = false;    // missing samples, or its clock was set: nothing known tells which
     std::int64_t time_ns = 0;  // the device's clock over its rollovers
   };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Variance of a raw rate while nothing is known of its noise yet: of the first samples all that they say,
-// from the fourth on what neighbours differ by, with what so few differences leave open.
+// Variance of a raw rate while its noise is unknown, from the first samples: their square, and from the
+// fourth sample on the differences of neighbours, allowing for their small number.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace ifog {
 
 class FirstSamples {
  public:
-  // rate: the next one of an axis, rad/s; valid: it is one. (rad/s)^2.
+  // Adds the next rate of an axis, rad/s, if valid, and returns the variance, (rad/s)^2.
   [[nodiscard]] double variance(std::size_t axis, double rate, bool valid) noexcept {
     Axis& a = axes_[axis];
     if (valid && std::isfinite(rate)) {
@@ -22,12 +22,11 @@ class FirstSamples {
       a.samples += 1.0;
       a.last = rate;
     }
-    // Rest or motion, nobody knows: the rate's own square is the least assumption. One or two differences may
-    // be next to nothing by chance, and 1 / chi-square has no mean then.
+    // Rest or motion is unknown, so the square of the rate is used. One or two differences may be very small
+    // by chance.
     const double own = a.last * a.last;
     if (a.samples < 2.0) return own;
-    // Mean of 1 / chi-square with n degrees of freedom is 1 / (n - 2); neighbouring differences share a
-    // sample, so that n of them are 2n/3 degrees.
+    // The mean of 1 / chi-square with n d.o.f. is 1 / (n - 2); n overlapping differences have 2n/3 d.o.f.
     const double degrees = 2.0 * (a.samples - 1.0) / 3.0;
     const double found = a.squares / (a.samples - 1.0) * (degrees > 3.0 ? degrees / (degrees - 2.0) : 3.0);
     return a.samples < 4.0 ? std::max(own, found) : found;

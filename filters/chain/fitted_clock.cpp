@@ -9,12 +9,12 @@
 namespace ifog {
 namespace {
 
-// A late arrival says little about the device's clock: its pull is limited to this many mean deviations.
+// A late arrival is limited to this many mean deviations, as it says little about the device's clock.
 constexpr double kLatenessLimit = 4.0;
-constexpr double kShortest = 0.5;  // of the nominal period, that the true one can be
-constexpr double kTells_ns = 1e9;  // that a line has to span to say what a period is
+constexpr double kShortest = 0.5;  // shortest true period / nominal period
+constexpr double kTells_ns = 1e9;  // shortest line for a period estimate
 constexpr double kMost_ns = 9e18;
-constexpr double kPrompt_s = 0.05;  // scheduling and an adapter's portions together
+constexpr double kPrompt_s = 0.05;  // scheduling and delay of an adapter
 
 }  // namespace
 
@@ -29,7 +29,7 @@ double FittedClock::lateness_s(double periods, std::int64_t arrival_ns) const no
   return (static_cast<double>(ns_between(origin_ns_, arrival_ns)) - time_ns_ - period_ns_ * periods) * 1e-9;
 }
 
-// By samples that come at more than twice the nominal rate, which is none that a device has.
+// By samples that arrive at more than twice the nominal rate, which no device has.
 bool FittedClock::overtaken(std::int64_t arrival_ns) const noexcept {
   const auto elapsed_ns = static_cast<double>(ns_between(origin_ns_, arrival_ns));
   return !settled() && elapsed_ns >= 0.0 && counted_ns_ - elapsed_ns > kPrompt_s * 1e9 &&
@@ -56,12 +56,11 @@ std::int64_t FittedClock::advance(double periods, std::int64_t arrival_ns) noexc
     const double g = 2.0 * (2.0 * n + 1.0) / ((n + 1.0) * (n + 2.0));
     const double h = 6.0 / ((n + 1.0) * (n + 2.0));
     time_ns_ = predicted + g * pull;
-    // The first samples say nothing about the period that the nominal one does not say better; nor does a
-    // delivery that brings many at once.
+    // The first samples, or a delivery of many at once, give no better period than the nominal one.
     if (n >= 8.0 && counted_ns_ >= kTells_ns)
       period_ns_ = std::clamp(period_ns_ + h * pull, kShortest * nominal_ns_, nominal_ns_ / kShortest);
     spread_ns_ += (std::abs(pull) - spread_ns_) * g;
-    // Never so narrow that a small shift of the arrival times could not be followed.
+    // Lower limit, so that a small shift of the arrival times can be followed.
     spread_ns_ = std::max(spread_ns_, 1e-3 * nominal_ns_);
   }
   return ns_after(origin_ns_, std::llround(std::clamp(time_ns_, -kMost_ns, kMost_ns)));

@@ -15,11 +15,12 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kClockMemory_s = 20.0;
 constexpr std::uint64_t kGapsThatShow = 64;
-constexpr double kGapsAreNone = 5.0;  // s of samples that all come behind one
-constexpr int kEarly = 8;             // arrivals in a row: no single stamp that was damaged
-constexpr double kApart_s = 0.1;      // from the line of labels: less is scheduling's
-constexpr double kScatters = 4.0;     // times the mean is not by chance
-constexpr double kStands_s = 1.0;     // a delivery that was delayed drains within this
+// S; after this time of gaps before every sample they are assumed to be none
+constexpr double kGapsAreNone = 5.0;
+constexpr int kEarly = 8;          // consecutive arrivals; a single wrong stamp does not count
+constexpr double kApart_s = 0.1;   // distance from the line of labels; less is scheduling
+constexpr double kScatters = 4.0;  // times the mean distance
+constexpr double kStands_s = 1.0;  // a delayed delivery is over within this time
 
 int clock_memory(double rate_hz) {
   return static_cast<int>(std::clamp(kClockMemory_s * rate_hz, 64.0, 100000.0));
@@ -60,7 +61,7 @@ Timeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
   frame.clocked = reading.device_time_ns.has_value();
   frame.stamp_ns = reading.device_time_ns.value_or(0);
   frame.wrap_ns = reading.device_wrap_ns;
-  // A signed stamp below 0: published times begin at the rollover before it.
+  // A signed negative stamp: published times start at the rollover before it.
   if (frame.stamp_ns < 0 && frame.wrap_ns > 0) frame.stamp_ns += frame.wrap_ns;
   frame.arrival_ns = reading.arrival_ns;
   frame.recorded = reading.arrival_recorded;
@@ -85,7 +86,7 @@ Verdict Incrementer::turn(std::size_t axis, double value, double own_s, Turn& ou
 }
 
 void Incrementer::measure(const Reading& reading, const Step& step, Increment& out) noexcept {
-  const double own_s = step.dt_s / static_cast<double>(step.samples);  // a gap's time is not this sample's
+  const double own_s = step.dt_s / static_cast<double>(step.samples);  // without the time of a gap
   out.valid_axes = out.stuck_axes = 0;
   bool invalid = false, unseen = false, saturated = false, implausible = false;
   if (const std::uint32_t seen = seen_.axes | reading.valid_axes; seen != std::exchange(seen_.axes, seen))
@@ -106,7 +107,7 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
     }
     out.delta_theta_rad[axis] = turned.angle_rad;
     out.covered_s[axis] = turned.covered_s;
-    // A rate is passed on as sent: dividing the product again would cost its last bit.
+    // A rate is used as sent; dividing the product would lose its last bit.
     if (turned.covered_s > 0.0) {
       out.rate_radps[axis] =
           facts_.kind == SensorKind::rate ? reading.value[axis] : turned.angle_rad / turned.covered_s;
@@ -116,7 +117,7 @@ void Incrementer::measure(const Reading& reading, const Step& step, Increment& o
       out.rate_radps[axis] = kNaN;
     }
   }
-  if (invalid) out.flags |= kInvalid;  // an axis that the device has never had is absent
+  if (invalid) out.flags |= kInvalid;  // an axis that has never been valid is absent
   if (saturated) out.flags |= kAtFullScale;
   counts_.invalid += invalid ? 1 : 0;
   seen_.without_others += unseen && !invalid ? 1 : 0;
@@ -141,7 +142,7 @@ void Incrementer::hold_channels(const Reading& reading, std::uint64_t samples, I
       channels_.age_s[c] += static_cast<float>(out.dt_s);
     }
   }
-  // As with a rate: a gap's time is not this sample's, and a value that is held is none that was measured.
+  // As for a rate: without the time of a gap; a held value is no measurement.
   const double own_s = out.dt_s / static_cast<double>(samples);
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis) {
     const int c = facts_.acceleration_channel[axis];
@@ -153,7 +154,7 @@ void Incrementer::hold_channels(const Reading& reading, std::uint64_t samples, I
   out.channel_age_s = channels_.age_s;
 }
 
-// That have passed, in nominal ones: a device's own clock says it whatever rate the device was set to.
+// Nominal periods since the last sample; the device's clock is valid at any configured rate.
 double Incrementer::periods_of(const Step& step, bool clocked) noexcept {
   constexpr double kForgets = 0.999;
   const auto samples = static_cast<double>(step.samples);
@@ -166,16 +167,16 @@ double Incrementer::periods_of(const Step& step, bool clocked) noexcept {
   return periods;
 }
 
-// Slewing moves the wall clock, too, by a twelfth of the time at most (chrony): the labels follow it.
+// Slewing moves the wall clock by at most 1/12 of the time (chrony); the labels follow it.
 bool Incrementer::wall_was_set(const Reading& reading) const noexcept {
   constexpr std::int64_t kSlews = 8, kLeast_ns = 1'000'000;
   const std::int64_t by_ns = std::abs(ns_between(last_.wall_shift_ns, reading.wall_shift_ns));
-  const std::int64_t since_ns = std::max<std::int64_t>(0, ns_between(last_.came_ns, reading.came_ns));
+  const std::int64_t since_ns = std::max<std::int64_t>(0, ns_between(last_.read_ns, reading.read_ns));
   return by_ns > kLeast_ns + since_ns / kSlews;
 }
 
-// Whether the line of labels is to restart at this arrival: nothing arrives before it was measured, and what
-// stays late is not delayed any more. A single stamp that is early or late moves no label.
+// True if the line of labels must restart at this arrival: several arrivals are early, or arrivals stay late.
+// A single early or late stamp has no effect.
 bool Incrementer::apart(double late_s, std::int64_t arrival_ns) noexcept {
   const double usual_s = std::max(kApart_s, kScatters * labels_.clock.spread_s());
   labels_.early = late_s < -usual_s ? labels_.early + 1 : 0;
@@ -188,7 +189,7 @@ bool Incrementer::apart(double late_s, std::int64_t arrival_ns) noexcept {
   return labels_.early >= kEarly || stands;
 }
 
-// When the sample was measured, by a line through the times of arrival.
+// Time of measurement, from a line through the arrival times.
 void Incrementer::label(const Reading& reading, const Step& step, Increment& out) noexcept {
   const double periods = periods_of(step, reading.device_time_ns.has_value());
   bool moved = step.clock_moved;
@@ -203,7 +204,7 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
   }
   moved = moved && started_;
   if (moved) labels_.clock.restart();
-  // The stamps of a log are a wall clock's, which was set; by an unslewed clock it was the line.
+  // Stamps of a log are by a wall clock, which was set; with an unslewed clock the line moves.
   if (started_ && (wall_was_set(reading) || (moved && reading.arrival_recorded))) {
     out.flags |= kClockStep;
     ++counts_.clock_steps;
@@ -213,8 +214,8 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
   const bool delayed = step.late_s > 0.0 || (unlike && !moved);
   out.utime_ns =
       ns_after(labels_.clock.advance(periods, delayed ? 0 : reading.arrival_ns), reading.wall_shift_ns);
-  // Later than the one before also in the message's microseconds: a line that has few samples yet goes to and
-  // fro by as much as arrival times scatter.
+  // Later than the last label by at least the message's 1 us: a young line moves by as much as arrivals
+  // scatter.
   if (started_ && (out.flags & kClockStep) == 0)
     out.utime_ns = std::max(out.utime_ns, ns_after(last_.utime_ns, 1000));
 }
@@ -226,12 +227,12 @@ void Incrementer::pass_gap(const Step& now, Increment& out) noexcept {
   for (PlausibleValue& channel : channels_.plausible) channel.forget();
   ++counts_.gaps;
   counts_.missing += now.samples - 1;
-  counts_.untold += now.untold ? now.samples - 1 : 0;
+  counts_.ambiguous += now.ambiguous ? now.samples - 1 : 0;
   labels_.clock.restart();
 }
 
-// An angle counts from power-up: after a restart it says nothing about the turn since the last one.
-void Incrementer::begin_anew() noexcept {
+// An angle counts from power-up, so after a restart the turn since the last one is unknown.
+void Incrementer::restart() noexcept {
   ++counts_.restarts;
   for (PlausibleAngle& angle : angle_) angle.forget();
 }
@@ -254,7 +255,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   }
   out.flags = 0;
   if (started_ && now.gap) pass_gap(now, out);
-  if (now.restarted) begin_anew();
+  if (now.restarted) restart();
   const bool in_a_row = now.gap && !now.restarted && frame.clocked && !frame.counts;
   row_.gaps = in_a_row ? row_.gaps + 1 : 0;
   row_.lasts_s = in_a_row ? row_.lasts_s + now.dt_s : 0.0;
@@ -267,7 +268,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   out.status = reading.status;
   out.sequence = sequence_;
   out.arrival_ns = reading.arrival_ns;
-  out.came_ns = reading.came_ns;
+  out.read_ns = reading.read_ns;
   out.wall_shift_ns = reading.wall_shift_ns;
   out.device_time_ns = frame.clocked ? now.time_ns : -1;
   out.dt_s = now.dt_s;
@@ -275,7 +276,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   measure(reading, now, out);
   hold_channels(reading, now.samples, out);
   ++counts_.samples;
-  last_ = {reading.wall_shift_ns, out.utime_ns, reading.came_ns, frame.clocked};
+  last_ = {reading.wall_shift_ns, out.utime_ns, reading.read_ns, frame.clocked};
   started_ = true;
   reopened_ = false;
   return true;

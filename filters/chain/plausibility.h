@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a value from outside can be a measurement at all: the door that keeps one impossible number, well
-// formed as its frame may be, out of the angle, the filter and the corrections.
+// Plausibility of values from outside: keeps impossible numbers in well-formed frames out of the angle, the
+// filter and the corrections.
 #pragma once
 
 #include <cmath>
@@ -12,8 +12,8 @@
 
 namespace ifog {
 
-// What no sensor measures: rad/s, rad and the unit of the channel. A spinning projectile turns at 2e3 rad/s;
-// beyond 1e9 rad a float32 resolves 64 rad; a 64-bit counter stays below 2e19.
+// Limits that no sensor exceeds: rad/s, rad, unit of the channel. A spinning projectile turns at 2e3 rad/s;
+// beyond 1e9 rad a float32 resolves 64 rad; a 64-bit counter is below 2e19.
 inline constexpr double kMostRate_radps = 1e4;
 inline constexpr double kMostAngle_rad = 1e9;
 inline constexpr double kMostChannel = 1e20;
@@ -22,18 +22,18 @@ enum class Verdict : std::uint8_t { plausible, saturated, implausible };
 
 struct Turn {
   double angle_rad = 0.0;
-  double covered_s = 0.0;  // 0: nothing is known of the turn
+  double covered_s = 0.0;  // 0: turn unknown
 };
 
-// A scalar within limits that does not jump. The first value beyond max_step is refused; a second value that
-// agrees with it shows that the quantity did move, and is accepted.
+// A scalar within limits and without jumps. The first value beyond max_step is rejected; a second one close
+// to it confirms the change and is accepted.
 class PlausibleValue {
  public:
   PlausibleValue() = default;
   PlausibleValue(const Limits& limits, double most) noexcept : limits_(limits), most_(most) {}
 
   [[nodiscard]] bool take(double value) noexcept {
-    // Written so that NaN fails.
+    // NaN fails this comparison.
     if (!(std::abs(value) <= most_) || !(value >= limits_.minimum && value <= limits_.maximum)) return false;
     const bool near_last = !known_ || std::abs(value - last_) <= limits_.max_step;
     const bool near_suspect = suspected_ && std::abs(value - suspect_) <= limits_.max_step;
@@ -46,7 +46,7 @@ class PlausibleValue {
     known_ = true;
     return true;
   }
-  // Samples are missing: what the quantity did in between nobody knows.
+  // Samples are missing, so the change since is unknown.
   void forget() noexcept { known_ = suspected_ = false; }
 
  private:
@@ -74,17 +74,17 @@ class PlausibleRate {
   double full_scale_radps_ = 0.0;
 };
 
-// An angle since power-up, turned into what was turned since the last good one. An angle that cannot have
-// been reached from there is dropped, so that a single bad one costs nothing. When the next one continues
-// it, the device has a new origin: the turn between the two origins is unknown, and is in nobody's sum.
+// Converts an angle since power-up to the turn since the last valid one. An implausible angle is dropped. If
+// the next one continues it, the device has a new origin; the turn between the origins is unknown and not
+// added.
 class PlausibleAngle {
  public:
-  // Before take(): the time goes by with every sample, good or not.
+  // To be called before take() for every sample, valid or not.
   void pass(double dt_s) noexcept {
     since_s_ += dt_s;
     suspect_since_s_ += dt_s;
   }
-  // `rate` judges the mean rate since; wrap_rad as in SensorFacts.
+  // rate: plausibility of the mean rate since then; wrap_rad: as in SensorFacts.
   [[nodiscard]] Verdict take(double angle_rad, double wrap_rad, PlausibleRate& rate, Turn& out) noexcept {
     out = {};
     if (!(std::abs(angle_rad) <= kMostAngle_rad)) return Verdict::implausible;
@@ -92,7 +92,7 @@ class PlausibleAngle {
       settle(angle_rad);
       return Verdict::plausible;
     }
-    // Which way round it went in a gap nobody knows.
+    // In a gap the direction of rotation may be ambiguous.
     if (missed_ && !turn_is_known(rate_radps_, since_s_, wrap_rad)) {
       settle(angle_rad);
       rate_radps_ = 0.0;
@@ -113,7 +113,7 @@ class PlausibleAngle {
     suspect_since_s_ = 0.0;
     return verdict;
   }
-  // The device restarted: its angle counts from another origin.
+  // The device restarted: its angle has another origin.
   void forget() noexcept { known_ = suspected_ = false; }
   // Samples are missing before the next one.
   void miss() noexcept { missed_ = true; }
@@ -133,7 +133,7 @@ class PlausibleAngle {
   }
 
   double angle_rad_ = 0.0, since_s_ = 0.0;
-  double rate_radps_ = 0.0;  // over the last two that are good
+  double rate_radps_ = 0.0;  // between the last two valid angles
   double suspect_rad_ = 0.0, suspect_since_s_ = 0.0;
   bool known_ = false, suspected_ = false, missed_ = false;
 };

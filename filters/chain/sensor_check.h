@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A fault that its values alone can show: the sensor repeats the last one. Asked of what the sensor sent: a
-// correction by something that is alive would hide it.
+// Detects a sensor that repeats its last value. Uses raw values, because a correction with live channels
+// would hide the fault.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@ namespace ifog {
 
 class SensorCheck {
  public:
-  // A coarsely quantised sensor repeats itself at rest; so a run counts only when it is ten times longer than
-  // any that ended in a new value, and a hundred samples at least.
+  // A coarsely quantised sensor repeats values at rest. So a run counts if it exceeds 100 samples and ten
+  // times the longest earlier run.
   [[nodiscard]] bool stuck(std::size_t axis, double value) noexcept {
     Run& run = runs_[axis];
     if (value != run.value) {

@@ -15,12 +15,12 @@
 namespace ifog {
 namespace {
 
-// Samples lost in a row after which a sensor at rest still is.
+// Missing samples after which a sensor at rest is still assumed to be at rest.
 constexpr double kShortGap = 16.0;
-// Samples that show the noise: octaves up to 256 samples at least.
+// Samples for learning the noise: octaves up to 256 samples at least.
 constexpr double kLeastStartUp = 4096.0, kMostStartUp = 20000.0;
 
-// Line of the first effect on that channel.
+// Line of the first effect on this channel.
 std::uint32_t line_of(const Model& model, const std::string& channel) {
   for (const Effect& effect : model.effects)
     for (const std::string& used : {effect.channel, effect.with_channel})
@@ -49,8 +49,8 @@ ChainParts::ChainParts(const ChainSettings& settings)
   use_noise(settings);
 }
 
-// Each figure is the settings', else the model's: its filter's, else by its noise terms; else what an earlier
-// run has learned. The walk of a random walk is learned if nobody knows it, and so is R.
+// Each value is from the settings, else the model's filter, else its noise terms, else an earlier run.
+// Unknown R and random walk are learned.
 void ChainParts::use_noise(const ChainSettings& settings) {
   const double rate_hz = facts_.nominal_rate_hz;
   if (settings.model) {
@@ -74,14 +74,14 @@ void ChainParts::use_noise(const ChainSettings& settings) {
       }
     }
     ratio = learned.process_noise / (learned.measurement_noise * rate_hz);
-    // With other corrections the walk may be another one: a first guess.
+    // With other corrections the walk may differ, so it is only a start value.
     samples = learned.is_of(identity_) ? learned.samples : std::min(learned.samples, kLeastStartUp);
   }
   if (filter_.measurement_noise > 0.0) {
     begin(ratio, samples);
     return;
   }
-  // Built once for its complaints: a wrong setting is reported at start, not after the start-up.
+  // Constructed once for its checks: a wrong setting is reported at start, not after learning.
   FilterSettings trial = filter_;
   if (trial.process_noise <= 0.0) trial.process_noise = 1e-10;
   trial.measurement_noise = 1e-10;
@@ -89,7 +89,7 @@ void ChainParts::use_noise(const ChainSettings& settings) {
   start_up_.set_stretch(std::clamp(std::round(settings.start_up_s * rate_hz), kLeastStartUp, kMostStartUp));
 }
 
-// With R known.
+// To be called when R is known.
 void ChainParts::begin(double ratio, double samples) {
   if (learns_process_noise_) filter_.process_noise = ratio * filter_.measurement_noise / period_s_;
   KnownNoise known;
@@ -112,7 +112,7 @@ std::optional<LearnedNoise> ChainParts::learned() const noexcept {
 }
 
 void ChainParts::use_effects(const ChainSettings& settings) {
-  // Each channel has a limit of its own: the compensator is given ages in units of it.
+  // Each channel has its own age limit, so ages are passed in units of it.
   try {
     effects_.compensator.emplace(*settings.model, settings.axes, 1.0,
                                  settings.powered_ns ? 0.0 : settings.since_power_up_s);
@@ -149,10 +149,10 @@ void ChainParts::compensate(const Increment& in, ChainOutput& out) noexcept {
   out.compensator_flags = 0;
   if (!effects_.compensator) return;
   if (effects_.powered_ns) {
-    // A sample from before that is a recording's, of which nobody knows: no warm-up, rather than all of it.
-    effects_.compensator->begin(in.came_ns < *effects_.powered_ns
+    // A sample before power-up is from a recording: no warm-up is corrected.
+    effects_.compensator->begin(in.read_ns < *effects_.powered_ns
                                     ? std::numeric_limits<double>::infinity()
-                                    : static_cast<double>(in.came_ns - *effects_.powered_ns) * 1e-9);
+                                    : static_cast<double>(in.read_ns - *effects_.powered_ns) * 1e-9);
     effects_.powered_ns.reset();
   }
   for (std::size_t i = 0; i < effects_.wanted.size(); ++i) {
@@ -176,13 +176,12 @@ void ChainParts::compensate(const Increment& in, ChainOutput& out) noexcept {
       out.delta_theta_rad[i] -= effects_.correction.correction_radps[i] * in.covered_s[i];
 }
 
-// A correction as large as anything the sensor measures is a model gone wrong, whatever its numbers look like
-// one by one. It must not reach the angle, which keeps for ever what it is given.
+// Rejects an implausibly large correction (a wrong model), so that it does not reach the angle.
 void ChainParts::refuse_impossible(const Increment& in, ChainOutput& out) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
     const double most = facts_.full_scale_radps[i] > 0.0 ? facts_.full_scale_radps[i] : kMostRate_radps;
     const bool measured = in.covered_s[i] > 0.0;
-    // Written so that NaN fails.
+    // NaN fails these comparisons.
     if (!measured || (std::abs(effects_.correction.correction_radps[i]) < most &&
                       std::isfinite(effects_.correction.variance_rad2ps2[i])))
       continue;
@@ -193,11 +192,11 @@ void ChainParts::refuse_impossible(const Increment& in, ChainOutput& out) noexce
   }
 }
 
-// Until a stretch of the rate is noise: white over every octave, with a walk. A sensor that moves is
-// published as measured for as long as it does.
+// Until a stretch of the rate is noise (white over every octave, plus a walk). While the sensor moves, its
+// rate is published as measured.
 void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try {
   if ((in.flags & kGapBefore) != 0 && in.dt_s > kShortGap * period_s_) start_up_.break_off();
-  // What repeats one value shows no noise.
+  // Repeated values do not show noise.
   const std::optional<Walk::Found> found =
       start_up_.take(out.compensated_radps, in.valid_axes & ~in.stuck_axes, true);
   if (!found) return;
@@ -214,7 +213,7 @@ void ChainParts::learn(const Increment& in, const ChainOutput& out) noexcept try
   shares_.noise = share;
   begin(found->ratio, start_up_.samples());
 } catch (const std::exception&) {
-  // No memory for a filter: the rate stays as measured, and says so.
+  // Out of memory: the rate stays as measured, with the flag set.
 }
 
 void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {
@@ -229,8 +228,7 @@ void ChainParts::publish_raw(const Increment& in, ChainOutput& out) noexcept {
   }
 }
 
-// 0 for an axis without a value would be believed, with a variance that says how well it is known;
-// the same holds for an axis that the filter in use has not received yet: it keeps what was known.
+// An axis without a value in this filter keeps its last value and variance; 0 would be misleading.
 void SignalChain::hold_unmeasured(ChainOutput& out) noexcept {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   EstimatorOutput& now = out.estimate;
@@ -258,7 +256,7 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   }
   if (parts.estimator_ == nullptr) {
     parts.publish_raw(in, out);
-    parts.measured_axes_ = in.valid_axes;  // a raw rate is nobody's estimate
+    parts.measured_axes_ = in.valid_axes;  // a raw rate is not an estimate
     hold_unmeasured(out);
     parts.measured_axes_ = 0;
     parts.learn(in, out);
@@ -272,7 +270,7 @@ void SignalChain::process(const Increment& in, ChainOutput& out) noexcept {
   input.covered_s = in.covered_s;
   input.valid_axes = in.valid_axes;
   input.stuck_axes = in.stuck_axes;
-  // A mean over so many whole samples, merged or summed: timing jitter makes no noise quieter.
+  // Nominal averaging time of merged samples; timing jitter does not lower the noise.
   input.averaged_s = in.samples > 1 ? in.samples * parts.period_s_ : 0.0;
   parts.estimator_->step(input, out.estimate);
   if (parts.effects_.compensator)

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// From an angle increment to everything that is published of it: effects removed, rate estimated, angle
-// summed. The daemon and `ifog denoise` run this very code, so the same frames and settings give the same
-// bits in both.
+// Processing of an angle increment to all published values: compensation, rate estimate, angle sum. The
+// daemon and `ifog denoise` use this code, so the same frames and settings give the same bits.
 //
-// What a model file or a setting can change is in ChainParts, built outside the hot path and swapped in
-// between two samples; the angle lives in SignalChain and continues exactly.
+// Everything that a model file or a setting can change is in ChainParts, which is built outside the hot path
+// and swapped between two samples. The angle is in SignalChain and continues exactly.
 #pragma once
 
 #include <array>
@@ -28,48 +27,47 @@
 
 namespace ifog {
 
-// The model and the sensor do not go together.
+// The model does not fit the sensor.
 struct ModelMisfit : std::invalid_argument {
   ModelMisfit(std::uint32_t at, const std::string& what) : std::invalid_argument(what), line(at) {}
-  std::uint32_t line;  // of the effect in the model's file; 0: not known
+  std::uint32_t line;  // of the effect in the model file; 0: unknown
 };
 
 struct ChainSettings {
   SensorFacts facts;
   std::vector<std::string> axes;          // "x", … or one ""
   std::vector<std::string> channels;      // by index in Reading::channel, capture column names
-  std::vector<double> channel_max_age_s;  // older is stale; one a channel, 0: never
-  FilterChoice filter;      // over the model's; process or measurement noise 0 or not said: from start-up
-  double start_up_s = 4.0;  // of data for that at least; 4096 samples at least
-  // By an earlier run of the same sensor: in place of start-up data where neither settings nor model say.
+  std::vector<double> channel_max_age_s;  // older values are stale; one per channel, 0: never
+  FilterChoice filter;                    // overrides the model's; a noise that is 0 or missing is learned
+  double start_up_s = 4.0;                // shortest learning time; at least 4096 samples
+  // From an earlier run of this sensor; used if neither settings nor model give the noise.
   std::optional<LearnedNoise> learned;
-  std::shared_ptr<const Model> model;      // null: nothing is compensated
+  std::shared_ptr<const Model> model;      // null: no compensation
   std::optional<double> since_power_up_s;  // of the sensor at the first sample
-  // When it was, as Increment::came_ns has time; stands over since_power_up_s. Neither: no warm_up is
-  // corrected.
+  // Time of power-up on the clock of Increment::read_ns; overrides since_power_up_s. Without both, warm_up is
+  // not corrected.
   std::optional<std::int64_t> powered_ns;
 };
 
 enum ChainFlags : std::uint32_t {
-  kNoiseUnknown = 1,    // start-up: denoised is the compensated rate, with the variance it has shown so far
+  kNoiseUnknown = 1,    // noise being learned: denoised is the compensated rate, with its present variance
   kFilterReset = 2,     // first sample of a new estimator
-  kNotCompensated = 4,  // the model's correction was no plausible rate: the measured one stands
+  kNotCompensated = 4,  // the model's correction was implausible: the measured rate is used
 };
 
 struct ChainOutput {
   Axes compensated_radps{};
   Axes delta_theta_rad{};  // compensated, unfiltered
   Axes angle_rad{};        // running sum of delta_theta
-  // Its variance includes the correction's. Of an axis that has never had a value denoised and variance are
+  // Its variance includes the correction's. For an axis that has never had a value denoised and variance are
   // NaN.
   EstimatorOutput estimate;
   std::uint32_t flags = 0;              // ChainFlags
   std::uint32_t compensator_flags = 0;  // CompensatorFlags
 };
 
-// A sum that loses nothing: A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher
-// Summen", ZAMM 54 (1974). Plain summation of 4·10^8 increments may lose 1e-9 rad; this keeps the error at
-// one rounding.
+// Compensated sum: A. Neumaier, "Rundungsfehleranalyse einiger Verfahren zur Summation endlicher Summen",
+// ZAMM 54 (1974). A plain sum of 4·10^8 increments may lose 1e-9 rad; the error here is one rounding.
 class ExactSum {
  public:
   void add(double term) noexcept;
@@ -81,24 +79,24 @@ class ExactSum {
 
 class ChainParts {
  public:
-  // Throws with one line: ModelMisfit, an effect of the model on a channel or an axis that the sensor does
-  // not have; std::invalid_argument or std::runtime_error, a setting out of range.
+  // Throws with one line: ModelMisfit for an effect on a channel or axis that the sensor lacks;
+  // std::invalid_argument or std::runtime_error for a setting out of range.
   explicit ChainParts(const ChainSettings& settings);
   ~ChainParts();
 
   [[nodiscard]] const std::string& model_identity() const { return identity_; }
-  // The settings in use, with the noise once it is known.
+  // The settings in use, including the noise once it is known.
   [[nodiscard]] const FilterSettings& filter() const { return filter_; }
-  // Each axis's own noises over filter()'s; where the driving one is unknown, as its noise.
+  // Ratio of each axis's noises to filter()'s; unknown driving noise in proportion to the noise.
   [[nodiscard]] const AxisShares& shares() const { return shares_; }
   // The driving noise is not configured: it is learned.
   [[nodiscard]] bool learns_walk() const { return learns_process_noise_; }
   [[nodiscard]] bool noise_known() const { return estimator_ != nullptr; }
-  // Effects of the model that cannot be corrected here, in words.
+  // Effects of the model that cannot be corrected here, as text.
   [[nodiscard]] std::vector<std::string> left_out() const;
-  // What is worth keeping for the next start; nothing where the noise is configured, or not known yet.
+  // Noise to be stored for the next start; nullopt if it is configured or still unknown.
   [[nodiscard]] std::optional<LearnedNoise> learned() const noexcept;
-  // Null during start-up.
+  // Null while the noise is learned.
   [[nodiscard]] const EstimatorHealth* health() const { return estimator_ ? &estimator_->health() : nullptr; }
 
  private:
@@ -119,17 +117,17 @@ class ChainParts {
   struct Effects {
     std::optional<Compensator> compensator;
     std::optional<std::int64_t> powered_ns;  // until the first sample
-    std::vector<std::size_t> wanted;         // by the compensator: index in Increment::channel
-    std::vector<double> relative_age_max;    // 1 / the age allowed, of each
+    std::vector<std::size_t> wanted;         // channels of the compensator: index in Increment::channel
+    std::vector<double> relative_age_max;    // 1 / largest age of each
     std::vector<double> channel, relative_age;
     CompensatorOutput correction;
   } effects_;
   Walk start_up_;  // until the noise is known
   std::unique_ptr<Estimator> estimator_;
   FirstSamples first_samples_;
-  std::uint32_t measured_axes_ = 0;  // that the estimator has been given
+  std::uint32_t measured_axes_ = 0;  // axes that the estimator has received
   bool learns_process_noise_ = false, learns_measurement_noise_ = false;
-  Axes owed_{};  // by the estimator before, until this one is there
+  Axes owed_{};  // of the previous estimator, until the new one exists
   bool first_ = true;
 };
 
@@ -140,24 +138,23 @@ class SignalChain {
  public:
   explicit SignalChain(std::unique_ptr<ChainParts> parts) : parts_(std::move(parts)) {}
 
-  // Hot path: no allocation, lock, log or exception, except once at the end of a start-up that had to learn
-  // the noise.
+  // Hot path: no allocation, lock, log or exception, except once when the noise has been learned.
   void process(const Increment& in, ChainOutput& out) noexcept;
-  // Between two samples. Returns the old parts, to be freed elsewhere.
+  // To be called between two samples. Returns the old parts for destruction elsewhere.
   std::unique_ptr<ChainParts> swap(std::unique_ptr<ChainParts> parts) noexcept;
 
   [[nodiscard]] const ChainParts& parts() const { return *parts_; }
-  // Health of the estimator in use; its counters continue those of the estimators before it. During
-  // start-up only the counters say something.
+  // Health of the present estimator; counters continue those of earlier ones. While the noise is learned only
+  // the counters are valid.
   [[nodiscard]] EstimatorHealth health() const noexcept;
 
  private:
   void hold_unmeasured(ChainOutput& out) noexcept;
 
   std::unique_ptr<ChainParts> parts_;
-  std::uint32_t known_axes_ = 0;                                  // that have had a value
-  Axes held_radps_ = kUnknownAxes, held_rad2ps2_ = kUnknownAxes;  // denoised, of what was measured last
-  EstimatorHealth before_;                                        // the counters of estimators that are gone
+  std::uint32_t known_axes_ = 0;                                  // axes that have had a value
+  Axes held_radps_ = kUnknownAxes, held_rad2ps2_ = kUnknownAxes;  // denoised value of the last measurement
+  EstimatorHealth before_;                                        // counters of earlier estimators
   std::array<ExactSum, kMaxAxes> angle_{};
 };
 

@@ -160,7 +160,7 @@ std::optional<SampleTimes::Stamped> SampleTimes::next(const ifog_sample& sample)
       step.restarted && (restarts_ || clock_ != Clock::device || sample.device_wrap_ns > 0);
   count_ += steps;
   if (steps > 1) counts_.missing += steps - 1;
-  if (steps > 1 && step.untold) counts_.untold += steps - 1;
+  if (steps > 1 && step.ambiguous) counts_.ambiguous += steps - 1;
   if (clock_restarted) ++counts_.restarts;
   device_ns_ = step.time_ns;
   restarted = restarted || (clock_restarted && clock_ == Clock::device);

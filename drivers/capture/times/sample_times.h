@@ -25,7 +25,7 @@ namespace ifog {
 // What the times say of the samples.
 struct SampleCounts {
   std::size_t missing = 0;     // were not there by the device's counter, or by its clock where it has none
-  std::size_t untold = 0;      // of these: the clock may have been set instead, and nothing decides
+  std::size_t ambiguous = 0;   // of these: the clock may have been set instead, and nothing decides
   std::size_t restarts = 0;    // the counter or the clock jumped back without a discontinuity
   std::size_t clock_sets = 0;  // the clock was set while the counter, which then gives the time, continued
   std::size_t repeated = 0;    // dropped as duplicates or because a later one had arrived

@@ -39,9 +39,9 @@ std::string run_of(const DriverSettings& options, std::uint64_t run, std::int64_
     std::vector<std::uint8_t> frame;
     driver.encode_bytes(sample, frame);
     // Not as evenly as it is sent.
-    const std::int64_t came_ns = from_ns + 10'000'000 * n + 1'000'000 * (n % 3);
-    archive.add({FlightKind::bytes, 0, 0, 0, came_ns}, frame);
-    archive.turn(came_ns, 0, true);
+    const std::int64_t read_ns = from_ns + 10'000'000 * n + 1'000'000 * (n % 3);
+    archive.add({FlightKind::bytes, 0, 0, 0, read_ns}, frame);
+    archive.turn(read_ns, 0, true);
   }
   archive.close(from_ns + 1'000'000'000, 0);
   EXPECT_EQ(disk.files.size() > 2, file_bytes < 2000);

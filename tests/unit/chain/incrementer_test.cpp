@@ -184,7 +184,7 @@ TEST(Incrementer, ASlewedWallClockIsFollowedAndNotFlagged) {
   Increment increment;
   for (std::uint64_t n = 0; n < 10'000; ++n) {
     Reading reading = sample(n, 0.1);
-    reading.came_ns = reading.arrival_ns;
+    reading.read_ns = reading.arrival_ns;
     reading.wall_shift_ns = static_cast<std::int64_t>(n) * 83'333;
     ASSERT_TRUE(incrementer.next(reading, increment));
     ASSERT_EQ(increment.flags, 0U) << n;

@@ -73,10 +73,10 @@ TEST(SignalChain, AWarmUpBeginsAtPowerUpWhicheverWayThatIsSaid) {
       none(std::make_unique<ChainParts>(before));
   EXPECT_TRUE(other.parts().left_out().empty());
   ChainOutput a, b, c;
-  std::int64_t came_ns = *by_clock.powered_ns + 25'000'000'000;
+  std::int64_t read_ns = *by_clock.powered_ns + 25'000'000'000;
   for (Increment increment : increments(500, 4)) {
-    increment.came_ns = came_ns;
-    came_ns += 1'000'000;
+    increment.read_ns = read_ns;
+    read_ns += 1'000'000;
     one.process(increment, a);
     other.process(increment, b);
     none.process(increment, c);

@@ -13,7 +13,7 @@ namespace {
 
 struct Seen {
   std::uint32_t sequence;
-  std::int64_t arrival_ns, came_ns;
+  std::int64_t arrival_ns, read_ns;
   double rate, outside;
   float age_s;
   std::int64_t wall_shift_ns;
@@ -46,8 +46,8 @@ std::vector<Seen> decoded(const std::vector<std::uint8_t>& recording, int& break
   decode_flight(reader, driver,
                 {[&](const RecordedSample& recorded) {
                    const ChannelValue& outside = recorded.outside[1];
-                   out.push_back({recorded.sample.sequence, recorded.sample.arrival_ns, recorded.came_ns,
-                                  recorded.sample.value[0], outside.value, outside.age_s(recorded.came_ns),
+                   out.push_back({recorded.sample.sequence, recorded.sample.arrival_ns, recorded.read_ns,
+                                  recorded.sample.value[0], outside.value, outside.age_s(recorded.read_ns),
                                   recorded.wall_shift_ns});
                  },
                  [&] { ++breaks; }});

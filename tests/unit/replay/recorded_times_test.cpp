@@ -36,14 +36,14 @@ class RecordedTimes : public testing::Test, protected test::OwnFolder {
     limits.file_bytes = 400;  // over several files
     FlightArchive archive(make_flight_folder(path("record")), limits, header);
     for (std::size_t n = 0; n < kCame_ms.size(); ++n) {
-      const std::int64_t came_ns = kBegan + kCame_ms[n] * kMillisecond;
+      const std::int64_t read_ns = kBegan + kCame_ms[n] * kMillisecond;
       const auto letter = static_cast<std::uint8_t>('a' + n);
       if (carries == FlightHeader::Carries::can)
-        archive.add({FlightKind::can, kFlightStamped, 0, 0, came_ns},
+        archive.add({FlightKind::can, kFlightStamped, 0, 0, read_ns},
                     std::vector<std::uint8_t>{0x23, 1, 0, 0, 0, 1, letter});
       else
-        archive.add({FlightKind::bytes, 0, 0, 0, came_ns}, std::vector<std::uint8_t>(n + 1, letter));
-      archive.turn(came_ns, came_ns, true);
+        archive.add({FlightKind::bytes, 0, 0, 0, read_ns}, std::vector<std::uint8_t>(n + 1, letter));
+      archive.turn(read_ns, read_ns, true);
     }
   }
   // Exit status; what it prints goes to the file `said`.

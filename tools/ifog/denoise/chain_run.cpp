@@ -32,7 +32,7 @@ std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::s
 void add(const IncrementerCounts& from, const IncrementerCounts& less, IncrementerCounts& to) {
   for (std::uint64_t IncrementerCounts::*count :
        {&IncrementerCounts::samples, &IncrementerCounts::gaps, &IncrementerCounts::missing,
-        &IncrementerCounts::untold, &IncrementerCounts::repeated, &IncrementerCounts::mixed,
+        &IncrementerCounts::ambiguous, &IncrementerCounts::repeated, &IncrementerCounts::mixed,
         &IncrementerCounts::restarts, &IncrementerCounts::invalid, &IncrementerCounts::saturated,
         &IncrementerCounts::implausible, &IncrementerCounts::channel_implausible,
         &IncrementerCounts::clock_steps, &IncrementerCounts::sensor_clock_sets, &IncrementerCounts::pauses})

@@ -97,7 +97,6 @@ nlohmann::json summary(const DenoiseOptions& options, const DenoisedRows& rows, 
           {"axes", axes}};
 }
 
-// What was not usable, in the words of every command.
 void tell_unusable(const std::string& name, const DenoisedRows& rows, const OfflineResult& result) {
   for (std::size_t a = 0; a < result.axes.size(); ++a) {
     const DenoisedRows::AxisMoments& axis = rows.moments(a);
@@ -109,7 +108,8 @@ void tell_unusable(const std::string& name, const DenoisedRows& rows, const Offl
            column.c_str(), axis.stuck, rows.written());
   }
   const IncrementerCounts& counts = result.counts;
-  for (const std::string& line : not_measured_in_words(counts.saturated, counts.implausible, counts.untold))
+  for (const std::string& line :
+       not_measured_in_words(counts.saturated, counts.implausible, counts.ambiguous))
     warn("%s: %s\n", name.c_str(), line.c_str());
   if (result.model.empty()) return;
   const auto of_model = [&](std::uint64_t samples, const char* what) {

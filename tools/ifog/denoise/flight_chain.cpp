@@ -34,13 +34,13 @@ class FlightChain {
   void take(const RecordedSample& recorded) {
     read_sample(recorded.sample, now_.facts.frame_channels, reading_);
     reading_.wall_shift_ns = recorded.wall_shift_ns;
-    reading_.came_ns = recorded.came_ns;
+    reading_.read_ns = recorded.read_ns;
     for (std::size_t i = 0; i < recorded_at_.size(); ++i) {
       const std::size_t c = static_cast<std::size_t>(now_.facts.frame_channels) + i;
       const ChannelValue value =
           recorded_at_[i] < recorded.outside.size() ? recorded.outside[recorded_at_[i]] : ChannelValue{};
       reading_.channel[c] = value.value;
-      reading_.channel_age_s[c] = value.age_s(recorded.came_ns);
+      reading_.channel_age_s[c] = value.age_s(recorded.read_ns);
     }
     times_.come(recorded.sample);
     const Increment* const increment = chain_.run(reading_, out_);

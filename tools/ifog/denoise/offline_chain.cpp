@@ -138,7 +138,7 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
   }
   OfflineResult result = chain.finish();
   // A row's time is what whoever wrote the file took it to be, and no clock that might have been set.
-  result.counts.untold = 0;
+  result.counts.ambiguous = 0;
   return result;
 }
 

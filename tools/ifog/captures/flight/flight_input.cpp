@@ -192,7 +192,7 @@ std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder&
                                    before[i] = now;
                                  }
                                  builder.add(recorded.sample, fresh);
-                                 if (first_ns == 0) first_ns = recorded.came_ns;
+                                 if (first_ns == 0) first_ns = recorded.read_ns;
                                  added();
                                },
                                [&] { builder.discontinuity(); },
