@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an effect's channel is: a column, or the difference of two, "A - B". Column names have no blanks.
+// Channel of an effect: a column, or the difference of two, "A - B". Column names contain no blanks.
 #pragma once
 
 #include <string>

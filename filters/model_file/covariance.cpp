@@ -26,7 +26,7 @@ std::string covariance_flaw(const std::vector<double>& values, std::size_t size)
     if (at(i, i) < 0.0) return "a negative variance in " + place(i, i);
     for (std::size_t j = 0; j < i; ++j) {
       const double scale = std::sqrt(at(i, i)) * std::sqrt(at(j, j));
-      // A parameter that is known exactly goes with no other.
+      // An exactly known parameter has no covariance.
       if (scale == 0.0 ? at(i, j) != 0.0 || at(j, i) != 0.0
                        : !(std::abs(at(i, j)) <= scale * (1.0 + kRounding)))
         return "more than the variances allow in " + place(i, j);
@@ -36,7 +36,7 @@ std::string covariance_flaw(const std::vector<double>& values, std::size_t size)
         correlation(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = at(i, j) / scale;
     }
   }
-  // Positive semidefinite but for rounding: with that much more on the diagonal it has a Cholesky factor.
+  // Positive semidefinite except for rounding: with this addition to the diagonal a Cholesky factor exists.
   correlation.diagonal().array() += kRounding * static_cast<double>(size);
   return correlation.llt().info() == Eigen::Success ? ""
                                                     : "a combination of parameters has a negative variance";

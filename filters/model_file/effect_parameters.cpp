@@ -12,7 +12,7 @@ using Values = ParameterRule::Values;
 constexpr ParameterRule kCoefficient{"coefficient", true, Values::kAny};
 // 0: not smoothed.
 constexpr ParameterRule kBandwidth{"bandwidth_s", true, Values::kNotNegative};
-// How far a power is followed beyond its range before its tangent takes over (filters/effects/curve_reach.h).
+// Extrapolation range of a power before its tangent is used (filters/effects/curve_reach.h).
 constexpr ParameterRule kCurve{"curve_reach", false, Values::kNotNegative};
 constexpr ParameterRule kRmsOfTable{"angle_rms", false, Values::kNotNegative};
 
@@ -34,7 +34,7 @@ const std::vector<FormRules>& form_rules() {
       {"absolute", {kCoefficient}},
       {"cosine", {kCoefficient}},
       {"sine", {kCoefficient}},
-      // With 0 the low-pass is the channel itself, and nothing is above it.
+      // With 0 the low-pass equals the channel, and the power is zero.
       {"band_power",
        {kCoefficient, {"bandwidth_s", true, Values::kPositive}, {"average_s", false, Values::kNotNegative}}},
       {"transition", {kCoefficient, {"half_width", true, Values::kPositive}}},

@@ -13,7 +13,7 @@ namespace ifog {
 namespace {
 
 constexpr const char* kSchema = "ifog.noise/2";
-// Largest variance in (rad/s)^2, square or count: no sensor's figure is beyond it.
+// Largest variance in (rad/s)^2, square or count.
 constexpr double kMostKept = 1e18;
 
 class Reader {
@@ -45,7 +45,7 @@ class Reader {
 
  private:
   [[nodiscard]] double plausible(const char* key, std::optional<double> value, double least) const {
-    // Written so that NaN fails.
+    // NaN fails this comparison.
     if (!value || !(*value >= least && *value <= kMostKept))
       fail(key, "expected a number from " + toml_number(least) + " to " + toml_number(kMostKept));
     return *value;
@@ -89,9 +89,9 @@ KeptNoise parse_kept_noise(std::string_view text, const std::string& name) {
   if (axes != std::floor(axes) || axes > kMaxAxes)
     in.fail("axes", "expected 1 to " + std::to_string(kMaxAxes));
   kept.axes = static_cast<int>(axes);
-  // A file that does not name its model is regarded as another model's.
+  // A file that does not name its model counts as another model's.
   kept.noise.set_model(in.words_or("model", "?"));
-  // The smallest that is no denormal: what is divided by stays a number.
+  // Smallest normal number, so that quotients are finite.
   constexpr double kPositive = 1e-300;
   kept.sample_rate_hz = in.at_least("sample_rate_hz", kPositive);
   kept.learned = in.words("learned");

@@ -18,7 +18,7 @@ std::string listed(std::span<const std::string> axes) {
   return list;
 }
 
-// The square of one term of each axis.
+// Squares of one term, by axis.
 std::optional<Axes> squares(const Model& model, std::span<const std::string> axes,
                             std::optional<double> NoiseTerms::*term) {
   Axes of{};

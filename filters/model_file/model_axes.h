@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model compared with the axes of the sensor, or the capture, that it is to correct.
+// Compares a model with the axes of a sensor or capture.
 #pragma once
 
 #include <optional>
@@ -12,27 +12,25 @@
 
 namespace ifog {
 
-// Effects that name no axis, those of a sensor that has one, are subtracted from each of several: in words,
-// "" where none is.
+// Message if effects that name no axis would be subtracted from each of several axes; else "".
 std::string effects_of_no_axis(const Model& model, std::span<const std::string> axes);
-// That, and noise of an axis that a sensor of these has not; a line each.
+// That message, and one line for noise of an axis that is not in `axes`.
 std::vector<std::string> remarks_on_axes(const Model& model, std::span<const std::string> axes);
 
-// Noise and walk of each of several axes, relative to the mean of all: a filter's own noises are of that. Nothing where the
-// model does not say it of every axis.
+// Noise and walk of each axis relative to the mean of all, which the filter's settings describe. nullopt if
+// the model does not give them for every axis.
 struct AxisShares {
   std::optional<Axes> noise, walk;
 };
 
-// What a model's terms say of the noise at a sample rate, mean over the axes; nothing where it does not say it of
-// every axis.
+// Noise at a sample rate from the model's terms, mean of the axes; nullopt if not given for every axis.
 struct NoiseOfAxes {
   std::optional<double> sample;  // N² times the sample rate, (rad/s)^2
   std::optional<double> walk;    // K², (rad/s)^2/s
   AxisShares shares;
 };
-// measurement_noise: of the model's filter, (rad/s)^2; 0: not given. Where that is above twice what the terms say, it is
-// of something they do not know, such as the lines of a dither: all axes get the same share of it.
+// measurement_noise: of the model's filter, (rad/s)^2; 0: not given. If it exceeds twice the terms' noise it
+// includes something else, such as dither lines; then all axes get the same share of it.
 [[nodiscard]] NoiseOfAxes noise_of_axes(const Model& model, std::span<const std::string> axes,
                                         double sample_rate_hz, double measurement_noise);
 

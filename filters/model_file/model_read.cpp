@@ -17,12 +17,12 @@
 namespace ifog {
 namespace {
 
-// Beyond it no number of a sensor's model lies, in whatever unit, and no product of two overflows: a rate in
-// rad/s per the seventh power of a channel, of counts, included. The square of it for variances.
+// Largest number in a model, in any unit (rad/s per seventh power of counts included); products of two do not
+// overflow. Variances: its square.
 constexpr double kMost = 1e30;
 constexpr double kMostVariance = kMost * kMost;
 
-// One table of the file: every key is asked for once, and what was not asked for is an unknown key.
+// One table of the file. Keys that are never read are reported as unknown.
 class Table {
  public:
   Table(const toml::table& table, std::string file, std::string where)
@@ -52,10 +52,10 @@ class Table {
     return table_.get(key);
   }
 
-  // Finite, and of a size that a sensor's model can have.
+  // Finite and at most kMost.
   double plausible(const std::string& key, const toml::node& node, double most = kMost) const {
     const auto value = node.value<double>();
-    // Written so that NaN fails.
+    // NaN fails this comparison.
     if (!value || !(std::abs(*value) <= most))
       fail(key, &node, "expected a finite number within " + text(most));
     return *value;
@@ -78,7 +78,7 @@ class Table {
     return value;
   }
 
-  // "nan" is what nobody knows: a figure that a record was too short for.
+  // "nan" means unknown, e.g. the record was too short.
   double number_or_unknown(const std::string& key, double otherwise) {
     const toml::node* node = find(key);
     if (!node) return otherwise;
@@ -112,7 +112,7 @@ class Table {
     return values;
   }
 
-  // The tables of [[key]], or of [key] when `single`.
+  // Tables of [[key]], or of [key] if `single`.
   std::vector<Table> tables(const std::string& key, bool single = false) {
     std::vector<Table> found;
     const toml::node* node = find(key);
@@ -185,7 +185,7 @@ FilterSettings read_filter(Table table) {
     const std::optional<SettingValue> value = setting_value(*node);
     if (!value || !choose(setting, *value, choice))
       table.fail(setting.key, node, "expected " + expected(setting, node->value<std::string>().value_or("")));
-    // What has its name elsewhere than in the table.
+    // Names that are defined elsewhere are checked there.
     const std::string wrong = setting.choices.empty() && std::holds_alternative<std::string>(*value)
                                   ? expected_name(setting, std::get<std::string>(*value))
                                   : "";
@@ -204,7 +204,7 @@ std::string channel_of(Table& table, const std::string& key, const std::string& 
   return difference_of(channel, less);
 }
 
-// A parameter's name is one of the form's, and there is one of it.
+// Parameter names must belong to the form and be unique.
 void check_name(Table& item, const std::string& name, const std::vector<ParameterRule>& rules,
                 const Effect& effect) {
   for (const ModelParameter& other : effect.parameters)
@@ -252,7 +252,7 @@ void require_parameters(Table& table, const Effect& effect) {
   }
 }
 
-// What the form takes its value from; whether the sensor has it is not asked here.
+// Checks the inputs that the form needs; the sensor is checked elsewhere.
 void require_source(Table& table, const Effect& effect) {
   if (!is_of_channel(effect.form)) return;
   if (effect.channel.empty())
@@ -309,7 +309,7 @@ Effect read_effect(Table table) {
   return effect;
 }
 
-// Reads the covariance of the parameters of effects that are corrected online, or of all parameters.
+// Covariance of the parameters of effects corrected online, or of all parameters.
 void read_covariance(Table& table, std::size_t parameters, Model& model) {
   const std::size_t numbers = model.covariance.size();
   if (numbers == 0) return;

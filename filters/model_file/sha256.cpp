@@ -16,7 +16,7 @@ Sha256::Sha256() : checksum_(g_checksum_new(G_CHECKSUM_SHA256)) {}
 void Sha256::Free::operator()(_GChecksum* checksum) const { g_checksum_free(checksum); }
 
 void Sha256::add(std::string_view bytes) {
-  // GLib counts by gssize, and by all of a text that ends in zero where that is negative.
+  // A negative gssize would mean a zero-terminated string.
   if (!bytes.empty())
     g_checksum_update(checksum_.get(), reinterpret_cast<const guchar*>(bytes.data()),
                       static_cast<gssize>(bytes.size()));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHA-256 (FIPS 180-4), for naming files by their content. Not for secrets.
+// SHA-256 (FIPS 180-4) for naming files by their content. Not for secrets.
 #pragma once
 
 #include <memory>
@@ -12,12 +12,12 @@ namespace ifog {
 
 [[nodiscard]] std::string sha256_hex(std::string_view bytes);  // 64 lower-case hex digits
 
-// The same of bytes as they come.
+// Incremental SHA-256.
 class Sha256 {
  public:
   Sha256();
   void add(std::string_view bytes);
-  [[nodiscard]] std::string hex() const;  // of all so far; nothing may be added afterwards
+  [[nodiscard]] std::string hex() const;  // of all bytes so far; ends the computation
 
  private:
   struct Free {

@@ -16,8 +16,8 @@
 namespace ifog {
 namespace {
 
-// The parser calls itself once for each part of a dotted key: 50 000 parts are the end of its stack. Throws
-// std::runtime_error with the line; text in quotes and comments counts for nothing.
+// Rejects dotted keys with so many parts that the recursive parser would overflow its stack (50 000). Throws
+// std::runtime_error with the line; quoted text and comments are ignored.
 void require_short_keys(std::string_view text, const std::string& name) {
   std::size_t dots = 0, line = 1;
   char quote = 0;
@@ -48,7 +48,7 @@ void require_short_keys(std::string_view text, const std::string& name) {
 
 std::string read_toml_text(const std::string& path) {
   const auto reason = [] { return std::generic_category().message(errno); };
-  // Non-blocking, so that even the opening of a FIFO returns.
+  // Non-blocking, so that opening a FIFO returns.
   const int fd = open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (fd < 0) throw std::runtime_error(path + ": cannot open: " + reason());
   std::string text, wrong;
@@ -73,7 +73,7 @@ toml::table parse_toml(std::string_view text, const std::string& name) {
   try {
     return toml::parse(text, name);
   } catch (const toml::parse_error& error) {
-    // A capture begins with names or numbers and commas; TOML with a key or a table.
+    // A capture starts with column names or numbers and commas; TOML with a key or a table.
     const std::string_view line = text.substr(0, text.find('\n'));
     if (!line.starts_with('#') && line.find(',') != std::string_view::npos &&
         line.find('=') == std::string_view::npos && !line.starts_with('['))

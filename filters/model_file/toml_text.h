@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values as TOML writes them.
+// Values in TOML syntax.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ inline std::string toml_number(double value) {
   std::array<char, 40> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
   std::string number(text.data(), end);
-  // Without a point it would be an integer, and TOML has those of 64 bits only.
-  constexpr double kExact = 9007199254740992.0;  // 2^53, up to which an integer is as good
+  // Without a point it would be an integer, which TOML limits to 64 bits.
+  constexpr double kExact = 9007199254740992.0;  // 2^53, largest exact integer
   if (value > kExact || value < -kExact)
     if (number.find_first_of(".ei") == std::string::npos) number += ".0";
   return number;
