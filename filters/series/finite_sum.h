@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sum of the finite values of a series; long series are read piece by piece.
+// Sum of the finite values of a series; long series are read in pieces.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@ namespace ifog {
 
 struct FiniteSum {
   double sum = 0.0;
-  double count = 0.0;  // of those that are a number
+  double count = 0.0;  // of finite values
 };
 
 inline FiniteSum finite_sum(std::span<const double> values) {

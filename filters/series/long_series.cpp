@@ -64,7 +64,7 @@ void LongSeries::file_recent() {
   file_->write(filed_, recent_);
   filed_ += recent_.size();
   if (first)
-    recent_ = {};  // what was held in memory is given back
+    recent_ = {};  // releases the memory
   else
     recent_.clear();
   recent_.reserve(kAtOnce);

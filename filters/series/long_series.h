@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers in order, as many as there are: in memory at first, and beyond a limit in a file without a name,
-// which nothing is left of when the program ends however it ends.
+// A sequence of numbers: first in memory, beyond a limit in an unnamed file, which disappears with the
+// process.
 #pragma once
 
 #include <cstddef>
@@ -14,12 +14,12 @@ namespace ifog {
 
 class LongSeries {
  public:
-  // 8 MiB of numbers: a dozen columns in memory together are a hundredth of a small computer's.
+  // 8 MiB of numbers, so that a dozen columns take about 1 % of a small computer's memory.
   static constexpr std::size_t kInMemory = std::size_t{1} << 20U;
-  // Numbers that are written to the file together: so many or more, added together, go straight there.
+  // Numbers written to the file at a time; larger additions are written directly.
   static constexpr std::size_t kAtOnce = std::size_t{1} << 16U;
 
-  // in_memory: numbers kept there before the file is begun, in $TMPDIR or else /var/tmp or /tmp.
+  // in_memory: numbers in memory before a file is used, in $TMPDIR or else /var/tmp or /tmp.
   explicit LongSeries(std::size_t in_memory = kInMemory) : most_(in_memory) {}
   ~LongSeries();
   LongSeries(LongSeries&& other) noexcept;
@@ -27,26 +27,26 @@ class LongSeries {
   LongSeries(const LongSeries&) = delete;
   LongSeries& operator=(const LongSeries&) = delete;
 
-  // Whether to add so many writes to the file.
+  // True if adding this many numbers writes to the file.
   [[nodiscard]] bool will_write(std::size_t numbers) const {
     return recent_.size() + numbers >= (!file_ ? most_ + 1 : kAtOnce);
   }
-  // Nothing has been added yet, and so many will be: they go to a file that somebody else gave back, if there
-  // is one that long.
+  // Announces the number of values, before the first is added, so that a released file of this size can be
+  // reused.
   void expect(std::size_t numbers);
-  // Both throw std::runtime_error with one line: no room for the file, an error of its device.
+  // These throw std::runtime_error with one line: no space for the file, or an I/O error.
   void add(double value);
   void add(std::span<const double> values);
 
   [[nodiscard]] std::size_t size() const { return filed_ + recent_.size(); }
   [[nodiscard]] bool empty() const { return size() == 0; }
-  // The whole where it is in memory; what is not in the file yet otherwise.
+  // All values if they are in memory; else those not yet in the file.
   [[nodiscard]] const std::vector<double>& recent() const { return recent_; }
   [[nodiscard]] std::size_t filed() const { return filed_; }  // numbers in the file, the first ones
-  // to: as many as are wanted, all of them there. Several threads may read at once.
+  // Reads to.size() numbers, which must exist. Several threads may read at once.
   void read(std::size_t first, std::span<double> to) const;
-  // All of them as memory, for what wants them so: mapped where they are in the file, and of the file's
-  // pages only some at a time are in memory (mapped_file.h). Valid until more are added. Throws as add().
+  // All values as memory; a file is mapped, and only part of its pages is in memory at a time
+  // (mapped_file.h). Valid until more are added. Throws as add().
   [[nodiscard]] std::span<const double> all();
 
  private:
@@ -57,7 +57,7 @@ class LongSeries {
   std::vector<double> recent_;
   std::size_t filed_ = 0;
   std::optional<UnnamedFile> file_;
-  const double* mapped_ = nullptr;  // the file's numbers
+  const double* mapped_ = nullptr;  // mapping of the file
 };
 
 }  // namespace ifog

@@ -24,22 +24,22 @@
 #include <vector>
 
 #ifndef MADV_POPULATE_READ
-#define MADV_POPULATE_READ 22  // Linux 5.14; before, the call does nothing
+#define MADV_POPULATE_READ 22  // Linux 5.14; no effect before
 #endif
 
 namespace ifog {
 namespace {
 
-// A pass over a dozen columns maps in a gigabyte or two a second.
+// A pass over a dozen columns maps 1 to 2 GB/s.
 constexpr std::chrono::milliseconds kLook{5};
 
-// Bytes of files that are mapped into the program's memory; 0 where the kernel does not say.
+// Bytes of mapped files in the program's memory; 0 if the kernel does not tell.
 std::size_t resident_bytes(int statm) {
   std::array<char, 128> text{};
   const ssize_t n = ::pread(statm, text.data(), text.size() - 1, 0);
   if (n <= 0) return 0;
   char* at = text.data();
-  std::strtoull(at, &at, 10);  // all
+  std::strtoull(at, &at, 10);  // total
   std::strtoull(at, &at, 10);  // resident
   return std::strtoull(at, nullptr, 10) * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
 }
@@ -55,7 +55,7 @@ class Resident {
     if (thread_.joinable()) thread_.join();
   }
 
-  // file: what is mapped, to write; none: it will not be written.
+  // file: of a writable mapping; nullopt: read-only.
   void add(const void* at, std::size_t bytes, std::optional<UnnamedFile> file) {
     {
       const std::lock_guard lock(guard_);
@@ -70,7 +70,7 @@ class Resident {
     mapped_.erase(at);
   }
 
-  // Likewise, with the file of it.
+  // The same, with its file.
   std::optional<UnnamedFile> take(const void* at) {
     const std::lock_guard lock(guard_);
     const auto mapped = mapped_.find(at);
@@ -81,9 +81,9 @@ class Resident {
 
   struct Place {
     UnnamedFile* file;
-    std::size_t offset;  // bytes
+    std::size_t offset;  // in bytes
   };
-  // The file behind an address that add() was given and that is still mapped.
+  // File and offset of a mapped address.
   Place place_of(const void* at) {
     const std::lock_guard lock(guard_);
     const auto mapped = std::prev(mapped_.upper_bound(at));
@@ -96,7 +96,7 @@ class Resident {
     try {
       thread_ = std::thread([this] { watch(); });
     } catch (const std::system_error&) {
-      // No thread to be had: what is mapped stays in memory until the kernel wants it.
+      // Without a thread, pages stay until the kernel evicts them.
     }
   }
 
@@ -108,7 +108,7 @@ class Resident {
         changed_.wait(lock, [this] { return ends_ || !mapped_.empty(); });
       else
         changed_.wait_for(lock, kLook, [this] { return ends_; });
-      // The mapping is shared, so this loses nothing: what was written is in the kernel's cache.
+      // The mapping is shared, so written data stay in the page cache.
       if (resident_bytes(statm) > kMostResident)
         for (const auto& [at, mapped] : mapped_)
           ::madvise(const_cast<void*>(at), mapped.bytes, MADV_DONTNEED);
@@ -144,7 +144,7 @@ void* mapped(int fd, std::size_t bytes, int protection, std::optional<UnnamedFil
   return at;
 }
 
-// Sizes in sixteenths of a power of two: what is nearly as long fits into the same file.
+// Sizes are rounded to sixteenths of a power of two, so that files of similar length can be reused.
 std::size_t room_for(std::size_t bytes) {
   const std::size_t step = std::max<std::size_t>(std::bit_floor(bytes) / 16, 1);
   return (bytes + step - 1) / step * step;
@@ -160,13 +160,13 @@ void give_up(const Spare& spare) noexcept {
   ::munmap(spare.at, spare.bytes);
 }
 
-// Making a file costs more than writing it: each of its pages is found, zeroed, mapped and in the end thrown
-// away. Most of what a diagnosis makes is as long as what it has just given back.
+// Creating a file costs more than writing it: its pages are allocated, zeroed, mapped and discarded. A
+// diagnosis mostly allocates the size it has just released.
 class Spares {
  public:
   Spares() { all_.reserve(kMostSpare); }
 
-  // The one that was kept last, so that of its pages most are there; null: none of this size.
+  // The file released last, whose pages are most likely resident; null if none has this size.
   void* take(std::size_t bytes) noexcept {
     const std::lock_guard lock(guard_);
     const auto found =
@@ -177,7 +177,7 @@ class Spares {
     return at;
   }
 
-  // Likewise, of about that size.
+  // The same for about this size.
   std::optional<Spare> take_about(std::size_t bytes) noexcept {
     const std::lock_guard lock(guard_);
     const auto found = std::find_if(all_.rbegin(), all_.rend(), [&](const Spare& each) {
@@ -198,7 +198,7 @@ class Spares {
     all_.push_back(spare);
   }
 
-  // Whether there were any.
+  // True if there were any.
   bool clear() noexcept {
     const std::lock_guard lock(guard_);
     const bool any = !all_.empty();
@@ -209,7 +209,7 @@ class Spares {
 
  private:
   std::mutex guard_;
-  std::vector<Spare> all_;  // in the order in which they were given back
+  std::vector<Spare> all_;  // in order of release
 };
 
 Spares& spares() {

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files without a name that are mapped into memory. What of them is in memory is the kernel's to take away
-// again; so that it also counts little where nobody else wants it, a thread gives pages back when more than
-// kMostResident of the files are in the program's memory at once. They stay in the kernel's cache while
-// there is room in it, and are read again from the file where not.
+// Unnamed files mapped into memory. The kernel may evict their pages. A thread also releases pages when more
+// than kMostResident bytes are resident; they remain in the page cache or are read again from the file.
 #pragma once
 
 #include <cstddef>
@@ -14,27 +12,27 @@ namespace ifog {
 
 inline constexpr std::size_t kMostResident = std::size_t{128} << 20U;  // bytes
 
-// Files that were given back and wait for the next that asks for as much.
+// Largest number of released files kept for reuse.
 inline constexpr std::size_t kMostSpare = 4;
 
-// A file of so many bytes, whatever is in them, to read and write. Its room is taken at once, so that no
-// later write finds the disk full. Throws std::runtime_error with one line.
+// New file of this size, with arbitrary content, mapped for reading and writing. Disk space is allocated at
+// once, so later writes cannot fail. Throws std::runtime_error with one line.
 [[nodiscard]] void* map_new_file(std::size_t bytes);
-// What that gave.
+// Releases a mapping from map_new_file().
 void unmap_new_file(void* at, std::size_t bytes) noexcept;
-// A waiting file, half to twice as long, for a user that writes from its beginning and reads only what it
-// wrote: its pages are there already. None: none such waits.
+// A released file of half to twice this size, for a user that writes sequentially and reads only what it
+// wrote. Its pages are already allocated. nullopt if there is none.
 [[nodiscard]] std::optional<UnnamedFile> take_spare_file(std::size_t bytes) noexcept;
-// As memcpy, `to` being in memory that map_new_file() gave: by way of the file, for writing a page that is
-// not in memory costs ten times as much when it is found missing. Throws likewise.
+// memcpy to memory from map_new_file(), by writing to the file, because a page fault costs ten times as much.
+// Throws likewise.
 void write_new_file(void* to, const void* from, std::size_t bytes);
-// Likewise, `from` being in such memory.
+// The same for reading from such memory.
 void read_new_file(void* to, const void* from, std::size_t bytes);
-// The first bytes of an existing file, to read. The file may be closed afterwards. Throws likewise.
+// Maps the first bytes of an existing file for reading; the file may be closed afterwards. Throws likewise.
 [[nodiscard]] const void* map_file(const UnnamedFile& file, std::size_t bytes);
-// What that gave.
+// Releases a mapping from map_file().
 void unmap_file(const void* at, std::size_t bytes) noexcept;
-// Memory of a file that is about to be read: its pages are looked up together. Of other memory nothing.
+// Prefetches the pages of mapped memory; no effect on other memory.
 void expect_reading(const void* at, std::size_t bytes) noexcept;
 
 }  // namespace ifog

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers by sample, as a vector: in memory while they are few, beyond in a file without a name. Whatever is
-// written for vectors and spans works on them, and gives the same figures.
+// Vector of numbers per sample: small ones in memory, large ones in an unnamed file. Works like std::vector.
 #pragma once
 
 #include <algorithm>
@@ -16,15 +15,15 @@
 
 namespace ifog {
 
-// Memory for small vectors, a file's for large ones. Throws std::runtime_error with one line where the file
-// finds no room.
+// Allocates memory for small vectors and a mapped file for large ones. Throws std::runtime_error with one
+// line if there is no disk space.
 template <typename T>
 struct FiledAllocator {
   using value_type = T;
-  static constexpr std::size_t kInMemory = std::size_t{16} << 20U;  // bytes of one vector
+  static constexpr std::size_t kInMemory = std::size_t{16} << 20U;  // bytes per vector
 
   FiledAllocator() = default;
-  // unset: what a vector is made of is whatever was there.
+  // unset: elements are not initialised.
   explicit FiledAllocator(bool unset) : unset_(unset) {}
   template <typename Other>
   FiledAllocator(const FiledAllocator<Other>&) {}
@@ -62,7 +61,7 @@ class Samples : public FiledVector<double> {
   Samples(const std::vector<double>& values) : Samples(values.begin(), values.end()) {}
   explicit Samples(std::span<const double> values) : Samples(values.begin(), values.end()) {}
 
-  // So many, whatever is in them: to be written, all of them (samples_writer.h).
+  // Uninitialised samples, all to be written (samples_writer.h).
   [[nodiscard]] static Samples unset(std::size_t size) {
     Samples samples;
     static_cast<FiledVector<double>&>(samples) = FiledVector<double>(size, FiledAllocator<double>(true));

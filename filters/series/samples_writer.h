@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples written once, in order. Where they are a file's, in pieces by way of the file (mapped_file.h).
+// Sequential writer of Samples. Long ones are written in pieces through the file (mapped_file.h).
 #pragma once
 
 #include <algorithm>
@@ -15,7 +15,7 @@ namespace ifog {
 
 class SamplesWriter {
  public:
-  // Throws std::runtime_error with one line where the file finds no room, as add() and done() do.
+  // Throws std::runtime_error with one line if there is no disk space, as do add() and done().
   explicit SamplesWriter(std::size_t size)
       : samples_(Samples::unset(size)),
         filed_(size * sizeof(double) > FiledAllocator<double>::kInMemory),
@@ -38,7 +38,7 @@ class SamplesWriter {
     }
   }
 
-  // When all have been added.
+  // To be called after all values have been added.
   [[nodiscard]] Samples done() && {
     if (filed_) file_piece();
     return std::move(samples_);
@@ -61,7 +61,7 @@ class SamplesWriter {
   std::size_t written_ = 0;
 };
 
-// The same, as memory of their own.
+// Copy as Samples.
 [[nodiscard]] inline Samples copied(std::span<const double> values) {
   SamplesWriter copy(values.size());
   copy.add(values);

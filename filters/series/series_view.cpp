@@ -12,9 +12,9 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kLookedUp = std::size_t{16} << 20U;  // bytes
+constexpr std::size_t kLookedUp = std::size_t{16} << 20U;  // in bytes
 
-// use(step) for all steps.
+// Calls use(step) for all steps.
 template <typename Use>
 void for_each_step(const SeriesView& series, Use use) {
   double before = series.at(0);
@@ -38,7 +38,7 @@ std::span<const double> SeriesView::piece(std::size_t first, std::size_t count,
                                           std::vector<double>& room) const {
   if (long_ == nullptr) {
     const std::span<const double> some = values_.subspan(first, count);
-    // Where there are so many they are a file's.
+    // So many values are in a file.
     if (values_.size_bytes() > kLookedUp) expect_reading(some.data(), some.size_bytes());
     return some;
   }
@@ -78,8 +78,7 @@ SeriesView SeriesView::part(std::size_t begin, std::size_t end) const {
   return out;
 }
 
-// Numbers that are not negative are in the order of their bits, so the median is found sixteen of them at a
-// time.
+// Non-negative doubles are ordered like their bits, so the median is found by 16 bits at a time.
 double median_step(const SeriesView& series) {
   constexpr unsigned kBits = 16;
   std::size_t rank = (series.size() - 1) / 2;

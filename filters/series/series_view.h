@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers in order that are read in pieces, wherever they are: in memory, or in a file because there are
-// more of them than memory is for. What is written against it gives the same figures for both.
+// View of a number sequence in memory or in a file, read in pieces. Analyses that use it give the same
+// results for both.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ class LongSeries;
 class SeriesView {
  public:
   SeriesView() = default;
-  // What is viewed has to outlive this.
+  // The viewed data must outlive this object.
   SeriesView(std::span<const double> values) : values_(values), size_(values.size()) {}
   SeriesView(const std::vector<double>& values) : SeriesView(std::span<const double>(values)) {}
   SeriesView(const LongSeries& values);
@@ -22,29 +22,29 @@ class SeriesView {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] bool empty() const { return size_ == 0; }
 
-  // These numbers: in place where they are in memory, else read into `room`, until that is used again. Throws
-  // std::runtime_error with one line where the file cannot be read.
+  // These numbers: in place if in memory, else read into `room` (valid until it is used again). Throws
+  // std::runtime_error with one line if the file cannot be read.
   [[nodiscard]] std::span<const double> piece(std::size_t first, std::size_t count,
                                               std::vector<double>& room) const;
   [[nodiscard]] double at(std::size_t i) const;
-  // These numbers, as many as there is room for. Throws likewise.
+  // Reads to.size() numbers. Throws likewise.
   void read(std::size_t first, std::span<double> to) const;
-  // From begin to end, without what is at `end`.
+  // The range begin … end − 1.
   [[nodiscard]] SeriesView part(std::size_t begin, std::size_t end) const;
-  // All of them at once where they are in memory; empty otherwise.
+  // All values if they are in memory, else empty.
   [[nodiscard]] std::span<const double> in_memory() const { return values_; }
 
  private:
   std::span<const double> values_;
   const LongSeries* long_ = nullptr;
-  std::size_t first_ = 0;  // of long_
+  std::size_t first_ = 0;  // in long_
   std::size_t size_ = 0;
 };
 
-// How many are read together: they stay in the second-level cache.
+// Values read at a time; they fit into the second-level cache.
 inline constexpr std::size_t kSeriesPiece = std::size_t{1} << 14U;
 
-// use(piece, index of its first) for all of [begin, end) in order.
+// Calls use(piece, index of its first value) for all of [begin, end) in order.
 template <typename Use>
 void for_each_piece(const SeriesView& series, std::size_t begin, std::size_t end, Use use) {
   std::vector<double> room;
@@ -52,12 +52,12 @@ void for_each_piece(const SeriesView& series, std::size_t begin, std::size_t end
     use(series.piece(at, end - at < kSeriesPiece ? end - at : kSeriesPiece, room), at);
 }
 
-// For what goes through numbers one by one, in order and from each as far as kAhead: pages of a file are
-// looked up together before. Of what is no file's nothing.
+// For sequential access that reads up to kAhead values beyond each position: prefetches pages of a file. No
+// effect on values in memory.
 class ReadingAhead {
  public:
   explicit ReadingAhead(std::span<const double> values) : values_(values) {}
-  // Before the number at i is read, i never decreasing.
+  // To be called before value i is read; i must not decrease.
   void at(std::size_t i) {
     if (i >= next_) look_up(i);
   }
@@ -70,8 +70,8 @@ class ReadingAhead {
   std::size_t next_ = 0;
 };
 
-// The median of the differences of neighbours, exactly, in memory that does not grow; of an even number the
-// upper one. At least two numbers, none NaN, not decreasing.
+// Exact median of the differences of neighbours, in constant memory; of an even number the upper one. Needs
+// two values or more, not decreasing, without NaN.
 [[nodiscard]] double median_step(const SeriesView& series);
 
 }  // namespace ifog

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples that are the same for several until one of them changes its own: what is made of an error step by
-// step is, where a step has nothing to take out, the error as it was. One thread at a time.
+// Samples with copy on write: steps that do not change an error share its memory. Not thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +19,7 @@ class SharedSamples {
   SharedSamples(Samples values) : values_(std::make_shared<Samples>(std::move(values))) {}
   SharedSamples(const std::vector<double>& values) : SharedSamples(Samples(values)) {}
 
-  // Numbers of somebody else, that outlive this and do not change.
+  // View of foreign numbers, which must outlive this and not change.
   [[nodiscard]] static SharedSamples of(std::span<const double> others) {
     SharedSamples samples(nullptr);
     samples.others_ = others;
@@ -34,18 +33,18 @@ class SharedSamples {
   [[nodiscard]] const double* begin() const { return data(); }
   [[nodiscard]] const double* end() const { return data() + size(); }
   [[nodiscard]] double operator[](std::size_t i) const { return data()[i]; }
-  // True: the same memory, not only the same numbers.
+  // True if both share the same memory.
   [[nodiscard]] bool is(const SharedSamples& other) const {
     return values_ == other.values_ && others_.data() == other.others_.data();
   }
 
-  // To change, before anything else is asked of them: a copy, where others share them.
+  // Makes the samples writable; copies them if they are shared.
   [[nodiscard]] Samples& own() {
     if (values_.use_count() != 1) values_ = std::make_shared<Samples>(values());
     others_ = {};
     return *values_;
   }
-  // To write all of them: so many, whatever is in them.
+  // Makes `size` uninitialised samples, all to be written.
   [[nodiscard]] Samples& anew(std::size_t size) {
     if (values_.use_count() != 1) values_ = std::make_shared<Samples>();
     others_ = {};
@@ -56,8 +55,8 @@ class SharedSamples {
  private:
   explicit SharedSamples(std::nullptr_t) {}
 
-  std::shared_ptr<Samples> values_;  // null: of others
-  std::span<const double> others_;   // without own ones
+  std::shared_ptr<Samples> values_;  // null if others_ is used
+  std::span<const double> others_;   // used if there are no own values
 };
 
 }  // namespace ifog

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Work shared among threads, one item at a time.
+// Distributes work among threads, one item at a time.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 
 namespace ifog {
 
-// work(i) for all i below `items`, begun in order; threads 0: as many as there are processors. What one of
-// them throws comes out when all have ended.
+// Calls work(i) for all i below `items`, in order of start. threads 0: number of processors. Rethrows one
+// exception after all have ended.
 template <typename Work>
 void share_out(std::size_t items, unsigned threads, const Work& work) {
   if (threads == 0) threads = std::max(1U, std::thread::hardware_concurrency());
@@ -38,7 +38,7 @@ void share_out(std::size_t items, unsigned threads, const Work& work) {
     try {
       others.emplace_back(run);
     } catch (const std::system_error&) {
-      break;  // no room for another: those there are, and this one, do it all
+      break;  // no more threads: the existing ones do the work
     }
   }
   run();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The field's units in SI: people read angles in degrees and rates in °/h, everything inside is rad and
-// rad/s. Divide by one to show, multiply to read: kDegreePerHour is the rate that a person calls 1 °/h, in
-// rad/s.
+// Units of the field in SI: users see degrees and °/h, internally all is rad and rad/s. Divide to show,
+// multiply to read: kDegreePerHour is 1 °/h in rad/s.
 #pragma once
 
 #include <numbers>

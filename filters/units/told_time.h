@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text for users: printf(3) into a string, and a capture's time in full, to the µs.
+// printf(3) into a string, and a capture's time with a resolution of µs.
 #pragma once
 
 #include <cmath>
@@ -30,7 +30,7 @@ inline std::string formatted_list(const char* format, std::va_list values) {
 
 [[nodiscard]] inline std::string told_time(double time_s) {
   const double size = std::abs(time_s);
-  // Below 1000 s these are six digits in all.
+  // Six digits below 1000 s, then six decimals.
   const int before = size < 1000.0 ? 0 : static_cast<int>(std::log10(size)) + 1;
   return formatted("%.*g", before + 6, time_s);
 }
