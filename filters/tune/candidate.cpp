@@ -11,9 +11,9 @@
 namespace ifog {
 namespace {
 
-constexpr double kLeastLog = -34.0;  // e^-34: a level that does not move within any record
+constexpr double kLeastLog = -34.0;  // e^-34: a level that is constant within any record
 
-// The largest factor of `shape` under the coarse spectrum.
+// Largest factor of `shape` that stays below the coarse spectrum.
 double under(const RecordSpectrum& spectrum, std::span<const double> shape) {
   double least = 1e300;
   for (std::size_t b = 0; b < spectrum.bins(); ++b)
@@ -45,7 +45,7 @@ ModelCandidate::ModelCandidate(std::string state, double period_s)
         "state: " + in_quotes(state_) +
         ", expected random-walk, to which gauss-markov, ar(p) and arma(p,q) with q < p "
         "<= 6 may be added with ' + '");
-  // Refuses more states than a filter has, with the reason.
+  // Throws for too many states.
   std::vector<double> low(static_cast<std::size_t>(size_)), high(low);
   bounds(low, high);
   for (std::size_t i = 0; i < low.size(); ++i) low[i] = 0.5 * (low[i] + high[i]);
@@ -66,7 +66,7 @@ void ModelCandidate::bounds(std::span<double> low, std::span<double> high) const
 }
 
 std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt19937_64& random) const {
-  // Each part is given a share of the largest that fits under the spectrum.
+  // Each part gets a random share of the largest factor.
   const auto share = [&] { return std::log(std::uniform_real_distribution<double>(0.02, 1.0)(random)); };
   std::vector<double> theta(static_cast<std::size_t>(size_)), shape(spectrum.bins());
   std::vector<double> low(theta.size()), high(theta.size());

@@ -13,13 +13,13 @@
 namespace ifog {
 namespace {
 
-// Dickey and Fuller's 1 % point of n (1 - rho) about an unknown mean: an autoregression of a walk shows less
-// than that in 99 of 100 records (W. Fuller, "Introduction to Statistical Time Series", 1976, table 8.5.1).
+// Dickey and Fuller's 1 % point of n (1 - rho) with unknown mean: an autoregression of a random walk is below
+// it in 99 of 100 records (W. Fuller, "Introduction to Statistical Time Series", 1976, table 8.5.1).
 constexpr double kToldFromAWalk = 20.7;
-// Mean squares of one record through two filters share its noise.
+// Small, since both filters' mean squares contain the same noise.
 constexpr double kWorse = 1.01;
 
-// Empty: nothing.
+// Reason against the model, or empty.
 std::string reason_against(const TunedModel& model, const TunedModel& walk, double period_s, double samples) {
   if (const double told = memories_in_record(model.settings, period_s, samples); told < kToldFromAWalk)
     return formatted(
@@ -53,7 +53,7 @@ double memories_in_record(const FilterSettings& settings, double period_s, doubl
   if (n < 2) return std::numeric_limits<double>::infinity();
   Eigen::MatrixXd transition(n, n), driving(n, n);
   model->discretise(period_s, transition, driving);
-  // The level comes first and is a block of its own.
+  // The level is the first block.
   double nearest = std::numeric_limits<double>::infinity();
   for (const auto& pole : poles(transition.bottomRightCorner(n - 1, n - 1)))
     nearest = std::min(nearest, 1.0 - std::abs(pole));

@@ -16,7 +16,7 @@ bool bound_hidden_walk(const RecordObjective& objective, std::vector<double>& th
   };
   const double none = cost(low[0]), best = std::min(none, objective(theta));
   if (none > best + kAllowed) return false;
-  // Up in doublings from where the search has stopped, then by halves between.
+  // Doubles from the optimum upwards, then bisects.
   double inside = theta[0], outside = inside;
   while (outside < high[0]) {
     outside = std::min(inside + 0.7, high[0]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The random walk that a record might hide.
+// Upper limit of a random walk that a record does not show.
 #pragma once
 
 #include <vector>
@@ -8,10 +8,9 @@
 
 namespace ifog {
 
-// Where a record does not tell the level's walk from none, within half a unit of -ln L, its likelihood is
-// near flat down to no walk at all, and where the search has stopped on it says nothing. A filter given that
-// the level stands still would not follow when it moves, and too quick a walk costs little; so theta then
-// gets the quickest walk within half a unit of the best, a bound of one standard deviation. True: it has.
+// If the record does not distinguish the level's walk from none within 0.5 of -ln L, sets theta to the
+// fastest walk within 0.5 of the best (one standard deviation) and returns true. A filter without a walk
+// would not follow a moving level, while a walk that is too fast costs little.
 [[nodiscard]] bool bound_hidden_walk(const RecordObjective& objective, std::vector<double>& theta);
 
 }  // namespace ifog

@@ -12,16 +12,15 @@
 namespace ifog {
 namespace {
 
-// Theta by coordinates in which one unit in any direction should cost about half a log-likelihood unit: the
-// axes of the expected information, each as long as its standard error. A search of equal steps is then
-// well-scaled from its first one on.
+// Coordinates in which a unit step in any direction costs about 0.5 of log-likelihood: axes of the expected
+// information in units of their standard errors, so the search is well-scaled.
 class Whitened {
  public:
   Whitened(const RecordObjective& objective, const Eigen::MatrixXd& information, std::vector<double> origin)
       : objective_(objective), origin_(std::move(origin)), low_(origin_.size()), high_(origin_.size()) {
     objective_.candidate().bounds(low_, high_);
     Eigen::MatrixXd full = information;
-    // No step beyond one, however little the spectrum tells.
+    // Limits steps to one where the spectrum gives little information.
     full.diagonal().array() += 1.0;
     const SymmetricEigen eigen = symmetric_eigen(full);
     directions_ = eigen.vectors * eigen.values.cwiseMax(1e-12).cwiseSqrt().cwiseInverse().asDiagonal();
@@ -55,7 +54,7 @@ double RecordObjective::operator()(std::span<const double> theta) const {
   try {
     model = make_state_model(s.state, s.state_parameters, period_s_);
   } catch (const std::invalid_argument&) {
-    // Within a rounding error of an autoregression that is not stationary.
+    // An autoregression at the limit of stationarity.
     return kNone;
   }
   const double cost =
@@ -67,22 +66,22 @@ double find_maximum(const RecordObjective& objective, const Eigen::MatrixXd& inf
                     std::vector<double>& theta) {
   const auto n = static_cast<unsigned>(theta.size());
   double best = objective(theta);
-  // Again from where it ended, as long as that gains: the scaling was that of the first start.
+  // Restarts at the result while that gains, because the scaling was that of the first start.
   constexpr double kGain = 0.05;
   for (int round = 0; round < 4; ++round) {
     Whitened whitened(objective, information, theta);
     nlopt::opt search(nlopt::LN_BOBYQA, n);
     search.set_min_objective(&Whitened::call, &whitened);
     search.set_initial_step(1.0);
-    search.set_xtol_abs(0.01);  // of a standard error
-    search.set_ftol_abs(1e-3);  // of −ln L, where half a unit is what a parameter is worth
+    search.set_xtol_abs(0.01);  // standard deviations
+    search.set_ftol_abs(1e-3);  // of −ln L, where 0.5 is the cost of a parameter
     search.set_maxeval(50 * static_cast<int>(n));
     std::vector<double> unit(n, 0.0);
     double cost = best;
     try {
       search.optimize(unit, cost);
     } catch (const nlopt::roundoff_limited&) {
-      // unit holds the best point found.
+      // unit contains the best point found
     }
     std::vector<double> moved = whitened.theta(unit);
     cost = objective(moved);
@@ -105,8 +104,7 @@ Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::Mat
   for (std::size_t i = 0; i < n; ++i) {
     const auto row = static_cast<Eigen::Index>(i);
     step[i] = 0.25 / std::sqrt(information(row, row) + 1.0);
-    // A step that changes −ln L by about one half is of the size of the standard error, where the curvature
-    // is wanted.
+    // A step that changes −ln L by about 0.5 is one standard error, the right distance for the curvature.
     for (int tries = 0; tries < 14; ++tries) {
       std::vector<double> moved = theta;
       moved[i] += step[i];

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The maximum of the likelihood of the whole record, from where the spectrum says it should be; and the
-// curvature there.
+// Maximum of the record's likelihood, from a start given by the spectrum; and the curvature there.
 #pragma once
 
 #include <Eigen/Dense>
@@ -15,7 +14,7 @@ class RecordObjective {
  public:
   RecordObjective(const ModelCandidate& candidate, const LikelihoodRecord& record, double period_s)
       : candidate_(candidate), record_(record), period_s_(period_s) {}
-  // −ln L of the scaled data; a very large number where the filter has none.
+  // −ln L of the scaled data; very large if the filter is invalid.
   [[nodiscard]] double operator()(std::span<const double> theta) const;
   [[nodiscard]] const ModelCandidate& candidate() const { return candidate_; }
 
@@ -25,13 +24,13 @@ class RecordObjective {
   double period_s_;
 };
 
-// Moves theta to the optimum nearby and returns −ln L there. information: expected, at theta, for the size
-// and the direction of the first steps; with a zero row a step is one.
+// Moves theta to the local optimum and returns −ln L there. information: expected at theta, for size and
+// direction of the first steps; a zero row means a step of one.
 double find_maximum(const RecordObjective& objective, const Eigen::MatrixXd& information,
                     std::vector<double>& theta);
 
-// Inverse of the curvature of −ln L. known: false for parameters at a bound or along which the data do not
-// tell, whose rows are zero.
+// Inverse of the curvature of −ln L. known: false for parameters at a bound or undetermined by the data;
+// their rows are zero.
 Eigen::MatrixXd covariance_at(const RecordObjective& objective, const Eigen::MatrixXd& information,
                               const std::vector<double>& theta, std::vector<bool>& known);
 

@@ -34,7 +34,7 @@ class GaussMarkovTerm final : public NoiseTerm {
   }
   void add_density(std::span<const double> theta, const RecordSpectrum& spectrum,
                    std::span<double> out) const override {
-    // 1 - a is all there is of a long correlation time.
+    // avoids cancellation in 1 - a for long correlation times
     const double a = std::exp(-std::exp(-theta[1])), less = -std::expm1(-std::exp(-theta[1]));
     const double top = std::exp(theta[0]) * less * (1.0 + a);
     for (std::size_t b = 0; b < out.size(); ++b)
@@ -52,7 +52,7 @@ class GaussMarkovTerm final : public NoiseTerm {
   }
 };
 
-// Factors 1 - root B multiplied out: coefficients of B, B^2, … .
+// Coefficients of B, B^2, … in the product of the factors 1 - root B.
 std::vector<double> expanded(std::span<const std::complex<double>> roots) {
   std::vector<std::complex<double>> poly{1.0};
   for (const auto& root : roots) {
@@ -64,7 +64,7 @@ std::vector<double> expanded(std::span<const std::complex<double>> roots) {
   return out;
 }
 
-// Where the spectrum stands out of its surroundings, or anywhere.
+// A peak of the spectrum, or any frequency.
 double drawn_frequency(const RecordSpectrum& spectrum, Random& random) {
   if (between(random, 0.0, 1.0) < 0.5) return between(random, 0.0, std::numbers::pi);
   std::vector<double> height;
@@ -80,7 +80,7 @@ double drawn_frequency(const RecordSpectrum& spectrum, Random& random) {
   return spectrum.omega[std::discrete_distribution<std::size_t>(height.begin(), height.end())(random)];
 }
 
-// Real ones and pairs, inside the unit circle by a distance drawn on a logarithmic scale.
+// Real roots and pairs, at a logarithmically drawn distance inside the unit circle.
 std::vector<std::complex<double>> drawn_roots(int count, const RecordSpectrum& spectrum, double nearest,
                                               Random& random) {
   std::vector<std::complex<double>> roots;
@@ -97,7 +97,7 @@ std::vector<std::complex<double>> drawn_roots(int count, const RecordSpectrum& s
   return roots;
 }
 
-// theta: ln variance of the innovation e, atanh of p partial autocorrelations, of q of the MA part.
+// theta: ln variance of the innovation e, atanh of p partial autocorrelations and of q of the MA part.
 class ArmaTerm final : public NoiseTerm {
  public:
   ArmaTerm(int p, int q) : p_(p), q_(q) {}
@@ -156,7 +156,7 @@ class ArmaTerm final : public NoiseTerm {
   }
 
  private:
-  static constexpr double kMost = 6.0;  // atanh of a partial correlation 1e-5 from one
+  static constexpr double kMost = 6.0;  // atanh of a partial correlation of 1 - 1e-5
   static std::size_t count(int n) { return static_cast<std::size_t>(n); }
   [[nodiscard]] std::vector<double> coefficients(std::span<const double> theta) const {
     const auto part = [&](std::size_t first, int size) {
@@ -167,7 +167,7 @@ class ArmaTerm final : public NoiseTerm {
       return ar_from_partial(partial);
     };
     std::vector<double> c = part(1, p_);
-    // 1 + θ(B) is invertible when −θ are the coefficients of a stationary AR.
+    // 1 + θ(B) is invertible if −θ are the coefficients of a stationary AR.
     const std::vector<double> moving = part(1 + count(p_), q_);
     std::transform(moving.begin(), moving.end(), std::back_inserter(c), std::negate<>());
     return c;

@@ -80,7 +80,7 @@ Outcome outcome_of(const FilterSettings& settings, std::span<const std::span<con
       in.rate_radps[a] = axes[a][k];
       in.valid_axes |= 1U << a;
     }
-    // Where nothing was measured nothing is published; the next sample comes after a gap.
+    // Nothing is published without a measurement; the next sample then follows a gap.
     if (in.valid_axes != 0) {
       in.dt_s = k == 0 ? period_s : period_s * static_cast<double>(k - last);
       in.covered_s.fill(period_s);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the estimator makes of a record with given settings: the published rate against the measured one.
+// Result of the estimator on a record with given settings: published against measured rate.
 #pragma once
 
 #include <array>
@@ -15,22 +15,22 @@ inline constexpr std::array<double, 4> kOutcomeTaus{0.1, 1.0, 10.0, 100.0};  // 
 
 struct RateFigures {
   double rms_radps = 0.0;  // about the mean
-  // Overlapping Allan deviation at kOutcomeTaus; nothing: shorter than a sample or longer than a third of the
+  // Overlapping Allan deviation at kOutcomeTaus; nullopt: shorter than a sample or longer than a third of the
   // record.
   std::array<std::optional<double>, kOutcomeTaus.size()> adev_radps{};
 };
 
 struct Outcome {
   std::vector<RateFigures> before, after;  // by axis: measured, published
-  // By axis: mean square by which the published rate misses the measured one's mean over the next 1, 4, 16 …
-  // samples, as long as eight such windows fit. The level is in it: a filter that does not follow misses what
-  // comes, as does a filter that follows the noise.
+  // By axis: mean squared difference between the published rate and the mean of the next 1, 4, 16 …
+  // measurements, as long as eight such windows fit. It increases both for a filter that does not follow the
+  // level and for one that follows noise.
   std::vector<std::vector<double>> ahead;
 };
 
-// The estimator runs over all samples, and where nothing was measured there is nothing; the figures are of
-// those from `first` on. axes: rad/s, of equal length, NaN where missing, one to three. Throws
-// std::invalid_argument for settings that the estimator refuses.
+// Runs the estimator over all samples; missing samples give no output. The figures use samples from `first`
+// on. axes: rad/s, of equal length, NaN where missing, one to three. Throws std::invalid_argument for invalid
+// settings.
 Outcome outcome_of(const FilterSettings& settings, std::span<const std::span<const double>> axes,
                    double period_s, std::size_t first);
 

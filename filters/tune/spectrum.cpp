@@ -12,12 +12,12 @@ namespace ifog {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-// Bins of one ordinate up to here, then of a fiftieth of their number, never wider than a 1024th of the band.
+// Number of single-ordinate bins; wider bins have 1/50 of their index, at most 1/1024 of the band.
 constexpr std::size_t kSingle = 64;
 constexpr std::size_t kRelative = 50;
 constexpr std::size_t kAcross = 1024;
 
-// The longest length up to n that the transform is fast for: factors 2, 3, 5.
+// Largest length up to n with factors 2, 3, 5 only, for a fast transform.
 std::size_t smooth_length(std::size_t n) {
   for (;; --n) {
     std::size_t left = n;
@@ -43,8 +43,8 @@ std::vector<double> bridged(std::span<const double> values) {
   return out;
 }
 
-// Squares of the orthonormal cosine transform, by a Fourier transform of the same length: Makhoul, IEEE
-// Trans. ASSP 28 (1980).
+// Squares of the orthonormal cosine transform, by a Fourier transform of the same length (Makhoul, IEEE
+// Trans. ASSP 28, 1980).
 std::vector<double> cosine_squares(std::span<const double> values) {
   const std::size_t n = values.size();
   std::vector<double> folded(n);
@@ -96,7 +96,7 @@ RecordSpectrum spectrum_of(std::span<const std::vector<double>> axes) {
     for (std::size_t i = k; i < end; ++i) sum += mean[i];
     const auto count = static_cast<double>(end - k);
     s.omega.push_back(kPi * 0.5 * static_cast<double>(k + end - 1) / static_cast<double>(s.samples));
-    // A record of few digits can have a square of zero, of which there is no logarithm.
+    // Avoids the logarithm of zero for a record with few digits.
     s.density.push_back(std::max(sum / count, 1e-300));
     s.ordinates.push_back(count * static_cast<double>(axes.size()));
     k = end;

@@ -19,15 +19,15 @@
 namespace ifog {
 namespace {
 
-// Starts drawn for a model, by parameter beyond the level's two.
+// Random starts per parameter in addition to the level's two.
 constexpr std::size_t kDraws = 30;
-// Optima of the spectrum whose likelihood is computed on of the record, and those of them followed: the
-// two disagree by a few units, and one that is further behind than this will not win.
+// Number of the spectrum's optima whose exact likelihood is computed, and largest loss for further
+// optimisation; the two likelihoods differ by a few units.
 constexpr std::size_t kLooked = 8;
 constexpr std::size_t kFollowed = 3;
 constexpr double kFar = 30.0;
 
-// Each axis over its own scale, so that a loud one does not drown the others: one model is for all of them.
+// Axes divided by their own scales, so that all count equally.
 struct Data {
   std::vector<std::vector<double>> axes;  // scaled
   double period_s = 0.0;
@@ -71,7 +71,7 @@ Data scaled(std::span<const std::span<const double>> axes, double period_s) {
   for (const auto& axis : axes) {
     const Differences of_axis = differences(axis);
     const double own = of_axis.squares > 0.0 ? std::sqrt(of_axis.variance()) : data.scale;
-    // The level is in the model; taking the first value off only keeps digits.
+    // Subtracts the first value to keep digits; the level is in the model.
     double level = 0.0;
     for (const double v : axis)
       if (std::isfinite(v)) {
@@ -121,7 +121,7 @@ Fit fit(const ModelCandidate& candidate, const RecordSpectrum& spectrum, const R
   return best;
 }
 
-// Errors of the reported figures: their gradient with respect to theta through its covariance.
+// Errors of the reported figures: covariance of theta propagated by their gradients.
 std::vector<TunedFigure> figures_with_errors(const ModelCandidate& candidate,
                                              const std::vector<double>& theta, double scale,
                                              const Eigen::MatrixXd& covariance,
@@ -163,7 +163,7 @@ Fitted fit_model(const ModelCandidate& candidate, const Data& data, const Record
   TunedModel model;
   model.parameters = candidate.size();
   const auto count = static_cast<double>(data.samples);
-  // Back to the density of the data in rad/s, so that likelihoods can be compared with those of other programs.
+  // Density of the data in rad/s, comparable with other programs.
   model.log_likelihood = -found.cost - data.log_scales;
   model.bic = model.parameters * std::log(count) - 2.0 * model.log_likelihood;
   std::vector<bool> known;
@@ -172,12 +172,12 @@ Fitted fit_model(const ModelCandidate& candidate, const Data& data, const Record
   model.settings = candidate.settings(found.theta, data.scale);
   model.figures = figures_with_errors(candidate, found.theta, data.scale, errors, known);
   TunedFigure& walk = model.figures.front();
-  // From none to the bound is one standard deviation.
+  // The limit is one standard deviation.
   if (model.walk_is_bound) walk.std_error = walk.value;
   return {std::move(model), std::move(found.theta), std::move(found.information)};
 }
 
-// Fits the model to the first half, from where the whole record has its optimum, and judges it on the second.
+// Fits the model to the first half, starting at the optimum of the whole record, and tests it on the second.
 Outcome held_out(const ModelCandidate& candidate, const Data& data, const Fitted& fitted,
                  std::span<const std::span<const double>> axes, const LikelihoodRecord& first_half) {
   const RecordObjective objective(candidate, first_half, data.period_s);
@@ -188,9 +188,9 @@ Outcome held_out(const ModelCandidate& candidate, const Data& data, const Fitted
   return outcome_of(candidate.settings(theta, data.scale), axes, data.period_s, half);
 }
 
-// By BIC, to half a unit: the optima are found to that. A Gauss-Markov process and an AR(1) of positive
-// coefficient are one and the same at the sample times and tie; below ten samples the correlation time is no
-// more than a name for the coefficient.
+// Order by BIC, rounded to 0.5, the accuracy of the optima. A Gauss-Markov process and an AR(1) with positive
+// coefficient are equal at the samples and tie; below ten samples the correlation time is not meaningful, so
+// AR(1) is preferred.
 std::pair<double, bool> rank(const TunedModel& model, double period_s) {
   constexpr double kShort = 10.0;
   const bool only_a_name = model.settings.state == "random-walk + gauss-markov" &&
@@ -209,7 +209,7 @@ Tuning tune(std::span<const std::span<const double>> axes, double period_s, cons
   const RecordSpectrum spectrum = spectrum_of(data.axes);
   const std::size_t length = data.axes[0].size();
   const LikelihoodRecord record = record_of(data, length);
-  // The largest first, so that no thread is left with one at the end.
+  // Largest first, to balance the threads.
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), 0U);
   std::stable_sort(order.begin(), order.end(),

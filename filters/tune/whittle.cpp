@@ -23,13 +23,12 @@ class Objective {
     return std::isfinite(sum) ? 0.5 * sum : 1e300;
   }
 
-  // Gradient and expected Hessian at theta; leaves cost()'s density in place.
+  // Gradient and expected Hessian at theta; leaves the density of cost() in place.
   void local(const std::vector<double>& theta, Eigen::VectorXd& gradient, Eigen::MatrixXd& information) {
     constexpr double kStep = 1e-6;
     candidate_.density(theta, spectrum_, density_);
     const auto bins = static_cast<Eigen::Index>(density_.size());
     const auto n = static_cast<Eigen::Index>(theta.size());
-    // Derivatives of ln f.
     Eigen::MatrixXd slope(bins, n);
     std::vector<double> other = theta;
     for (Eigen::Index i = 0; i < n; ++i) {
@@ -58,12 +57,12 @@ class Objective {
   std::vector<double> density_, moved_;
 };
 
-// Fisher's scoring, damped after Marquardt: the expected Hessian is that of a nonlinear regression of the
+// Fisher scoring with Marquardt damping; the expected Hessian is that of a nonlinear regression of the
 // spectrum.
 void descend(Objective& objective, const ModelCandidate& candidate, WhittleOptimum& at) {
   constexpr int kMostSteps = 60;
   constexpr double kEnough = 1e-3;  // of −ln L
-  constexpr double kLongest = 2.0;  // step in a logarithm
+  constexpr double kLongest = 2.0;  // largest step in a logarithm
   const auto n = static_cast<Eigen::Index>(at.theta.size());
   std::vector<double> low(at.theta.size()), high(low);
   candidate.bounds(low, high);
@@ -75,7 +74,7 @@ void descend(Objective& objective, const ModelCandidate& candidate, WhittleOptim
     objective.local(at.theta, gradient, information);
     for (Eigen::Index i = 0; i < n; ++i) {
       const auto p = static_cast<std::size_t>(i);
-      // A parameter held by its bound takes no part.
+      // parameters at a bound are fixed
       const bool held =
           (at.theta[p] <= low[p] && gradient(i) > 0.0) || (at.theta[p] >= high[p] && gradient(i) < 0.0);
       if (!held) continue;
