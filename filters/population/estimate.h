@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// One gyro's value of a parameter, as its captures tell it.
+// Estimate of a parameter from one gyro's captures.
 #pragma once
 
 namespace ifog {
 
 struct Estimate {
   double value = 0.0;
-  double std_error = 0.0;  // above zero
+  double std_error = 0.0;  // > 0
 };
 
 }  // namespace ifog

@@ -10,10 +10,9 @@
 namespace ifog {
 namespace {
 
-// The errors of single gyros are estimated, and of slow noise a record has few independent pieces, so that
-// chance may exceed a level oftener than a normal distribution says. Of 140 simulated gyros without the
-// effect 1.4 % were beyond the chance of 1 %, 5.0 % beyond 5 %, 10.7 % beyond 10 %
-// (tests/bench/fleet/results.md).
+// Factor of the chance level. Errors of single gyros are estimates, and slow noise has few independent
+// pieces. Of 140 simulated gyros without the effect 1.4 % were beyond the 1 % level, 5.0 % beyond 5 %, 10.7 %
+// beyond 10 % (tests/bench/fleet/results.md).
 constexpr double kCare = 2.0;
 
 void fill_in_means(TypeEffect& effect) {
@@ -22,8 +21,7 @@ void fill_in_means(TypeEffect& effect) {
   effect.effect.parameters.front().std_error = effect.prior.mean_std_error;
 }
 
-// Members that have the effect by this prior, and stand out of those that do: one such would be the spread
-// of all.
+// Members that have the effect but are outliers among those; one of them would dominate the spread.
 std::vector<bool> standing_apart(std::span<const Estimate> estimates, const TypePrior& prior) {
   std::vector<double> having;
   for (const Estimate& each : estimates)
@@ -62,7 +60,7 @@ void judge(TypeEffect& effect, double level) {
   fill_in_means(effect);
   for (std::size_t i = 0, of_typical = 0; i < estimates.size(); ++i) {
     EffectInGyro& each = *measured[i];
-    // Who stands out is of the type by so wide a spread only: the others' would pull it to their mean.
+    // An outlier belongs to the type only with a wide spread; the others' prior would shift it to their mean.
     each.others = apart[i] ? with_all : without_member(typical, of_typical++, effect.prior);
     each.probability = probability(each.others, estimates[i]);
     each.chance = chance_without(each.others, estimates[i]);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A type of gyro as its members show it: the effects it has, how its parameters are spread, who stands out.
-// Data, and the judgement of one effect.
+// Statistics of a type of gyro: its effects, the spread of its parameters, outliers; and the decision on one
+// effect.
 #pragma once
 
 #include <cstddef>
@@ -15,41 +15,41 @@
 
 namespace ifog {
 
-// Fewer say nothing of a type.
+// Fewer members give no statistics.
 inline constexpr std::size_t kFewestOfType = 5;
 
-// One of the type's effects in one gyro.
+// One effect of the type in one gyro.
 struct EffectInGyro {
   std::size_t gyro = 0;
-  std::optional<Estimate> own;    // by its captures alone
-  std::string not_measured;       // why there is none
-  double likelihood_ratio = 0.0;  // twice the log-likelihood its captures lose without it
+  std::optional<Estimate> own;    // from its captures alone
+  std::string not_measured;       // reason if there is no estimate
+  double likelihood_ratio = 0.0;  // loss of twice the log-likelihood without it
   bool found_alone = false;       // its own diagnosis found it
-  TypePrior others;               // what the other gyros say of it
-  double probability = 0.0;       // that it has the effect
-  double chance = 1.0;            // that a gyro without it shows as much
+  TypePrior others;               // prior from the other gyros
+  double probability = 0.0;       // posterior probability of the effect
+  double chance = 1.0;            // probability that a gyro without it shows as much
   bool found = false;
-  std::optional<Estimate> with_prior;  // where found: what its captures and the type say together
+  std::optional<Estimate> with_prior;  // posterior estimate, if found
 };
 
 struct TypeEffect {
-  Effect effect;                // its coefficient the mean of those that have it, with the error of that
+  Effect effect;                // its coefficient is the mean of those that have it, with standard error
   std::size_t found_alone = 0;  // gyros
   std::size_t found = 0;        // gyros
-  TypePrior prior;              // of those that do not stand out
-  std::size_t set_aside = 0;    // gyros that have the effect and stand out of those that have it
-  RandomEffects all;            // of all gyros, with the effect or without
+  TypePrior prior;              // of the gyros that are no outliers
+  std::size_t set_aside = 0;    // number of outliers among those that have the effect
+  RandomEffects all;            // of all gyros, with or without the effect
   std::vector<EffectInGyro> gyros;
 };
 
-// Something that every gyro has a value of.
+// A parameter that every gyro has.
 struct PopulationParameter {
   std::string name, axis, unit;  // "N", "" or "y", SI
-  bool logarithmic = false;      // spread, and what stands out, by the logarithm
+  bool logarithmic = false;      // spread and outliers are of the logarithm
   std::vector<std::size_t> gyros;
-  std::vector<Estimate> values;  // of those; the error zero where there is none
-  std::vector<double> z;         // robust, of each
-  RobustSpread robust;           // of the logarithm where that is meant
+  std::vector<Estimate> values;  // of these gyros; error zero if unknown
+  std::vector<double> z;         // robust z of each
+  RobustSpread robust;           // of the logarithm if `logarithmic`
   std::optional<RandomEffects> spread;
 };
 
@@ -69,24 +69,24 @@ struct Population {
   std::vector<Failure> failed;
   std::vector<TypeEffect> effects;
   std::vector<PopulationParameter> parameters;
-  std::vector<StandingOut> standing_out;  // the farthest first
-  std::vector<FoundInGyro> own;           // effects that only single gyros have
+  std::vector<StandingOut> standing_out;  // largest first
+  std::vector<FoundInGyro> own;           // effects of single gyros only
   std::vector<std::string> remarks;
 };
 
-// Fills in everything but with_prior from effect.gyros' own estimates: the type's prior, and for each gyro
-// what the others and its captures say. A gyro has the effect when one without it would show as much with a
-// chance of no more than `level`, and having it is the likelier. Estimates fewer than two: nothing is found.
+// Sets everything except with_prior from the gyros' own estimates: the type's prior and each gyro's result. A
+// gyro has the effect if one without it would show as much with probability `level` at most, and if having it
+// is more likely. With fewer than two estimates nothing is found.
 void judge(TypeEffect& effect, double level);
 
-// Whether so many gyros would show this if none had it: chi-square of the prior's three numbers, twice the
-// log-likelihood as `prior` has it.
+// True if chance does not explain the effect's frequency: chi-square with the prior's three parameters, for
+// its likelihood ratio.
 bool is_of_type(const TypePrior& prior, double level);
 
-// z, robust spread and, where errors are known, random effects of a parameter from its values.
+// Sets z, robust spread and, if errors are known, random effects of a parameter.
 void describe(PopulationParameter& parameter);
 
-// Those among described parameters that stand out.
+// Outliers among described parameters.
 std::vector<StandingOut> standing_out(const std::vector<PopulationParameter>& parameters);
 
 }  // namespace ifog

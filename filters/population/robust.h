@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who stands out of a population, by measures that those who do cannot move.
+// Robust detection of outliers in a population.
 #pragma once
 
 #include <span>
@@ -7,20 +7,20 @@
 
 namespace ifog {
 
-// Beyond this a member stands out (Iglewicz and Hoaglin, How to Detect and Handle Outliers, 1993).
+// Limit of robust z (Iglewicz and Hoaglin, How to Detect and Handle Outliers, 1993).
 inline constexpr double kStandsOut = 3.5;
 
 struct RobustSpread {
   double median = 0.0;
-  double sigma = 0.0;  // 1.4826 times the median distance from it: a normal distribution's deviation
+  double sigma = 0.0;  // 1.4826 times the median absolute deviation
 };
 
-// NaNs are ignored. Nothing finite: zeros.
+// NaNs are ignored; zeros if nothing is finite.
 RobustSpread robust_spread(std::span<const double> values);
 
-// Distance from the median over what a member's distance may be: the population's sigma, and where its own
-// error of measurement (`errors`, as many, or none) is larger than a typical one, that in a typical one's
-// place. NaN where the value is none; zero everywhere when more than half of the values are the same.
+// Distance from the median / its expected size: the population's sigma, increased if the member's measurement
+// error (`errors`, as many, or none) is above the median one. NaN for NaN; all zero if more than half of the
+// values are equal.
 std::vector<double> robust_z(std::span<const double> values, std::span<const double> errors = {});
 
 }  // namespace ifog

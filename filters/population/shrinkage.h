@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Coefficients that were fitted together, some of which the population knows something of: what it says of
-// one moves those that are correlated with it.
+// Jointly fitted coefficients, some with a prior: a prior also shifts the coefficients that are correlated.
 #pragma once
 
 #include <Eigen/Dense>
@@ -11,9 +10,9 @@
 namespace ifog {
 
 struct KnownCoefficient {
-  Eigen::Index at = 0;  // among the coefficients
-  bool has = false;     // false: this member does not have the effect, its coefficient is zero
-  TypePrior prior;      // of those that have it
+  Eigen::Index at = 0;  // index of the coefficient
+  bool has = false;     // false: this member does not have the effect; coefficient zero
+  TypePrior prior;      // of the members that have it
 };
 
 struct JointEstimate {
@@ -21,8 +20,8 @@ struct JointEstimate {
   Eigen::MatrixXd covariance;
 };
 
-// Normal estimates and normal priors: the conditional expectation and its covariance, with the error of the
-// type's mean carried along. Each place at most once.
+// Conditional expectation and covariance for normal estimates and priors, including the error of the type's
+// mean. Each index at most once.
 JointEstimate shrunk_together(const JointEstimate& own, std::span<const KnownCoefficient> known);
 
 }  // namespace ifog

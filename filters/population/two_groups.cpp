@@ -13,17 +13,17 @@ namespace ifog {
 namespace {
 
 constexpr int kMostRounds = 2000;
-constexpr int kRoundsWithout = 200;  // from the fit of all, which one member hardly moves
+constexpr int kRoundsWithout = 200;  // starting at the fit of all, which one member hardly changes
 constexpr double kSettled = 1e-8;    // change of the log-likelihood
 constexpr double kSettledWithout = 1e-5;
-// One member for and one against the effect, so that neither group is ever ruled out.
+// Prior: one member with and one without the effect, so neither group is excluded.
 constexpr double kBeforehand = 1.0;
-constexpr double kFewestHaving = 3.0;  // members with the effect, from which a spread can be expected
-constexpr std::size_t kSpreads = 60;   // tried
+constexpr double kFewestHaving = 3.0;  // fewest members with the effect for an expected spread
+constexpr std::size_t kSpreads = 60;   // number tried
 
 double square(double x) { return x * x; }
 
-// Logarithm of the ratio of the likelihoods with and without the effect.
+// Log-likelihood ratio with and without the effect.
 double log_ratio(const TypePrior& prior, const Estimate& estimate) {
   const double own = square(estimate.std_error);
   const double all = own + square(prior.spread);
@@ -37,7 +37,7 @@ double log_sum(const TypePrior& prior, double ratio) {
   return most + std::log(std::exp(with - most) + std::exp(without - most));
 }
 
-// Log likelihood of the members without `left_out`, relative to that of nobody having it.
+// Log-likelihood without member `left_out`, relative to that without the effect.
 double log_likelihood(const TypePrior& prior, std::span<const Estimate> estimates, std::size_t left_out) {
   double sum = 0.0;
   for (std::size_t i = 0; i < estimates.size(); ++i)
@@ -89,7 +89,7 @@ TypePrior climbed(TypePrior prior, std::span<const Estimate> estimates, std::siz
   return prior;
 }
 
-// Restricted log-likelihood of a spread, each member counted by its probability to have the effect.
+// Restricted log-likelihood of a spread; members weighted by their probability of the effect.
 double restricted(double spread, std::span<const Estimate> estimates, const std::vector<double>& weight) {
   double information = 0.0, weighted = 0.0;
   for (std::size_t i = 0; i < estimates.size(); ++i) {
@@ -117,7 +117,7 @@ TypePrior with_expected_spread(TypePrior prior, std::span<const Estimate> estima
     errors += weight[i] * square(estimates[i].std_error);
   }
   if (having < kFewestHaving) return prior;
-  // To where nobody's own error counts any more; beyond it the likelihood falls as a power of the spread.
+  // Beyond, single errors are negligible and the likelihood falls as a power of the spread.
   const double most = 4.0 * (prior.spread + std::sqrt(errors / having));
   std::array<double, kSpreads> likelihood{};
   for (std::size_t k = 0; k < kSpreads; ++k)
@@ -148,7 +148,7 @@ TypePrior likeliest_two_groups(std::span<const Estimate> estimates) {
     if (std::abs(each.value) > std::abs(largest)) largest = each.value;
   double error = 0.0;
   for (const Estimate& each : estimates) error += each.std_error / static_cast<double>(estimates.size());
-  // The likelihood has more than one top: everybody alike, a few that are far out, either sign.
+  // The likelihood has several maxima: all alike, a few outliers, either sign.
   const auto start_at = [](double share, double mean, double spread) {
     TypePrior start;
     start.share = share;
@@ -186,8 +186,8 @@ double probability(const TypePrior& prior, const Estimate& estimate) {
 }
 
 double chance_without(const TypePrior& prior, const Estimate& estimate) {
-  // The ratio of the likelihoods is a parabola in the estimate; it is as large outside an interval about its
-  // lowest point, and where there is no spread on one side of a line.
+  // The likelihood ratio is a parabola of the estimate, so it is as large outside an interval about its
+  // minimum, or, without spread, on one side of a line.
   const double own = square(estimate.std_error), type = square(prior.spread);
   const double sign = prior.mean < 0.0 ? -1.0 : 1.0;
   if (type < 1e-12 * own) return normal_above(sign * estimate.value / estimate.std_error);

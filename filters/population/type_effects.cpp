@@ -16,12 +16,12 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kMostForms = 4;
-constexpr double kOftenTogether = 0.25;  // of the gyros that show the rarer of two forms
+constexpr double kOftenTogether = 0.25;  // share of the gyros that show the rarer of two forms
 
 bool can_be_of_a_type(const Effect& effect) {
   const std::optional<Form> form = form_named(effect.form);
   if (!form || effect.shown_only || describes_noise(*form) || !carries_over(*form)) return false;
-  // What ages does so at a slope of its own, and where a transition is belongs to one coil.
+  // Ageing and transitions are individual to each coil.
   return *form != Form::kLookup && *form != Form::kRebuiltRamp && *form != Form::kEarthRate &&
          *form != Form::kRateRamp && *form != Form::kTransition && *form != Form::kBias;
 }
@@ -40,8 +40,8 @@ bool same_form(const Effect& a, const Effect& b) {
 
 struct FormFound {
   Effect effect;                                       // of the first gyro
-  std::set<std::size_t> gyros;                         // that show it
-  std::map<std::string, std::vector<double>> further;  // parameters but the coefficient
+  std::set<std::size_t> gyros;                         // gyros that show it
+  std::map<std::string, std::vector<double>> further;  // parameters except the coefficient
 };
 
 std::vector<FormFound> by_form(std::span<const FoundInGyro> found) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what single gyros show to the effects that their type may have, to be measured on all of them.
+// Effects of a type to be measured on all gyros, selected from the effects of single gyros.
 #pragma once
 
 #include <cstddef>
@@ -12,27 +12,27 @@ namespace ifog {
 
 struct FoundInGyro {
   std::size_t gyro = 0;
-  Effect effect;  // as its own diagnosis wrote it
+  Effect effect;  // as written by its own diagnosis
 };
 
-// One effect of the type, under each form that it was found in: what is a lag in one gyro is linear in
-// another, where the noise hides the difference. The form most gyros took it for comes first.
+// One effect of the type, in each form in which it was found (e.g. lagged in one gyro, linear in another
+// because of noise). The most frequent form is first.
 struct TypeCandidate {
-  std::vector<Effect> forms;  // coefficient zero; time constants: the median of those found
-  std::size_t found_in = 0;   // gyros that show one of them by themselves
+  std::vector<Effect> forms;  // coefficient zero; time constants: medians
+  std::size_t found_in = 0;   // number of gyros with one of the forms
 };
 
-// The least number of gyros that chance makes show something wrong no oftener than once in 1 / chance such
-// populations, when it makes one gyro do so with that chance.
+// Smallest number of gyros with the same false effect that chance reaches in at most `chance` of all
+// populations, if each gyro has it with that probability.
 std::size_t least_repeats(std::size_t gyros, double chance);
 
-// Effects that more gyros show than false alarms at this significance explain, the most frequent first.
-// Forms of one channel (or pair of channels) on one axis stand for each other, unless gyros show both at once
-// again and again. Only what a correction of the next capture can use: no events, lines or tables.
+// Effects that more gyros show than false alarms at this significance explain, most frequent first. Forms of
+// one channel (or pair) on one axis are one effect, unless gyros repeatedly show both. Only effects that can
+// be corrected in the next capture: no events, lines or tables.
 std::vector<TypeCandidate> type_candidates(std::span<const FoundInGyro> found, std::size_t gyros,
                                            double significance);
 
-// Whether a gyro's own effect is this one, under whichever form.
+// True if a gyro's effect is this one, in any form.
 bool is_of(const TypeCandidate& candidate, const Effect& effect);
 
 }  // namespace ifog
