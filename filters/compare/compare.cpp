@@ -16,22 +16,22 @@ namespace {
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 constexpr std::size_t kStepPlaces = 9;       // odd, so that the median is one of them
-constexpr std::size_t kStepRunUp = 2000;     // samples for the rule to settle before the step
-constexpr std::size_t kStepWindow = 4000;    // samples looked at after it
+constexpr std::size_t kStepRunUp = 2000;     // samples before the step, for the rule to settle
+constexpr std::size_t kStepWindow = 4000;    // samples examined after the step
 constexpr double kMedianSquare = 0.4549364;  // of a standard normal
 constexpr int kLongestLag = 2000;            // samples
-constexpr std::size_t kLeastAtRest = 40;     // what whiteness() asks for
+constexpr std::size_t kLeastAtRest = 40;     // required by whiteness()
 
 struct Series {
   std::vector<Samples> denoised;
-  // Missing in manoeuvres and where a measurement was kept out.
+  // NaN in manoeuvres and for rejected measurements.
   std::vector<Samples> innovation, nis;
   std::size_t at_rest = 0;  // samples
 };
 
 struct Steps {
   Samples dt_s;       // between samples; the first is the nominal period
-  Samples covered_s;  // the sample's own share of it: a gap's time is not its
+  Samples covered_s;  // measured time of the sample, without gaps
 };
 
 Steps step_times(const ComparisonInput& in) {
@@ -83,8 +83,8 @@ Series run(const ComparisonInput& in, const Steps& steps, const FilterSettings& 
   return out;
 }
 
-// The step is the difference between two runs over the same samples, with and without it: what the noise does
-// cancels as far as the rule is linear, and what remains is how the rule answers a real change of rate.
+// Difference of two runs over the same samples with and without the step: noise cancels as far as the rule is
+// linear.
 std::optional<double> step_samples(const ComparisonInput& in, const Steps& steps,
                                    const FilterSettings& settings, std::size_t place, std::size_t axis,
                                    double size) {

@@ -23,9 +23,8 @@ double spread(std::span<const double> values) {
 
 namespace {
 
-// Variance of output[k] − reference[k − shift] over the places where both are there, or over every stride-th
-// of them in a long record: thousands of shifts are tried, and a fraction of the places tells them apart as
-// well.
+// Variance of output[k] − reference[k − shift] over the places where both exist, or every stride-th of them
+// in a long record: thousands of shifts are tried, and a fraction of the places suffices.
 double misfit(std::span<const double> output, std::span<const double> reference, int shift, int margin) {
   double mean = 0.0;
   double sum = 0.0;
@@ -42,13 +41,13 @@ double misfit(std::span<const double> output, std::span<const double> reference,
   return n == 0 ? std::numeric_limits<double>::infinity() : sum / static_cast<double>(n);
 }
 
-// Where the misfit of the shifts about none is smallest, in samples: of dips that are all but as deep, as a
-// turntable's programme has when it repeats, the one nearest to no shift.
+// Shift with the smallest misfit, in samples; of nearly equal minima (a turntable with a periodic programme)
+// the one nearest to zero.
 std::optional<double> nearest_dip(const std::vector<double>& at) {
   constexpr double kAsDeep = 0.05;  // of the way from the smallest to the largest
   const double best = *std::min_element(at.begin(), at.end());
   const double worst = *std::max_element(at.begin(), at.end());
-  // A reference at rest fits at any shift. Asking for 5 % keeps the figure to records that show the lag.
+  // A reference at rest fits at any shift, so a contrast of 5 % is required.
   if (worst < 1.05 * best) return std::nullopt;
   const std::ptrdiff_t none = std::ssize(at) / 2;
   std::optional<std::ptrdiff_t> dip;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single figures of a comparison, each a function of plain series. NaN entries are ignored.
+// Figures of a comparison as functions of plain series. NaN entries are ignored.
 #pragma once
 
 #include <optional>
@@ -12,22 +12,21 @@ namespace ifog {
 [[nodiscard]] double spread(std::span<const double> values);
 
 struct AgainstReference {
-  std::optional<double> rmse;  // root mean square of output − reference; nothing where one is always missing
-  std::optional<double> bias;  // mean of output − reference
-  std::optional<double>
-      lag_s;  // how far the output trails; nothing when the reference does not move enough to tell
+  std::optional<double> rmse;   // root mean square of output − reference; nullopt if one is always missing
+  std::optional<double> bias;   // mean of output − reference
+  std::optional<double> lag_s;  // delay of the output; nullopt if the reference does not move enough
 };
 
-// The lag is the shift in whole samples, up to `longest_samples`, that makes the spread of output − shifted
-// reference smallest, refined by the parabola through its neighbours; of several that are all but as good the
-// nearest to none.
+// The lag is the shift in samples, at most `longest_samples`, with the smallest spread of output − shifted
+// reference, refined by a parabola through its neighbours. Of nearly equal minima the one nearest to zero is
+// used.
 [[nodiscard]] AgainstReference against_reference(std::span<const double> output,
                                                  std::span<const double> reference, double period_s,
                                                  int longest_samples);
 
 struct HeadingClosure {
   double end_rad = 0.0;  // ∫(output − measured)dt over the whole record
-  double max_rad = 0.0;  // its largest excursion from zero
+  double max_rad = 0.0;  // its largest magnitude
 };
 [[nodiscard]] HeadingClosure heading_closure(std::span<const double> output, std::span<const double> measured,
                                              std::span<const double> dt_s);
@@ -38,7 +37,7 @@ struct Whiteness {
 };
 [[nodiscard]] Whiteness whiteness(std::span<const double> innovations);
 
-// Middle value; nothing when more than half are missing, for then the median is not known either.
+// Median; nullopt if more than half of the values are missing.
 [[nodiscard]] std::optional<double> median_reached(const std::vector<std::optional<double>>& values);
 
 }  // namespace ifog

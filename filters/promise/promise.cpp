@@ -21,14 +21,14 @@ struct Sums {
   double xx = 0.0, xy = 0.0, yy = 0.0, log_variance = 0.0, count = 0.0;
 };
 
-// A sample of both series, and the steps since the one before: 0 where the level is anybody's guess.
+// A sample of both series, and the steps since the one before; 0 if the level is unknown.
 struct Pair {
   double e = 0.0, d = 0.0;
   double steps = 0.0;
 };
 
 std::vector<Pair> usable(const CorrectionTrial& trial, double period_s) {
-  // A level is followed over a hole this long, not over hours.
+  // longest gap over which the level is predicted
   constexpr double kLongestHole_s = 60.0;
   std::vector<Pair> out;
   for (const Stretch& stretch : trial.at_rest) {
@@ -47,7 +47,7 @@ std::vector<Pair> usable(const CorrectionTrial& trial, double period_s) {
   return out;
 }
 
-// Innovations of one local level with variance 1 of the noise and `ratio` of its steps, summed by chapter.
+// Innovations of a local level with noise variance 1 and step variance `ratio`, summed by chapter.
 std::array<Sums, kChapters> innovations(const std::vector<Pair>& pairs, double ratio) {
   std::array<Sums, kChapters> out{};
   double level_e = 0.0, level_d = 0.0, variance = 0.0;
@@ -87,7 +87,7 @@ Sums in_all(const std::array<Sums, kChapters>& chapters) {
   return out;
 }
 
-// Log likelihood at the best share and the best scale, but for a constant.
+// Log-likelihood at the best share and scale, except for a constant.
 double likelihood(const Sums& sums) {
   const double left = sums.yy - (sums.xx > 0.0 ? sums.xy * sums.xy / sums.xx : 0.0);
   if (!(left > 0.0)) return std::numeric_limits<double>::infinity();
@@ -158,7 +158,7 @@ PromiseKept weigh_promise(const CorrectionTrial& trial) {
   const std::array<Sums, kChapters> chapters = innovations(pairs, out.walk_ratio);
   const Sums sums = in_all(chapters);
   out.share_error = std::numeric_limits<double>::infinity();
-  // What is no more than the rounding of e does not move.
+  // d is constant except for the rounding of e.
   if (sums.xx > kRounding * kRounding * sums.yy) {
     out.share = sums.xy / sums.xx;
     double scatter = 0.0, chapters_used = 0.0;
@@ -167,7 +167,7 @@ PromiseKept weigh_promise(const CorrectionTrial& trial) {
       scatter += score * score;
       if (each.xx > 0.0) chapters_used += 1.0;
     }
-    // As few chapters may be alike by chance, no smaller than white innovations of this scatter give.
+    // Few chapters may agree by chance, so the error is at least that of white innovations.
     const double left = std::max(0.0, sums.yy - sums.xy * out.share);
     const double white = left / sums.count * sums.xx;
     if (chapters_used > 1.0) scatter *= chapters_used / (chapters_used - 1.0);
@@ -183,7 +183,7 @@ PromiseKept weigh_promise(const CorrectionTrial& trial) {
 
 PromiseVerdict verdict(const PromiseKept& kept) {
   constexpr double kNoGain = 0.5;
-  // A share off by so much leaves a hundredth of the variance that was to go: less than any promise is known.
+  // a share error that leaves 1 % of the corrected variance
   constexpr double kAsGoodAs = 0.1;
   const double sure = kSurely * kept.share_error;
   if (kept.share - sure > kNoGain)

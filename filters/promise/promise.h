@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a change of a sensor's correction keeps what was promised of it, on data that it was not fitted on.
+// Test on other data whether a change of a sensor's correction achieves what was predicted.
 //
-// The old model's error e holds what the new one corrects, d (old corrected rate less new corrected rate),
-// some number of times: e = bias + share * d + noise. As promised the share is 1; where the new model
-// corrects what is not there it is 0. Up to 0.5 the new model leaves no less than the old one.
+// The old model's error is e = bias + share * d + noise, where d is the old minus the new corrected rate. The
+// share is 1 if the change works as predicted and 0 if it corrects something that is not there; below 0.5 the
+// new model is worse than the old one.
 //
-// The noise is slow as well as white, so share is estimated in the innovations of a local level: both series
-// through one Kalman filter with a diffuse start, which takes the bias out (generalised least squares; A. C.
-// Harvey, "Forecasting, Structural Time Series Models and the Kalman Filter", 1989, section 3.4). The ratio
-// of walk to noise is that of greatest likelihood without d. The error of the share is not that of
-// white innovations, which real ones are not, but from the scatter of its parts between chapters of the data
-// (the sandwich of H. White, Econometrica 48, 1980).
+// The noise has a slow part, so the share is estimated in the innovations of a local level model with diffuse
+// start, which removes the bias (generalised least squares; A. C. Harvey, "Forecasting, Structural Time
+// Series Models and the Kalman Filter", 1989, section 3.4). The ratio of walk to noise maximises the
+// likelihood without d. The standard error is from the scatter between chapters of the data (sandwich
+// estimator, H. White, Econometrica 48, 1980), because real innovations are not white.
 #pragma once
 
 #include <cstddef>
@@ -21,15 +20,15 @@
 
 namespace ifog {
 
-// All as long as time_s; NaN: missing.
+// All as long as time_s; NaN if missing.
 struct CorrectionTrial {
   std::span<const double> time_s;        // increasing, s
   std::span<const double> before_radps;  // corrected by the old model
-  std::span<const double> after_radps;   // by the new one
-  std::span<const Stretch> at_rest;      // samples that count, in order
+  std::span<const double> after_radps;   // corrected by the new model
+  std::span<const Stretch> at_rest;      // samples to be used, in order
 };
 
-// Root mean square of means over averaging_s, about the mean of them all.
+// RMS of means over averaging_s, about their common mean.
 struct ErrorOfMeans {
   double averaging_s = 0.0;
   std::size_t means = 0;
@@ -37,23 +36,23 @@ struct ErrorOfMeans {
 };
 
 struct PromiseKept {
-  double seconds = 0.0;                   // of data
-  double share = 0.0, share_error = 0.0;  // share_error infinite: d does not move here
-  double walk_ratio = 0.0;                // of the level's growth in a sample to the noise, variances
-  std::vector<ErrorOfMeans> errors;       // of 1, 10 and 100 s where there are eight such means
+  double seconds = 0.0;                   // duration of the data
+  double share = 0.0, share_error = 0.0;  // share_error is infinite if d does not vary
+  double walk_ratio = 0.0;                // variance of the level's step per sample / noise variance
+  std::vector<ErrorOfMeans> errors;       // for 1, 10 and 100 s if there are eight means
 };
 
 enum class PromiseVerdict {
-  kept,     // share is surely more than 0.5, and 1 is possible or nearer than 0.1
-  in_part,  // surely more than 0.5, and surely not 1
-  broken,   // surely less than 0.5: the old model was better
-  open,     // the data do not tell
+  kept,     // share is certainly above 0.5, and 1 is possible or within 0.1
+  in_part,  // certainly above 0.5 and not 1
+  broken,   // certainly below 0.5: the old model was better
+  open,     // undecided
 };
 
 // Throws std::invalid_argument: series of unequal length, fewer than 100 samples at rest.
 [[nodiscard]] PromiseKept weigh_promise(const CorrectionTrial& trial);
 
-// Surely: three standard errors.
+// Certainly: by three standard errors.
 [[nodiscard]] PromiseVerdict verdict(const PromiseKept& kept);
 
 }  // namespace ifog

@@ -12,11 +12,10 @@ namespace {
 
 constexpr std::size_t kMostMeans = std::size_t{1} << 14U;
 constexpr std::size_t kFewestAtRest = 100;
-constexpr double kAtRest =
-    1e-3;  // rad/s, as in rest.h: of a sensor at rest the means are within such a range
+constexpr double kAtRest = 1e-3;  // rad/s, as in rest.h: largest range of the means at rest
 constexpr double kFewAway = 0.005;
 
-// But for a few at either end.
+// Range without a few values at either end.
 double range_of(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (values.empty()) return 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A correction weighed in one pass over a record of any length, by means of some thousand stretches of it:
-// what is slow shows in them, and that is what a model corrects.
+// Tests a correction in one pass over a record of any length, by means over some thousand stretches. They
+// show slow effects, which a model corrects.
 #pragma once
 
 #include <cstddef>
@@ -22,11 +22,11 @@ class RunningTrial {
  public:
   explicit RunningTrial(std::size_t axes) : means_(axes) {}
 
-  // One sample: rates by axis as measured and as corrected, rad/s; NaN: missing. A time before the first is
-  // dropped.
+  // Adds one sample: rates by axis as measured and as corrected, rad/s; NaN if missing. Times before the
+  // first one are dropped.
   void add(double time_s, std::span<const double> before_radps, std::span<const double> after_radps);
-  // Nothing where the correction does not move, the sensor turned, or rested for fewer than 100 of the
-  // stretches: a rotation correlated with the correction would be mistaken for it.
+  // nullopt if the correction does not vary, or the sensor turned or was at rest for fewer than 100
+  // stretches: rotation correlated with the correction would be mistaken for an error.
   [[nodiscard]] std::optional<ShareThere> weigh(std::size_t axis) const;
 
  private:
@@ -35,7 +35,7 @@ class RunningTrial {
   };
   void widen();
 
-  double stretch_s_ = 1.0;  // of a mean; doubled whenever there are too many
+  double stretch_s_ = 1.0;  // averaging time; doubled if there are too many
   double first_s_ = std::numeric_limits<double>::quiet_NaN();
   std::vector<std::vector<Sums>> means_;  // by axis
 };
