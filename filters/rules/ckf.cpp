@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The conventional Kalman filter: C = h'P h + R, whatever the innovations say.
+// Conventional Kalman filter: C = h'P h + R.
 #include "filters/rules/rule.h"
 
 namespace ifog {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Innovation-based adaptive estimation: C is the plain average of the last N squared innovations. Mehra, IEEE
-// Trans. AC 15(2), 1970; Mohamed and Schwarz, J. Geodesy 73, 1999. R only; Q is not identifiable together with it.
+// Innovation-based adaptive estimation: C is the mean of the last N squared innovations. Mehra, IEEE Trans.
+// AC 15(2), 1970; Mohamed and Schwarz, J. Geodesy 73, 1999. R only, as Q is not identifiable with it.
 #include "filters/rules/rule.h"
 #include "filters/rules/window.h"
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Innovation-based random weighting estimation with adaptive Kalman filter gain correction: C is the average
-// of the last N squared innovations, the current one included, under random weights. Narasimhappa et al.,
-// section 3.2; the form of the gain follows Yang et al., Sensors 2015 15(10):26940 and Song et al., Appl.
-// Opt. 2019 58(35):9505.
+// Innovation-based random weighting estimation with adaptive Kalman filter gain correction: C is the randomly
+// weighted mean of the last N squared innovations, including the current one. Narasimhappa et al., section
+// 3.2; form of the gain: Yang et al., Sensors 2015 15(10):26940 and Song et al., Appl. Opt. 2019 58(35):9505.
 //
-// Weights e_i / sum e, e_i ~ Exp(1), are Dirichlet(1, …, 1): mean 1/N, var (N-1)/(N^2 (N+1)). The average of
-// one draw has the plain window's mean and 2N/(N+1) times its variance. `fresh` draws all N at every step.
-// `kept` lets each innovation keep its e_i while it stays in the window: the same law at each step, one draw
-// a step, and a covariance that moves smoothly instead of jumping. `uniform` takes e_i ~ U(0, 1), the other
-// reading of "randomly generated in the range [0, 1]".
+// Weights e_i / sum e, e_i ~ Exp(1), are Dirichlet(1, …, 1): mean 1/N, variance (N-1)/(N^2 (N+1)). One draw
+// has the plain window's mean and 2N/(N+1) times its variance. `fresh` draws all N weights at every step.
+// `kept` lets each innovation keep its e_i in the window: the same distribution, one draw per step, and a
+// smooth covariance. `uniform` uses e_i ~ U(0, 1), the other interpretation of "randomly generated in the
+// range [0, 1]".
 #include <array>
 #include <cmath>
 
@@ -96,7 +95,7 @@ class IrweAkfg final : public Rule {
     double sum = 0.0;
     for (std::size_t b = 0; b < draws_; ++b) {
       deviates_.fill(sequence, static_cast<std::uint32_t>(b), scratch_);
-      // Four sums side by side: they do not wait for one another, and their order is fixed.
+      // Four parallel sums in a fixed order.
       std::array<double, 4> weights{}, weighted{};
       std::size_t i = 0;
       for (; i + 4 <= window_; i += 4) {
@@ -123,11 +122,11 @@ class IrweAkfg final : public Rule {
   std::size_t window_, draws_;
   bool fresh_;
   DeviateStream deviates_;
-  std::vector<double> squares_;  // ring of the mean squared innovation over axes, at the nominal period
-  std::vector<double> kept_;     // [draw][place in the ring]
+  std::vector<double> squares_;  // ring of the innovations' mean square over axes, at the nominal period
+  std::vector<double> kept_;     // [draw][index in the ring]
   std::vector<double> scratch_;
-  // Of the window, by draw, and of this round of the ring alone: at its end that is the window, and it replaces the
-  // running sums, so that rounding cannot gather in them.
+  // Of the window, by draw, and of this round of the ring. After a round the latter replaces the former, so
+  // rounding errors do not accumulate.
   struct Sums {
     double weight = 0.0, weighted = 0.0, round_weight = 0.0, round_weighted = 0.0;
   };

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Multiple-model adaptive estimation: a bank of filters over factors on Q and R, their outputs averaged under
-// their posterior probabilities. Magill, IEEE Trans. AC 10(4), 1965. The probabilities have a lower bound, so
-// that a model that has been wrong for long can become right (Maybeck, Stochastic Models, Estimation and
-// Control 2, 1982, section 10.8).
+// Multiple-model adaptive estimation: a bank of filters with factors on Q and R; outputs are weighted by
+// posterior probabilities. Magill, IEEE Trans. AC 10(4), 1965. The probabilities have a lower limit, so a
+// model that was wrong for long can recover (Maybeck, Stochastic Models, Estimation and Control 2, 1982,
+// section 10.8).
 //
-// They do not fade besides. At rest a neighbour in the bank loses about a quarter of its gain a sample in
-// log-likelihood, and a memory that is short compared with its lag cannot tell it from the right one: forgetting in
-// 50 samples took noise for motion at Q/R = 3e-7, with 2.6 times the RMSE of the right filter against 1.01
-// without. After a change the bound limits what there is to catch up, as in Page's test.
+// There is no additional forgetting. At rest a neighbouring filter loses about a quarter of its gain per
+// sample in log-likelihood, so a memory shorter than its lag cannot identify the right one: with forgetting
+// in 50 samples the RMSE at Q/R = 3e-7 was 2.6 times that of the right filter, without it 1.01. After a
+// change the limit bounds the recovery time, as in Page's test.
 #include <algorithm>
 #include <array>
 #include <cmath>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The settings whose values are names that other rooms than the table of settings give: rules and state
-// models.
+// Settings whose values are names of rules or state models.
 #pragma once
 
 #include <string>
@@ -9,8 +8,7 @@
 
 namespace ifog {
 
-// "" for a name that is one, and for a setting whose value is no such name; else what was expected: "one of
-// ckf, …".
+// "" if the name is valid or the setting has no such names; else what was expected: "one of ckf, …".
 [[nodiscard]] std::string expected_name(const FilterSetting& setting, const std::string& name);
 
 }  // namespace ifog

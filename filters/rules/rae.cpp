@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Residual-based adaptive estimation: R = mean of the last N squared residuals z - h'x+ plus h'P+h, which is
-// positive by construction. Mohamed and Schwarz, J. Geodesy 73, 1999. The estimate serves the next
-// measurement: the residual of this one is not known before its own gain.
+// always positive. Mohamed and Schwarz, J. Geodesy 73, 1999. The estimate is used for the next measurement,
+// since a residual is known only after its gain.
 #include "filters/rules/rule.h"
 #include "filters/rules/window.h"
 
@@ -19,7 +19,7 @@ class Rae final : public Rule {
   double innovation_covariance(const RuleInput& in) noexcept override {
     const double c =
         floored(in.projected + estimate_ * in.noise_scale, in.projected, least_ * in.noise_scale);
-    const double share = 1.0 - in.projected / c;  // residual over innovation, and h'P+h over h'P-h
+    const double share = 1.0 - in.projected / c;  // residual / innovation, and h'P+h / h'P-h
     window_.insert((mean_square(in.innovations) * share * share + in.projected * share) / in.noise_scale);
     if (window_.full()) estimate_ = window_.mean();
     return c;

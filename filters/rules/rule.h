@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An adaptation rule: from innovations, the innovation covariance that sets the gain. It sees scalars only,
-// so it works with every state model. To add one: a file with a class derived from Rule and a line in
-// list.cpp.
+// Adaptation rule: computes the innovation covariance, which sets the gain, from innovations. It uses scalars
+// only, so it works with every state model. To add one: a class derived from Rule in its own file, and a line
+// in list.cpp.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +17,10 @@ namespace ifog {
 
 struct RuleInput {
   double projected = 0.0;               // h'P-h, (rad/s)^2
-  double noise_scale = 1.0;             // R of this sample over R at the nominal period
+  double noise_scale = 1.0;             // R of this sample / R at the nominal period
   std::span<const double> innovations;  // of the valid axes, one to three
   std::uint64_t sequence = 0;
-  std::size_t hypothesis = 0;  // which core asks, for a rule with several
+  std::size_t hypothesis = 0;  // core that asks, for a rule with several
 };
 
 class Rule {
@@ -29,22 +29,21 @@ class Rule {
 
   virtual ~Rule() = default;
 
-  // Innovation covariance to be used with this measurement, the measurement included where the rule says so.
-  // Always above `projected` unless the floor is switched off. Called once per accepted measurement; kept-out
-  // ones never come.
+  // Innovation covariance for this measurement, which some rules include. Always above `projected` unless the
+  // floor is off. Called once per accepted measurement.
   [[nodiscard]] virtual double innovation_covariance(const RuleInput& in) noexcept = 0;
 
-  // Measurement noise the rule now believes in, at the nominal period, (rad/s)^2.
+  // Present estimate of the measurement noise at the nominal period, (rad/s)^2.
   [[nodiscard]] virtual double measurement_noise() const noexcept = 0;
-  // The same as one core of a bank holds it to be.
+  // The same for one core of a bank.
   [[nodiscard]] virtual double measurement_noise_of(std::size_t) const noexcept {
     return measurement_noise();
   }
 
   virtual void restart() noexcept = 0;
 
-  // A bank: the factor on Q of each of its cores, and the weights of their outputs. One core unless
-  // overridden.
+  // Factors on Q of the cores of a bank; one core unless overridden. weight() gives the weights of their
+  // outputs.
   [[nodiscard]] virtual std::span<const double> hypotheses() const noexcept {
     static constexpr double kOne = 1.0;
     return {&kOne, 1};
@@ -54,8 +53,8 @@ class Rule {
   [[nodiscard]] virtual std::uint64_t floor_hits() const noexcept { return floor_hits_; }
 
  protected:
-  // C >= h'P h + epsilon R0: below it the gain exceeds one and the covariance turns negative. Ours, not the
-  // paper's.
+  // C >= h'P h + epsilon R0: otherwise the gain exceeds one and the covariance becomes negative. Not in the
+  // paper.
   [[nodiscard]] double floored(double c, double projected, double least_noise) noexcept {
     const double least = projected + least_noise;
     if (c >= least || least_noise <= 0.0) return c;
@@ -72,11 +71,11 @@ struct RuleEntry {
   std::unique_ptr<Rule> (*make)(const FilterSettings& settings);
 };
 
-// Every rule, in the order the command line shows them.
+// All rules, in the order of the command line's list.
 std::span<const RuleEntry> rules();
 std::vector<std::string_view> rule_names();
 
-// Throws std::invalid_argument naming the setting, its value and what was expected.
+// Throws std::invalid_argument that names the setting, its value and what was expected.
 std::unique_ptr<Rule> make_rule(const FilterSettings& settings);
 
 std::unique_ptr<Rule> make_ckf(const FilterSettings& settings);

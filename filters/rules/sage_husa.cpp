@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sage-Husa with fading memory: R(k) = (1 - d) R(k-1) + d (nu^2 - h'P-h), d = (1 - b) / (1 - b^(k+1)). Sage
 // and Husa, Proc. Joint Automatic Control Conf., 1969, in the usual fading form. R only and zero-mean noise:
-// estimating q, Q and R together is known to diverge. The difference can turn negative; then the floor holds.
+// joint estimation of q, Q and R diverges. A negative difference is limited by the floor.
 #include "filters/rules/rule.h"
 #include "filters/rules/window.h"
 
@@ -13,12 +13,12 @@ class SageHusa final : public Rule {
   explicit SageHusa(const FilterSettings& settings)
       : noise_(settings.measurement_noise),
         least_(settings.floor * settings.measurement_noise),
-        // The fading memory is as long as the window of the other rules.
+        // Memory as long as the window of the other rules.
         fading_(1.0 - 1.0 / settings.window),
         estimate_(noise_) {}
 
   double innovation_covariance(const RuleInput& in) noexcept override {
-    // To zero once it no longer counts: its last values would be subnormal, and slow, for good.
+    // Set to zero when negligible, to avoid slow subnormal numbers.
     power_ = power_ > 1e-30 ? power_ * fading_ : 0.0;
     const double d = (1.0 - fading_) / (1.0 - power_ * fading_);
     estimate_ += d * ((mean_square(in.innovations) - in.projected) / in.noise_scale - estimate_);

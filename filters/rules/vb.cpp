@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Variational Bayes: R is inverse-gamma with parameters alpha, beta that fade by rho between steps; state and
-// R are fitted to each measurement in turns. Sarkka and Nummenmaa, IEEE Trans. AC 54(3), 2009.
+// Variational Bayes: R is inverse-gamma with parameters alpha, beta that fade by rho per step; state and R
+// are fitted alternately to each measurement. Sarkka and Nummenmaa, IEEE Trans. AC 54(3), 2009.
 #include "filters/rules/rule.h"
 
 namespace ifog {
@@ -11,7 +11,7 @@ class VariationalBayes final : public Rule {
   explicit VariationalBayes(const FilterSettings& settings)
       : noise_(settings.measurement_noise),
         least_(settings.floor * settings.measurement_noise),
-        // alpha settles at half the memory, 1 / (2 (1 - rho)): as long as the window of the other rules.
+        // alpha settles at half the memory, 1 / (2 (1 - rho)): as long as the other rules' window.
         fading_(1.0 - 1.0 / settings.window) {
     restart();
   }
@@ -23,7 +23,7 @@ class VariationalBayes final : public Rule {
     for (const double v : in.innovations) squares += v * v;
     double beta = beta_before;
     double c = 0.0;
-    // R = beta / alpha with the measurement counted in alpha from the start, as in the paper's algorithm.
+    // R = beta / alpha, with this measurement already in alpha, as in the paper's algorithm.
     for (int turn = 0; turn < kTurns; ++turn) {
       c = in.projected + beta / alpha * in.noise_scale;
       const double share = 1.0 - in.projected / c;
@@ -42,7 +42,7 @@ class VariationalBayes final : public Rule {
   }
 
  private:
-  static constexpr int kTurns = 3;  // the fixed point is reached to some 1e-3 of R
+  static constexpr int kTurns = 3;  // the fixed point is reached to about 1e-3 of R
 
   double noise_, least_, fading_;
   double alpha_ = 1.0, beta_ = 0.0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mean of the last N values in O(1) a step. At the end of each round of the ring the sum of that round alone replaces
-// the running sum, so that rounding cannot gather in it.
+// Mean of the last N values in O(1) per step. After each round of the ring, that round's sum replaces the
+// running sum, so rounding errors do not accumulate.
 #pragma once
 
 #include <cstddef>
@@ -38,7 +38,7 @@ class Window {
   double sum_ = 0.0, round_sum_ = 0.0;
 };
 
-// Axes share R, so each step's evidence is the mean over them.
+// Axes share R, so their mean is used.
 [[nodiscard]] inline double mean_square(std::span<const double> innovations) noexcept {
   double sum = 0.0;
   for (const double v : innovations) sum += v * v;

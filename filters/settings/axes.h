@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many axes a sensor has at most, and a figure for each of them.
+// Largest number of axes of a sensor, and an array of one value per axis.
 #pragma once
 
 #include <array>

@@ -14,8 +14,7 @@ namespace ifog {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// No sensor is so loud, or so quiet; within them fourth powers of an innovation over its deviation are
-// numbers.
+// Limits within which fourth powers of normalised innovations are finite.
 constexpr double kMostNoise = 1e12, kLeastMeasurementNoise = 1e-60;
 
 using S = FilterSettings;
@@ -154,7 +153,7 @@ bool is_among(const std::string& value, std::span<const char* const> choices) {
   return choices.empty();
 }
 
-// The value as the setting's type, where it is one and in range; nothing is narrowed before.
+// The value as the setting's type if type and range are right.
 template <typename T>
 std::optional<T> accepted(const FilterSetting& setting, const SettingValue& value) {
   if constexpr (std::is_same_v<T, bool>) {
