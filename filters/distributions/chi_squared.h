@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The χ² distribution, its degrees > 0 and not necessarily whole; relative error 1e-10. Boost.Math behind
-// declarations: the templates of its incomplete gamma function take a compiler as long as most files here.
+// χ² distribution with degrees of freedom > 0, not necessarily whole; relative error 1e-10. Wraps Boost.Math,
+// whose templates compile slowly.
 #pragma once
 
 namespace ifog {
 
-// Value that is exceeded with probability 1 - p.
+// Quantile: value that is exceeded with probability 1 - p.
 [[nodiscard]] double chi_squared_quantile(double p, double degrees);
 
-// Value that is exceeded with probability `chance`, which may be too small for 1 - chance to tell.
+// Value that is exceeded with probability `chance`, also for very small ones.
 [[nodiscard]] double chi_squared_exceeded(double chance, double degrees);
 
-// Probability of more than `value` (>= 0).
+// Probability of exceeding `value` (>= 0).
 [[nodiscard]] double chi_squared_above(double value, double degrees);
 
 }  // namespace ifog

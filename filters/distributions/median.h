@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is usual among many values.
+// Median.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace ifog {
 
-// The upper one of two in the middle. At least one value, none of them NaN.
+// For an even number, the upper of the middle two. Needs at least one value, no NaN.
 [[nodiscard]] inline double median(std::vector<double> values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
   std::nth_element(values.begin(), middle, values.end());

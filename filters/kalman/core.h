@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Kalman filter of up to three axes that share model, noise and gain: one covariance, one gain vector, a
-// state vector per axis. One gain for all axes because different gains turn coning into drift: the axes would
-// see the same cone with different lags.
+// Kalman filter of up to three axes that share model, noise and gain: one covariance, one gain vector, one
+// state vector per axis. Different gains would delay the axes differently and turn coning into drift.
 //
-// Equations: Narasimhappa et al., "An innovation based random weighting estimation mechanism for
-// denoising fiber optic gyro drift signal", eqs. (9)-(13). The innovation covariance C comes from the
-// adaptation rule; with C = h'P h + R this is the conventional filter.
+// Equations: Narasimhappa et al., "An innovation based random weighting estimation mechanism for denoising
+// fiber optic gyro drift signal", eqs. (9)-(13). The adaptation rule gives the innovation covariance C; with
+// C = h'P h + R this is the conventional filter.
 #pragma once
 
 #include <Eigen/Dense>
@@ -14,7 +13,7 @@
 
 namespace ifog {
 
-// Eq. (10): the covariance of the next sample's prediction, with `factor` times the driving covariance.
+// Eq. (10): predicts the covariance, with `factor` times the driving covariance.
 template <class Matrix>
 void predict_covariance(Matrix& p, const Matrix& transition, const Matrix& driving,
                         double factor = 1.0) noexcept {
@@ -22,8 +21,8 @@ void predict_covariance(Matrix& p, const Matrix& transition, const Matrix& drivi
   p = carried.lazyProduct(transition.transpose()) + factor * driving;
 }
 
-// Gain and covariance for innovation covariance c >= h'P h. In Joseph's form, in which R = c - h'P h enters
-// as a square: it equals (13) exactly and stays positive where (13) loses digits.
+// Gain and covariance for innovation covariance c >= h'P h, in Joseph form with R = c - h'P h: equal to (13),
+// but stays positive despite rounding.
 template <class Matrix, class Vector>
 void correct_covariance(Matrix& p, Vector& gain, const Vector& h, double c) noexcept {
   const Vector ph = p * h;
@@ -40,8 +39,8 @@ struct KalmanCore {
   using Vector = Eigen::Matrix<double, n, 1>;
   using Matrix = Eigen::Matrix<double, n, n>;
 
-  Eigen::Matrix<double, n, kAxes> x = Eigen::Matrix<double, n, kAxes>::Zero();  // one column an axis
-  Matrix p = Matrix::Zero();                                                    // of every axis, (rad/s)^2
+  Eigen::Matrix<double, n, kAxes> x = Eigen::Matrix<double, n, kAxes>::Zero();  // one column per axis
+  Matrix p = Matrix::Zero();  // common to all axes, (rad/s)^2
   Vector h = Vector::Zero();
   Vector gain = Vector::Zero();
 
@@ -62,7 +61,7 @@ struct KalmanCore {
     }
   }
 
-  // A single state is the rate itself, h = 1: no product with it, each of which the next step would wait for.
+  // A single state is the rate itself (h = 1), so no product is needed.
   [[nodiscard]] double rate(int axis) const noexcept {
     if constexpr (n == 1) return x(0, axis);
     return h.dot(x.col(axis));
@@ -72,7 +71,7 @@ struct KalmanCore {
     return h.dot(p * h);
   }
 
-  // As correct_covariance. One division serves gain and covariance of a single state.
+  // As correct_covariance(); a single state needs one division.
   void correct(double c) noexcept {
     if constexpr (n == 1) {
       gain(0) = p(0, 0) / c;
@@ -82,7 +81,7 @@ struct KalmanCore {
     }
   }
 
-  // Eq. (12), for one axis.
+  // Eq. (12) for one axis.
   void update(int axis, double innovation) noexcept { x.col(axis) += gain * innovation; }
 };
 

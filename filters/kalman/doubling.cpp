@@ -34,7 +34,7 @@ FewStatesMatrix CovarianceDoubling::ahead(const FewStatesMatrix& p, std::size_t 
 }
 
 CovarianceDoubling::Map CovarianceDoubling::twice(const Map& one) {
-  // P -> second(first(P)); both are the same map, so the order does not matter.
+  // P -> second(first(P)); both maps are equal, so their order does not matter.
   const FewStatesMatrix back = one.f.transpose();
   return {one.f.lazyProduct(solved(one.h, one.g, one.f)),
           symmetric(carried(one.g, back, solved(one.g, one.h, one.g))),

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The prediction covariance of a time-invariant Kalman filter many samples ahead: doubling algorithm of
-// Anderson and Moore, "Optimal Filtering", section 6.7. Measurements at every sample, missing ones in between
-// are the caller's.
+// Prediction covariance of a time-invariant Kalman filter many samples ahead: doubling algorithm of Anderson
+// and Moore, "Optimal Filtering", section 6.7. For measurements at every sample; the caller handles missing
+// ones.
 #pragma once
 
 #include <cstddef>
@@ -11,16 +11,16 @@
 
 namespace ifog {
 
-// One step of the Riccati equation, P' = Q + A P (I + G P)^-1 A' with G = h h'/R, and any number of them is a
-// map of the same form P' = H + F P (I + G P)^-1 F'; two such maps in a row are found without knowing P.
-// Asked a few times a record: not by the number of states, each of which the compiler would take seconds for.
+// A step of the Riccati equation, P' = Q + A P (I + G P)^-1 A' with G = h h'/R, and any number of steps have
+// the form P' = H + F P (I + G P)^-1 F'. Two such maps can be combined without P. Called a few times per
+// record, so it is not specialised by the number of states.
 class CovarianceDoubling {
  public:
   // noise: R > 0.
   CovarianceDoubling(const FewStatesMatrix& transition, const FewStatesMatrix& driving,
                      const FewStatesVector& h, double noise);
 
-  // 2^power samples ahead.
+  // Covariance 2^power samples ahead.
   [[nodiscard]] FewStatesMatrix ahead(const FewStatesMatrix& p, std::size_t power);
 
  private:

@@ -16,22 +16,21 @@ namespace ifog {
 namespace {
 
 constexpr double kDiffuse = 1e9;
-// Samples after the start over which the gain is followed one by one, and the divisor of their number after
-// that.
+// Samples after the start with individual gains, and the divisor for later intervals of constant gain.
 constexpr std::size_t kFollowed = 256;
-// Samples after a missing one over which it is followed again: what is fast in the model has then recovered.
+// Samples with individual gains after a missing one, until fast states have recovered.
 constexpr std::size_t kRecovery = 16;
-// A gain that changes by less than this share from one hold to the next has settled.
+// The gain is constant if it changes by less than this, relatively, between intervals.
 constexpr double kSettled = 1e-9;
-// Axes that are filtered side by side.
+// Axes that are filtered in parallel.
 constexpr int kLanes = 4;
 
-// States of up to kLanes axes, one state after the other.
+// States of up to kLanes axes, state by state.
 using States = std::array<double, static_cast<std::size_t>(kMaxStates* kLanes)>;
 
-// Carries `states` over `count` samples at one gain, from prediction to prediction, with transition times gain as
-// `predictor`. Returns the sum of the squared innovations of every lane. The only loop over samples, and so the
-// only one that is compiled for each size.
+// Propagates `states` over `count` samples with constant gain, from prediction to prediction. predictor:
+// transition times gain. Returns each lane's sum of squared innovations. The only loop over samples, so it is
+// compiled for each size.
 template <int n, int lanes>
 double carry(States& states, const double* row, std::size_t count, const FewStatesMatrix& of_transition,
              const FewStatesVector& of_predictor, const FewStatesVector& of_measurement) {
@@ -60,8 +59,7 @@ template <int lanes>
 constexpr std::array kCarry{carry<1, lanes>, carry<2, lanes>, carry<3, lanes>, carry<4, lanes>,
                             carry<5, lanes>, carry<6, lanes>, carry<7, lanes>, carry<8, lanes>};
 
-// The filter of axes that miss the same samples. Covariance and gain are the same for all of them, as no
-// measurement changes them.
+// Filter of axes with the same missing samples, which share covariance and gain.
 class Pass {
  public:
   Pass(const StateModel& model, double process_noise, double measurement_noise, double dt_s)
@@ -105,7 +103,7 @@ class Pass {
           settled = hold(static_cast<std::size_t>(std::bit_width(count) - 2));
         }
         const FewStatesVector predictor = transition_ * gain_;
-        // Lanes without an axis are zero, and so are their innovations.
+        // Lanes without an axis have zero innovations.
         const double squares = carry(x_, row, count, transition_, predictor, h_);
         if (count == 1) predict_covariance(p_, transition_, driving_);
         if (measured >= diffuse_) {
@@ -122,13 +120,13 @@ class Pass {
   }
 
  private:
-  // Samples over which the gain may be held, a power of two.
+  // Samples with constant gain, a power of two.
   static std::size_t held(std::size_t measured, std::size_t since_missing, std::size_t left) {
     if (measured < 2 * kFollowed || since_missing < kRecovery) return 1;
     return std::bit_floor(std::min(measured / kFollowed, left));
   }
 
-  // Over 2^half samples and as many again, with the gain in their middle; whether it is still what it was.
+  // Propagates over 2 · 2^half samples with the gain in their middle; true if it has not changed.
   bool hold(std::size_t half) {
     const FewStatesVector before = gain_;
     p_ = doubling_->ahead(p_, half);
@@ -139,7 +137,7 @@ class Pass {
     return (gain_ - before).norm() <= kSettled * gain_.norm();
   }
 
-  // Over `count` samples that are missing, by powers of two of them.
+  // Predicts over `count` missing samples, by powers of two.
   void predict(std::size_t count, std::size_t lanes) {
     FewStatesMatrix transition = transition_, driving = driving_;
     for (; count > 0; count >>= 1) {
@@ -153,7 +151,7 @@ class Pass {
     }
   }
 
-  // A row an axis, a column a state.
+  // One row per axis, one column per state.
   Eigen::Map<Eigen::MatrixXd> states(std::size_t lanes) {
     return {x_.data(), static_cast<Eigen::Index>(lanes), h_.size()};
   }

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gaussian likelihood of a record under a state model and white measurement noise, by the prediction error
+// Gaussian likelihood of a record under a state model and white measurement noise, by prediction error
 // decomposition: Harvey, "Forecasting, Structural Time Series Models and the Kalman Filter", section 3.4.
 //
-// Exact where the gain changes from sample to sample. It does not for long: k samples after the start it
-// changes by a share of 1/k a sample at most, so it is then held over k/256 samples and less, at its value in
-// the middle of them, while the covariance is carried over them exactly (by doubling). What that does to the
-// likelihood is of second order in the change, and a smooth function of the parameters: below 0.01 in records
-// of 200 000 samples, where half a unit is what a parameter is worth.
+// Exact while the gain changes. At k samples after the start the gain changes by at most 1/k per sample, so
+// it is kept constant over up to k/256 samples, at its value in their middle, while the covariance is
+// propagated exactly (doubling). The error of the likelihood is of second order and smooth in the parameters:
+// below 0.01 for 200 000 samples, where a parameter costs 0.5.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +16,17 @@
 
 namespace ifog {
 
-// Axes with the same samples missing, laid out for a filter that takes them side by side.
+// Axes with the same missing samples, arranged for parallel filtering.
 class LikelihoodRecord {
  public:
-  // rad/s, evenly spaced, NaN where missing.
+  // rad/s, equidistant, NaN if missing.
   explicit LikelihoodRecord(std::span<const std::span<const double>> axes);
 
   struct Run {
     std::size_t length = 0;
     bool missing = false;
   };
-  // `lanes` values a sample, the axes first and zeros after them.
+  // `lanes` values per sample: the axes, then zeros.
   struct Group {
     std::size_t axes = 0, lanes = 0;
     std::vector<Run> runs;
@@ -39,8 +38,8 @@ class LikelihoodRecord {
   std::vector<Group> groups_;
 };
 
-// Sums over the measurements that count: missing ones (NaN) do not, nor the first d of them for d states that
-// wander without bound, which only fix where the process starts (diffuse likelihood).
+// Sums over measurements, without missing ones (NaN) and the first d for d non-stationary states, which only
+// set the start (diffuse likelihood).
 struct LikelihoodTerms {
   long count = 0;
   double sum_log_variance = 0.0;  // of ln S, S the innovation variance
@@ -49,14 +48,14 @@ struct LikelihoodTerms {
   [[nodiscard]] double log_likelihood() const;
 };
 
-// process_noise and measurement_noise (> 0) as in FilterSettings, one measurement every dt_s. Stationary
-// states start from their stationary law, the others from the first measurement with a variance of 1e9 times
-// the noise: the likelihood then differs from the diffuse limit by some 1e-9 of itself.
+// process_noise and measurement_noise (> 0) as in FilterSettings, one measurement per dt_s. Stationary states
+// start from their stationary distribution, others from the first measurement with 1e9 times its noise
+// variance; the likelihood differs from the diffuse limit by about 1e-9 relatively.
 [[nodiscard]] LikelihoodTerms likelihood(const StateModel& model, double process_noise,
                                          double measurement_noise, const LikelihoodRecord& record,
                                          double dt_s);
 
-// Likelihood terms of one axis.
+// The same for one axis.
 [[nodiscard]] LikelihoodTerms likelihood(const StateModel& model, double process_noise,
                                          double measurement_noise, std::span<const double> rate, double dt_s);
 

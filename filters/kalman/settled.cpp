@@ -8,7 +8,7 @@ namespace ifog {
 Settled settled(const FewStatesMatrix& transition, const FewStatesVector& h, const FewStatesVector& r,
                 const FewStatesVector& gain, const FewStatesMatrix& covariance) noexcept {
   const Eigen::Index n = transition.rows();
-  // Products by their coefficients: Eigen's for large matrices may allocate.
+  // Coefficient-based products, because Eigen's products of large matrices may allocate.
   const FewStatesMatrix keep = FewStatesMatrix::Identity(n, n) - gain.lazyProduct(h.transpose());
   const FewStatesMatrix f = keep.lazyProduct(transition);
   const Eigen::PartialPivLU<FewStatesMatrix> lu(FewStatesMatrix::Identity(n, n) - f);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Regressors side by side: rows are the blocks or samples.
+// Regressors as columns; rows are blocks or samples.
 #pragma once
 
 #include <Eigen/Dense>

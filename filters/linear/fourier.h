@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Discrete Fourier transform of any length, fast where it has small prime factors. Eigen's: here because it takes a
-// compiler seconds, and half a dozen files use it.
+// Discrete Fourier transform of any length, fast for small prime factors. Wraps Eigen's, which compiles
+// slowly.
 #pragma once
 
 #include <complex>
@@ -9,7 +9,7 @@
 
 namespace ifog {
 
-// Keeps the tables of the lengths it has had. Not for two threads at once.
+// Caches the tables of used lengths. Not thread-safe.
 class Fourier {
  public:
   Fourier();
@@ -18,7 +18,7 @@ class Fourier {
   // All n coefficients, Σ x(i) exp(-2πj i k/n).
   void forward(std::vector<std::complex<double>>& spectrum, const std::vector<double>& values);
   void forward(std::vector<std::complex<double>>& spectrum, const std::vector<std::complex<double>>& values);
-  // Back again, with the factor 1/n.
+  // Inverse transform, with the factor 1/n.
   void inverse(std::vector<std::complex<double>>& values, const std::vector<std::complex<double>>& spectrum);
   void inverse(std::vector<double>& values, const std::vector<std::complex<double>>& spectrum);
 
@@ -27,7 +27,7 @@ class Fourier {
   std::unique_ptr<Tables> tables_;
 };
 
-// Squares of the first n/2 + 1 coefficients, those of frequencies from zero to half the sample rate.
+// Squares of the first n/2 + 1 coefficients (frequencies from zero to half the sample rate).
 std::vector<double> power_spectrum(const std::vector<double>& values);
 
 }  // namespace ifog

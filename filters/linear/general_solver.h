@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A X = B of any regular matrix, by LU decomposition with pivots. Eigen's: here as what stands in symmetric.h.
+// Solves A X = B for a regular matrix by LU decomposition with pivoting. Wraps Eigen, see symmetric.h.
 #pragma once
 
 #include <Eigen/Dense>

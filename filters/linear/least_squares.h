@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Least squares on columns that may depend on each other.
+// Least squares with possibly dependent columns.
 #pragma once
 
 #include <Eigen/Dense>
@@ -8,24 +8,24 @@
 
 namespace ifog {
 
-// By Householder QR with pivoting: of dependent columns some get no coefficient.
+// Householder QR with pivoting: of dependent columns some get no coefficient.
 class LeastSquares {
  public:
   // columns: rows × p.
   explicit LeastSquares(const Eigen::MatrixXd& columns);
 
   [[nodiscard]] Eigen::Index rank() const;
-  // The p coefficients for what was measured in the same rows.
+  // The p coefficients for a measurement in the same rows.
   [[nodiscard]] Eigen::VectorXd coefficients(const Eigen::VectorXd& measured) const;
 
  private:
   Eigen::ColPivHouseholderQR<Eigen::MatrixXd> factor_;
 };
 
-// What a fit of the columns leaves of the measured.
+// Residual of the measurement after a fit of the columns.
 Eigen::VectorXd left_by(const Columns& columns, const Eigen::VectorXd& measured);
 
-// The shortest of all coefficients that fit equally well: dependent columns share what they explain.
+// Minimum-norm solution: dependent columns share what they explain.
 Eigen::VectorXd shortest_coefficients(const Eigen::MatrixXd& columns, const Eigen::VectorXd& measured);
 
 }  // namespace ifog

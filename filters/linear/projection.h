@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Removes columns from others: what ordinary least squares on them leaves.
+// Projects columns out of others: residuals of ordinary least squares.
 #pragma once
 
 #include "filters/linear/columns.h"
@@ -8,15 +8,14 @@ namespace ifog {
 
 class Projection {
  public:
-  // columns: independent of each other, no more of them than rows (Householder QR; their span is
-  // removed).
+  // columns: linearly independent, at most as many as rows (Householder QR).
   explicit Projection(const Eigen::MatrixXd& columns);
 
-  // In place; as many rows as the columns have.
+  // In place; needs as many rows as the columns have.
   void take_out_of(Eigen::VectorXd& values) const;
   void take_out_of(Columns& values) const;
 
-  // What is at right angles to one column of n rows: n × (n - 1), orthonormal.
+  // Orthonormal complement of one column of n rows: n × (n - 1).
   static Eigen::MatrixXd beside(const Eigen::VectorXd& column);
 
  private:

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decompositions of symmetric matrices, of which the lower half is read. Eigen's: here because each takes a
-// compiler seconds, and a dozen files use them.
+// Decompositions of symmetric matrices, whose lower half is used. Wraps Eigen's, which compile slowly.
 #pragma once
 
 #include <Eigen/Dense>
 
 namespace ifog {
 
-// A x = b by LDL'. For A that are positive definite, or nearly.
+// A x = b by LDL', for A that is (nearly) positive definite.
 class SymmetricSolver {
  public:
   explicit SymmetricSolver(const Eigen::MatrixXd& a);
 
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
   [[nodiscard]] Eigen::MatrixXd inverse() const;
-  // Whether no pivot is negative.
+  // True if no pivot is negative.
   [[nodiscard]] bool is_positive() const;
   // D, in the order of the pivoting.
   [[nodiscard]] Eigen::VectorXd pivots() const;
@@ -23,12 +22,12 @@ class SymmetricSolver {
   Eigen::LDLT<Eigen::MatrixXd> factor_;
 };
 
-// A = L L', for what must be positive definite.
+// A = L L' for positive definite A.
 class CholeskyFactor {
  public:
   explicit CholeskyFactor(const Eigen::MatrixXd& a);
 
-  // Without it nothing else may be asked.
+  // False if A is not positive definite; then nothing else may be called.
   [[nodiscard]] bool exists() const;
   [[nodiscard]] Eigen::VectorXd solve(const Eigen::VectorXd& b) const;
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& b) const;
@@ -41,7 +40,7 @@ class CholeskyFactor {
 
 struct SymmetricEigen {
   Eigen::VectorXd values;   // ascending
-  Eigen::MatrixXd vectors;  // a column each, orthonormal
+  Eigen::MatrixXd vectors;  // one per column, orthonormal
 };
 SymmetricEigen symmetric_eigen(const Eigen::MatrixXd& a);
 Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& a);

@@ -9,10 +9,10 @@
 namespace ifog {
 namespace {
 
-// The counter's third word tells the two uses apart.
+// Third word of the counter, for the two uses.
 enum Use : std::uint64_t { kSingle, kRow };
 
-// Two deviates for every 64 bits.
+// Two deviates per 64 bits.
 void to_law(DeviateStream::Law law, std::span<const std::uint64_t> bits, double* out) noexcept {
   const auto put = [&out](DoublePair pair) {
     std::memcpy(out, &pair, sizeof pair);
@@ -37,8 +37,7 @@ double DeviateStream::at(std::uint64_t index, std::uint32_t row) noexcept {
   return kept_[index % kTogether];
 }
 
-// All bits first, then all deviates: a loop that did both would keep the processor waiting for the ten rounds
-// of each block.
+// First all bits, then all deviates, so that the processor need not wait for the rounds of each block.
 void DeviateStream::fill(std::uint64_t index, std::uint32_t row, std::span<double> out) const noexcept {
   constexpr std::size_t kBlocks = 8;
   std::array<std::uint64_t, 4 * kBlocks> bits;

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Exponential and uniform deviates by counter: value number i of a stream is a function of (seed, stream, i)
-// alone.
+// Exponential and uniform deviates by counter: value i of a stream is a function of (seed, stream, i).
 //
-// 32 bits a deviate are enough here: the largest exponential is 22.9 and neighbouring values differ by 2^-32
-// in probability, far below what a window of a few hundred innovations can show.
+// 32 bits per deviate suffice: the largest exponential is 22.9, and neighbouring values differ by 2^-32 in
+// probability.
 #pragma once
 
 #include <array>
@@ -21,14 +20,14 @@ class DeviateStream {
   DeviateStream(std::uint64_t seed, std::uint64_t stream, Law law)
       : law_(law), keys_(philox_wide_keys({seed, stream})) {}
 
-  // Value number `index` of row `row`. Neighbouring indices are drawn together and kept.
+  // Value `index` of a row. Neighbouring indices are computed together and cached.
   [[nodiscard]] double at(std::uint64_t index, std::uint32_t row) noexcept;
 
-  // Values 0 … out.size()-1 of the row numbered `index`: fresh weights for one step.
+  // Values 0 … out.size()-1 of row `row` at step `index`.
   void fill(std::uint64_t index, std::uint32_t row, std::span<double> out) const noexcept;
 
  private:
-  static constexpr std::size_t kTogether = 8;  // of one Philox block
+  static constexpr std::size_t kTogether = 8;  // per Philox block
 
   Law law_;
   WidePhiloxKeys keys_;

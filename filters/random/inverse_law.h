@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The exponential law by inversion: e = -ln u for u = (bits + 1/2) 2^-32, two at a time and without a
-// division or a branch, so that fifty of them at every step take little time and always the same. (A ziggurat
-// is slower here: one rejection in a hundred costs the processor what it had begun of the next draws.)
+// Exponential distribution by inversion: e = -ln u for u = (bits + 1/2) 2^-32, two at a time, without
+// division or branch, so that it takes constant time. (A ziggurat is slower here because of mispredicted
+// rejections.)
 //
-// u = 2^-k m, m in [1, 2). With c the middle of the 256th part of [1, 2) that m lies in,
+// u = 2^-k m, m in [1, 2). With c the middle of the 1/256 of [1, 2) that contains m,
 //   -ln u = k ln 2 - ln c - ln(1 + r),  r = m / c - 1,  |r| < 2^-8.9,
-// and ln(1 + r) = r - r^2/2 + r^3/3 to 5e-12; neighbouring values of -ln u are 2.3e-10 apart at least. The
-// table is computed by the compiler with this project's own logarithm, and only operations that IEEE 754
-// fixes are used, in a fixed order: every machine gives the same bits.
+// and ln(1 + r) = r - r^2/2 + r^3/3 to 5e-12; neighbouring values of -ln u differ by at least 2.3e-10. The
+// table uses this project's logarithm at compile time, and all operations are fixed by IEEE 754 in a fixed
+// order, so every machine gives the same bits.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace ifog {
 
-// Two values side by side in one register: vectors of the compiler's, SSE2 or NEON underneath.
+// Two values in one vector register (SSE2 or NEON).
 using DoublePair = double __attribute__((vector_size(16)));
 using WordPair = std::uint64_t __attribute__((vector_size(16)));
 
@@ -38,14 +38,14 @@ struct InverseLawTable {
 
 inline constexpr InverseLawTable kInverseLaw;
 
-// A double with the exponent of 2^52 holds an integer in its lowest bits, so converting one is a subtraction.
+// A double with the exponent of 2^52 holds an integer in its lowest bits, so conversion is a subtraction.
 inline constexpr std::uint64_t kIntegerExponent = std::bit_cast<std::uint64_t>(0x1p52);
 
-// 2^32 u of the lower and of the upper half of the bits, exactly.
+// 2^32 u of the lower and the upper half of the bits, exactly.
 [[nodiscard]] inline DoublePair scaled_uniforms(std::uint64_t bits) noexcept {
   using Halves = std::uint32_t __attribute__((vector_size(16)));
   constexpr auto kUpper = static_cast<std::uint32_t>(kIntegerExponent >> 32U);
-  // Both halves as lower halves of words that have that exponent above.
+  // Both halves as low words below that exponent.
   const Halves both = std::bit_cast<Halves>(WordPair{bits, 0});
   const Halves words = __builtin_shufflevector(both, Halves{kUpper, 0, 0, 0}, 0, 4, 1, 4);
   return std::bit_cast<DoublePair>(words) - (0x1p52 - 0.5);

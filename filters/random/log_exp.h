@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Natural logarithm and exponential of our own. The C library's may differ in the last bit from one version
-// to the next, and a replay promises the same bits on every machine; these use only operations that IEEE 754
-// fixes.
+// Natural logarithm and exponential with reproducible bits. The C library's may differ in the last bit
+// between versions; these use only operations fixed by IEEE 754.
 #pragma once
 
 #include <bit>
@@ -23,7 +22,7 @@ namespace ifog {
   const double t = s * s;
   const double t2 = t * t;
   const double t4 = t2 * t2;
-  // Estrin's order: the terms do not wait for one another.
+  // Estrin's scheme, for instruction-level parallelism.
   const double low = (1.0 / 3 + t * (1.0 / 5)) + t2 * (1.0 / 7 + t * (1.0 / 9));
   const double high = (1.0 / 11 + t * (1.0 / 13)) + t2 * (1.0 / 15 + t * (1.0 / 17) + t2 * (1.0 / 19));
   const double tail = 2.0 * s * t * (low + t4 * high);
@@ -39,7 +38,7 @@ namespace ifog {
   const auto k = static_cast<std::int64_t>(scaled + (scaled < 0 ? -0.5 : 0.5));
   const auto kd = static_cast<double>(k);
   const double r = (x - kd * kLn2High) - kd * kLn2Low;  // |r| <= ln(2) / 2
-  // Taylor's series to r^13 (remainder below 5e-18) in Estrin's order.
+  // Taylor series to r^13 (remainder below 5e-18) by Estrin's scheme.
   const double r2 = r * r;
   const double r4 = r2 * r2;
   const double low = (1.0 + r) + r2 * (1.0 / 2 + r * (1.0 / 6));

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Philox4x32-10, the counter-based generator of Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as
-// easy as 1, 2, 3", SC'11. A draw is a function of (key, counter) alone, so a replay that starts anywhere
-// gives the same bits. The standard library's engines and distributions promise no such thing across
-// versions.
+// Philox4x32-10, counter-based generator of Salmon, Moraes, Dror and Shaw, "Parallel random numbers: as easy
+// as 1, 2, 3", SC'11. A number is a function of (key, counter), so a replay from any point gives the same
+// bits, unlike the standard library's engines and distributions across versions.
 #pragma once
 
 #include <array>

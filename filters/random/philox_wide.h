@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Philox4x64-10: the 64-bit form of the generator in philox.h, from the same paper. It gives twice the bits
-// for the same number of multiplications, which is what drawing fifty weights at every step asks for.
+// Philox4x64-10: 64-bit form of the generator in philox.h, from the same paper. It gives twice the bits with
+// the same number of multiplications.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 namespace ifog {
 
 using WidePhiloxBlock = std::array<std::uint64_t, 4>;
-// The keys of the ten rounds, made once.
+// Keys of the ten rounds.
 using WidePhiloxKeys = std::array<std::array<std::uint64_t, 2>, 10>;
 
 [[nodiscard]] constexpr WidePhiloxKeys philox_wide_keys(std::array<std::uint64_t, 2> key) noexcept {
@@ -25,7 +25,7 @@ using WidePhiloxKeys = std::array<std::array<std::uint64_t, 2>, 10>;
 [[nodiscard]] inline WidePhiloxBlock philox_wide(const WidePhiloxBlock& counter,
                                                  const WidePhiloxKeys& keys) noexcept {
   __extension__ using Product = unsigned __int128;
-  // In registers and unrolled: an array that is rewritten in a loop stays in memory, at twice the time.
+  // In registers and unrolled: an array rewritten in a loop would stay in memory, at twice the time.
   auto [c0, c1, c2, c3] = counter;
 #pragma GCC unroll 10
   for (const auto& key : keys) {

@@ -33,7 +33,8 @@ Arma::Arma(std::vector<double> phi, std::vector<double> theta, double nominal_pe
     throw std::invalid_argument("state_parameters: autoregression with a root of modulus " +
                                 std::to_string(largest) + ", expected a stationary one, all below 1");
   }
-  // P = Q + A Q A' + A² Q A'² + …, twice as many terms each time. Where that has no end, the root is as good as 1.
+  // P = Q + A Q A' + A² Q A'² + …, doubling the number of terms. Without convergence the root is practically
+  // 1.
   constexpr int kMostDoublings = 64;
   FewStates power = transition_, sum = driving_;
   for (int i = 0; i < kMostDoublings; ++i) {
@@ -46,8 +47,7 @@ Arma::Arma(std::vector<double> phi, std::vector<double> theta, double nominal_pe
 }
 
 void Arma::discretise(double dt_s, StateMatrixRef transition, StateMatrixRef driving) const noexcept {
-  // Beyond this the process has forgotten its past or, near a unit root, its covariance is the stationary one
-  // anyway.
+  // Beyond this the covariance is practically the stationary one.
   constexpr long kMostSteps = 4096;
   const long steps = std::clamp(std::lround(std::min(dt_s / period_s_, 1e6)), 1L, kMostSteps);
   FewStates a = transition_, q = driving_;
@@ -62,7 +62,7 @@ void Arma::discretise(double dt_s, StateMatrixRef transition, StateMatrixRef dri
 Eigen::VectorXd Arma::measurement() const { return Eigen::VectorXd::Unit(states_, 0); }
 
 Eigen::VectorXd Arma::level() const {
-  // The state that a process held at one would have: element i carries the share still to come.
+  // State of a process that is constant at one: element i has the remaining share.
   Eigen::VectorXd level = Eigen::VectorXd::Unit(states_, 0);
   double ahead = 0.0;
   for (int i = states_ - 1; i > 0; --i) {

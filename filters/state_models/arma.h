@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ARMA(p,q) in Harvey's state-space form with max(p, q+1) states: Harvey, "Forecasting, Structural Time
-// Series Models and the Kalman Filter", section 3.3. An autoregression fitted to noisy output and then given
-// a separate R counts the white noise twice; here R stays outside and the coefficients belong to the process
-// alone.
+// Series Models and the Kalman Filter", section 3.3. The coefficients describe the process without R; an
+// autoregression fitted to noisy output would count the white noise twice.
 #pragma once
 
 #include <vector>
@@ -13,11 +12,11 @@ namespace ifog {
 
 class Arma final : public StateModel {
  public:
-  // Throws std::invalid_argument when the process is not stationary.
+  // Throws std::invalid_argument if the process is not stationary.
   Arma(std::vector<double> phi, std::vector<double> theta, double nominal_period_s);
 
   [[nodiscard]] int states() const noexcept override { return states_; }
-  // The process lives on the nominal grid: dt is rounded to a whole number of periods, one at least.
+  // dt is rounded to a whole number of nominal periods, at least one.
   void discretise(double dt_s, StateMatrixRef transition, StateMatrixRef driving) const noexcept override;
   [[nodiscard]] Eigen::VectorXd measurement() const override;
   [[nodiscard]] Eigen::VectorXd level() const override;

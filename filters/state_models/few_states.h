@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Matrices of as many states as a model has, up to kMaxStates, without an allocation. Slower than those whose
-// size the compiler knows, and compiled once instead of once for each number of states.
+// Matrices of up to kMaxStates states without allocation. Slower than fixed sizes, but compiled once.
 #pragma once
 
 #include <Eigen/Core>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A line whose amplitude and phase wander: in-phase and quadrature state, turned by 2 pi f dt, both driven
-// alike.
+// Line with slowly varying amplitude and phase: in-phase and quadrature state, rotated by 2 pi f dt, with
+// equal driving noise.
 #pragma once
 
 #include <cmath>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The eigenvalues of a transition: by themselves, for they take a compiler seconds.
+// Eigenvalues of a transition; a separate file, because they compile slowly.
 #pragma once
 
 #include <Eigen/Core>
 
 namespace ifog {
 
-// n of them, of an n × n transition, in no order.
+// The n eigenvalues of an n × n transition, in any order.
 Eigen::VectorXcd poles(const Eigen::MatrixXd& transition);
 
 }  // namespace ifog

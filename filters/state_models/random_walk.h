@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random walk and its integral: the rate, or its slope, takes independent steps.
+// Random walk and integrated random walk: the rate, or its slope, makes independent steps.
 #pragma once
 
 #include "filters/state_models/state_model.h"
@@ -20,7 +20,7 @@ class RandomWalk final : public StateModel {
   [[nodiscard]] Eigen::VectorXd diffuse() const override { return Eigen::VectorXd::Ones(1); }
 };
 
-// States: rate, its slope. Driving covariance of the doubly integrated white noise: Bar-Shalom, Li and
+// States: rate and slope. Driving covariance of doubly integrated white noise: Bar-Shalom, Li and
 // Kirubarajan, "Estimation with Applications to Tracking and Navigation", eq. 6.2.2-12.
 class IntegratedRandomWalk final : public StateModel {
  public:

@@ -23,7 +23,7 @@ namespace {
   throw std::invalid_argument("state: " + in_quotes(name) + ", expected " + expected);
 }
 
-// "arma(2,1)" -> {2, 1}; nothing when the text is not NAME(number[,number]).
+// "arma(2,1)" -> {2, 1}; empty if the text is not NAME(number[,number]).
 std::vector<int> orders(const std::string& text, const std::string& name) {
   std::vector<int> found;
   if (!text.starts_with(name + "(") || !text.ends_with(")")) return {};
@@ -39,7 +39,7 @@ std::vector<int> orders(const std::string& text, const std::string& name) {
   return found;
 }
 
-// Takes parameters from the front as the terms ask for them.
+// Hands out parameters in order.
 class ParameterReader {
  public:
   ParameterReader(const std::string& name, std::span<const double> values) : name_(name), values_(values) {}

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of state models as people write them, apart from the models, which are mathematics.
+// Names of state models, without the models.
 #pragma once
 
 #include <string>
 
 namespace ifog {
 
-// Whether it is one of state_model_names() or a sum of them with " + ", whatever its parameters.
+// True for one of state_model_names() or a sum of them with " + ", with any parameters.
 bool is_state_model(const std::string& name);
 
 }  // namespace ifog

@@ -56,7 +56,7 @@ Eigen::VectorXd Sum::colour() const {
 Eigen::VectorXd Sum::level() const {
   Eigen::VectorXd all = Eigen::VectorXd::Zero(states_);
   int first = 0;
-  int carrier = 0;  // the first term unless a later one is made for it
+  int carrier = 0;  // first term, unless a later one carries the level
   const StateModel* model = terms_.front().model.get();
   for (const Term& term : terms_) {
     if (term.model->carries_level() && !model->carries_level()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Independent processes added up: block-diagonal transition, measurements side by side.
+// Sum of independent processes: block-diagonal transition, joined measurement vectors.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@ class Sum final : public StateModel {
  public:
   struct Term {
     std::unique_ptr<StateModel> model;
-    double noise_ratio = 1.0;  // its driving noise over process_noise
+    double noise_ratio = 1.0;  // its driving noise / process_noise
   };
   explicit Sum(std::vector<Term> terms);
 
