@@ -18,7 +18,7 @@
 namespace ifog {
 namespace {
 
-// The place of a column that was asked for by its header or, "#3", by its number.
+// Index of a column given by its header or number ("#3").
 std::size_t place_of(const std::string& wanted, const std::vector<std::string>& names,
                      const std::string& path, std::size_t line) {
   const auto count = std::count(names.begin(), names.end(), wanted);
@@ -35,7 +35,7 @@ std::size_t place_of(const std::string& wanted, const std::vector<std::string>& 
               listed(names));
 }
 
-// The name that is a gyro's among those of several sensors; "" where none is alone in that.
+// The only name of a gyro among several sensors' names; else "".
 std::string the_gyro(const std::set<std::string>& names) {
   std::string found;
   for (const std::string& name : names)
@@ -46,7 +46,7 @@ std::string the_gyro(const std::set<std::string>& names) {
   return found;
 }
 
-// The options of each reading, where none of them is chosen.
+// Options of each reading, if none is unambiguous.
 std::string options_in_words(const Readings& readings) {
   std::string text;
   for (const TableReading& way : readings.ways)
@@ -83,7 +83,8 @@ class Chooser {
   }
   [[noreturn]] void fail(const std::string& what) const { fail_at(path_, line_, what); }
 
-  // Rows of several sensors in turn, which a column numbers or names: where one name is a gyro's, only its are read.
+  // Rows of several sensors in turn, numbered or named by a column: if one name is a gyro's, only its rows
+  // are read.
   void look_what_alternates() {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const Words words(names_[i]);
@@ -112,7 +113,7 @@ class Chooser {
     }
   }
 
-  // Of the first rows those that are read say what the columns are.
+  // Only the rows that are read are used as first rows.
   void keep_only(std::size_t place) {
     header_.only_place = place;
     const std::vector<std::string> which = form_.sample.cells[place];
@@ -122,7 +123,7 @@ class Chooser {
     }
   }
 
-  // Time first, and a rate, or a table in which nothing looks like one.
+  // Time first and a rate, or a table without any possible rate.
   [[nodiscard]] bool reads_as_named() const {
     if (header_.layout.chooses() || names_.front() != "time_s") return false;
     if (std::any_of(names_.begin(), names_.end(),
@@ -142,7 +143,7 @@ class Chooser {
     (void)under_own_name(0);
   }
 
-  // A row of units says what the name leaves out.
+  // Adds the unit from the row of units if the name has none.
   [[nodiscard]] CsvColumn under_own_name(std::size_t i) const {
     const std::string unit = form_.sample.stated_unit(i);
     const auto name = name_with_unit(names_[i], unit);
@@ -158,7 +159,7 @@ class Chooser {
     CsvLayout& layout = header_.layout;
     const bool named = reads_as_named();
     if (named) expect_every_name_once();
-    // With --time alone the others stand under their own names, too.
+    // With only --time, other columns keep their names.
     const bool own_names = named || (layout.time && layout.columns.empty() &&
                                      std::any_of(names_.begin(), names_.end(), is_rate_column));
     if (!layout.time && !layout.sample_rate_hz && std::count(names_.begin(), names_.end(), "time_s") == 1)
@@ -188,14 +189,14 @@ class Chooser {
     }
   }
 
-  // What the row of units says of a column that was chosen without one, where that becomes the capture's.
+  // Unit from the row of units, for a chosen column without one, if it becomes the capture's unit.
   [[nodiscard]] std::string stated_unit(const CsvColumn& chosen, std::size_t at) const {
     CsvColumn column = chosen;
     column.unit = form_.sample.stated_unit(at);
     return column.angle_rad() || convert_unit(column.unit, column.own_unit()) ? column.unit : "";
   }
 
-  // What reads a voltage; "" where no column is one.
+  // Option for a voltage column, or "".
   [[nodiscard]] std::string volts() const {
     for (std::size_t i = 0; i < names_.size(); ++i)
       if (const std::string unit = form_.sample.stated_unit(i) + unit_in_name(names_[i]);
@@ -205,7 +206,7 @@ class Chooser {
     return "";
   }
 
-  // What was not asked for, as the names have it.
+  // Adds what was not asked for, by names.
   void take_reading() {
     const Readings found = readings_of(form_.sample, header_.layout);
     if (const TableReading* const clear = found.clear()) {
@@ -273,7 +274,7 @@ class Chooser {
   TableForm form_;
   const std::vector<std::string>& names_;
   const std::string& path_;
-  const std::size_t line_;  // of the header; 0: it has none
+  const std::size_t line_;  // of the header; 0: none
   CsvHeader header_;
   std::size_t rates_ = 0;
 };

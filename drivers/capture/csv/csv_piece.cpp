@@ -18,7 +18,7 @@
 namespace ifog {
 namespace {
 
-// What R, pandas, databases and spreadsheets write where there is no value.
+// Missing values of R, pandas, databases and spreadsheets.
 bool is_no_value(std::string_view cell) {
   constexpr std::array<std::string_view, 6> kWords{"na", "n/a", "#n/a", "null", "none", "-"};
   return std::any_of(kWords.begin(), kWords.end(), [&](std::string_view word) {
@@ -28,7 +28,6 @@ bool is_no_value(std::string_view cell) {
   });
 }
 
-// What is wrong with a row.
 struct Unreadable {
   std::string what;
 };
@@ -37,7 +36,7 @@ double number(const std::string& column, std::string_view cell, std::string_view
   if (cell.empty()) return kMissing;
   double value = 0.0;
   const auto [end, error] = read_decimal(digits.data(), digits.data() + digits.size(), value);
-  if (error == std::errc::result_out_of_range) return HUGE_VAL;  // beyond every range, as an infinite one is
+  if (error == std::errc::result_out_of_range) return HUGE_VAL;  // treated like infinity
   if (error != std::errc() || end != digits.data() + digits.size()) {
     if (is_no_value(cell)) return kMissing;
     throw Unreadable{printable(column) + " is " + in_quotes(cell) + ", expected a number, 'nan' or nothing"};
@@ -55,17 +54,16 @@ std::string_view cell_at(std::string_view line, std::size_t place, char separato
   return unquoted(line.substr(0, cell_end(line, separator)));
 }
 
-// The time of a row as digits. It may stand in two cells: a whole second and its digits behind the point, or a date
-// and a time of day.
+// Time of a row as digits, from one or two cells: seconds and decimal digits, or date and time of day.
 struct RowTime {
-  std::string_view whole, part;  // the cells of the row at hand
+  std::string_view whole, part;  // cells of the present row
   std::string joined;
 
-  // digits: of the second cell, 0 if it is a time of day, nullopt if there is none. Empty if the row has no time,
-  // nullopt if the second cell is no part of a second. Valid until the next call.
+  // digits: of the second cell; 0: a time of day; nullopt: no second cell. Empty if the row has no time,
+  // nullopt if the second cell is invalid. Valid until the next call.
   std::optional<std::string_view> text(std::optional<int> digits) {
     if (!digits || (whole.empty() && part.empty())) return whole;
-    // Loggers that hold all in one kind of number write 570443003.0.
+    // Some loggers write integers as 570443003.0.
     for (std::string_view* cell : {&whole, &part})
       if (cell->ends_with(".0")) cell->remove_suffix(2);
     joined = whole;
@@ -78,12 +76,12 @@ struct RowTime {
   }
 };
 
-// "1.2e-0" of "1.2e-05": nobody writes an exponent of 0.
+// "1.2e-0" is a truncated "1.2e-05".
 bool ends_within_exponent(std::string_view line) {
   return line.ends_with("e-0") || line.ends_with("e+0") || line.ends_with("E-0") || line.ends_with("E+0");
 }
 
-// One row after the other, into the columns of a piece.
+// Appends rows to the columns of a piece.
 class Rows {
  public:
   Rows(CsvPiece& piece, const CsvHeader& header, const TimeStamps& stamps)
@@ -106,7 +104,7 @@ class Rows {
     if (header.time_part != CsvHeader::kNone) to_[header.time_part].time = &time_.part;
   }
 
-  // Columns that were used before have their memory still.
+  // Reused columns keep their memory.
   void begin(std::size_t rows) {
     piece_.rows.time_s.clear();
     piece_.rows.time_s.reserve(rows);
@@ -117,7 +115,7 @@ class Rows {
       if (place.values != nullptr) place.values->reserve(rows);
   }
 
-  // ended: the line has an end, so that nothing of it is missing.
+  // ended: the line is complete.
   void add(std::string_view line, std::size_t number, bool ended) {
     try {
       if (!ended && ends_within_exponent(line)) throw Unreadable{"ends within a number"};
@@ -157,21 +155,21 @@ class Rows {
     piece_.rows.lines.push_back(number);
   }
 
-  // kOther: nobody chose it, so that text in it is no fault of the file but a missing value.
+  // kOther: not chosen, so text is a missing value and no fault.
   enum class Meaning : unsigned char { kNothing, kOther, kNumber };
   struct Place {
     Meaning means = Meaning::kNothing;
     Measurable range{};
-    std::vector<double>* values = nullptr;  // null: nobody wants them
+    std::vector<double>* values = nullptr;  // null: not needed
     Fault* impossible = nullptr;
-    std::string_view* time = nullptr;  // of a time: its cell
+    std::string_view* time = nullptr;  // cell of a time
   };
 
-  // The cell that begins there, of the row that ends at `end`; where it ends itself.
+  // Parses the cell from `at` in a row that ends at `end`; returns the cell's end.
   const char* take(std::size_t place, const char* at, const char* end, std::size_t line) {
     const Place& to = to_[place];
     if (to.means == Meaning::kNumber) {
-      // Nearly every cell is a number in digits and nothing else: where they end the cell does.
+      // Fast path: the cell is a plain number.
       double value = 0.0;
       const auto [behind, error] = std::from_chars(at, end, value);
       if (error == std::errc() && (behind == end || *behind == separator_) && std::isfinite(value)) {
@@ -195,7 +193,7 @@ class Rows {
     return behind;
   }
 
-  // A row without a time, which leaves all columns of this one empty, too.
+  // A row without a time whose other columns are empty too.
   void of_another_sensor(std::string_view line) {
     for (std::size_t i = 0; i < to_.size(); ++i)
       if (to_[i].means == Meaning::kNumber && !cell_at(line, i, separator_).empty())
@@ -204,7 +202,7 @@ class Rows {
     ++piece_.untimed;
   }
 
-  // The row at hand, as far as it was read: a file of short lines below a wide header takes no longer for it.
+  // Removes the present row's values, only as far as it was read.
   void drop() {
     const std::size_t rows = piece_.rows.lines.size();
     piece_.rows.time_s.resize(rows);
@@ -212,7 +210,7 @@ class Rows {
       if (to_[i].values != nullptr) to_[i].values->resize(rows);
   }
 
-  // False: the row has none.
+  // False: the row has no time.
   bool take_time() {
     const std::optional<std::string_view> found = time_.text(header_.part_digits);
     if (!found)
@@ -260,7 +258,7 @@ class Rows {
   double unit_s_;
   const Measurable time_range_ = measurable("time_s");
   std::vector<Place> to_;    // by cell of a row
-  std::size_t reached_ = 0;  // cells of the row at hand
+  std::size_t reached_ = 0;  // cells of the present row
   RowTime time_;
 };
 
@@ -289,7 +287,7 @@ CsvPiece parse_csv_piece(std::string_view text, const CsvHeader& header, const T
   piece.rows = std::move(used);
   piece.rows.origin = stamps.origin();
   Rows rows(piece, header, stamps);
-  // Rows are about as long as the first, and have at least a separator a column.
+  // Estimates the number of rows from the first row's length, at least one byte per column.
   const std::size_t length = std::max(std::min(text.find('\n'), text.size()) + 1, header.cells.size());
   rows.begin(text.size() / length + text.size() / length / 16 + 1);
   Lines lines(text);

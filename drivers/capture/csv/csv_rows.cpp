@@ -25,12 +25,12 @@ namespace ifog {
 namespace {
 
 constexpr std::size_t kWorthAThread = std::size_t{1} << 17U;  // bytes
-// Bytes of lines that are no comments, to find the table and the form of its lines in.
+// Bytes of lines without comments, in which table and form of lines are detected.
 constexpr std::size_t kHead = std::size_t{256} << 10U;
 
 class CsvRows {
  public:
-  // were_rows: hears of bytes that were.
+  // were_rows: called with the number of bytes that were rows.
   using WereRows = std::function<void(std::size_t)>;
   CsvRows(const ReadBytes& read, std::size_t piece, const std::string& path, const CsvLayout& layout,
           RowSink& sink, RowsAre rows, WereRows were_rows)
@@ -54,14 +54,14 @@ class CsvRows {
   }
 
  private:
-  // Its memory is used again for later pieces, because new pages cost as much as the reading.
+  // Its memory is reused, because new pages cost as much as reading.
   struct Piece {
     std::string text;
     RowBlock rows;
     std::future<CsvPiece> parsed;
   };
 
-  // The text's beginning, as it stands in the file: however it is cut, the same of it shows table and form.
+  // Beginning of the text, independent of how it is read.
   std::string head() {
     std::string head, piece;
     std::size_t plain = 0;
@@ -71,11 +71,11 @@ class CsvRows {
     }
     const std::string other = foreign_text(std::string_view(head).substr(0, InputFile::kHead));
     if (!other.empty()) fail_at(path_, 0, other);
-    if (head.starts_with("\xEF\xBB\xBF")) head.erase(0, 3);  // the byte-order mark
+    if (head.starts_with("\xEF\xBB\xBF")) head.erase(0, 3);  // byte-order mark
     return head;
   }
 
-  // What follows the header.
+  // The text after the header.
   std::string begin() {
     std::string text = head();
     form_ = LineForm(std::string_view(text).substr(0, kHead));
@@ -95,7 +95,7 @@ class CsvRows {
   }
 
   void in_order(std::string text) {
-    // One more than there are processors, so that none waits while this thread hands over.
+    // One more than there are processors, so that none waits for this thread.
     std::vector<Piece> ring(std::clamp(std::thread::hardware_concurrency() + 1, 2U, 8U));
     std::size_t begun = 0, done = 0;
     for (bool more = !text.empty();; more = false) {
@@ -107,7 +107,7 @@ class CsvRows {
         break;
       else if (!form_.is_plain())
         piece.text = form_.rows_of(piece.text);
-      if (!stamps_) stamps_ = stamps_from(piece.text, header_);  // all pieces count from one origin
+      if (!stamps_) stamps_ = stamps_from(piece.text, header_);  // common origin of all pieces
       parse(piece);
       ++begun;
     }
@@ -121,7 +121,7 @@ class CsvRows {
     const bool worth = piece.text.size() >= kWorthAThread;
     try {
       piece.parsed = std::async(worth ? std::launch::async : std::launch::deferred, parsed);
-    } catch (const std::system_error&) {  // no room for another thread: then when its turn comes
+    } catch (const std::system_error&) {  // no more threads: parsed when needed
       piece.parsed = std::async(std::launch::deferred, parsed);
     }
   }
@@ -142,7 +142,7 @@ class CsvRows {
     so_far_.untimed += parsed.untimed;
     const std::size_t places = std::exchange(so_far_.places, so_far_.places + parsed.places);
     were_rows_(parsed.row_bytes);
-    // So many that nothing is gained by looking on.
+    // limit after which the search ends
     constexpr std::size_t kHopeless = 1000;
     if (damaged_.count > std::max(kHopeless, checks_->rows() + rows.size())) tell_damaged();
     if (rows.size() == 0) return;
@@ -152,7 +152,7 @@ class CsvRows {
     checks_->take(rows);
   }
 
-  // The last line without its end counts for itself.
+  // An incomplete last line is reported separately.
   void tell_damaged() {
     const std::size_t rows = checks_->rows();
     for (const auto& [found, few] :
@@ -178,7 +178,7 @@ class CsvRows {
   struct Counts {
     std::size_t lines = 0, untimed = 0, places = 0;
   } so_far_;
-  std::optional<TimeStamps> stamps_;  // once there is a row
+  std::optional<TimeStamps> stamps_;  // set by the first row
 };
 
 }  // namespace

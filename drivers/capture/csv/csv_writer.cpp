@@ -18,12 +18,12 @@ void append(std::string& out, double value) {
   }
   std::array<char, 40> text{};
   const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  (void)error;  // 40 characters hold any double
+  (void)error;  // 40 characters suffice for any double
   out.append(text.data(), end);
 }
 
 bool is_large_time(double time_s) {
-  constexpr double kMost = 9e18;  // whole seconds of 64 bits
+  constexpr double kMost = 9e18;  // whole seconds in 64 bits
   return std::abs(time_s) >= kFineTimes_s && std::abs(time_s) < kMost;
 }
 
@@ -43,7 +43,7 @@ void CsvWriter::rows(std::span<const std::span<const double>> columns, const Tim
   for (std::size_t row = 0; row < columns.front().size(); ++row) {
     for (std::size_t c = 0; c < columns.size(); ++c) {
       if (c != 0) text_ += ',';
-      // Large times keep their digits however they came: 1763000000, never 1.763e+09.
+      // Large times are written in full: 1763000000 instead of 1.763e+09.
       if (c == 0 && (origin != TimeOrigin{} || is_large_time(columns[c][row])))
         append_time(text_, origin, columns[c][row]);
       else

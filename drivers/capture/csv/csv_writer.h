@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes a capture as CSV, block by block.
+// Writes a capture as CSV in blocks.
 #pragma once
 
 #include <span>
@@ -11,16 +11,16 @@
 
 namespace ifog {
 
-// Shortest text that reads back as the same double.
+// Uses the shortest text that reads back as the same double.
 class CsvWriter {
  public:
-  // comments: as in RowNotes. Throws as OutputFile does, all of it.
+  // comments: as in RowNotes. All functions throw as OutputFile does.
   CsvWriter(const std::string& path, const std::string& comments, const std::vector<std::string>& names);
 
-  // By column, in the order of the names, all of one length. origin: what the first column, the time, is counted
-  // from. Times have as many digits as are needed to read the same double back.
+  // Writes rows. columns: in the order of the names, equally long. origin: of the first column, the time.
+  // Times have enough digits to read back the same double.
   void rows(std::span<const std::span<const double>> columns, const TimeOrigin& origin = {});
-  // Without it a regular file stays as it was.
+  // Without it a regular file is not changed.
   void finish() { file_.finish(); }
 
  private:

@@ -17,12 +17,12 @@ namespace {
 
 constexpr std::string_view kArrow = " -> ";
 constexpr const char* kStampName = "stamp_time";
-constexpr std::size_t kAlike = 3;  // lines of one form, in the file's beginning
+constexpr std::size_t kAlike = 3;  // fewest lines of one form in the file's beginning
 
 bool is_decimal(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
 bool is_alphabetic(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 
-// "%RAWIMUSXA," of a line with a head and a check sum, as NovAtel's OEM7 manual has it; "" of any other.
+// "%RAWIMUSXA," of a line with head and checksum (NovAtel OEM7 manual); else "".
 std::string_view novatel_log(std::string_view line) {
   constexpr std::size_t kSum = 9;  // "*" and eight digits
   line = trimmed(line);
@@ -31,7 +31,7 @@ std::string_view novatel_log(std::string_view line) {
   return is_log ? line.substr(0, line.find(',') + 1) : std::string_view();
 }
 
-// "UncalGyro," of a line that begins with a word; "" of any other.
+// "UncalGyro," of a line that starts with a word; else "".
 std::string_view word_before(std::string_view line) {
   const std::string_view word = line.substr(0, line.find(','));
   const auto in_words = [](char c) { return is_alphabetic(c) || is_decimal(c) || c == '_'; };
@@ -40,8 +40,8 @@ std::string_view word_before(std::string_view line) {
   return is_word ? line.substr(0, word.size() + 1) : std::string_view();
 }
 
-// What follows the head of NovAtel's logs of raw inertial data, whose axes stand in the order z, -y, x. Source:
-// OEM7 Commands and Logs, RAWIMU, RAWIMUS, RAWIMUX, RAWIMUSX.
+// Column names of NovAtel's raw inertial logs, whose axes are in the order z, -y, x. Source: OEM7 Commands
+// and Logs, RAWIMU, RAWIMUS, RAWIMUX, RAWIMUSX.
 std::vector<std::string> novatel_names(std::string_view log, std::string_view line) {
   if (!log.substr(1).starts_with("RAWIMU")) return {};
   const bool extended = log.find('X') != std::string_view::npos,
@@ -59,13 +59,13 @@ std::vector<std::string> novatel_names(std::string_view log, std::string_view li
 
 bool is_of_gyro(const std::string& name) { return lower(name).find("gyr") != std::string::npos; }
 
-// The terminal's time in front of a line, "10:00:00" or "10:00:00.123"; "" where there is none.
+// Terminal's time before a line, "10:00:00" or "10:00:00.123", or "".
 std::string_view stamp_before(std::string_view line) {
   const std::string_view before = line.substr(0, line.find(kArrow));
   return before.size() < line.size() && is_date(before) ? before : std::string_view();
 }
 
-// The date or time of day that is all of a line, without blanks; "" where it is another line.
+// Date or time of day that fills a line, without blanks; else "".
 std::string stamp_alone(std::string_view line) {
   std::string stamp;
   for (const char c : trimmed(line))
@@ -76,14 +76,14 @@ std::string stamp_alone(std::string_view line) {
   return stamp.find(':') != std::string::npos && is_date(stamp) ? stamp : std::string();
 }
 
-// Numbers of a line, each with the text before it.
+// Numbers of a line with the text before each.
 struct Values {
   std::string_view begin;  // of the line, before the first number
   std::vector<std::string> labels;
   std::vector<std::string_view> numbers;
 };
 
-// Where a number that begins there ends; its begin where none does, as in "gyro2" and "0x68".
+// End of a number that starts at `at`; `at` if there is none, as in "gyro2" and "0x68".
 std::size_t end_of_number(std::string_view line, std::size_t at) {
   const char before = at > 0 ? line[at - 1] : ' ';
   if (is_alphabetic(before) || is_decimal(before) || before == '_' || before == '.') return at;
@@ -91,13 +91,13 @@ std::size_t end_of_number(std::string_view line, std::size_t at) {
   if (rest.starts_with("0x")) return at;
   if (rest.starts_with('+')) rest.remove_prefix(1);
   const std::size_t digit = rest.find_first_not_of("-.");
-  if (digit > 2 || !is_decimal(rest[digit])) return at;  // no "nan" or "inf"
+  if (digit > 2 || !is_decimal(rest[digit])) return at;  // excludes "nan" and "inf"
   double value = 0.0;
   const auto [end, error] = std::from_chars(rest.begin(), rest.end(), value);
   return error == std::errc::invalid_argument ? at : static_cast<std::size_t>(end - line.begin());
 }
 
-// "gx" of ", gx: "; "" of what names nothing.
+// "gx" of ", gx: "; "" if there is no name.
 std::string label_in(std::string_view between) {
   if (between.find_first_of(":=") == std::string_view::npos) return "";
   constexpr std::string_view kAround = " \t,;|:={}[]()\"'";
@@ -111,7 +111,7 @@ std::string label_in(std::string_view between) {
 
 Values values_in(std::string_view line) {
   Values out;
-  std::size_t behind = 0;  // the number before
+  std::size_t behind = 0;  // end of the previous number
   for (std::size_t at = 0; at < line.size();) {
     const std::size_t end = end_of_number(line, at);
     if (end == at) {
@@ -126,7 +126,7 @@ Values values_in(std::string_view line) {
   return out;
 }
 
-// A name a value, or three values for a name, which are its axes; nothing where a value has no name.
+// One name per value, or per three values as axes; empty if a value has no name.
 std::vector<std::string> names_by(const std::vector<std::string>& labels) {
   std::vector<std::string> names;
   for (std::size_t i = 0; i < labels.size();) {
@@ -142,11 +142,11 @@ std::vector<std::string> names_by(const std::vector<std::string>& labels) {
 
 }  // namespace
 
-// The most frequent of the records that lines begin with whose cells have names of a gyro: by NovAtel's manual, or where
-// a line states them, as "# UncalGyro,utcTimeMillis,…" of GnssLogger and "FMT, 140, 43, IMU, QBffffff, TimeUS,I,GyrX,…"
-// of ArduPilot. In two passes, however many records there are.
+// Most frequent record type whose cells have names of a gyro: from NovAtel's manual, or from lines like "#
+// UncalGyro,utcTimeMillis,…" (GnssLogger) and "FMT, 140, 43, IMU, QBffffff, TimeUS,I,GyrX,…" (ArduPilot).
+// Uses two passes.
 void LineForm::find_record(std::string_view text) {
-  std::map<std::string, std::pair<std::size_t, std::string_view>> records;  // number, one of them
+  std::map<std::string, std::pair<std::size_t, std::string_view>> records;  // count, and one of them
   Lines lines(text);
   for (std::string_view line; lines.next(line);) {
     const std::string_view log = novatel_log(line), record = log.empty() ? word_before(line) : log;
@@ -203,12 +203,12 @@ LineForm::LineForm(std::string_view beginning) {
     labels = std::move(values.labels);
   }
   if (before >= kAlike && 2 * before >= looked) stamps_ = Stamps::before;
-  // A file of times alone has no rows for them.
+  // A file that contains only times has no rows.
   if (alone >= 2 && 10 * alone < 9 * looked) stamps_ = Stamps::above;
   if (alike < kAlike) return;
   labels_ = std::move(labels);
   names_ = names_by(labels_);
-  // Lines of several sensors that differ in their beginning only: those of the gyro are read.
+  // If lines differ in their beginning, by sensor, only the gyro's are read.
   const auto gyro = std::find_if(begins.begin(), begins.end(), [](const auto& each) {
     return each.second >= kAlike && each.first.find("gyr") != std::string::npos;
   });

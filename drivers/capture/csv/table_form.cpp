@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kMostAbove = 1000;  // lines before the first row
 
-// Column names that begin with a capture's time, whatever their separator.
+// Column names that start with a capture's time, with any separator.
 bool is_capture_header(std::string_view line) {
   constexpr std::string_view kTime = "time_s";
   line = unquoted(line);
@@ -28,7 +28,7 @@ bool is_capture_header(std::string_view line) {
           std::string_view(",;\t|\" ").find(line[kTime.size()]) != std::string_view::npos);
 }
 
-// The names that the layout asks for; of "sec+nsec" both parts.
+// Names in the layout; both parts of "sec+nsec".
 std::vector<std::string> wanted_names(const CsvLayout& layout) {
   std::vector<std::string> wanted;
   for (const CsvColumn& column : layout.columns) wanted.push_back(column.header);
@@ -48,8 +48,8 @@ bool has_names(const std::vector<std::string>& cells, const std::vector<std::str
   });
 }
 
-// The cells of a line above rows that are so wide. Some programs separate the names otherwise than the values:
-// "A_X [mg] A_Y [mg]" above tabs, where a unit belongs to the name before it.
+// Cells of a line above rows of this width. Names may have another separator than values: "A_X [mg] A_Y [mg]"
+// above tabs, where a unit belongs to the preceding name.
 std::vector<std::string> names_in(std::string_view line, char separator, const Row& rows) {
   std::vector<std::string> names = cells_of(without_mark(line), separator);
   if (names.size() + 1 == rows.cells.size() && line.ends_with(separator)) names.emplace_back();
@@ -66,7 +66,7 @@ std::vector<std::string> names_in(std::string_view line, char separator, const R
   return names;
 }
 
-// The units that a row next to the names says, where it is one: each cell a text, at least one of them a unit.
+// Units of a row next to the names; empty if it is no row of units (each cell a text, one a known unit).
 std::vector<std::string> units_in(std::vector<std::string> units, char separator) {
   const auto value = [&](const std::string& cell) { return cell != "1" && is_value(cell, separator); };
   for (std::string& unit : units) unit = without_brackets(unit);
@@ -77,13 +77,13 @@ std::vector<std::string> units_in(std::vector<std::string> units, char separator
   return units;
 }
 
-// Which of the lines is the header, what it says, and the line above the first row, which may be one of units.
+// Header line, its names, and the line before the first row, which may be one of units.
 struct Header {
   std::size_t at = 0, last = 0;
   std::vector<std::string> names, units;
 };
 
-// The first line that is a capture's header, or has the names that the layout asks for.
+// First line that is a capture's header or has the names in the layout.
 std::optional<Header> header_asked_for(const std::vector<Line>& lines, const Grid& grid,
                                        const std::vector<std::string>& wanted) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
@@ -99,7 +99,7 @@ std::optional<Header> header_asked_for(const std::vector<Line>& lines, const Gri
   return std::nullopt;
 }
 
-// "Gyro x" of "x" below "Gyro", which may stand once for all columns that it is over.
+// "Gyro x" from "x" below "Gyro", which may span several columns.
 std::vector<std::string> joined(const std::vector<std::string>& above, std::vector<std::string> below) {
   std::string over;
   for (std::size_t i = 0; i < below.size(); ++i) {
@@ -109,8 +109,8 @@ std::vector<std::string> joined(const std::vector<std::string>& above, std::vect
   return below;
 }
 
-// What the lines above the rows say, up to three: names, and a row of units below them. Names that stand twice are
-// distinguished by the line above, and where the names are of no gyro, that line may hold them.
+// Up to three lines above the rows: names, and a row of units. Duplicate names are completed by the line
+// above, which may also contain the gyro's name.
 std::vector<Header> headers_above(const std::vector<Line>& lines, const Grid& grid) {
   constexpr std::size_t kMostNameLines = 3;
   const std::size_t first = *grid.first();
@@ -118,7 +118,7 @@ std::vector<Header> headers_above(const std::vector<Line>& lines, const Grid& gr
   std::vector<std::vector<std::string>> above;  // upwards
   for (std::size_t back = 1; back <= std::min(first, kMostNameLines); ++back) {
     above.push_back(names_in(lines[first - back].text, grid.separator(), row));
-    // Above a row of units channels may be called by their numbers.
+    // Above a row of units, names may be numbers.
     const bool names =
         !grid.rows()[first - back].is_row() || (back == 2 && !is_value(above[1][0], grid.separator()) &&
                                                 !units_in(above[0], grid.separator()).empty());
@@ -163,8 +163,8 @@ std::vector<Line> first_lines(std::string_view text, const std::string& path) {
   return out;
 }
 
-// A LabVIEW measurement file has two heads, and a last name, Comment, that most rows have no cell for.
-// Returns the cells of its row of units. Source: NI, "Specification for the LabVIEW Measurement File (.lvm)".
+// A LabVIEW measurement file has two heads, and a last name, Comment, without cells. Returns its row of
+// units. Source: NI, "Specification for the LabVIEW Measurement File (.lvm)".
 std::vector<std::string> without_heads(std::vector<Line>& lines, std::vector<std::string>& comments) {
   const auto last = std::find_if(lines.rbegin(), lines.rend(), [&](const Line& line) {
     return line.text.starts_with("***End_of_Header***");
@@ -189,7 +189,7 @@ std::vector<std::string> without_heads(std::vector<Line>& lines, std::vector<std
   return units;
 }
 
-// The first rows below, as cells by column.
+// First rows as cells by column.
 void sample_rows(const Grid& grid, std::size_t from, TableSample& sample) {
   sample.cells.assign(sample.names.size(), {});
   for (std::size_t i = from; i < grid.rows().size() && sample.cells[0].size() < Grid::kSampleRows; ++i) {
@@ -203,8 +203,8 @@ void sample_rows(const Grid& grid, std::size_t from, TableSample& sample) {
   }
 }
 
-// The header, and the sample with its names. Of several that the lines above the rows may be it is the first by
-// which the table can be read, or has what was asked for. False: the table has none.
+// Chooses the first possible header with which the table can be read, or that has the requested names. False:
+// no header.
 bool take_header(const std::vector<Line>& lines, const Grid& grid, const CsvLayout& layout, TableForm& form) {
   TableSample& sample = form.sample;
   const auto take = [&](const Header& header) {
@@ -243,7 +243,7 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
   std::optional<char> separator;
   if (layout.separator != '\0') separator = layout.separator;
   if (!given.empty()) separator = ',';
-  // What spreadsheets write above the header.
+  // Spreadsheets' separator line above the header.
   if (!lines.empty() && lines[0].text.size() == 5 &&
       (lines[0].text.starts_with("sep=") || lines[0].text.starts_with("SEP="))) {
     if (!separator) separator = lines[0].text[4];

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in a text its table begins, and how it is written: lines of other text above, what stands between the cells,
-// the header or none, a row of units.
+// Position and form of the table in a text: preamble, separator, header, row of units.
 #pragma once
 
 #include <cstddef>
@@ -14,16 +13,15 @@ namespace ifog {
 
 struct TableForm {
   char separator = ',';
-  std::size_t header_line = 0;  // its number, from 1; 0 where there is none
-  std::size_t last_line = 0;    // the line above the first row: the header, or the row of units below it
-  TableSample sample;           // names, units, the first rows, what stands above
+  std::size_t header_line = 0;  // from 1; 0 without a header
+  std::size_t last_line = 0;    // last line before the first row: header or row of units
+  TableSample sample;           // names, units, first rows, preamble
 };
 
-// text: the file's beginning, whole lines. Throws std::runtime_error with one line: PATH, what was looked
-// for. A header that begins with time_s is that of a capture, and the first such line is it; so is the first
-// line that has all the names which the layout asks for. Else the header is the line above the first rows of
-// as many cells, mostly numbers.
-// given: the names of the columns where the lines themselves have them; then there is no header.
+// text: whole lines from the file's beginning. The header is the first line that starts with time_s, or that
+// has all names in the layout; else the line above the first rows of equally many, mostly numeric cells.
+// given: column names from the lines themselves; then there is no header. Throws std::runtime_error with one
+// line: PATH, what was expected.
 TableForm table_form(std::string_view text, const std::vector<std::string>& given, const std::string& path,
                      const CsvLayout& layout);
 

@@ -11,7 +11,7 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kRunOfRows = 3;  // that make a table, where the text has as many lines
+constexpr std::size_t kRunOfRows = 3;  // consecutive rows that make a table, if the text has so many lines
 
 Row row_of(std::string_view line, char separator) {
   Row row;
@@ -47,7 +47,7 @@ std::string_view unquoted(std::string_view cell) {
   return cell;
 }
 
-// "He said ""no"", and left": a quote inside is doubled.
+// "He said ""no""": a quote inside is doubled.
 std::size_t cell_end(std::string_view row, char separator) {
   std::size_t at = 0;
   while (row.substr(at).starts_with('"')) {
@@ -68,7 +68,7 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
     line.remove_prefix(end + 1);
     while (separator == ' ' && !line.empty() && line.front() == ' ') line.remove_prefix(1);
   }
-  // As rows are that end with a separator.
+  // Rows may end with a separator.
   if (cells.size() > 1 && cells.back().empty()) cells.pop_back();
   return cells;
 }
@@ -114,12 +114,12 @@ Grid Grid::of(const std::vector<Line>& lines) {
   return best ? std::move(*best) : Grid(lines, ',');
 }
 
-// The table is of rows of as many cells, of which some follow one another where there are as many; of several
-// such the one with most values, as a head of names and values may look like a table, too.
+// The table has consecutive rows of equally many cells. Of several such groups the one with most values is
+// used, because a head of names and values may look like a table.
 void Grid::find_first() {
   struct Table {
     std::size_t begin = 0, run = 0, values = 0;
-    std::size_t last = 0;  // its row before, of the lines that are no comments
+    std::size_t last = 0;  // its previous row, counted without comments
   };
   std::vector<Table> tables;
   std::size_t plain = 0;
@@ -143,7 +143,7 @@ void Grid::find_first() {
   if (best != tables.end()) first_ = best->begin;
 }
 
-// Of what stands in the rows, the part that is values.
+// Share of values among non-empty cells.
 double Grid::share() const {
   std::size_t cells = 0, values = 0;
   for (std::size_t i = *first_; i < rows_.size() && i < *first_ + kSampleRows; ++i) {
