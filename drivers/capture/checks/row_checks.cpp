@@ -16,9 +16,9 @@
 namespace ifog {
 namespace {
 
-// Differences of an angle, by the time between: the mean rate since the row before; of the first row nothing
-// is known. An angle that stays within one turn begins again where it has turned that far, and steps by less
-// than half a turn, or behind a gap by nobody knows what.
+// Converts an angle to the mean rate since the previous row; the first row has none. An angle that stays
+// within one turn wraps by a turn and changes by less than half a turn per row; after a gap its change is
+// unknown.
 void differentiate(std::vector<double>& angle_rad, const std::vector<double>& time_s) {
   const auto known = [](double value) { return !std::isnan(value); };
   double least = std::numeric_limits<double>::infinity(), most = -least;
@@ -47,8 +47,8 @@ void differentiate(std::vector<double>& angle_rad, const std::vector<double>& ti
   }
 }
 
-// The correlation of neighbours is that of the differences of white values, -1/2, within a tenth: what an
-// angle turned is lost in what each value has for itself.
+// True if the rates are differences of white noise (autocorrelation at lag 1 of -1/2 within 0.1): then the
+// values were no angle.
 bool undo_each_other(const std::vector<double>& rate) {
   constexpr std::size_t kFew = 100;
   double squares = 0.0, products = 0.0;
@@ -62,7 +62,7 @@ bool undo_each_other(const std::vector<double>& rate) {
   return count >= kFew && products < -0.45 * squares;
 }
 
-// From the file's units to those of a capture, but for angles, which stay in rad and become rates by as_rates().
+// Converts to the capture's units; angles stay in rad until as_rates().
 void convert(RowBlock& rows, const CsvLayout& layout) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const UnitConversion conversion = layout.columns[i].conversion();
@@ -71,14 +71,14 @@ void convert(RowBlock& rows, const CsvLayout& layout) {
   }
 }
 
-// Needs all rows, because only the whole says whether an angle stays within one turn.
+// Needs all rows, to find out whether an angle stays within one turn.
 void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std::string& path) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
     const CsvColumn& column = layout.columns[i];
     if (!column.angle_rad()) continue;
     std::vector<double>& values = all.columns[i];
     if (column.is_increment()) {
-      // In which the sensor collects an increment, whenever its rows came.
+      // Time of an increment, independent of the rows' times.
       const double period_s = median_step_s(all.time_s);
       for (double& value : values) value /= period_s;
     } else {
@@ -89,7 +89,7 @@ void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std
             " undo each other, as those of increments do; if each value is the turn within a sample: " +
             option_for(column, column.unit + "/sample"));
     }
-    // A glitch of an angle is two leaps, and which cell was wrong the differences do not say.
+    // A glitch of an angle gives two outliers, and the wrong cell is ambiguous.
     for (std::size_t row = 0; row < values.size(); ++row)
       if (std::abs(values[row]) > IFOG_MAX_RATE)
         fail_at(path, notes.line_of_row(row),

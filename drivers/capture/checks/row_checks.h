@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is done to the rows of every format between parser and sink: chosen columns are converted, angles become
-// rates, and values that no sensor measures become missing and are reported, or are refused.
+// Checks between parser and sink, common to all formats: chosen columns are converted, angles become rates,
+// impossible values become missing with a report, or the file is rejected.
 #pragma once
 
 #include <cstddef>
@@ -21,19 +21,18 @@ std::string what_no_sensor_measures(const std::string& name, std::string_view ce
 
 class RowChecks {
  public:
-  // columns: in the order of the names that the sink was given. The path, the layout, the sink and the notes
-  // stay where they are while this is used.
+  // columns: in the order of the sink's names. Path, layout, sink and notes must outlive this object.
   RowChecks(const std::string& path, const CsvLayout& layout, std::vector<FileColumn> columns, RowSink& sink,
             RowNotes& notes);
 
-  // The next rows in the file's units, at least one. Throws std::runtime_error with one line, as finish().
+  // Takes the next rows in the file's units, at least one. Throws std::runtime_error with one line, as
+  // finish() does.
   void take(RowBlock& rows);
-  // found: of each column, values that no sensor measures. A few such values are faults of the logger and
-  // become missing. A rate with more than one in a hundred is not what its name says and is refused. A
-  // channel only becomes missing, because a broken thermometer does not make the rate useless.
+  // found: impossible values by column. Few are faults of the logger and become missing. A rate with more
+  // than 1 % is rejected, because its name must be wrong. A channel only becomes missing.
   void finish(std::span<const Fault> found);
 
-  // Rows received, repeated ones included.
+  // Rows received, including repeated ones.
   [[nodiscard]] std::size_t rows() const { return rows_; }
 
  private:
@@ -46,9 +45,9 @@ class RowChecks {
   RowSink& sink_;
   RowNotes& notes_;
   RowClock clock_;
-  std::optional<RowBlock> all_;  // where angles become rates
+  std::optional<RowBlock> all_;  // used if angles become rates
   std::size_t rows_ = 0;
-  std::size_t given_ = 0;  // rows behind the clock
+  std::size_t given_ = 0;  // rows after the clock
 };
 
 }  // namespace ifog

@@ -13,7 +13,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kLate_s = 2.0;  // a rollover comes within it
+constexpr double kLate_s = 2.0;  // limit for a rollover
 constexpr double kYear_s = 365.0 * 86'400.0;
 
 struct Rollover {
@@ -28,9 +28,9 @@ constexpr std::array<Rollover, 5> kRollovers{{{604'800.0, "a GPS week"},
                                               {kTwo32 * 1e-3, "a count of ms in 32 bits"}}};
 
 constexpr std::size_t kFewBursts = 8;
-constexpr double kHole = 1.5;  // times the usual step: a hole, not a longer step
+constexpr double kHole = 1.5;  // times the usual step; longer steps are gaps
 
-// Four in five are within a fifth of the usual: packets come evenly, holes and jitter do not.
+// True if four of five are within 20 % of the median: packets are even, gaps and jitter are not.
 bool are_even(const std::vector<double>& values) {
   const double usual = median_value(values);
   const auto near = std::count_if(values.begin(), values.end(),
@@ -38,7 +38,7 @@ bool are_even(const std::vector<double>& values) {
   return 5 * static_cast<std::size_t>(near) >= 4 * values.size();
 }
 
-// The longest step within a burst, where rows come in bursts; 0 where they do not.
+// Longest step within a burst; 0 if rows do not come in bursts.
 double step_within_bursts(const std::vector<double>& time_s) {
   if (time_s.size() < 2) return 0.0;
   const double mean_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
@@ -103,7 +103,7 @@ void RowOrder::take(RowBlock& rows, std::size_t known) {
       offset_s_ += longer_s;
       now_s += longer_s;
     } else if (back) {
-      // Where the row continues those before the last one, the last one is the one that is wrong.
+      // If this row continues those before the last one, the last one is wrong.
       const bool last_is_late = now_s >= before_s_;
       drop(rows, last_is_late ? kept - 1 : i, last_is_late);
       if (!last_is_late) continue;
@@ -159,7 +159,7 @@ void RowClock::take(RowBlock& rows) {
   if (!keep_repeats_) drop_repeats(rows);
   std::size_t begin = 0;
   for (std::size_t i = 1; i < rows.size(); ++i) {
-    // The first of rows that were spread keeps its stamp.
+    // The first of spread rows keeps its stamp.
     const double since_s = rows.time_s[i] - rows.time_s[i - 1];
     if (since_s <= within_s_) continue;
     spread(rows, begin, i, rows.time_s[i]);

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The times of rows as loggers write them, on their way to times that increase from row to row:
-//   - where a count or a clock of known length rolls over, that length is added from there on;
-//   - a row whose time goes back in another way, as where a clock was set back or the network changed the
-//     order, is dropped and counted, and so is one whose own time is too late; where more than one in a hundred
-//     is, the file is refused. A year between two rows is a clock that was set, and reported;
-//   - a row that repeats the one before, time and values, is dropped and counted;
-//   - rows of one stamp, and rows that come in bursts (several within a packet, packets evenly apart), are
-//     spread evenly up to the next stamp.
+// Converts the times of logged rows to times that increase from row to row:
+//   - a rollover of a counter or clock of known length adds that length;
+//   - a row whose time goes back otherwise (clock set back, network reordering) or is too late is dropped and
+//   counted; the file is rejected if these exceed 1 %. A step of a year is a set clock, and reported;
+//   - a row that repeats the time and values of the one before is dropped and counted;
+//   - rows with one stamp, or in bursts (several per packet, packets at even times), are spread evenly up to
+//   the next stamp.
 #pragma once
 
 #include <cstddef>
@@ -18,35 +17,34 @@
 
 namespace ifog {
 
-// time: the column's name, for messages. What is said goes to the notes. The path and the notes stay where they
-// are while these are used.
+// time: name of the column, for messages. Path and notes must outlive this object.
 class RowOrder {
  public:
   RowOrder(const std::string& path, std::string time, RowNotes& notes);
 
-  // Leaves the rows whose times, in s, do not go back. They may be fewer than before. known: the rows at the
-  // beginning that it has left before, the last of all included, which a row behind it may show to be wrong.
+  // Keeps rows whose times, in s, do not decrease; the number may become smaller. known: rows at the
+  // beginning that were kept before; the last of all rows may still prove wrong.
   void take(RowBlock& rows, std::size_t known);
-  // Says what was dropped. Throws std::runtime_error with one line where that is too much.
+  // Reports dropped rows. Throws std::runtime_error with one line if there are too many.
   void finish();
 
  private:
-  // How much longer the clock is that is earlier than before; 0: none rolls over so.
+  // Length of the rollover that explains the decrease; 0: none.
   double rolled_over_s(double now_s, std::size_t line);
-  // late: the row's own time is, else it goes back.
+  // late: the row's own time is wrong; else it goes back.
   void drop(const RowBlock& rows, std::size_t row, bool late);
-  // Says where the last row is from another time than the one before.
+  // Reports a clock that was set between the last two rows.
   void look_for_set_clock();
 
   const std::string& path_;
   const std::string time_;
   RowNotes& notes_;
-  double offset_s_ = 0.0;  // of rollovers
-  // Of the last row and of the one before it, once there are such.
+  double offset_s_ = 0.0;  // sum of rollovers
+  // Times of the last row and the one before, if any.
   double last_s_ = 0.0, before_s_ = std::numeric_limits<double>::infinity();
-  std::size_t rows_ = 0, line_ = 0;  // line_: of the last row
+  std::size_t rows_ = 0, line_ = 0;  // of the last row
   Fault dropped_;
-  bool set_ = false;  // a clock that was set is said
+  bool set_ = false;  // a set clock was reported
 };
 
 class RowClock {
@@ -55,7 +53,8 @@ class RowClock {
 
   RowClock(const std::string& path, std::string time, bool keep_repeats, RowNotes& notes, Next next);
 
-  // Times in s. Rows whose time may still change are buffered until more follow. Throws std::runtime_error with one line.
+  // Takes rows with times in s; rows whose time may still change are buffered. Throws std::runtime_error with
+  // one line.
   void take(RowBlock& rows);
   void finish();
 
@@ -70,10 +69,10 @@ class RowClock {
   RowNotes& notes_;
   Next next_;
   RowOrder order_;
-  RowBlock buffered_;      // the rows of the last stamp or burst
-  double within_s_ = 0.0;  // longest step within a burst; 0: only rows of one stamp are spread
-  double period_s_ = 0.0;  // between samples, of the last spread or single row
-  double bursts_s_ = 0.0;  // time that bursts took, and their rows
+  RowBlock buffered_;      // rows of the last stamp or burst
+  double within_s_ = 0.0;  // longest step within a burst; 0: only equal stamps are spread
+  double period_s_ = 0.0;  // sample period of the last burst or single row
+  double bursts_s_ = 0.0;  // total duration of bursts, and their rows
   std::size_t burst_rows_ = 0, spread_ = 0, repeated_ = 0;
   bool begun_ = false;
 };

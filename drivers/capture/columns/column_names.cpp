@@ -18,7 +18,7 @@ bool axis_of(const std::string& name, std::string_view prefix, std::string& axis
   }
   if (name.size() < prefix.size() + kUnit.size() + 2 || name[prefix.size()] != '_') return false;
   axis = name.substr(prefix.size() + 1, name.size() - prefix.size() - kUnit.size() - 1);
-  return axis.find('_') == std::string::npos;  // rate_ramp_x_radps is somebody's channel, not an axis
+  return axis.find('_') == std::string::npos;  // rate_ramp_x_radps is a channel, not an axis
 }
 
 bool is_rate_column(const std::string& name) {

@@ -14,13 +14,13 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kMostWays = 4;    // more than a message can show
-constexpr std::size_t kMostShown = 16;  // columns, likewise
+constexpr std::size_t kMostWays = 4;    // limit for messages
+constexpr std::size_t kMostShown = 16;  // columns; limit for messages
 
-// By sensor: columns whose names differ by the axis only belong together.
+// By sensor: columns whose names differ only in the axis.
 using Sensors = std::map<std::string, std::vector<RateCandidate>>;
 
-// The turn within a sample: delta_angle, dtheta.
+// Turn within a sample: delta_angle, dtheta.
 bool speaks_of_increment(const Words& words) {
   return words.has("dtheta") || words.has("dangle") || words.has("dang") ||
          (words.have(Role::step) && words.have(Role::angle));
@@ -33,11 +33,11 @@ bool speaks_of_rate(const Words& words) {
          (!words.axis.empty() && (words.first() == "w" || (words.first() == "g" && words.size() == 1)));
 }
 
-// In which the sensor's rate is given, where its name or a convention says so: "rad" of a gyro is a second's.
+// Unit of a rate by name or convention: "rad" of a gyro means rad/s.
 std::string rate_unit(const Words& words, const std::string& unit) {
   const bool increment = speaks_of_increment(words);
   if (unit.empty()) {
-    // sensor_msgs/Imu of ROS gives rad/s; vehicle_imu of PX4 radians within a sample.
+    // sensor_msgs/Imu of ROS: rad/s; vehicle_imu of PX4: rad per sample.
     if (words.has("angular") && words.has("velocity")) return "rad/s";
     return increment && words.has("delta") && words.has("angle") ? "rad/sample" : "";
   }
@@ -46,7 +46,7 @@ std::string rate_unit(const Words& words, const std::string& unit) {
   return unit + "/s";
 }
 
-// Whether a column is a rate at all; the candidate's place is the caller's.
+// A rate column without its place, or nullopt.
 std::optional<RateCandidate> candidate_of(const Words& words, const std::string& unit) {
   if (words.have(Role::no_rate)) return std::nullopt;
   const bool rate = angle_unit(unit, true, false).has_value(),
@@ -67,13 +67,13 @@ std::string unit_of(const TableSample& table, std::size_t place) {
   const std::string& text = Words(table.names[place]).text;  // gyro_rad[0]
   if (const std::string unit = unit_in_name(table.names[place]); !unit.empty())
     return unit == "G" && text.starts_with("mag") ? "gauss"
-                                                  : typed(unit);  // a magnetometer's G is not gravity
+                                                  : typed(unit);  // a magnetometer's G is gauss, not gravity
   const std::string last = text.substr(text.rfind('_') + 1);
   return angle_unit(last, false, false) ? last : "";
 }
 
-// p, q and r together are body rates; x, y and z without another word are the axes of a file that holds one
-// sensor only, as phones write it. Next to w or qw they are a quaternion or a position.
+// p, q and r are body rates; x, y and z alone are the axes of a file with a single sensor, e.g. of a phone.
+// Next to w or qw they are a quaternion or position.
 void add_triple(const TableSample& table, Sensors& sensors) {
   if (!sensors.empty()) return;
   std::vector<RateCandidate> body, bare;
@@ -105,7 +105,7 @@ Sensors sensors_of(const TableSample& table, bool references) {
     if (words.has("minus")) found->scale = -1.0;
     sensors[words.stem].push_back(*found);
   }
-  // Three namesakes, as of a header that spans three columns of a spreadsheet, are its axes.
+  // Three columns of the same name (a header that spans three cells) are axes.
   for (auto& [stem, columns] : sensors)
     if (columns.size() == 3 && columns[0].axis.empty() &&
         std::all_of(columns.begin(), columns.end(), [&, &first = columns[0]](const RateCandidate& column) {
@@ -123,7 +123,7 @@ bool axes_differ(const std::vector<RateCandidate>& columns) {
   return true;
 }
 
-// The sensors that may be meant: the one with the most axes, or all of those.
+// Possible sensors: the one with the most axes, or all with that number.
 std::vector<std::vector<RateCandidate>> choices_of(const Sensors& sensors) {
   std::vector<RateCandidate> together;
   std::size_t most = 0;
@@ -133,7 +133,7 @@ std::vector<std::vector<RateCandidate>> choices_of(const Sensors& sensors) {
     for (const RateCandidate& column : columns) named_axes = named_axes || !column.axis.empty();
     together.insert(together.end(), columns.begin(), columns.end());
   }
-  // "norm of the rate" next to three axes is none of them.
+  // "norm of the rate" next to three axes is no axis.
   if (named_axes) std::erase_if(together, [](const RateCandidate& column) { return column.axis.empty(); });
   if (together.empty()) return {};
   std::sort(together.begin(), together.end(), [](const auto& a, const auto& b) { return a.place < b.place; });
@@ -157,14 +157,14 @@ std::string capture_name(const RateCandidate& column) {
          (column.axis.empty() ? "" : "_" + column.axis) + "_radps";
 }
 
-// temperature_degC for "Temp (degF)": the first unit of the quantity; "" where its unit says nothing.
+// temperature_degC for "Temp (degF)": first unit of the quantity; "" for an unknown unit.
 std::string channel_name(const Words& words, const std::string& unit) {
   const std::string known = units_beside(unit);
   if (known.empty() || words.text.empty() || time_unit(unit) || angle_unit(unit, true, false)) return "";
   return words.text + "_" + known.substr(0, known.find(','));
 }
 
-// Every other column whose unit is known, and the references of the axes that are read.
+// Adds all other columns with known units, and the references of the axes.
 void add_others(const TableSample& table, const std::vector<RateCandidate>& rates,
                 std::vector<CsvColumn>& columns) {
   const auto add = [&](const std::string& name, std::size_t place, const std::string& unit) {
@@ -209,13 +209,13 @@ TableReading reading_by(const TableSample& table, const CsvLayout& asked, const 
   }
   const std::size_t rates_only = way.layout.columns.size();
   add_others(table, rates, way.layout.columns);
-  // More than a line can show is left to who asks for it.
+  // Limits the line; the user can ask for more columns.
   if (way.layout.columns.size() > kMostShown) way.layout.columns.resize(rates_only);
   for (const CsvColumn& column : way.layout.columns) add(option_for(column, column.unit));
   return way;
 }
 
-// "; in the place of rad/s: deg/s, rad/sample": what else can be typed.
+// "; in the place of rad/s: deg/s, rad/sample": alternatives.
 std::string instead_of(const std::vector<std::string>& units) {
   std::string text = "; in the place of " + units.front() + ": ";
   for (std::size_t i = 1; i < units.size(); ++i) text += (i > 1 ? ", " : "") + units[i];

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the columns of a foreign table are to a capture, by their names, units and first values. The same
-// rules make the reading and the suggestion, so that what is suggested is what reads the file. Below: which column is
-// the time, and in what unit; and what the first values tell where a name does not: gravity, counts, an angle.
+// Roles of a foreign table's columns, by names, units and first values. The same rules are used for reading
+// and for suggestions. Second part: which column is the time and its unit, and what first values show:
+// gravity, counts, an angle.
 #pragma once
 
 #include <cstddef>
@@ -15,89 +15,89 @@
 
 namespace ifog {
 
-// A table's beginning.
+// Beginning of a table.
 struct TableSample {
-  std::vector<std::string> names;               // of the columns; "#1", "#2", … where no header names them
-  std::vector<std::vector<std::string>> cells;  // by column: those of the first rows
-  std::vector<std::string> units;     // of each, by a row below the names; empty where there is none
-  std::vector<std::string> comments;  // lines above the header, which may state the sample rate
+  std::vector<std::string> names;               // of the columns; "#1", "#2", … without a header
+  std::vector<std::vector<std::string>> cells;  // by column: the first rows
+  std::vector<std::string> units;               // by column, from a row below the names; empty without one
+  std::vector<std::string> comments;            // lines above the header, which may contain the sample rate
   bool named = true;
 
-  // A column as the options name it: by its number where others have its name, or it has none that can be typed.
+  // Column as written in options: by its number if its name is ambiguous or cannot be typed.
   [[nodiscard]] std::string header_of(std::size_t place) const;
-  // What the row of units says of a column; "" for nothing.
+  // Unit from the row of units, or "".
   [[nodiscard]] std::string stated_unit(std::size_t place) const { return units.empty() ? "" : units[place]; }
 };
 
 // One way to read the table.
 struct TableReading {
   CsvLayout layout;
-  bool clear = true;    // nothing is left for the user to say
-  std::string options;  // as a user types it; HZ stands for a sample rate that nothing states
+  bool clear = true;    // nothing is ambiguous
+  std::string options;  // as typed by a user; HZ for an unknown sample rate
 };
 
 struct Readings {
-  std::vector<TableReading> ways;  // empty: nothing looks like a gyro; several: all that the names allow
-  std::string other_units;  // that may stand in the place of those in the options; "" where they are known
-  std::string why;          // of a table that is not read without options: what is missing or ambiguous
+  std::vector<TableReading> ways;  // empty: nothing looks like a gyro; several: ambiguous
+  std::string other_units;         // alternatives to the units in the options; "" if the units are known
+  std::string why;                 // if options are needed: what is missing or ambiguous
 
-  // The one reading that needs no question, or null.
+  // The unambiguous reading, or null.
   [[nodiscard]] const TableReading* clear() const {
     return ways.size() == 1 && ways[0].clear ? &ways[0] : nullptr;
   }
 };
 
-// asked: what the user chose already; only the rest is looked for.
+// asked: the user's choice; only the rest is determined.
 Readings readings_of(const TableSample& table, const CsvLayout& asked);
 
-// The sensor's rates that `chosen` leaves out, as other_rate_y_radps in the unit of the chosen ones: what
-// turns one axis moves the others. Empty where the names do not say which they are.
+// The sensor's rates not in `chosen`, as other_rate_y_radps in the same unit: rotation of one axis moves the
+// others. Empty if the names do not identify them.
 std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayout& chosen);
 
-// "time 'Time (s)' in s, rate_x 'Gyroscope X (deg/s)' in deg/s", for the line that says how a file is read.
+// "time 'Time (s)' in s, rate_x 'Gyroscope X (deg/s)' in deg/s": how a file is read.
 std::string in_words(const CsvLayout& layout);
 
-// The columns that the time may be, most likely alone: one, where one is more likely than all others. Without a unit
-// where neither name nor values tell it.
+// Possible time columns; a single one if it is most likely. The unit is empty if neither name nor values
+// determine it.
 std::vector<CsvTime> times_of(const TableSample& table);
 
-// A unit in letters that can be typed: deg/s for a degree sign of another encoding than UTF-8.
+// Unit in ASCII: deg/s for a degree sign of another encoding than UTF-8.
 std::string typed(const std::string& unit);
 
-// A column of whole numbers one apart, which no time is: "Sample No."; "" where there is none.
+// A column that counts rows ("Sample No.") and is no time, or "".
 std::string counting_column(const TableSample& table);
 
-// Not the same in all of these rows, and numbers.
+// True for numbers that are not all equal.
 bool varies(const std::vector<std::string>& cells);
-// Goes from row to row by little of what it has come through, as an angle does and white noise does not.
+// True if values change little from row to row compared with their range, like an angle and unlike white
+// noise.
 bool is_smooth(const std::vector<std::string>& cells);
-// Whole numbers, of several values.
+// True for integers with several values.
 bool is_whole(const std::vector<std::string>& cells);
 
-// Digits behind the point that a whole number in the second column of "sec+nsec" stands for: 9 for
-// nanoseconds, by its name or its values; 0 where the two are a date and a time of day.
+// Decimal digits of the integer in the second column of "sec+nsec": 9 for nanoseconds, by name or values; 0
+// for a date and a time of day.
 int digits_of_second(const std::string& name, const std::vector<std::string>& cells);
 
-// What to say of a time column of whole numbers: one apart they are a count of rows, unless their unit is given;
-// further apart and without decimals they are more often milliseconds than samples of a second each. It is
-// said, not changed. "" for nothing.
+// Notice about a time column of integers: steps of one are a count of rows, unless a unit is given; larger
+// steps are more likely milliseconds than seconds. The reading is not changed. "" if there is none.
 std::string whole_times_notice(const TableSample& table, std::size_t place, const CsvTime& time);
 
-// The order of dates as 05/06/2023, which a day above 12 tells; nothing where it is unknown; either of all
-// other times.
+// Order of dates like 05/06/2023, determined by a day above 12; nullopt if ambiguous; `either` for other
+// times.
 std::optional<DateOrder> date_order(const std::vector<std::string>& cells);
 
-// A stated sample rate, as loggers write it above the table: "Output Rate,200.0"; nothing where none is.
+// Sample rate stated above the table: "Output Rate,200.0"; nullopt if none.
 std::optional<double> stated_rate_hz(const std::vector<std::string>& comments);
 
-// What a gyro's count stands for, scale and unit, as loggers write it there: "gscale,0.00122" of the gcsv format of
-// Gyroflow, "Gyro_SF=0.0151515" of Epson's logger. No unit where none does.
+// Scale and unit of a gyro's counts stated above the table: "gscale,0.00122" (gcsv of Gyroflow),
+// "Gyro_SF=0.0151515" (Epson's logger). Empty unit if none.
 CsvColumn stated_scale(const std::vector<std::string>& comments);
 
-// A column that may be a rate.
+// A possible rate column.
 struct RateCandidate {
   std::size_t place = 0;
-  std::string unit;  // "" where it is unknown
+  std::string unit;  // "" if unknown
   std::string axis;
   double scale = 1.0;  // of counts
   bool reference = false, increment = false;
@@ -105,38 +105,37 @@ struct RateCandidate {
 
 using Rates = std::vector<RateCandidate>;
 
-// Three columns as long together as gravity are an accelerometer at rest: in m/s², g, mg or, of 16 bits and a
-// range of 2, 4, 8 or 16 g, counts.
+// True if three columns together have the length of gravity, i.e. are an accelerometer at rest: in m/s², g,
+// mg or 16-bit counts with a range of 2, 4, 8 or 16 g.
 bool is_gravity(const TableSample& table, const Rates& columns);
 
-// Whole numbers, as a converter counts.
+// Integers, as from a converter.
 bool are_counts(const TableSample& table, const Rates& rates);
 
-// What a rate's column may hold where neither its name nor a row of units tells; the likeliest first.
+// Possible units of a rate column without a stated unit, most likely first.
 std::vector<std::string> units_of(const TableSample& table, const Rates& rates);
 
-// Columns that have no names, without those of the time: one of numbers is the rate, and three next to each
-// other may be its axes.
+// Rates among columns without names: a single numeric column, or three adjacent ones as axes.
 std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<CsvTime>& time);
 
-// In small letters.
+// Lower case.
 [[nodiscard]] std::string lower(std::string text);
 
-// What a word says of a column; the words of each role, and what the role is, stand in column_words.cpp.
+// Roles of a word in a column name; see column_words.cpp.
 enum class Role { rate, speed, turn, glued, no_rate, truth, step, angle, time, no_time, ms, us, ns, s, one };
 [[nodiscard]] bool says(std::string_view word, Role role);
 
-// A column's name taken apart: "w_RS_S_x [rad s^-1]" is the words w, rs and s of axis x.
+// Parsed column name: "w_RS_S_x [rad s^-1]" has the words w, rs and s and the axis x.
 struct Words {
   explicit Words(const std::string& header);
 
-  std::vector<std::string> words;  // in small letters, without the axis, the unit and an index
-  std::string axis;                // "x", "y", "z"; "" where the name has none
-  std::string stem;                // the words, a blank between them: the same for all axes of a sensor
-  std::string text;  // the name without its unit, as a column's name may be: letters, digits, "_"
+  std::vector<std::string> words;  // lower case, without axis, unit and index
+  std::string axis;                // "x", "y", "z", or ""
+  std::string stem;                // words separated by blanks: equal for all axes of a sensor
+  std::string text;                // the name without its unit, as letters, digits and "_"
 
   [[nodiscard]] bool has(std::string_view word) const;
-  [[nodiscard]] bool have(Role role) const;  // one of them at least
+  [[nodiscard]] bool have(Role role) const;  // at least one word has the role
   [[nodiscard]] std::string_view first() const { return words.empty() ? std::string_view() : words.front(); }
   [[nodiscard]] std::size_t size() const { return words.size(); }
 };

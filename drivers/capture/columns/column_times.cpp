@@ -21,13 +21,13 @@
 namespace ifog {
 namespace {
 
-constexpr double kSlowest_hz = 1.0, kFastest_hz = 10'000.0;  // at which gyros are logged
-constexpr std::size_t kFewRows = 8;                          // too few to say what a column is
+constexpr double kSlowest_hz = 1.0, kFastest_hz = 10'000.0;  // range of logged gyros' sample rates
+constexpr std::size_t kFewRows = 8;                          // too few to judge a column
 
-// The number that stands behind one of these names in a line above the table.
+// Number after one of these names in a line above the table.
 std::optional<double> stated(const std::vector<std::string>& comments,
                              std::initializer_list<std::string_view> names) {
-  constexpr std::size_t kBetween = 12;  // characters, as in ": "
+  constexpr std::size_t kBetween = 12;  // characters, such as ": "
   for (const std::string& comment : comments) {
     std::string text = lower(comment);
     std::erase_if(text, [](char c) { return c == ' ' || c == '_'; });
@@ -44,7 +44,7 @@ std::optional<double> stated(const std::vector<std::string>& comments,
   return std::nullopt;
 }
 
-// Without the rows of another sensor, which leave this one's columns empty.
+// Without empty cells, i.e. rows of another sensor.
 std::vector<std::string> filled(const std::vector<std::string>& cells) {
   std::vector<std::string> out;
   std::copy_if(cells.begin(), cells.end(), std::back_inserter(out),
@@ -59,7 +59,7 @@ std::vector<double> numbers_in(const std::vector<std::string>& cells) {
   return values;
 }
 
-// Goes on from row to row, but for a rollover or two.
+// True if values increase, except for one or two rollovers.
 bool goes_on(const std::vector<double>& values) {
   std::size_t back = 0, on = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
@@ -79,33 +79,32 @@ bool counts(const std::vector<double>& values) {
 
 struct UnitOfTime {
   std::string_view name;
-  double s, since_1970;  // of the year 2000 in it
+  double s, since_1970;  // seconds per unit; value for the year 2000, in seconds since 1970
 };
-// Days are counted from other years, which their rate tells.
+// Days are counted from other years; see their rate.
 constexpr std::array<UnitOfTime, 5> kTimeUnits{{{"s", 1.0, 9.4e8},
                                                 {"ms", 1e-3, 9.4e11},
                                                 {"us", 1e-6, 9.4e14},
                                                 {"ns", 1e-9, 9.4e17},
                                                 {"d", 86'400.0, 1e99}}};
 
-// The unit in which the rows come at the stated rate; "" where none is stated, or none fits.
+// Unit in which the rows have the stated rate; "" if there is none.
 std::string unit_by_stated_rate(const TableSample& table, double step) {
-  constexpr double kNear = 0.1;  // of the rate; the units are a factor of ten apart
+  constexpr double kNear = 0.1;  // relative; units differ by factors of ten
   const auto stated_hz = stated_rate_hz(table.comments);
   for (const char* unit : {"s", "ms", "100us", "us", "ns"})
     if (stated_hz && std::abs(step * CsvTime{"", unit}.unit_s() * *stated_hz - 1.0) < kNear) return unit;
   return "";
 }
 
-// The mean of the steps forward: a rollover steps back, and what comes in bursts has many short steps.
+// Mean of the positive steps, because a rollover steps back and bursts have many short steps.
 double mean_step(const std::vector<double>& values) {
   double forward = 0.0;
   for (std::size_t i = 1; i < values.size(); ++i) forward += std::max(0.0, values[i] - values[i - 1]);
   return forward / static_cast<double>(values.size() - 1);
 }
 
-// The unit in which the values are times since 1970, or else that in which alone the rows come as fast as a
-// gyro's.
+// Unit in which the values are times since 1970, or the only one with a plausible sample rate.
 std::string unit_by_values(const std::vector<double>& values) {
   if (values.size() < 2) return "";
   const double step = mean_step(values);
@@ -122,16 +121,16 @@ std::string unit_by_values(const std::vector<double>& values) {
   return found;
 }
 
-// How well a name says that a column is the time of the rows; 0: not at all.
+// Likelihood from its name that a column is the rows' time; 0: none.
 int rank_of(const std::string& name, const Words& words) {
   if (name == "time_s") return 5;
   if (words.have(Role::no_time)) return 0;
-  // UTC_Day, UTC_Second: a part of a date that is in no column alone.
+  // UTC_Day, UTC_Second: parts of a date.
   if (words.first() == "utc" && (words.has("day") || words.has("second"))) return 0;
   const auto is_time = [](const std::string& word) {
     return word.ends_with("time") || word.ends_with("stamp") || says(word, Role::time);
   };
-  if (words.has("header") && words.has("stamp")) return 4;  // when it was measured, as ROS has it
+  if (words.has("header") && words.has("stamp")) return 4;  // measurement time in ROS
   if (!words.words.empty() && std::all_of(words.words.begin(), words.words.end(), is_time)) return 3;
   return std::any_of(words.words.begin(), words.words.end(), is_time) ? 2 : 0;
 }
@@ -141,7 +140,7 @@ bool are_dates(const std::vector<std::string>& cells) {
          std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return is_date(cell); });
 }
 
-// By the row of units or by the name.
+// By the row of units or the name.
 std::string unit_stated(const TableSample& table, std::size_t place) {
   std::string stated = table.stated_unit(place);
   return time_unit(stated) ? stated : unit_in_name(table.names[place]);
@@ -152,8 +151,7 @@ std::string time_unit_by_name(const TableSample& table, std::size_t place, const
   const std::vector<double> values = numbers_in(table.cells[place]);
   if (std::string stated = unit_by_stated_rate(table, mean_step(values)); !stated.empty()) return stated;
   if (const auto scale = stated(table.comments, {"tscale"})) return shortest(*scale) + "s";  // gcsv
-  if (words.has("sample") && words.has("time") && words.has("fine"))
-    return "100us";  // Xsens: a clock of 10 kHz
+  if (words.has("sample") && words.has("time") && words.has("fine")) return "100us";  // Xsens: 10 kHz clock
   constexpr std::array<std::pair<const char*, Role>, 4> kUnits{
       {{"ms", Role::ms}, {"us", Role::us}, {"ns", Role::ns}, {"s", Role::s}}};
   for (const auto& [unit, role] : kUnits)
@@ -161,7 +159,7 @@ std::string time_unit_by_name(const TableSample& table, std::size_t place, const
   return "";
 }
 
-// Both have counted the same seconds from the first row to the last, within a step of the coarser clock.
+// True if both advance by the same time from first to last row, within a step of the coarser clock.
 bool go_together(const std::vector<double>& a, const CsvTime& one, const std::vector<double>& b,
                  const CsvTime& other) {
   if (one.unit.empty() || other.unit.empty() || a.size() != b.size() || a.size() < kFewRows) return false;
@@ -173,7 +171,7 @@ bool go_together(const std::vector<double>& a, const CsvTime& one, const std::ve
   return std::abs(s - t) <= step;
 }
 
-// A fraction behind a GPS week and a second of it, which stay the same in the rows looked at.
+// Fraction after GPS week and second, which are constant in the first rows.
 bool is_fraction_of_second(const TableSample& table, std::size_t place, const std::vector<double>& values) {
   constexpr double kSecondsPerWeek = 604'800.0;
   if (table.named || place < 2 || values.empty() || varies(table.cells[place - 1])) return false;
@@ -188,7 +186,7 @@ std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place,
   const std::vector<std::string> cells = filled(table.cells[place]);
   if (cells.empty() && !table.cells[place].empty()) return std::nullopt;
   const bool dated = are_dates(cells);
-  // The day of all rows is no time of them; a time of day in whole seconds may be that of all rows looked at.
+  // A date that is the same in all rows is no time; a time of day in whole seconds may be.
   if (dated && cells.size() > 1 && cells.front() == cells.back() && cells[0].find(':') == std::string::npos)
     return std::nullopt;
   const std::vector<double> values = numbers_in(cells);
@@ -200,7 +198,7 @@ std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place,
   return out;
 }
 
-// Digits behind the point of a word that names a part of a second (nsec, nanoseconds, us, msecs); 0 for any other.
+// Decimal digits of a word for a part of a second (nsec, nanoseconds, us, msecs); 0 for others.
 int digits_of(std::string_view word) {
   for (const auto& [prefix, digits] :
        {std::pair{"nano", 9}, {"micro", 6}, {"milli", 3}, {"n", 9}, {"u", 6}, {"m", 3}}) {
@@ -222,7 +220,7 @@ std::vector<std::string> words_of(const std::string& name) {
   return words;
 }
 
-// stamp.sec and stamp.nanosec, time_sec_imu and time_nanosec_imu: the same but for one word.
+// stamp.sec and stamp.nanosec, time_sec_imu and time_nanosec_imu: equal except for one word.
 bool names_a_second_and_its_part(const std::string& whole, const std::string& part) {
   const std::vector<std::string> a = words_of(whole), b = words_of(part);
   if (a.size() != b.size()) return false;
@@ -231,7 +229,7 @@ bool names_a_second_and_its_part(const std::string& whole, const std::string& pa
   return (*at == "sec" || *at == "secs" || *at == "s" || *at == "seconds") && digits_of(*there) > 0;
 }
 
-// Two columns that are one time: seconds and a part of one, or a date and a time of day.
+// Two columns that form one time: seconds and their part, or date and time of day.
 std::optional<CsvTime> joined(const TableSample& table, std::size_t first, std::size_t second) {
   const std::vector<std::string> a = filled(table.cells[first]), b = filled(table.cells[second]);
   if (a.empty() || b.empty()) return std::nullopt;
@@ -250,7 +248,7 @@ std::optional<CsvTime> joined(const TableSample& table, std::size_t first, std::
   return named || by_values ? std::optional(out) : std::nullopt;
 }
 
-// The last digit that its cells write, s.
+// Resolution of the cells' text, s.
 double resolution_s(const std::vector<std::string>& cells, const CsvTime& time) {
   std::size_t digits = 0;
   for (const std::string& cell : cells)
@@ -271,7 +269,7 @@ std::vector<CsvTime> times_of(const TableSample& table) {
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
     int here = table.named ? rank_of(table.names[i], words) : 1;
-    // Names of other languages: a unit of time, or dates, say it as well.
+    // For names in other languages: a unit of time, or dates, suffice.
     if (here == 0 && !words.have(Role::no_time) &&
         (time_unit(unit_stated(table, i)) || are_dates(table.cells[i])))
       here = 1;
@@ -280,7 +278,7 @@ std::vector<CsvTime> times_of(const TableSample& table) {
     if (!found || (!table.named && !best.empty())) continue;
     if (here > rank) best.clear(), places.clear();
     rank = here;
-    // Twins say the same, as a time of day and the seconds since the start do: the finer clock of them is taken.
+    // Two equal times (time of day and seconds since start): the one with the finer clock is used.
     std::size_t twin = 0;
     while (
         twin < best.size() && table.cells[places[twin]] != table.cells[i] &&
@@ -306,7 +304,7 @@ bool varies(const std::vector<std::string>& cells) {
                                                               [&](double v) { return v != values[0]; }));
 }
 
-// By von Neumann's ratio of the mean square of differences to the variance: 2 of white noise.
+// Von Neumann's ratio: mean squared difference / variance; 2 for white noise.
 bool is_smooth(const std::vector<std::string>& cells) {
   constexpr double kSmooth = 0.5;
   const std::vector<double> values = numbers_in(cells);

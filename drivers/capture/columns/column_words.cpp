@@ -12,9 +12,9 @@
 namespace ifog {
 namespace {
 
-// By role, each word between blanks. speed is a rate's where a word of turning stands with it; glued words may have an
-// axis written together with them (xgyro, wx); step stands before an angle: the turn within a sample; no_time is of
-// a time, but not of that of the rows; one numbers or names one of several sensors.
+// Words of each role, separated by blanks. speed: a rate if with a turning word. glued: may be joined with an
+// axis (xgyro, wx). step: before an angle, the turn within a sample. no_time: belongs to a time, but not that
+// of the rows. one: numbers or names one of several sensors.
 constexpr std::array<std::pair<Role, std::string_view>, 15> kWords{{
     {Role::rate,
      " gyro gyr gyros gyroscope gyroskop drehrate omega angvel angrate angularvelocity angularrate "
@@ -25,7 +25,7 @@ constexpr std::array<std::pair<Role, std::string_view>, 15> kWords{{
     {Role::glued,
      " gyro gyr gyroscope omega rate angvel angrate w g angularvelocity angularrate rotationrate dtheta "
      "dangle "},
-    // What follows from a rate, describes it or belongs to another quantity is no rate, whatever else it is called.
+    // Quantities derived from a rate, its descriptions, or other quantities are no rates.
     {Role::no_rate,
      " bias offset range std stddev sigma var variance cov covariance noise temp temperature id dt status "
      "state count counter num flag flags valid clip clipping quality scale sf min max mean avg rms err "
@@ -70,7 +70,7 @@ std::string without_unit(const std::string& header) {
   return header.size() > unit ? header.substr(0, header.size() - unit) : header;
 }
 
-// At what is no letter, where a digit follows a letter, and where a capital begins a word.
+// Splits at non-letters, at a digit after a letter, and at capitals that start a word.
 std::vector<std::string> split(const std::string& text) {
   std::vector<std::string> words;
   std::string word;
@@ -91,7 +91,7 @@ std::vector<std::string> split(const std::string& text) {
     word += c;
   }
   end_word();
-  // dTheta, dAngle: what turned is one word.
+  // dTheta, dAngle: one word.
   for (std::size_t i = 0; i + 1 < words.size(); ++i)
     if (words[i] == "d" && (words[i + 1] == "theta" || words[i + 1] == "angle" || words[i + 1] == "ang")) {
       words[i] += words[i + 1];
@@ -100,7 +100,7 @@ std::vector<std::string> split(const std::string& text) {
   return words;
 }
 
-// An axis that is written together with a word of a rate: xgyro, gyrox, wx.
+// Axis joined with a rate word: xgyro, gyrox, wx.
 std::optional<std::string> glued_axis(std::string& word) {
   if (word.size() < 2) return std::nullopt;
   const auto is_axis = [](char c) { return c >= 'x' && c <= 'z'; };
@@ -113,7 +113,7 @@ std::optional<std::string> glued_axis(std::string& word) {
   return axis;
 }
 
-// The roll axis of an aircraft or a vehicle is x. The word is left without it: "rollrate" is "rate".
+// Roll axis of an aircraft or vehicle is x. Removes it from the word: "rollrate" becomes "rate".
 std::string axis_of_turn(std::string& word) {
   constexpr std::array<std::pair<std::string_view, const char*>, 3> kTurns{
       {{"roll", "x"}, {"pitch", "y"}, {"yaw", "z"}}};
@@ -156,7 +156,7 @@ Words::Words(const std::string& header) {
     stem += (stem.empty() ? "" : " ") + word;
   }
   if (axis.empty()) axis = turned;
-  // gyro_0, gyro_1, gyro_2: a number behind all others counts the axes from 0.
+  // gyro_0, gyro_1, gyro_2: a final number counts axes from 0.
   if (axis.empty() && words.size() > 1 && words.back().size() == 1 && words.back()[0] >= '0' &&
       words.back()[0] <= '2') {
     axis = std::string(1, static_cast<char>('x' + (words.back()[0] - '0')));

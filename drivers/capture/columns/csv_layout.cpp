@@ -23,7 +23,7 @@ namespace {
 constexpr std::string_view kRateUnit = "radps";
 constexpr std::string_view kPerSample = "/sample";
 
-// One letter is a unit only behind what is measured in it.
+// A single letter is a unit only after its quantity.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOneLetter = {{{"K", "temp"},
                                                                                       {"C", "temp"},
                                                                                       {"F", "temp"},
@@ -42,7 +42,7 @@ std::string unit_of_name(const std::string& name) {
   return underscore == std::string::npos ? "" : name.substr(underscore + 1);
 }
 
-// "HEADER:UNIT" or "HEADER". A header may hold colons itself where a unit follows.
+// "HEADER:UNIT" or "HEADER". A header may contain colons if a unit follows.
 std::pair<std::string, std::string> header_and_unit(const std::string& text) {
   const std::size_t colon = text.rfind(':');
   if (colon == std::string::npos) return {text, ""};
@@ -127,11 +127,11 @@ std::string unit_in_name(const std::string& name) {
     const std::string inside = header.substr(at + 1, header.size() - at - 2);
     return is_unit(inside) ? inside : "";
   }
-  // "Gyro X, deg/s", "Gyro X in deg/s"; a word such as min is more often a minimum.
+  // "Gyro X, deg/s", "Gyro X in deg/s"; "min" is usually a minimum.
   std::string behind = header.substr(header.find_last_of(" ,:") + 1);
   if (behind == "s" || (behind.size() > 1 && is_unit(behind) && !says(behind, Role::no_rate))) return behind;
   const std::string last = unit_of_name(header);
-  // omega_z_deg_h: a quotient whose stroke a name cannot hold.
+  // omega_z_deg_h: a quotient without a slash.
   if (const std::size_t line = header.rfind('_'); line != std::string::npos && line > 0 && !last.empty()) {
     const std::string angle = unit_of_name(header.substr(0, line));
     if (angle_unit(angle, false, false) && time_unit(last)) return angle + "/" + last;
@@ -154,8 +154,8 @@ std::string other_unit(const CsvColumn& column) {
   if (!column.unit.empty()) return "";
   CsvColumn read = column;
   read.unit = unit_in_name(column.header);
-  // A rate that ends in an angle's unit is often one a second: here it is no guess but a question. "rads" is
-  // both.
+  // A rate whose name ends in a unit of angle is often per second; so it is an error, not a guess. "rads"
+  // means both.
   if (read.unit.empty() && column.is_rate() && unit_of_name(column.header) != "rads")
     read.unit = unit_of_name(column.header);
   if (read.unit.empty()) return "";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a file of columns is to be read, as a user types it: --time, --column, --sample-rate, --separator,
-// --only, --repeats.
+// How a file of columns is read, from the options --time, --column, --sample-rate, --separator, --only,
+// --repeats.
 #pragma once
 
 #include <functional>
@@ -13,33 +13,32 @@
 namespace ifog {
 
 struct CsvColumn {
-  std::string name;    // of the capture: rate_x_radps, temperature_degC, …
+  std::string name;    // in the capture: rate_x_radps, temperature_degC, …
   std::string header;  // in the file, or "#3": the third column
-  std::string unit;    // of its values; "": that of `name`
-  double scale = 1.0;  // units in one, as of "0.00763deg/s", the counts of a converter
+  std::string unit;    // of its values; "": the unit of `name`
+  double scale = 1.0;  // number of units per value, as in "0.00763deg/s" for counts
 
-  // "rate_x_radps=GyroX:deg/s" or "supply_V=Supply". A rate in a unit of angle is an angle, whose differences
-  // become the rate; in one "per sample" (arcsec/sample) the turn within each sample. A number before the unit
-  // is the scale of counts. Throws
-  // std::runtime_error with one line: the text and what was expected.
+  // Parses "rate_x_radps=GyroX:deg/s" or "supply_V=Supply". A rate with a unit of angle is an angle and is
+  // differentiated; "per sample" (arcsec/sample) is the turn in each sample. A number before the unit is the
+  // scale of counts. Throws std::runtime_error with one line: the text and what was expected.
   static CsvColumn parse(const std::string& text);
-  // That of `name`: "degC".
+  // Unit of `name`: "degC".
   [[nodiscard]] std::string own_unit() const;
   [[nodiscard]] bool is_rate() const;
   [[nodiscard]] bool is_increment() const;
-  // rad in one unit of an angle or an increment; nothing for what is neither.
+  // rad per unit of an angle or increment; nullopt otherwise.
   [[nodiscard]] std::optional<double> angle_rad() const;
-  // From its values to the capture's; of an angle to rad.
+  // Conversion to the capture's unit; of an angle to rad.
   [[nodiscard]] UnitConversion conversion() const;
 };
 
 struct CsvTime {
-  std::string header = "time_s";  // "sec+nsec" or "date+time": two columns that are one time
-  // Of its values, "ms" or "100us"; of dates as 5/6/2026 their order, "d/m/y" or "m/d/y"; "": not given, which reads
-  // as seconds, and the month first.
+  std::string header = "time_s";  // "sec+nsec" or "date+time": two columns form one time
+  // Unit, "ms" or "100us"; for dates like 5/6/2026 the order, "d/m/y" or "m/d/y"; "": seconds, or month
+  // first.
   std::string unit;
 
-  // "t:ms", "t:100us", "t". Throws likewise.
+  // Parses "t:ms", "t:100us", "t". Throws likewise.
   static CsvTime parse(const std::string& text);
   [[nodiscard]] double unit_s() const;
 };
@@ -47,19 +46,19 @@ struct CsvTime {
 inline constexpr const char *kDayFirst = "d/m/y", *kMonthFirst = "m/d/y";
 
 struct CsvLayout {
-  std::vector<CsvColumn> columns;        // empty: those that the file's names give
-  std::optional<CsvTime> time;           // likewise
-  std::optional<double> sample_rate_hz;  // rows are even, whatever a time column says
-  char separator = '\0';  // '\0': as the file shows; numbers may have a decimal comma where it is no comma
-  std::string only_header, only_value;  // rows whose cell of that column is this text; "": all rows
-  bool keep_repeats = false;            // a row that repeats the one before is a sample
-  bool other_rates = false;  // the sensor's rates that were not chosen are read too, as other_rate_y_radps
+  std::vector<CsvColumn> columns;        // empty: given by the file's names
+  std::optional<CsvTime> time;           // nullopt: given by the file's names
+  std::optional<double> sample_rate_hz;  // rows are equidistant, regardless of a time column
+  char separator = '\0';  // '\0': detected; numbers may have a decimal comma if the separator is no comma
+  std::string only_header, only_value;  // only rows with this text in that column; "": all rows
+  bool keep_repeats = false;            // rows that repeat the one before are kept
+  bool other_rates = false;             // also read the sensor's other rates, as other_rate_y_radps
 
-  // ";", "tab", … : one character, or that word. Throws likewise.
+  // Parses one character, or a word: ";", "tab", … Throws likewise.
   static char parse_separator(const std::string& text);
-  // "sensor_id=0". Throws likewise.
+  // Parses "sensor_id=0". Throws likewise.
   void parse_only(const std::string& text);
-  // Columns or the time were chosen: the others are ignored, whatever they hold.
+  // True if columns or time were chosen; then the others are ignored.
   [[nodiscard]] bool chooses() const {
     return !columns.empty() || time.has_value() || sample_rate_hz.has_value();
   }
@@ -67,27 +66,26 @@ struct CsvLayout {
 
 // "#3": the third column.
 bool is_number_of_column(const std::string& header);
-// The columns that a header asks for: "sec+nsec" is two of them, unless a column is called so; for a name may hold
-// a plus itself.
+// Columns in a header option: two in "sec+nsec", unless a column has this name with its plus sign.
 std::vector<std::string> parts_of_time(const std::string& header,
                                        const std::function<bool(const std::string&)>& is_column);
 
-// As a user types them.
+// Option text as a user types it.
 std::string option_for(const CsvColumn& column, const std::string& unit);
 std::string option_for(const CsvTime& time);
 
-// The unit that a column's name ends in, "GyroX (deg/s)" or "gyro_x_dps"; "" where it names none. A counter `k`, a
-// `gps_t` or an `adc_c` is in no kelvin, tesla or degrees.
+// Unit at the end of a column's name, "GyroX (deg/s)" or "gyro_x_dps", or "". A counter `k`, a `gps_t` or an
+// `adc_c` is not in kelvin, tesla or degrees.
 std::string unit_in_name(const std::string& name);
-// Where no unit was given: the one that the header names, when it is not the capture's. "" for none.
+// Unit in the header's name if no unit was given and it is not the capture's; else "".
 std::string other_unit(const CsvColumn& column);
 std::string other_unit(const CsvTime& time);
-// A text that is a unit of anything known here.
+// True for a known unit.
 bool is_unit(const std::string& text);
-// "deg/s" of "[deg/s]" and "(deg/s)".
+// "deg/s" of "[deg/s]" or "(deg/s)".
 std::string without_brackets(const std::string& unit);
-// The name of a column whose unit stands apart: as it is where it says the same, or the unit is "";
-// "T_degC" or "gyro_x [deg/s]" where it says none; nothing where the two contradict each other.
+// Name of a column with a separate unit: unchanged if it contains the same unit or the unit is ""; with the
+// unit appended, "T_degC" or "gyro_x [deg/s]", if it contains none; nullopt if they contradict.
 std::optional<std::string> name_with_unit(const std::string& header, const std::string& unit);
 
 }  // namespace ifog

@@ -15,20 +15,20 @@
 namespace ifog {
 namespace {
 
-// Until 2115, and 145 years either way of anything else: no difference of two in ns is beyond 64 bits.
+// Until 2115, or ±145 years for other origins: differences in ns fit into 64 bits.
 constexpr double kMostTime_s = 4.6e9;
-constexpr double kMostAngle_rad = 1e9;  // beyond, a float32 resolves 64 rad
+constexpr double kMostAngle_rad = 1e9;  // beyond, float32 resolves only 64 rad
 
 constexpr std::array<std::pair<std::string_view, Measurable>, 6> kUnits = {{
-    {"degC", {-273.15, 3000.0}},  // absolute zero; a pyrometer
-    {"mps2", {-5e5, 5e5}},        // what a shell is launched with
+    {"degC", {-273.15, 3000.0}},  // absolute zero; pyrometer
+    {"mps2", {-5e5, 5e5}},        // launch of a shell
     {"V", {-1e6, 1e6}},           // high-voltage lines
     {"A", {-1e6, 1e6}},           // lightning
-    {"uT", {-1e8, 1e8}},          // the strongest pulsed magnets
-    {"Pa", {-1e7, 1e9}},          // a difference of two; the deepest sea ten times
+    {"uT", {-1e8, 1e8}},          // strongest pulsed magnets
+    {"Pa", {-1e7, 1e9}},          // difference of two; ten times the deepest sea
 }};
 
-// The range in the file's unit: that of the capture's column before its conversion.
+// Range in the file's unit, before the conversion.
 Measurable before(const Measurable& range, const UnitConversion& conversion) {
   const double a = (range.least - conversion.offset) / conversion.scale;
   const double b = (range.most - conversion.offset) / conversion.scale;

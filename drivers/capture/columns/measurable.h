@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The range that a value in a capture can have. A number outside of it is no measurement, and a single one would
-// dominate a fit. Every command that reads a capture uses these ranges.
+// Possible range of a capture's values. Values outside are no measurements, and a single one would dominate a
+// fit. All commands use these ranges.
 #pragma once
 
 #include <cstddef>
@@ -18,20 +18,20 @@ struct Measurable {
   [[nodiscard]] bool holds(double value) const { return value >= least && value <= most; }
 };
 
-// A column of a file, not the time.
+// A column of a file, except the time.
 struct FileColumn {
   std::string name;       // in the file
-  std::size_t place = 0;  // of its cell in a row
+  std::size_t place = 0;  // index of its cell in a row
   Measurable range;       // in the file's unit
-  bool rate = false;      // of the capture: a rate or its reference
-  bool kept = true;       // else it is checked only
+  bool rate = false;      // a rate or reference rate
+  bool kept = true;       // false: it is only checked
 };
 
-// In the unit of the column's name: rates by what the driver interface allows, channels by what their unit
-// can be (no temperature below absolute zero, no field above 100 T), others by the driver interface.
+// Range in the unit of the column's name: rates as in the driver interface, channels by their unit (no
+// temperature below absolute zero, no field above 100 T), others as in the driver interface.
 Measurable measurable(const std::string& column);
 
-// The same of a column as its file has it, in the file's unit. An angle may turn for long.
+// The same for a column of a file, in the file's unit. Angles have a wide range.
 Measurable measurable_in_file(const CsvColumn& column);
 Measurable measurable_in_file(const CsvTime& time);
 

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kGravity_mps2 = 9.80665;
 
-// The column in which three hold gravity: none of the gyro's.
+// True if the columns, together or one alone, hold gravity: then they are not the gyro's.
 bool holds_gravity(const TableSample& table, const Rates& axes) {
   return is_gravity(table, axes) || std::any_of(axes.begin(), axes.end(), [&](const RateCandidate& axis) {
            return is_gravity(table, {axis});
@@ -61,8 +61,7 @@ std::vector<std::string> units_of(const TableSample& table, const Rates& rates) 
   return units;
 }
 
-// Of all threes the likelier ones: without gravity, and alike, as a heading that was summed up is not like a
-// rate.
+// Prefers groups of three without gravity and with similar values (a heading differs from a rate).
 std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<CsvTime>& time) {
   Rates found;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
