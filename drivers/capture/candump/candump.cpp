@@ -13,11 +13,11 @@ namespace ifog {
 namespace {
 
 constexpr std::uint32_t kExtendedFlag = 0x80000000U,
-                        kErrorFlag = 0x20000000U;  // linux/can.h, as candump prints them
+                        kErrorFlag = 0x20000000U;  // linux/can.h, as printed by candump
 constexpr std::size_t kClassicBytes = 8, kFdBytes = 64;
 constexpr std::size_t kEpochDigits = 10;
 
-// Decimal digits, as many as there are; false for none or an overflow.
+// Reads decimal digits; false for none or an overflow.
 bool decimal(TextCursor& in, std::uint64_t& value, std::size_t& digits) {
   const std::string_view found = in.digits();
   digits = found.size();
@@ -27,7 +27,7 @@ bool decimal(TextCursor& in, std::uint64_t& value, std::size_t& digits) {
 bool parse_seconds(TextCursor& in, std::int64_t& time_ns, std::size_t& second_digits) {
   std::uint64_t seconds = 0, fraction = 0;
   std::size_t digits = 0;
-  constexpr std::uint64_t kMostSeconds = 9'000'000'000;  // what an int64 of nanoseconds holds
+  constexpr std::uint64_t kMostSeconds = 9'000'000'000;  // limit of int64 in ns
   if (!decimal(in, seconds, second_digits) || seconds > kMostSeconds) return false;
   if (!in.literal('.') || !decimal(in, fraction, digits) || digits > 9) return false;
   for (; digits < 9; ++digits) fraction *= 10;
@@ -52,7 +52,7 @@ bool parse_data(TextCursor& in, std::size_t most, ifog_can_frame& frame) {
   while (in.hex(high)) {
     if (n == most || !in.hex(low)) return false;
     frame.data[n++] = static_cast<std::uint8_t>(high << 4U | low);
-    in.literal('.');  // cansend's notation
+    in.literal('.');  // notation of cansend
   }
   frame.length = static_cast<std::uint8_t>(n);
   return true;
@@ -70,7 +70,7 @@ bool parse_id(TextCursor& in, ifog_can_frame& frame, bool& error) {
   return true;
 }
 
-// Behind "#" of a line of the log.
+// Part of a log line after "#".
 CandumpLine parse_log(TextCursor& in, ifog_can_frame& frame) {
   std::uint32_t digit = 0;
   bool remote = false;
@@ -85,15 +85,15 @@ CandumpLine parse_log(TextCursor& in, ifog_can_frame& frame) {
   } else if (!parse_data(in, kClassicBytes, frame)) {
     return CandumpLine::malformed;
   }
-  if (in.literal('_') && !in.hex(digit)) return CandumpLine::malformed;  // the raw DLC of newer can-utils
-  // Newer can-utils end the line with the direction, T or R.
+  if (in.literal('_') && !in.hex(digit)) return CandumpLine::malformed;  // raw DLC of newer can-utils
+  // Newer can-utils append the direction, T or R.
   if (!in.done() && (!in.blanks() || in.word().size() != 1 || !in.done())) return CandumpLine::malformed;
   return remote ? CandumpLine::remote : CandumpLine::frame;
 }
 
-constexpr char kSwapped = '`';  // between the bytes, last first, of candump -S
+constexpr char kSwapped = '`';  // between the bytes in reverse order, candump -S
 
-// Two digits, or eight of candump -i.
+// Two digits, or eight with candump -i.
 bool parse_byte(TextCursor& in, std::uint8_t& byte) {
   std::uint32_t value = 0, bits = 0, digit = 0;
   int n = 0;
@@ -107,7 +107,7 @@ bool parse_byte(TextCursor& in, std::uint8_t& byte) {
   return n == 2 || n == 8;
 }
 
-// Behind the id of a line of the screen: "[8]  11 22 …", the raw DLC as "{8}", 9 … F for a length of 8.
+// Part of a screen line after the id: "[8]  11 22 …"; raw DLC 9 … F for a length of 8 as "{8}".
 CandumpLine parse_screen(TextCursor& in, ifog_can_frame& frame) {
   std::uint64_t length = 0;
   std::size_t digits = 0;
@@ -167,7 +167,7 @@ bool pass_direction(TextCursor& in) {
 CandumpLine parse_candump_line(std::string_view line, CandumpEntry& entry) noexcept {
   while (!line.empty() && (line.back() == '\r' || line.back() == ' ' || line.back() == '\t'))
     line.remove_suffix(1);
-  // A tab begins what candump -e says of the error frame on the line before.
+  // A tab starts candump -e's explanation of an error frame.
   if (line.empty() || line.front() == '#' || line.front() == '\t') return CandumpLine::blank;
 
   ifog_can_frame& frame = entry.frame;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logs of candump as a whole: what their times are, and whose frames come on which interface.
+// Whole candump logs: meaning of their times, and frames by interface.
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -12,7 +12,7 @@
 namespace ifog {
 namespace {
 
-// A log's lines, one after the other.
+// Reads a log's lines in order.
 class Frames {
  public:
   Frames(std::string path, std::string_view interface, bool differences)
@@ -35,7 +35,7 @@ class Frames {
       return Is::nothing;
     }
     any_ = true;
-    // Every line's time counts: a difference is to the frame before, whatever its interface.
+    // Differences are relative to the previous frame on any interface.
     entry_.frame.arrival_ns = clock_.time_ns(entry_);
     if (!interface_.empty() && entry_.interface != interface_) return Is::nothing;
     if (kind == CandumpLine::remote) ++losses_.remote;
@@ -49,7 +49,7 @@ class Frames {
   [[nodiscard]] const CandumpLosses& losses() const { return losses_; }
 
  private:
-  // Without its end a line may have lost bytes and still read as a frame.
+  // True if the last line, without an end, may have lost bytes although it parses.
   [[nodiscard]] bool shortened() const {
     const auto same = lengths_.find({entry_.frame.id, entry_.frame.flags});
     return same != lengths_.end() && entry_.frame.length < same->second;
@@ -60,13 +60,12 @@ class Frames {
   CandumpClock clock_;
   CandumpEntry entry_;
   CandumpLosses losses_;
-  std::map<std::pair<std::uint32_t, std::uint8_t>, std::uint8_t> lengths_;  // of the last frame of an id
+  std::map<std::pair<std::uint32_t, std::uint8_t>, std::uint8_t> lengths_;  // of the last frame of each id
   std::size_t number_ = 0;
   bool any_ = false;
 };
 
-// The next line of a log's beginning that tells a time; false: there is none. A line that the beginning cuts
-// off is dropped.
+// Next line with a time in a log's beginning; false if there is none. An incomplete last line is ignored.
 bool next_entry(std::string_view& beginning, CandumpEntry& entry) noexcept {
   for (std::size_t end = beginning.find('\n'); end != std::string_view::npos; end = beginning.find('\n')) {
     const CandumpLine kind = parse_candump_line(beginning.substr(0, end), entry);

@@ -9,7 +9,7 @@ namespace {
 struct Container {
   std::string_view magic, said;
 };
-// As the formats' own descriptions have them.
+// From the formats' descriptions.
 constexpr std::string_view kSpreadsheet =
     "is a spreadsheet or another archive, expected CSV; the program that wrote it saves it so";
 constexpr std::string_view kRos2 =
@@ -36,7 +36,7 @@ constexpr std::array<Container, 15> kContainers{
      {"H Product:Blackbox", "is a log of Betaflight, expected CSV; 'blackbox_decode' makes it"},
      {"PAR1", "is a Parquet file, expected CSV; pandas.read_parquet(FILE).to_csv makes it"}}};
 
-// Objects of JSON that are no rows of one table: one within the other, of several kinds, or all in one line.
+// JSON that is no table: nested, of several kinds, or all in one line.
 std::string foreign_json(std::string_view head) {
   const std::size_t first = head.find('{'), inner = head.find('{', first + 1), end = head.find('}');
   if (inner < end)
@@ -92,7 +92,7 @@ std::string foreign_can_log(std::string_view head) {
 }
 
 std::string foreign_container(std::string_view head) {
-  // A record's number in six digits, its quality, a blank.
+  // A six-digit record number, its quality, a blank.
   if (head.size() > 7 && head.find_first_not_of("0123456789") == 6 && head[7] == ' ' &&
       std::string_view("DRQM").find(head[6]) != std::string_view::npos)
     return "is miniSEED, expected CSV; 'mseed2ascii -f 2' makes it";

@@ -25,7 +25,7 @@ std::string reason() { return std::generic_category().message(errno); }
 
 int opened(const std::string& path, int flags = 0) {
   if (path != "-") return ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY | flags);
-  // What one reader has consumed no other will find.
+  // Standard input can only be read once.
   static std::atomic_flag in_use = ATOMIC_FLAG_INIT;
   if (in_use.test_and_set())
     throw std::runtime_error("-: standard input is read already, expected it once among the inputs");
@@ -34,7 +34,7 @@ int opened(const std::string& path, int flags = 0) {
 
 constexpr std::string_view kRecording = ".ifr", kOpenEnding = ".open";
 
-// A folder's flight recordings in their order: that of their names, the one being written last.
+// Flight recordings of a folder by name, the open one last.
 std::deque<std::string> recordings_among(const std::string& folder, std::error_code& error) {
   std::deque<std::string> out;
   for (const auto& entry : std::filesystem::directory_iterator(folder, error)) {
@@ -46,7 +46,7 @@ std::deque<std::string> recordings_among(const std::string& folder, std::error_c
   return out;
 }
 
-// Names one sensor's folder inside a folder of several sensors' recordings; "" where it is no such folder.
+// Name of one sensor's folder in a folder of several sensors' recordings, or "".
 std::string such_as(const std::string& folder) {
   std::vector<std::string> of_a_sensor;
   std::error_code error;
@@ -68,8 +68,7 @@ std::deque<std::string> recordings_in(const std::string& folder) {
   return out;
 }
 
-// A gzip file's content is held to this many times its size, beyond what any memory has room for; but for
-// rows of numbers.
+// Limit of a gzip file's content in multiples of its size, except for rows of numbers.
 constexpr std::size_t kMostGrowth = 100;
 constexpr std::size_t kGrowthFree = 256U << 20U;
 
@@ -126,14 +125,14 @@ void InputFile::begin() {
 
 InputFile::InputFile(std::string path, std::string text) : path_(std::move(path)), held_(std::move(text)) {}
 
-// The folder's next file; false: there is none.
+// Opens the folder's next file; false: none.
 bool InputFile::open_next() {
   if (more_.empty()) return false;
   const std::string path = std::move(more_.front());
   more_.pop_front();
-  // Others may write into a recorder's folder: neither a link nor a file with several names is read from it.
+  // Others may write into a recorder's folder: neither links nor files with several names are read.
   int fd = opened(path, O_NOFOLLOW | O_NONBLOCK);
-  // It may have been ended meanwhile.
+  // It may have been closed and renamed meanwhile.
   if (fd < 0 && errno == ENOENT && path.ends_with(kOpenEnding))
     fd = opened(path.substr(0, path.size() - kOpenEnding.size()), O_NOFOLLOW | O_NONBLOCK);
   if (fd < 0) throw std::runtime_error(path + ": cannot open: " + reason());
@@ -160,7 +159,7 @@ std::size_t InputFile::unpack(char* to, std::size_t most) {
                                std::to_string(kMostGrowth) +
                                " times its size, when unpacked, expected a recording");
     if (n == static_cast<int>(wanted)) continue;
-    // gzread also returns short at a truncated stream, and says so only through gzerror.
+    // gzread also returns short at a truncated stream, and reports this only through gzerror.
     int error = Z_OK;
     const char* message = gzerror(file_.get(), &error);
     ends_early_ = error == Z_BUF_ERROR;
@@ -211,7 +210,7 @@ TextPieces::TextPieces(ReadBytes read, std::size_t piece)
     : read_(std::move(read)), piece_(std::max<std::size_t>(1, piece)) {}
 
 bool TextPieces::next(std::string& to) {
-  // A string that is used again is overwritten by what is read, without zeros before that.
+  // Reuses the string without zeroing it.
   std::size_t before = tail_.size();
   to.reserve(before + piece_ + piece_ / 16);
   if (to.size() < before) to.resize(before);

@@ -27,8 +27,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Destination {
-  fs::path file;        // where the links lead
-  int descriptor = -1;  // an open one of this process, instead
+  fs::path file;        // target of links
+  int descriptor = -1;  // or an open descriptor of this process
 };
 
 bool is_number(const std::string& text) {
@@ -36,10 +36,10 @@ bool is_number(const std::string& text) {
          std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); });
 }
 
-// Link by link rather than by realpath(): the file need not exist yet, and a link in /proc/self/fd stands for
-// an open descriptor, with its offset, whatever name it shows. Sets `error` when it leads nowhere.
+// Follows link by link, because realpath() needs an existing file, and a link in /proc/self/fd means an open
+// descriptor with its offset. Sets `error` for invalid paths.
 Destination follow(const fs::path& path, std::error_code& error) {
-  constexpr int kMostLinks = 40;  // as the kernel
+  constexpr int kMostLinks = 40;  // as in the kernel
   fs::path at = path;
   for (int links = 0; links < kMostLinks; ++links) {
     const fs::path folder = fs::canonical(at.has_parent_path() ? at.parent_path() : fs::path("."), error);
@@ -65,8 +65,8 @@ Destination destination_of(const std::string& path, std::error_code& error) {
   return follow(path, error);
 }
 
-// Name of a file that is being written. It has no process number: one left by a kill would block every
-// later process of that number, the same each day on a computer that starts alike.
+// Temporary name. Without the process number: a file left after a kill would block later processes with that
+// number.
 std::string passing_name() {
   std::uint64_t number = 0;
   if (::getrandom(&number, sizeof number, 0) != static_cast<ssize_t>(sizeof number))
@@ -108,7 +108,7 @@ void expect_writable(const std::string& path) {
 
 OutputFile::OutputFile(std::string path, int descriptor) : path_(std::move(path)), fd_(descriptor) {}
 
-// By way of the other, so that a failure in here runs the destructor.
+// Delegates, so that a failure here runs the destructor.
 OutputFile::OutputFile(std::string path) : OutputFile(std::move(path), -1) {
   open();
   if (!is_packed_name(path_)) return;
@@ -124,7 +124,7 @@ void OutputFile::open() {
     fail("cannot create");
   }
   if (to.descriptor >= 0) {
-    std::fflush(stdout);  // what was printed before stands before
+    std::fflush(stdout);  // keeps the order with printed output
     fd_ = fcntl(to.descriptor, F_DUPFD_CLOEXEC, 3);
     if (fd_ < 0) fail("cannot write");
     return;
@@ -138,7 +138,7 @@ void OutputFile::open() {
     if (fd_ < 0) fail("cannot write");
     return;
   }
-  // Renaming over a file needs no right to the file itself.
+  // Renaming over a file does not need write permission for it.
   if (there && ::access(to.file.c_str(), W_OK) != 0) fail("cannot write");
   target_ = to.file;
   open_beside();
@@ -149,7 +149,7 @@ void OutputFile::open() {
 
 void OutputFile::open_beside() {
   const fs::path folder = fs::path(target_).parent_path();
-  // Nothing of a file without a name stays when the program is killed or the power goes.
+  // An unnamed file disappears if the program is killed or power fails.
   const bool can_name = ::access("/proc/self/fd", X_OK) == 0;
   if (can_name) fd_ = ::open(folder.c_str(), O_TMPFILE | O_WRONLY | O_CLOEXEC, 0666);
   if (fd_ >= 0) return;
@@ -179,7 +179,7 @@ void OutputFile::fail(const char* what) const {
 }
 
 void OutputFile::write(std::string_view bytes) {
-  constexpr std::size_t kMostAtOnce = 1U << 30U;  // of zlib
+  constexpr std::size_t kMostAtOnce = 1U << 30U;  // zlib's limit
   while (packed_ != nullptr && !bytes.empty()) {
     const std::string_view some = bytes.substr(0, kMostAtOnce);
     errno = 0;
@@ -194,7 +194,7 @@ void OutputFile::write(std::string_view bytes) {
   }
 }
 
-// No signal between the two calls: the bytes' passing name would stay.
+// Blocks signals between the two calls, so that no temporary name remains.
 void OutputFile::take_the_name() {
   sigset_t all, before;
   sigfillset(&all);
@@ -220,7 +220,7 @@ void OutputFile::finish() {
   if (!target_.empty()) {
     if (::fsync(fd_) != 0) fail("cannot sync");
     take_the_name();
-    // The name is on the disk once its folder is.
+    // The name is durable after its folder is synced.
     const int folder = ::open(fs::path(target_).parent_path().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder >= 0) {
       ::fsync(folder);

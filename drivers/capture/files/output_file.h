@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// All output is written by this class. A regular file is never visible half-written: the bytes go into an unnamed
-// file, which is synced and gets the name at the end. Links are followed; devices, FIFOs and open descriptors
-// (/dev/stdout) are written directly and never replaced. What is called .gz is packed on its way.
+// Output file, used for all output. A regular file is never visible incomplete: an unnamed file is written,
+// synced and named at the end. Links are followed; devices, FIFOs and open descriptors (/dev/stdout) are
+// written directly and never replaced. A name with .gz is packed.
 #pragma once
 
 #include <cstdint>
@@ -15,22 +15,22 @@ namespace ifog {
 
 class OutputFile {
  public:
-  // "-" is standard output. An existing file keeps its mode and, where that is allowed, its owner. Throws
-  // std::runtime_error with one line: no such folder, a folder, no permission.
+  // "-" is standard output. An existing file keeps its mode and, if allowed, its owner. Throws
+  // std::runtime_error with one line: missing folder, a folder, no permission.
   explicit OutputFile(std::string path);
-  // One that is open already, and from here on this object's to close; `path` stands for it in messages.
+  // An open descriptor, which this object will close; `path` names it in messages.
   OutputFile(std::string path, int descriptor);
-  // Without finish() a regular file is unchanged and no temporary file remains.
+  // Without finish() a regular file is not changed and no temporary file remains.
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
-  // Both throw std::runtime_error with one line: disk full, pipe closed, … SIGPIPE is the program's to
-  // ignore. The bytes of a packed file are the same however they are cut.
+  // These throw std::runtime_error with one line: disk full, pipe closed, … The program must ignore SIGPIPE.
+  // A packed file does not depend on the sizes of writes.
   void write(std::string_view bytes);
   void finish();
 
-  // What is written to it is not packed, whatever the file is called.
+  // Writing to the descriptor bypasses packing.
   [[nodiscard]] int descriptor() const { return fd_; }
 
  private:
@@ -40,32 +40,32 @@ class OutputFile {
   void take_the_name();
 
   std::string path_;    // as given, for messages
-  std::string target_;  // the regular file; empty: written in place
-  std::string beside_;  // the name of the bytes until finish(), where a file without one cannot be had
+  std::string target_;  // regular file; empty: written in place
+  std::string beside_;  // temporary name until finish(), if unnamed files are not supported
   int fd_ = -1;
-  gzFile_s* packed_ = nullptr;  // null: the bytes go out as they are
+  gzFile_s* packed_ = nullptr;  // null: not packed
 };
 
-// Identifies the regular file that a path leads to through links and open descriptors ("-" is standard output), or
-// that it would create. Two names of one file have the same identity.
+// Identity of the regular file behind a path, links and open descriptors ("-" is standard output), or of the
+// file that would be created.
 struct FileIdentity {
   std::uintmax_t device = 0, inode = 0;
-  std::string name;  // of a file that is not there yet: in the folder that device and inode are of
+  std::string name;  // of a file that does not exist yet, in the folder given by device and inode
 
   bool operator==(const FileIdentity&) const = default;
 };
 
-// nullopt for a device, a pipe, a folder and a path that leads nowhere, which cannot be overwritten by mistake.
+// nullopt for a device, pipe, folder or invalid path, which cannot be overwritten accidentally.
 [[nodiscard]] std::optional<FileIdentity> file_identity(const std::string& path);
 
-// "-", /dev/stdout, /dev/fd/1 and whatever else leads to descriptor 1.
+// True for "-", /dev/stdout, /dev/fd/1 and others that lead to descriptor 1.
 [[nodiscard]] bool is_standard_output(const std::string& path);
 
-// Throws as OutputFile would, and leaves nothing behind: so that what cannot be written is known before the
-// work. Of a device and a pipe nothing is asked.
+// Throws as OutputFile would, without creating anything, so that errors are found before the work. Devices
+// and pipes are not checked.
 void expect_writable(const std::string& path);
 
-// All of it at once: nothing is touched if it fails.
+// Writes a whole file; unchanged on failure.
 void write_file(const std::string& path, std::string_view bytes);
 
 }  // namespace ifog

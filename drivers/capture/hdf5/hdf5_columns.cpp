@@ -16,30 +16,28 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kBlockValues = 2U << 20U;  // of all columns, where chunks are no larger
-// Bytes of all columns' chunks, unpacked. The library takes three times a chunk while it unpacks one, and all of
-// it stands below what its process may have.
+constexpr std::size_t kBlockValues = 2U << 20U;  // of all columns, unless chunks are larger
+// Limit of the bytes of all columns' chunks, unpacked. The library needs three times a chunk to unpack one,
+// within the process's limit.
 constexpr std::size_t kMostUnpacked = 512U << 20U;
-// Bytes that the library keeps of a matrix or a table until each of its columns is read.
+// Cache of a matrix or table until all its columns are read, in bytes.
 constexpr std::size_t kLeastKept = 512U << 10U, kMostKept = 8U << 20U;
-constexpr hsize_t kMostOfMatrix = 64;  // columns
-// What a chunk of one value packs into, a thousandth, and more than deflate can: rows come block by block,
-// and what is kept of them is bounded elsewhere.
+constexpr hsize_t kMostOfMatrix = 64;  // in columns
+// Largest compression ratio of a chunk: that of one repeated value is 1000, above deflate's.
 constexpr std::uint64_t kMostGrowth = 1100, kGrowthFree = 256U << 20U;
-constexpr std::size_t kLongestName = 1000;      // bytes
-constexpr std::size_t kMostComments = 100'000;  // lines
-constexpr std::size_t kLongestText = 4096;      // bytes of a comment
+constexpr std::size_t kLongestName = 1000;      // in bytes
+constexpr std::size_t kMostComments = 100'000;  // in lines
+constexpr std::size_t kLongestText = 4096;      // bytes per comment
 constexpr std::size_t kMostPlaces = 16, kMostLooked = 4096;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what); }
 
-// "'a', 'b'", bounded; "none".
+// "'a', 'b'", limited in length; or "none".
 std::string list_of(const std::vector<std::string>& names) {
   return names.empty() ? "none" : printable(listed(names), 300);
 }
 
-// What --group can name: the groups, with all of their path, and the tables of records. A file of very many has
-// more than are looked at.
+// Possible values of --group: paths of groups and tables of records; limited in number.
 std::vector<std::string> places_of(hid_t file) {
   struct Found {
     std::vector<std::string> names{"/"};
@@ -70,7 +68,7 @@ void demand_numbers(hid_t type, const std::string& name) {
          ", expected numbers");
 }
 
-// The values must lie in this file, and be packed by what is here to unpack them.
+// Values must be in this file, and their compression must be supported.
 void demand_readable(hid_t properties, const std::string& name) {
   if (H5Pget_layout(properties) == H5D_VIRTUAL || H5Pget_external_count(properties) > 0)
     refuse(in_quotes(name) + " keeps its values in another file, expected all in one");
@@ -89,7 +87,7 @@ void demand_readable(hid_t properties, const std::string& name) {
   }
 }
 
-// Integers stay what they are, as a double may not hold a time in ns.
+// Integers are kept, because a double may not hold a time in ns.
 Hdf5Value value_of(hid_t type) {
   if (H5Tget_class(type) != H5T_INTEGER) return Hdf5Value::real;
   return H5Tget_sign(type) == H5T_SGN_NONE ? Hdf5Value::natural : Hdf5Value::whole;
@@ -100,7 +98,7 @@ hid_t in_memory(Hdf5Value value) {
   return value == Hdf5Value::natural ? H5T_NATIVE_UINT64 : H5T_NATIVE_INT64;
 }
 
-// Of one dimension, or a matrix with more rows than columns either way round.
+// One-dimensional, or a matrix with more rows than columns, in either orientation.
 struct Shape {
   int along = 0;
   hsize_t rows = 0, columns = 1;
@@ -136,7 +134,7 @@ bool contains(const std::vector<std::string>& names, std::string_view name) {
 
 Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
   hdf5_silence();
-  H5PLset_loading_state(0);  // no file has code loaded to read it
+  H5PLset_loading_state(0);  // no code is loaded
   const std::string group = wanted.group.empty() ? "/" : wanted.group;
   open(source, group);
   choose(wanted);
@@ -149,7 +147,7 @@ Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
 void Hdf5Columns::open(const Hdf5Source& source, const std::string& group) {
   const Hdf5Id how(H5Pcreate(H5P_FILE_ACCESS));
   access_ = Hdf5Id(H5Pcreate(H5P_DATASET_ACCESS));
-  // A capture is read where nothing can be locked, too. No link leads out of the file.
+  // Works where files cannot be locked. Links must not leave the file.
   const auto stay = [](const char*, const char*, const char*, const char*, unsigned*, hid_t,
                        void*) -> herr_t { return -1; };
   hdf5_demand(how.good() && access_.good() && H5Pset_file_locking(how, false, true) >= 0 &&
@@ -161,7 +159,7 @@ void Hdf5Columns::open(const Hdf5Source& source, const std::string& group) {
     hdf5_demand(H5Pset_fapl_core(how, 1U << 20U, false) >= 0 &&
                     H5Pset_file_image(how, const_cast<char*>(source.image.data()), source.image.size()) >= 0,
                 "no memory for it");
-  // An image takes a name that no file has.
+  // An image needs a name that no file has.
   file_ = Hdf5Id(H5Fopen(in_memory ? "/dev/null/image" : source.name.c_str(), H5F_ACC_RDONLY, how));
   hdf5_demand(file_.good(), "cannot be read as HDF5");
   place_ = Hdf5Id(H5Oopen(file_, group.c_str(), access_));
@@ -191,9 +189,9 @@ void Hdf5Columns::choose(const Hdf5Wanted& wanted) {
 
   const auto time = std::find(others.begin(), others.end(), kHdf5Time);
   const bool capture = asked.empty() && time != others.end() && !record_.good();
-  if (capture) std::rotate(others.begin(), time, time + 1);  // as a CSV file begins
+  if (capture) std::rotate(others.begin(), time, time + 1);  // time first, as in CSV
   if (has_exact_time()) std::erase(others, kHdf5ExactTime);
-  // All datasets of a capture are columns. Of other groups those are that have as many rows as most.
+  // All datasets of a capture are columns. In other groups those with the most frequent number of rows are.
   std::vector<std::vector<Hdf5Column>> found;
   std::map<std::uint64_t, std::size_t> with_rows;
   for (const std::string& name : others) try {
@@ -213,7 +211,8 @@ void Hdf5Columns::choose(const Hdf5Wanted& wanted) {
     notices_.push_back("not read: the groups " + list_of(groups_) + "; --group reads one");
 }
 
-// A record's members, or every link of the group that is no group: what is no dataset is refused where it is opened.
+// Members of records, or all links of the group except groups. Anything that is no dataset is rejected when
+// opened.
 std::vector<std::string> Hdf5Columns::names_here() {
   std::vector<std::string> names;
   const auto few = [](std::size_t members) {
@@ -264,7 +263,7 @@ bool Hdf5Columns::has(const std::string& name) const {
   return is_there(name) || is_there(without_index(name));
 }
 
-// As Hdf5Writer leaves it.
+// As written by Hdf5Writer.
 bool Hdf5Columns::has_exact_time() const {
   if (record_.good() || H5Lexists(place_, kHdf5ExactTime, access_) <= 0) return false;
   const Hdf5Id exact(H5Dopen2(place_, kHdf5ExactTime, access_));
@@ -331,7 +330,7 @@ Hdf5Column Hdf5Columns::column_asked_for(const std::string& name) {
          std::to_string(columns.size()));
 }
 
-// Whole chunks are read of what is packed, so that each is unpacked once.
+// Packed data are read in whole chunks, so that each is unpacked once.
 void Hdf5Columns::add(Hdf5Column column) {
   if (columns_.size() == kInputLimits.hdf5_columns)
     refuse("more than " + std::to_string(kInputLimits.hdf5_columns) + " columns, expected at most that");
@@ -344,7 +343,7 @@ void Hdf5Columns::add(Hdf5Column column) {
   std::array<hsize_t, 2> chunk{1, 1};
   if (H5Pget_nfilters(properties) > 0 && H5Pget_layout(properties) == H5D_CHUNKED &&
       H5Pget_chunk(properties, 2, chunk.data()) > 0) {
-    std::uint64_t bytes = 0, all = 0;  // of one chunk; as numbers, of all columns
+    std::uint64_t bytes = 0, all = 0;  // of one chunk; of all columns as numbers
     chunk_rows_ = std::max<std::size_t>(chunk_rows_, chunk[static_cast<std::size_t>(column.along)]);
     if (__builtin_mul_overflow(chunk[0], chunk[1], &bytes) ||
         __builtin_mul_overflow(bytes, H5Tget_size(type), &bytes) || bytes > kMostUnpacked ||

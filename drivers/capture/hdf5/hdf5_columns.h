@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The columns of an HDF5 file, read in this process: datasets of a group, each one column, or "name[0]",
-// "name[1]", … where it is a matrix of a few columns (N × 3, or 3 × N as MATLAB stores it; 1 × N is one
-// column); or the members of a one-dimensional dataset of records (a table of PyTables or pandas). The
-// library trusts what it reads, so this runs in the process of hdf5_text.h and nowhere else.
+// Columns of an HDF5 file, read in this process. A dataset of a group is a column, or a matrix of a few
+// columns "name[0]", "name[1]", … (N × 3, or 3 × N as in MATLAB; 1 × N is one column). Members of a
+// one-dimensional dataset of records (PyTables, pandas) are columns too. The library trusts its input, so
+// this runs only in the process of hdf5_text.h.
 #pragma once
 
 #include <cstddef>
@@ -15,47 +15,47 @@
 
 namespace ifog {
 
-// A file by its name, or where it lies in memory.
+// A file by name or in memory.
 struct Hdf5Source {
   std::string name;
-  std::span<const char> image;  // empty: the file of that name
+  std::span<const char> image;  // empty: the named file
 };
 
 struct Hdf5Wanted {
-  std::string group;               // path of the group or table; "": the file's root
-  std::vector<std::string> names;  // datasets as paths from there, or members; "sec+nsec": two of them
-  bool others = true;              // what else there is that is a column is read, too
+  std::string group;               // path of the group or table; "": root
+  std::vector<std::string> names;  // dataset paths or members; "sec+nsec": two of them
+  bool others = true;              // other columns are read, too
   std::uint64_t file_bytes = 0;
 };
 
-// What a value is in memory, 8 bytes each: integers keep all their digits.
-enum class Hdf5Value { real, whole, natural, ns };  // ns: whole, seconds in the text
+// Representation of a value in 8 bytes; integers keep all digits.
+enum class Hdf5Value { real, whole, natural, ns };  // ns: integer, written in seconds
 
 struct Hdf5Column {
-  std::string name, unit;  // unit: as the attribute `units` says, or ""
+  std::string name, unit;  // unit: attribute `units`, or ""
   Hdf5Value value = Hdf5Value::real;
   std::uint64_t rows = 0;
-  std::size_t value_bytes = 0;  // of one value in the file
-  Hdf5Id dataset, in_memory;    // in_memory: the type that one value becomes
-  int along = 0;                // the dimension of the rows
-  hsize_t index = 0;            // in the other one
+  std::size_t value_bytes = 0;  // per value in the file
+  Hdf5Id dataset, in_memory;    // in_memory: type of a value after conversion
+  int along = 0;                // dimension of the rows
+  hsize_t index = 0;            // index in the other dimension
 };
 
 class Hdf5Columns {
  public:
-  // Throws std::runtime_error with one line, without the file's name: what is not as a capture needs it.
+  // Throws std::runtime_error with one line, without the file's name, if the file is not suitable.
   Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted);
 
-  // Those asked for, then the others in the file's order or else sorted.
+  // The requested columns, then the others in the file's order or sorted.
   [[nodiscard]] const std::vector<Hdf5Column>& columns() const { return columns_; }
   [[nodiscard]] std::uint64_t rows() const { return columns_.front().rows; }
   [[nodiscard]] const std::vector<std::string>& comments() const { return comments_; }
   [[nodiscard]] const std::vector<std::string>& notices() const { return notices_; }
-  // Rows to read at once: whole chunks of the file, so that each is unpacked once.
+  // Rows per read: whole chunks, so that each is unpacked once.
   [[nodiscard]] std::size_t block_rows() const;
-  // Bytes of the largest chunk, unpacked.
+  // Size of the largest chunk, unpacked.
   [[nodiscard]] std::size_t chunk_bytes() const { return chunk_bytes_; }
-  // Rows from `first` on of a column, as its value is: double, int64 or uint64. Throws likewise.
+  // Reads rows of a column from `first` on as double, int64 or uint64. Throws likewise.
   void read(const Hdf5Column& column, std::uint64_t first, std::span<std::uint64_t> to) const;
 
  private:
@@ -64,14 +64,14 @@ class Hdf5Columns {
   [[nodiscard]] std::vector<std::string> names_here();
   [[nodiscard]] bool has(const std::string& name) const;
   [[nodiscard]] bool has_exact_time() const;
-  // The columns of a member of the group or table. Throws std::runtime_error with one line: it is none.
+  // Columns of a member of the group or table. Throws std::runtime_error with one line if it is none.
   [[nodiscard]] std::vector<Hdf5Column> columns_of(const std::string& name);
   [[nodiscard]] std::vector<Hdf5Column> member_of_table(const std::string& name);
   [[nodiscard]] Hdf5Column column_asked_for(const std::string& name);
   void add(Hdf5Column column);
   void check_size(const Hdf5Wanted& wanted) const;
 
-  Hdf5Id access_, file_, place_, record_;  // record_: the type of a table's rows, where the place is one
+  Hdf5Id access_, file_, place_, record_;  // record_: type of a table's rows
   std::vector<Hdf5Column> columns_;
   std::vector<std::string> groups_;  // within the group
   std::vector<std::string> comments_, notices_;

@@ -7,14 +7,14 @@
 namespace ifog {
 namespace {
 
-// A fixed text is filled up behind its end, by zeros or by blanks.
+// A fixed-length text is padded by zeros or blanks.
 std::string fixed_text(const char* at, std::size_t size, bool blanks) {
   std::string text(at, strnlen(at, size));
   while (blanks && !text.empty() && text.back() == ' ') text.pop_back();
   return text;
 }
 
-// Texts of variable length, which other programs read most easily.
+// Texts of variable length, which most programs can read.
 void write_texts(hid_t object, const char* name, const Hdf5Id& space, const std::vector<std::string>& texts) {
   const Hdf5Id type(H5Tcopy(H5T_C_S1));
   std::vector<const char*> at;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the HDF5 library counts for us (files, groups, datasets, types, …), given back at the end of a scope; what it
-// says when it fails; and the texts that are attached to an object: the unit of a dataset, the comments of a capture.
+// RAII for HDF5 ids (files, groups, datasets, types, …); error texts of the library; and text attributes:
+// units of a dataset, comments of a capture.
 #pragma once
 
 #include <hdf5.h>
@@ -29,13 +29,13 @@ class Hdf5Id {
   }
 
   [[nodiscard]] bool good() const { return id_ >= 0; }
-  operator hid_t() const { return id_; }  // as the library's functions take it
+  operator hid_t() const { return id_; }  // for the library's functions
 
  private:
   hid_t id_ = H5I_INVALID_HID;
 };
 
-// Where the library's story of a failure began, in one line.
+// The library's first error in one line.
 inline std::string hdf5_reason() {
   std::string said;
   const auto first = [](unsigned, const H5E_error2_t* error, void* to) -> herr_t {
@@ -47,25 +47,24 @@ inline std::string hdf5_reason() {
   return said.empty() ? "no reason given" : printable(said, 200);
 }
 
-// `what` with the library's reason where `good` is false. Throws std::runtime_error.
+// Throws std::runtime_error with `what` and the library's reason if `good` is false.
 inline void hdf5_demand(bool good, const std::string& what) {
   if (!good) throw std::runtime_error(what + ": " + hdf5_reason());
 }
 
-// The library prints nothing from here on, in this thread.
+// Disables the library's error output in this thread.
 inline void hdf5_silence() { H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr); }
 
-inline constexpr const char* kHdf5Units = "units";  // on a dataset, as the CF conventions call it
+inline constexpr const char* kHdf5Units = "units";  // on a dataset, as in the CF conventions
 inline constexpr const char* kHdf5Time = "time_s";
-// Beside time_s where doubles of that size lose digits: the same times as integers, which the attribute says.
+// Next to time_s if doubles lose digits: the same times as integers, marked by an attribute.
 inline constexpr const char* kHdf5ExactTime = "time_ns";
 inline constexpr const char* kHdf5Of = "of";
 inline constexpr const char* kHdf5Comments = "comments";  // on the group: the `#` lines, without the '#'
 
-// The texts of an attribute, at most so many of at most so many bytes each; empty
-// where there is none, or it is no text.
+// Texts of an attribute, limited in number and length; empty if there is none or it is no text.
 std::vector<std::string> hdf5_texts(hid_t object, const char* name, std::size_t most, std::size_t longest);
-// The unit that a dataset says, "" for none.
+// Unit of a dataset, or "".
 std::string hdf5_unit(hid_t dataset);
 
 // Throws std::runtime_error with one line.

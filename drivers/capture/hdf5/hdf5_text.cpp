@@ -36,20 +36,21 @@ namespace ifog {
 
 namespace {
 
-// What the reading process says besides the text.
+// Results of the reading process besides the text.
 struct Said {
   std::atomic<std::uint64_t> rows_done{0}, rows{0};
-  std::array<char, 4096> refusal{}, notices{};  // texts that end with a zero; notices: each with a line's end
+  std::array<char, 4096> refusal{}, notices{};  // zero-terminated texts; notices: one per line
 };
 
-constexpr rlim_t kMostMemory = 2ULL << 30U;  // bytes, besides the program's own and a copy of the file
-// Processor time from one block to the next, and how slowly a chunk may be unpacked besides.
+// Bytes, in addition to the program's own memory and a copy of the file
+constexpr rlim_t kMostMemory = 2ULL << 30U;
+// Limits of processor time per block and of the speed of unpacking.
 constexpr std::size_t kMostSeconds = 5, kLeastUnpacked = 32U << 20U;  // s, bytes/s
-constexpr std::size_t kPiece = 1U << 16U;                             // bytes of text, as a pipe holds
+constexpr std::size_t kPiece = 1U << 16U;                             // bytes of text, the capacity of a pipe
 
 std::string reason() { return std::generic_category().message(errno); }
 
-// Bytes that this process may change by itself, as RLIMIT_DATA counts them.
+// Private memory of this process, as counted by RLIMIT_DATA.
 rlim_t memory_in_use() {
   unsigned long pages = 0;
   if (std::FILE* const file = std::fopen("/proc/self/statm", "re")) {
@@ -59,8 +60,8 @@ rlim_t memory_in_use() {
   return pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE));
 }
 
-// From here on this process can do no more than read the file: it dies with its parent, leaves no image of
-// itself, and says nothing but by its pipe.
+// Restricts this process to reading the file: it ends with its parent, writes no core dump, and its only
+// output is the pipe.
 void shut_in(std::size_t image) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   prctl(PR_SET_DUMPABLE, 0);
@@ -76,7 +77,7 @@ void shut_in(std::size_t image) {
   setrlimit(RLIMIT_CORE, &nothing);
   setrlimit(RLIMIT_FSIZE, &nothing);
   setrlimit(RLIMIT_DATA, &memory);
-  // A library that finds its heap damaged says so on standard error.
+  // The library reports a damaged heap on standard error.
   const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
   if (nowhere >= 0)
     for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) dup2(nowhere, fd);
@@ -87,7 +88,7 @@ void allow_seconds(std::size_t chunk = 0) {
   setitimer(ITIMER_PROF, &timer, nullptr);
 }
 
-// Text on its way into the pipe.
+// Writes text to the pipe.
 class Pipe {
  public:
   explicit Pipe(int fd) : fd_(fd) { text_.reserve(2 * kPiece); }
@@ -110,7 +111,7 @@ class Pipe {
   std::string text_;
 };
 
-// As a comment of a CSV file is.
+// As in a comment of a CSV file.
 std::string one_line(std::string text) {
   std::replace_if(
       text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
@@ -131,7 +132,7 @@ void print_head(const Hdf5Columns& columns, Pipe& out) {
   std::string names, units;
   bool any_unit = false;
   for (const Hdf5Column& column : columns.columns()) {
-    // What is no unit known here is nothing that a row of numbers could be taken for.
+    // An unknown unit could not be mistaken for a row of numbers.
     const bool known = is_unit(column.unit);
     any_unit = any_unit || known;
     names += (names.empty() ? "" : ",") + as_cell(column.name);
@@ -151,7 +152,7 @@ char* print(char* at, char* end, std::uint64_t bits, Hdf5Value value) {
   at = std::to_chars(at, end, ns / std::nano::den).ptr;
   char* const point = at;
   at = std::to_chars(at, end, std::nano::den + ns % std::nano::den)
-           .ptr;  // a one that becomes the point, and nine digits
+           .ptr;  // a one that is replaced by the point, and nine digits
   *point = '.';
   return at;
 }
@@ -186,10 +187,10 @@ std::string kept(const std::array<char, 4096>& text) {
   return {text.begin(), std::find(text.begin(), text.end(), '\0')};
 }
 
-// A file's text, from a process of its own that ends with this.
+// Text of a file, from a separate process that ends with this object.
 class Hdf5Text {
  public:
-  // The file stays where it is while this is used. Throws std::runtime_error with one line.
+  // The file must outlive this object. Throws std::runtime_error with one line.
   Hdf5Text(InputFile& file, Hdf5Wanted wanted) : file_(file) {
     struct stat info {};
     if (file.reopens() && stat(file.path().c_str(), &info) == 0) {
@@ -221,8 +222,7 @@ class Hdf5Text {
   Hdf5Text(const Hdf5Text&) = delete;
   Hdf5Text& operator=(const Hdf5Text&) = delete;
 
-  // As InputFile::read. Throws std::runtime_error with one line: what is not as a capture needs it, a damaged
-  // file.
+  // As InputFile::read. Throws std::runtime_error with one line: unsuitable or damaged file.
   std::size_t read(char* to, std::size_t most) {
     std::size_t done = 0;
     while (done < most && reader_ > 0) {
@@ -243,7 +243,7 @@ class Hdf5Text {
     throw std::runtime_error(file_.path() + ": is damaged: the HDF5 library " +
                              (slow ? "comes to no end with it" : "breaks down over it"));
   }
-  // What is not read; known at the end.
+  // Ignored content; known at the end.
   [[nodiscard]] std::vector<std::string> notices() const { return lines_of(kept(said_->notices)); }
 
  private:
@@ -251,8 +251,7 @@ class Hdf5Text {
     void operator()(Said* said) const { munmap(said, sizeof(Said)); }
   };
 
-  // In the process of its own. Never returns: nothing of the parent is ended here, no buffer of it written a
-  // second time.
+  // Runs in the separate process. Never returns, so destructors and buffers of the parent are not run twice.
   [[noreturn]] void print(const Hdf5Source& source, const Hdf5Wanted& wanted, int to) {
     shut_in(source.image.size());
     allow_seconds();
@@ -274,8 +273,8 @@ class Hdf5Text {
   }
 
   InputFile& file_;
-  std::string image_;                  // a file that cannot be opened by its name
-  std::unique_ptr<Said, Unmap> said_;  // in memory of both processes
+  std::string image_;                  // content of a file that cannot be opened by name
+  std::unique_ptr<Said, Unmap> said_;  // shared memory
   int pipe_ = -1;
   pid_t reader_ = -1;
 };
@@ -289,7 +288,7 @@ RowNotes read_hdf5_rows(InputFile& file, const std::string& group, const CsvLayo
     if (!header.empty() && !number) wanted.names.push_back(header);
     wanted.others = wanted.others || number;
   };
-  // Where all columns are chosen, nothing else need be unpacked.
+  // If all columns are chosen, no others need to be unpacked.
   wanted.others = layout.columns.empty() || !layout.time || layout.other_rates;
   if (!layout.columns.empty() && layout.time) ask(layout.time->header);
   for (const CsvColumn& column : layout.columns) ask(column.header);

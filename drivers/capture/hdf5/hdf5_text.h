@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// An HDF5 file as the text of a CSV file: comments, names, units, rows, with all digits. So what reads CSV
-// reads HDF5 by the same rules.
+// Converts an HDF5 file to CSV text with all digits (comments, names, units, rows), so that the CSV reader
+// handles it.
 //
-// The library that reads HDF5 was made for files that it can trust: a damaged one can end the program or keep
-// it busy for ever. So it runs in a process of its own, with bounded memory and processor time, without the
-// right to load code or to open other files by links, and what comes from there is text that is read as any
-// other. When it dies the file is refused with one line.
+// The HDF5 library trusts its input: a damaged file can crash it or keep it busy forever. So it runs in a
+// separate process with limited memory and processor time, which cannot load code or open other files. If
+// that process dies the file is rejected with one line.
 #pragma once
 
 #include <string>
@@ -16,12 +15,11 @@
 
 namespace ifog {
 
-// A capture in HDF5: each column a one-dimensional dataset under the name that it has in a CSV file.
-// group: path of the group (or table of records) that holds the columns; "" is the root. layout: as of a CSV
-// file, its headers being paths of datasets from there; a column without a unit is in that of the dataset's
-// attribute `units`. Without a layout every dataset of the group is a column, and one whose attribute
-// contradicts its name is refused. What is refused or treated as missing is the same as in a CSV file, and rows
-// count from 1. Throws std::runtime_error with one line, possibly after rows were handed on.
+// Reads a capture from HDF5: each column is a one-dimensional dataset with its CSV name. group: path of the
+// group (or table of records); "": root. layout: as for CSV, with dataset paths as headers; units default to
+// the attribute `units`. Without a layout all datasets of the group are columns, and an attribute that
+// contradicts a name is an error. Errors and missing values are as in CSV; rows count from 1. Throws
+// std::runtime_error with one line, possibly after rows were passed.
 RowNotes read_hdf5_rows(InputFile& file, const std::string& group, const CsvLayout& layout, RowSink& sink);
 
 }  // namespace ifog

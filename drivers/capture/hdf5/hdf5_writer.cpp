@@ -14,12 +14,12 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kChunk = 65'536;  // rows
+constexpr std::size_t kChunk = 65'536;  // in rows
 constexpr unsigned kGzip = 6;
-constexpr std::int64_t kMostSecondsInNs = 9'000'000'000;  // that 64 bits hold in ns
-constexpr std::size_t kStep = 4U << 20U;                  // bytes by which the file in memory grows
+constexpr std::int64_t kMostSecondsInNs = 9'000'000'000;  // limit of int64 in ns
+constexpr std::size_t kStep = 4U << 20U;                  // growth of the file in memory, bytes
 
-// As a person writes the unit that a column's name ends in.
+// Unit of a column's name in user notation.
 std::string unit_of(const std::string& name) {
   constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kWritten = {{{"radps", "rad/s"},
                                                                                       {"rad2ps2", "rad2/s2"},
@@ -42,7 +42,7 @@ Hdf5Id file_in_memory() {
   const Hdf5Id access(H5Pcreate(H5P_FILE_ACCESS)), create(H5Pcreate(H5P_FILE_CREATE));
   const bool set = access.good() && create.good() && H5Pset_fapl_core(access, kStep, false) >= 0 &&
                    H5Pset_link_creation_order(create, kInOrder) >= 0 &&
-                   // An object that keeps its attributes in order may have some of more than 64 KiB.
+                   // Ordered attributes may exceed 64 KiB.
                    H5Pset_attr_creation_order(create, kInOrder) >= 0 &&
                    H5Pset_obj_track_times(create, false) >= 0;
   Hdf5Id file(set ? H5Fcreate("capture", H5F_ACC_TRUNC, create, access) : H5I_INVALID_HID);
@@ -59,10 +59,10 @@ Hdf5Id packed(hsize_t chunk) {
   return properties;
 }
 
-// Where the library has it in memory, until the file is closed, and not once more. As any reader understands
-// it: by itself the library takes the oldest format that holds what is in the file.
+// The library's memory image, valid until the file is closed. Uses a format that any reader knows (by default
+// the library uses the oldest sufficient one).
 std::string_view image_of(hid_t file) {
-  void* where = nullptr;  // of the driver's own pointer
+  void* where = nullptr;  // owned by the driver
   const bool flushed = H5Fflush(file, H5F_SCOPE_GLOBAL) >= 0;
   const ssize_t size = flushed ? H5Fget_file_image(file, nullptr, 0) : -1;
   hdf5_demand(size > 0 && H5Fget_vfd_handle(file, H5P_DEFAULT, &where) >= 0 && where != nullptr,
@@ -118,7 +118,7 @@ void Hdf5Writer::rows(std::span<const std::span<const double>> columns, const Ti
     with_name(path_, [&] { flush(held_.front().size() / kChunk * kChunk); });
 }
 
-// They are the last that are held.
+// They are the last buffered rows.
 void Hdf5Writer::take_large_times(std::span<const double> since_s, const TimeOrigin& origin) {
   times_are_large_ =
       std::abs(origin.s) < kMostSecondsInNs && !std::count(names_.begin(), names_.end(), kHdf5ExactTime);
@@ -143,7 +143,7 @@ void Hdf5Writer::append(const Hdf5Id& dataset, const std::string& name, hid_t ty
   held.erase(held.begin(), held.begin() + static_cast<std::ptrdiff_t>(rows));
 }
 
-// The first rows of those that are held.
+// Writes the first buffered rows.
 void Hdf5Writer::flush(std::size_t rows) {
   if (datasets_.empty()) begin_datasets(std::clamp<std::size_t>(rows, 1, kChunk));
   if (rows == 0) return;

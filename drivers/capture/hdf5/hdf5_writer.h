@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture into an HDF5 file, written while its rows come: each column a dataset of doubles in the root, in
-// chunks, shuffled and packed by gzip, with the attribute `units`; the comments as the attribute `comments`
-// of the root. Times that lose digits as doubles stand beside them as integers, time_ns, which reads them as
-// they are. The same columns give the same bytes.
+// Writes a capture to HDF5 while rows arrive: each column is a dataset of doubles in the root, chunked,
+// shuffled and packed by gzip, with the attribute `units`; comments are the root's attribute `comments`.
+// Times that lose digits as doubles are also written as integers (time_ns). Equal columns give equal bytes.
 #pragma once
 
 #include <cstddef>
@@ -19,15 +18,14 @@ namespace ifog {
 
 class Hdf5Writer {
  public:
-  // comments: as in RowNotes. Of a path that ends in .gz the whole is packed once more. The packed file is in
-  // memory until finish(), so that what cannot be sought does as well. Throws std::runtime_error with one
-  // line, all of it.
+  // comments: as in RowNotes. With .gz the whole file is packed again. The file is in memory until finish(),
+  // so the output need not be seekable. All functions throw std::runtime_error with one line.
   Hdf5Writer(const std::string& path, const std::string& comments, const std::vector<std::string>& names);
 
-  // By column, in the order of the names, all of one length. origin: that the first, a time, is counted from,
-  // always the same one.
+  // Appends rows. columns: in the order of the names, equally long. origin: of the first column, a time;
+  // always the same.
   void rows(std::span<const std::span<const double>> columns, const TimeOrigin& origin = {});
-  // Without it a regular file stays as it was.
+  // Without it a regular file is not changed.
   void finish();
 
  private:
@@ -43,12 +41,12 @@ class Hdf5Writer {
   std::vector<std::string> names_;
   OutputFile out_;
   Hdf5Id file_;
-  std::vector<Hdf5Id> datasets_;           // none before the first rows are written
-  std::vector<std::vector<double>> held_;  // by column: rows that fill no chunk
-  Hdf5Id exact_;                           // time_ns, where it is
+  std::vector<Hdf5Id> datasets_;           // empty before the first rows are written
+  std::vector<std::vector<double>> held_;  // by column: rows that do not fill a chunk
+  Hdf5Id exact_;                           // time_ns, if needed
   std::vector<std::int64_t> held_ns_;
   bool times_are_large_ = false;
-  hsize_t written_ = 0;  // rows
+  hsize_t written_ = 0;  // number of rows
 };
 
 }  // namespace ifog
