@@ -12,7 +12,7 @@
 namespace ifog {
 namespace {
 
-// Blocks become whole columns.
+// Collects blocks into whole columns.
 class TableSink final : public RowSink {
  public:
   explicit TableSink(Table& table) : table_(table) {}

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture: what a sensor recorded, as columns. CSV with optional `#` lines, a header whose first column is
-// time_s, then rate_radps or rate_x_radps … per axis, optionally reference_rate_radps per axis, and
-// environment channels NAME_UNIT. Empty or `nan` is missing. `.gz` is read and written through zlib.
+// A capture: recorded data of a sensor as columns. CSV with optional `#` lines, and a header: first time_s,
+// then rate_radps or rate_x_radps … per axis, optionally reference_rate_radps per axis, and environment
+// channels NAME_UNIT. Empty or `nan` means missing. `.gz` is read and written through zlib.
 #pragma once
 
 #include <cstddef>
@@ -28,42 +28,42 @@ struct Capture {
   std::vector<double> time_s;                             // strictly increasing, never NaN
   std::vector<std::string> axes;                          // "x", "y", "z", or one "" for a single-axis sensor
   std::vector<std::vector<double>> rate_radps;            // by axis
-  std::vector<std::vector<double>> reference_rate_radps;  // by axis, an empty vector where there is none
-  std::vector<CaptureColumn> channels;                    // every other column
-  std::vector<std::string> dead_axes;                     // of the sensor, dropped: they never have a value
-  std::vector<std::string> notices;                       // of the reading: what may be meant otherwise
-  std::vector<std::string> faults;                        // cells read as missing, one line a column
-  std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
-  TimeOrigin origin;                       // that time_s is counted from
+  std::vector<std::vector<double>> reference_rate_radps;  // by axis; empty vectors if there is none
+  std::vector<CaptureColumn> channels;                    // all other columns
+  std::vector<std::string> dead_axes;  // axes of the sensor that were dropped because they never have a value
+  std::vector<std::string> notices;    // of the reader, about ambiguous content
+  std::vector<std::string> faults;     // cells read as missing, one line per column
+  std::optional<double> since_power_up_s;  // of the sensor at the first row, if known
+  TimeOrigin origin;                       // of time_s
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
 
-// All columns of a file under their own names. A rate is not needed: `ifog denoise` writes files without one.
+// All columns of a file under their own names. A rate is not required: `ifog denoise` writes files without
+// one.
 struct Table : RowNotes {
-  TimeOrigin origin;  // that time_s is counted from
+  TimeOrigin origin;  // of time_s
   std::vector<double> time_s;
   std::vector<CaptureColumn> columns;  // all but time_s, in the file's order
 };
 
-// Throws std::runtime_error with one line: file, line, column, value, what was expected.
-// Refused: no time_s first, no rate column, time that does not increase, a cell that is no number, a line
-// with another number of cells, a .gz that ends early, a column of which more than one cell in a hundred says
-// what no sensor measures. Fewer such cells are missing, see measurable.h, and listed in `faults`.
-// `layout` says what a file means that is no capture by its header; where a header is nearly one, the message
-// has the options to type.
+// Reads a capture. Throws std::runtime_error with one line: file, line, column, value, what was expected.
+// Errors: first column not time_s, no rate column, time not increasing, a cell that is no number, a line with
+// another number of cells, a .gz that ends early, more than 1 % impossible values in a column. Fewer
+// impossible values become missing (measurable.h) and are listed in `faults`. For other headers `layout` is
+// needed; if a header is nearly a capture's the message suggests the options.
 Capture read_capture(const std::string& path);
 
-// The same of a text already at hand; `path` stands for the file in messages. A table needs no rate column.
+// The same for a text; `path` names it in messages. A table needs no rate column.
 Table read_table(InputFile& file, const CsvLayout& layout = {});
-// The table of the rows that `read` delivers into its sink.
+// Table of the rows that `read` delivers to its sink.
 Table table_of(const std::function<RowNotes(RowSink&)>& read);
 Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout = {});
 
-// The capture in a table. Throws std::runtime_error with one line: no rate, a reference without its rate.
+// Converts a table. Throws std::runtime_error with one line: no rate, a reference without its rate.
 Capture capture_of(Table table, const std::string& path);
 
-// What the columns of these names are to a capture.
+// Roles of the columns with these names in a capture.
 struct CaptureShape {
   struct Place {
     enum class Kind { rate, reference, channel } kind;

@@ -12,7 +12,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kGap = 1.5;  // periods from one sample to the next
+constexpr double kGap = 1.5;  // in periods
 
 bool never_known(const std::vector<double>& values) {
   return std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
@@ -21,7 +21,7 @@ bool never_known(const std::vector<double>& values) {
 double period_of(const ifog_description& description) {
   return description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0;
 }
-// The columns of a driver's samples: axes, then channels.
+// Columns of a driver's samples: axes, then channels.
 std::vector<std::string> columns_of(const ifog_description& description) {
   std::vector<std::string> out;
   for (std::uint32_t i = 0; i < description.axes; ++i)
@@ -30,7 +30,7 @@ std::vector<std::string> columns_of(const ifog_description& description) {
   return out;
 }
 
-// Both have the same columns: their samples become rows in the same way.
+// True if samples of both become rows in the same way.
 bool same_samples(const ifog_description& a, const ifog_description& b) {
   return a.kind == b.kind && a.sequence_modulus == b.sequence_modulus &&
          a.has_device_time == b.has_device_time && a.nominal_rate_hz == b.nominal_rate_hz &&
@@ -57,7 +57,7 @@ void CaptureBuilder::go_on_as(const ifog_description& description) {
         "continues with other axes or channels, as the driver's options changed; expected recordings of one");
   if (same_samples(description, description_)) return;
   description_ = description;
-  last_.valid_axes = 0;  // no difference of angles over it
+  last_.valid_axes = 0;  // no angle difference across this
   times_.go_on_as(description);
 }
 
@@ -90,7 +90,7 @@ double CaptureBuilder::believable(std::size_t channel, double value) {
   return kMissing;
 }
 
-// Applies the limits of the daemon's chain to the rates just added.
+// Applies the limits of the daemon's chain to the new rates.
 void CaptureBuilder::hold_to_what_can_be(const ifog_sample& sample) {
   bool at_end = false, beyond = false;
   for (std::uint32_t i = 0; i < description_.axes; ++i) {
@@ -112,7 +112,7 @@ void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outs
   if (!stamped) return;
   capture_.origin = times_.origin();
   capture_.time_s.push_back(stamped->since_s);
-  if (stamped->restarted) last_.valid_axes = 0;  // no difference of angles over it
+  if (stamped->restarted) last_.valid_axes = 0;  // no angle difference across this
   add_rates(sample, *stamped);
   for (std::uint32_t i = 0; i < description_.environments; ++i)
     capture_.channels[i].values.push_back(

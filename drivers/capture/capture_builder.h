@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the samples a driver delivers to a capture: rates in rad/s on a time axis in seconds.
+// Builds a capture from a driver's samples: rates in rad/s over a time axis in seconds.
 #pragma once
 
 #include <cstddef>
@@ -17,38 +17,37 @@
 
 namespace ifog {
 
-// Time: SampleTimes.
-// As in the daemon a rate that reaches the driver's full scale, or is one that no sensor measures, is NaN.
-// A delta angle becomes a rate over its own sample period, also behind a gap; an angle over the time since
-// the sample before, so the first sample has none. Axes the device marks invalid and environment values that
-// did not come with the sample, or are beyond what their unit can be (measurable.h), are NaN.
+// Times are from SampleTimes. As in the daemon, a rate at full scale or beyond the possible range becomes
+// NaN. A delta angle becomes a rate over its own sample period, also after a gap; an angle becomes a rate
+// over the time since the sample before, so the first one has none. NaN also for axes marked invalid and for
+// environment values that are not in the sample or impossible (measurable.h).
 class CaptureBuilder {
  public:
-  // outside: names of channels that did not come in the frames.
+  // outside: names of channels that are not in the frames.
   explicit CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside = {});
 
-  // Throws std::runtime_error with one line when time does not go on: the sample's number, both times, the
-  // cause. outside: values of those channels that came since the sample before, NaN where none did.
+  // Throws std::runtime_error with one line if time does not increase: the sample's number, both times, the
+  // cause. outside: new values of those channels since the sample before, NaN if none.
   void add(const ifog_sample& sample, std::span<const double> outside = {});
 
-  // As of SampleTimes.
+  // See SampleTimes.
   void discontinuity() { times_.discontinuity(); }
-  // The driver's options change with the next sample, which does not continue the samples before. Throws
+  // Changes the driver's options from the next sample on, which does not continue the samples before. Throws
   // std::runtime_error with one line if the columns would change.
   void go_on_as(const ifog_description& description);
   void allow_restarts() { times_.allow_restarts(); }
   void keep_stamps(std::optional<std::int64_t> zero_ns) { times_.keep_stamps(zero_ns); }
 
-  // The columns in the order of next_rows(): rates by axis, then channels.
+  // Columns in the order of next_rows(): rates by axis, then channels.
   [[nodiscard]] std::vector<std::string> names() const;
-  // The number of rows since the last call of next_rows(), which moves them out.
+  // Number of rows since the last call of next_rows(), which moves them out.
   [[nodiscard]] std::size_t waiting() const { return capture_.size(); }
   void next_rows(RowBlock& rows);
 
-  // Drops axes and channels that never had a value. Throws std::runtime_error if nothing is left.
+  // Drops axes and channels without a value. Throws std::runtime_error if nothing is left.
   Capture finish();
 
-  // What of the samples was missing, repeated, of two devices or invalid: one line for each count that is not 0.
+  // One line for each count that is not 0: samples missing, repeated, from two devices, invalid.
   [[nodiscard]] std::vector<std::string> remarks() const;
   [[nodiscard]] const SampleCounts& counts() const { return times_.counts(); }
 
@@ -65,18 +64,18 @@ class CaptureBuilder {
   std::vector<Measurable> channel_range_;
 };
 
-// What every command says about samples without a rate: at full scale, beyond what a sensor measures, and missing
-// by a clock that may have been set instead. One line for each count that is not 0.
+// Lines about samples without a rate, one for each count that is not 0: at full scale, beyond the possible
+// range, and missing by a clock that may have been set.
 std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible,
                                                std::size_t ambiguous);
 
-// Passes the rows of a builder to a sink, some thousand at a time.
+// Passes rows from a builder to a sink in blocks.
 class BuiltRows {
  public:
   BuiltRows(CaptureBuilder& builder, RowSink& sink) : builder_(builder), sink_(sink) {
     sink_.begin(builder.names());
   }
-  // After each sample.
+  // To be called after each sample.
   void added() {
     if (builder_.waiting() >= kRows) hand_on();
   }

@@ -44,7 +44,7 @@ double sample_rate_hz(const Capture& capture) {
 }
 
 double sample_rate_hz(double step_s) {
-  // Decimal times are not evenly spaced in binary: 1 / (0.015 − 0.010) is not quite 200.
+  // Decimal times are not exact in binary: 1 / (0.015 − 0.010) is not quite 200.
   return std::strtod(seven_digits(1.0 / step_s).c_str(), nullptr);
 }
 
@@ -114,7 +114,7 @@ ifog_sample CaptureEncoder::next_sample() {
   const bool first = rows_done() == 0;
   const double elapsed = first ? 1.0 / rate_hz_ : now - before_s_;
   const double periods = elapsed * rate_hz_;
-  // Below one and a half it is jitter of the recorded times, not a missing row.
+  // Less than 1.5 periods are jitter, not a missing row.
   const std::uint64_t steps = periods < 1.5 ? 1 : static_cast<std::uint64_t>(std::llround(periods));
   if (!first) {
     count_ += steps;
@@ -175,7 +175,7 @@ bool CaptureEncoder::encode_next(Out& out, void (DriverInstance::*encode)(const 
     if (sample.valid_axes == 0) {
       ++rows_.dropped;
     } else if (d.kind == IFOG_ANGLE && d.angle_wrap_rad > 0.0) {
-      // An unsigned angle runs from 0, not from minus half a turn.
+      // An unsigned angle starts at 0 instead of minus half a turn.
       for (double& value : sample.value)
         if (value < 0.0) value += d.angle_wrap_rad;
       try {

@@ -26,14 +26,14 @@ bool begins_as_hdf5(std::string_view head) {
   return false;
 }
 
-// What no other kind of recording begins with.
+// Kind by a signature that no other kind has.
 FileKind begun_as(std::string_view head) {
   if (head.starts_with("\xF1IFR")) return FileKind::flight;
   if (begins_as_hdf5(head) || begins_as_utf16(head)) return FileKind::capture;
-  // lcm-logger's own names end in a number. Each event begins with this word.
+  // First bytes of each LCM event; lcm-logger's file names end in a number.
   if (head.starts_with("\xED\xA1\xDA\x01")) return FileKind::lcm_log;
   if (head.starts_with("\xEF\xBB\xBF")) head.remove_prefix(3);
-  // Comments may stand before a capture's header and between a log's lines.
+  // Comments may precede a capture's header or a log's lines.
   while (head.starts_with('#') || head.starts_with('\n') || head.starts_with("\r\n"))
     head.remove_prefix(std::min(head.find('\n'), head.size() - 1) + 1);
   if (head.starts_with("time_s") || head.starts_with("\"time_s\"")) return FileKind::capture;
@@ -42,7 +42,7 @@ FileKind begun_as(std::string_view head) {
                                                                                           : FileKind::unknown;
 }
 
-// Whether a line of the beginning is a frame: the first may be cut off, or of another program.
+// True if a line near the beginning is a frame; the first line may be incomplete.
 bool has_candump_frame(std::string_view head) {
   CandumpEntry entry;
   while (!head.empty()) {
@@ -53,7 +53,7 @@ bool has_candump_frame(std::string_view head) {
   return false;
 }
 
-// Text has no control characters but the ends of its lines, tabs and what colours a terminal.
+// Text has no control characters except line ends, tabs and terminal colours.
 bool is_text(std::string_view head) {
   return std::all_of(head.begin(), head.end(), [](char c) {
     const auto byte = static_cast<unsigned char>(c);
@@ -61,7 +61,7 @@ bool is_text(std::string_view head) {
   });
 }
 
-// Two devices of one id would be mistaken for one.
+// Two devices with one id would be mistaken for one.
 void expect_one_device(CandumpBuses& buses, const DriverInstance& driver, const ifog_can_frame& frame,
                        std::string_view interface, const std::string& path) {
   if (!wants(driver.description(), frame)) return;
@@ -69,7 +69,7 @@ void expect_one_device(CandumpBuses& buses, const DriverInstance& driver, const 
     throw std::runtime_error(two_interfaces(path, other, std::string(interface)));
 }
 
-// Endings that any text and any bytes may have.
+// Ambiguous endings.
 bool says_nothing(std::string_view path) {
   const std::string_view name = unpacked_name(path);
   return has_ending(name, ".txt") || has_ending(name, ".dat");
@@ -82,7 +82,7 @@ bool is_hdf5(const std::string& path) {
   return has_ending(name, ".h5") || has_ending(name, ".hdf5");
 }
 
-// By its name, but for what begins as no file of that kind: a block of the user's own may stand before it.
+// By its name, unless the content contradicts; a user block may precede the signature.
 bool is_hdf5(const InputFile& file) {
   if (begins_as_hdf5(file.head())) return true;
   return is_hdf5(file.path()) && begun_as(file.head()) == FileKind::unknown;
@@ -111,7 +111,7 @@ FileKind file_kind(const std::string& path) {
 FileKind file_kind(const InputFile& file) {
   if (const FileKind begun = begun_as(file.head()); begun != FileKind::unknown) return begun;
   FileKind by_name = says_nothing(file.path()) ? FileKind::unknown : file_kind(file.path());
-  // Every program calls its log so.
+  // Many programs use this ending.
   if (by_name == FileKind::candump && !file.head().empty() && !has_candump_frame(file.head()))
     by_name = FileKind::unknown;
   return by_name == FileKind::unknown && !is_text(file.head()) ? FileKind::bytes : by_name;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A recording of what a device sent, put through its driver: raw bytes, or a candump log. Plain or gzip.
-// Flight recordings have a way of their own (drivers/flight).
+// Decodes a recording of a device's output by its driver: raw bytes or a candump log, plain or gzip. For
+// flight recordings see drivers/flight.
 #pragma once
 
 #include <cstddef>
@@ -20,47 +20,46 @@ enum class FileKind {
   capture,  // .csv; .h5, .hdf5
   candump,  // .log, .candump
   bytes,    // .bin, .kvh, .raw, .dat, .txt
-  lcm_log,  // begins with an LCM event, or is called .lcm
-  flight,   // begins as a flight recording, or is called .ifr
+  lcm_log,  // starts with an LCM event, or is called .lcm
+  flight,   // starts like a flight recording, or is called .ifr
   unknown
 };
 
-// By the ending (before .gz, in small letters or capitals); `unknown` where it does not tell. For a file that
-// is to be written.
+// Kind of an output file by its ending (before .gz, any case); `unknown` if ambiguous.
 FileKind file_kind(const std::string& path);
-// By the first bytes where they tell: a flight recording's, an LCM event, a line of candump, a header that
-// begins with time_s, HDF5's signature. Else by the ending, of which .txt and .dat say nothing. Else what is
-// no text is `bytes`; a text that is none of these is `unknown`.
+// Kind of an input file by its first bytes: flight recording, LCM event, candump line, header starting with
+// time_s, HDF5 signature. Otherwise by its ending, except .txt and .dat. Otherwise `bytes` if it is not text,
+// else `unknown`.
 FileKind file_kind(const InputFile& file);
 
-// Which of the two a capture is, by its ending and, of a file that is there, by its first bytes: HDF5 begins
-// so, or behind the 512 bytes to 2 KiB that another program (MATLAB) has put before it.
+// True if a capture is HDF5, by its ending or first bytes. The signature may follow a block of 512 bytes to 2
+// KiB of another program (MATLAB).
 bool is_hdf5(const std::string& path);
 bool is_hdf5(const InputFile& file);
 
 struct RecordingCounts {
   std::size_t samples = 0;
   ifog_driver_counters driver{};
-  std::uint64_t bytes_at_end = 0;  // a frame that the file ends within; also in bytes_skipped
+  std::uint64_t bytes_at_end = 0;  // bytes of an incomplete last frame; also in bytes_skipped
   CandumpLosses candump;
-  bool packed_ends_early = false;  // the gzip stream: what is there was read
+  bool packed_ends_early = false;  // the gzip stream is truncated; the available part was read
 };
 
-// "3 frames with a wrong checksum", … : one line for each counter that says something was lost.
+// One line per counter of losses: "3 frames with a wrong checksum", …
 std::vector<std::string> losses(const RecordingCounts& counts);
 
-// Whether a driver is to get this frame.
+// True if the driver needs this frame.
 bool wants(const ifog_description& description, const ifog_can_frame& frame);
-// The line for a candump log in which frames of one id come on two interfaces.
+// Message about a candump log with frames of one id on two interfaces.
 std::string two_interfaces(const std::string& path, std::string_view one, std::string_view other);
 
-// Feeds the whole recording to the driver, as `candump` if the driver takes CAN frames, else as bytes; of a
-// candump log only one interface's frames unless `interface` is empty. A log's frames arrive at their
-// recorded times; raw bytes have none and arrive at 0. Frames of one id that the driver wants, on two
-// interfaces, are refused. Throws std::runtime_error with one line (file, line, what was expected).
+// Feeds the recording to the driver, as candump if it takes CAN frames, else as bytes. interface: only its
+// frames of a candump log, "" for all. A log's frames have their recorded arrival times, raw bytes 0. Throws
+// std::runtime_error with one line (file, line, what was expected), also if frames of one wanted id come from
+// two interfaces.
 RecordingCounts decode_recording(InputFile& file, DriverInstance& driver, const std::string& interface,
                                  const std::function<void(const ifog_sample&)>& sink);
-// Ends a recording: bytes that the driver still waits to complete are counted.
+// Ends a recording and counts bytes of an incomplete frame.
 void finish_recording(DriverInstance& driver, RecordingCounts& counts);
 
 }  // namespace ifog

@@ -14,7 +14,7 @@
 namespace ifog {
 namespace {
 
-// An English month's first three letters.
+// First three letters of an English month.
 bool month_name(TextCursor& rest, int& value) {
   constexpr std::string_view kMonths = "JanFebMarAprMayJunJulAugSepOctNovDec";
   for (value = 1; value <= 12; ++value)
@@ -24,10 +24,10 @@ bool month_name(TextCursor& rest, int& value) {
 
 struct Moment {
   std::int64_t s = 0;
-  std::string_view fraction;  // digits behind the point
+  std::string_view fraction;  // decimal digits
 };
 
-// hh:mm, hh:mm:ss or hh:mm:ss.f…, of twelve hours with AM or PM behind it
+// hh:mm, hh:mm:ss or hh:mm:ss.f…, in twelve hours with AM or PM
 bool time_of_day(TextCursor& rest, bool seconds_needed, Moment& moment) {
   int hours = 0, minutes = 0, seconds = 0;
   if (!rest.number(1, 2, hours) || !rest.one_of(":_") || !rest.number(2, 2, minutes)) return false;
@@ -54,8 +54,7 @@ std::optional<std::chrono::sys_days> valid_day(int year, int month, int day) {
   return date.ok() ? std::optional(std::chrono::sys_days(date)) : std::nullopt;
 }
 
-// "2026-05-01" or "2026/05/01"; as spreadsheets write it "1.5.2026", the day first, and "5/1/2026"; as MATLAB does
-// "01-May-2026".
+// "2026-05-01", "2026/05/01", "1.5.2026" (day first), "5/1/2026", or "01-May-2026" (MATLAB).
 std::optional<std::chrono::sys_days> day_of(TextCursor& rest, DateOrder order) {
   int first = 0, second = 0, third = 0;
   if (!rest.number(1, 4, first)) return std::nullopt;
@@ -76,7 +75,7 @@ std::optional<std::chrono::sys_days> day_of(TextCursor& rest, DateOrder order) {
   return month_first;
 }
 
-// What local time is ahead of UTC by.
+// Offset of local time from UTC.
 std::optional<std::int64_t> offset_s(TextCursor& rest) {
   rest.one_of(" ");
   if (rest.done() || rest.one_of("Zz") || rest.text("UTC")) return 0;
@@ -108,16 +107,15 @@ std::optional<Moment> moment_of(std::string_view text, DateOrder order) {
 }  // namespace
 
 std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to, DateOrder order) {
-  constexpr std::size_t kWhole = 24;  // characters of any number of seconds
-  // No number has one of these near its beginning, or two points: of numbers, which most times are, nothing
-  // more is asked.
+  constexpr std::size_t kWhole = 24;  // characters
+  // Fast rejection of plain numbers: none has one of these near its beginning, or two points.
   const std::string_view begin = text.substr(0, 6);
   if (text.size() < 5 ||
       (begin.find_first_of(":/-_", 1) == std::string_view::npos && begin.find('.') == begin.rfind('.')))
     return {};
   auto moment = moment_of(text, order);
   if (!moment || moment->fraction.size() > to.size() - kWhole) return {};
-  // Before 1970 the digits behind the point count on, and those of a negative number count back.
+  // Before 1970 decimal digits would have to count backwards.
   if (moment->s < 0 && !moment->fraction.empty()) return {};
   char* end = std::to_chars(to.data(), to.data() + kWhole, moment->s).ptr;
   if (!moment->fraction.empty()) {

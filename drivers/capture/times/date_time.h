@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times that loggers write as dates (ISO 8601, RFC 3339), as the decimal digits of a number of seconds: what
-// reads numbers reads them then, with every digit that stood there.
+// Converts dates (ISO 8601, RFC 3339, …) to decimal digits of seconds, which are parsed as numbers without
+// losing digits.
 #pragma once
 
 #include <array>
@@ -13,15 +13,14 @@ namespace ifog {
 
 inline constexpr std::size_t kLongestDate = 64;
 
-// Of "5/1/2026". either: the month first, where that is a date.
+// Of "5/1/2026". either: month first, if that is a date.
 enum class DateOrder { either, month_first, day_first };
 
-// The seconds since 1970 of "2026-05-01T12:00:00.25Z": date and time of day, or a day alone; "/" or "_" for
-// "-", the year last as in "1.5.2026" (the day first) and "5/1/2026" (in that order), a
-// month's name as in "01-May-2026", a space or "_" for "T", "_" for ":", AM or PM, seconds missing, a comma for
-// the point, an offset of "+02:00", "+0200", "+02", "UTC"; without one it is UTC. Of a time of day alone,
-// "12:00:00.25", those since midnight. A leap second is the second behind it. `to` takes the digits; the text is
-// empty for what is no such date.
+// Seconds since 1970 of "2026-05-01T12:00:00.25Z" as digits in `to`; empty if the text is no date. Accepted:
+// date and time or date alone; "/" or "_" for "-"; the year last, as in "1.5.2026" (day first) and "5/1/2026"
+// (by `order`); month names as in "01-May-2026"; a space or "_" for "T"; "_" for ":"; AM or PM; missing
+// seconds; a decimal comma; offsets "+02:00", "+0200", "+02", "UTC" (default UTC). A time of day alone gives
+// seconds since midnight. A leap second counts as the next second.
 std::string_view date_in_digits(std::string_view text, std::span<char, kLongestDate> to,
                                 DateOrder order = DateOrder::either);
 
@@ -30,10 +29,10 @@ std::string_view date_in_digits(std::string_view text, std::span<char, kLongestD
   return !date_in_digits(text, digits).empty();
 }
 
-// The finite number that all of a text is; nothing for any other text.
+// The number if the whole text is a finite number; else nullopt.
 [[nodiscard]] std::optional<double> finite_number(std::string_view text);
 
-// What a cell says, a decimal comma as a point.
+// Cell with a decimal point instead of a comma.
 class PointDigits {
  public:
   PointDigits(std::string_view cell, bool decimal_comma);
@@ -46,7 +45,7 @@ class PointDigits {
   std::string_view digits_;
 };
 
-// A cell of a time: the digits of a date, or of a number.
+// Cell of a time: digits of a date or of a number.
 class TimeDigits : public PointDigits {
  public:
   TimeDigits(std::string_view cell, bool decimal_comma, DateOrder order = DateOrder::either);

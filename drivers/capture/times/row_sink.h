@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture in blocks of rows: every reader passes them to a sink, so that no command has to hold the whole.
+// A capture in blocks of rows: readers pass them to a sink, so no command needs the whole capture in memory.
 #pragma once
 
 #include <cstddef>
@@ -14,27 +14,27 @@
 
 namespace ifog {
 
-// In a column: no value in this row.
+// Value of a column without data in a row.
 inline constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-// Of at least one value.
+// Needs at least one value.
 [[nodiscard]] double median_value(std::vector<double> values);
-// Of the steps between times; kMissing where there is none.
+// Median step of times; kMissing without steps.
 [[nodiscard]] double median_step_s(const std::vector<double>& time_s);
 
-// One faulty row in so many is left to a serial line, a full disk or a clock that was set; more mean another table.
+// One faulty row in so many may come from a serial line, a full disk or a set clock; more mean a wrong table.
 inline constexpr std::size_t kRowsAFault = 100;
 
-// Cells, rows or lines of which one thing is wrong.
+// Cells, rows or lines with the same fault.
 struct Fault {
   std::size_t count = 0;
-  std::size_t line = 0;  // of the first
-  std::string first;     // the cell as it stands there, or what is wrong
+  std::size_t line = 0;  // of the first one
+  std::string first;     // content of the cell, or the error
 
   void add(std::size_t at, std::string what) {
     if (count++ == 0) line = at, first = std::move(what);
   }
-  // Those of a piece that `lines` others stand before.
+  // Adds faults of a piece that starts after `lines` lines.
   void append(const Fault& piece, std::size_t lines) {
     if (count == 0) line = lines + piece.line, first = piece.first;
     count += piece.count;
@@ -47,57 +47,57 @@ struct Fault {
   }
 };
 
-// Rows that follow one another, by column.
+// Consecutive rows, by column.
 struct RowBlock {
-  std::vector<double> time_s;  // strictly increasing, within and from block to block; never NaN
-  // In the order of the names, each as long as time_s; or empty, where the sink does not want it.
+  std::vector<double> time_s;  // strictly increasing, also between blocks; never NaN
+  // In the order of the names, each as long as time_s, or empty if the sink does not want it.
   std::vector<std::vector<double>> columns;
-  TimeOrigin origin{};               // what time_s is counted from, the same in all blocks
-  std::vector<std::size_t> lines{};  // of each row in its text; empty where rows have none
+  TimeOrigin origin{};               // origin of time_s, equal in all blocks
+  std::vector<std::size_t> lines{};  // of each row in its text; empty without lines
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
-  // Appends the rows that follow. `rows` has unspecified values afterwards.
+  // Appends rows; `rows` has unspecified values afterwards.
   void append(RowBlock& rows);
-  // Puts a row to where an earlier one was.
+  // Moves a row to an earlier index.
   void move_row(std::size_t from, std::size_t to);
-  // Leaves so many.
   void keep_first(std::size_t rows);
-  // Moves the rows from there on into `to`, in place of what it holds.
+  // Moves the rows from `from` on into `to`, replacing its content.
   void split_off(std::size_t from, RowBlock& to);
 };
 
 class RowSink {
  public:
   virtual ~RowSink() = default;
-  // Once, before the first rows: the columns without the time, as in a capture's header (rate_x_radps, …).
+  // Called once before the first rows: the columns without the time, as in a capture's header (rate_x_radps,
+  // …).
   virtual void begin(const std::vector<std::string>& names) = 0;
-  // After that: whether the sink needs the column. A column that it does not need is checked, too, and may be
+  // Called after begin(): true if the sink needs the column. Other columns are also checked, and may be
   // empty.
   [[nodiscard]] virtual bool wants(std::size_t column) const {
     (void)column;
     return true;
   }
-  // The next rows, at least one. The sink may move or change them.
+  // Takes the next rows, at least one; may move or change them.
   virtual void take(RowBlock& rows) = 0;
 };
 
-// What a reader reports besides the rows. Complete after the last row.
+// Reports of a reader besides the rows; complete after the last row.
 struct RowNotes {
-  // Rows from this one on stand on lines that follow one another.
+  // Rows from `row` on are on consecutive lines from `line` on.
   struct Lines {
     std::size_t row, line;
   };
 
-  std::string comments;              // without the '#', each with a line's end behind it
-  std::size_t header_line = 0;       // 0: not read from a text
-  std::vector<Lines> lines;          // empty: rows have no lines. Rows of HDF5 are counted from 1 instead
-  std::vector<std::string> notices;  // of the reading: what may be meant otherwise
-  std::vector<std::string> faults;   // cells read as missing, one line a column
-  std::optional<double> since_power_up_s;  // of the sensor at the first row, where that is known
+  std::string comments;                    // without the '#', each with a line end
+  std::size_t header_line = 0;             // 0: not from a text
+  std::vector<Lines> lines;                // empty: rows have no lines; rows of HDF5 count from 1
+  std::vector<std::string> notices;        // about ambiguous content
+  std::vector<std::string> faults;         // cells read as missing, one line per column
+  std::optional<double> since_power_up_s;  // of the sensor at the first row, if known
 
-  // The line of a data row (counted from 0), for messages about its values; 0 where rows have none.
+  // Line of a data row (counted from 0), for messages; 0 without lines.
   [[nodiscard]] std::size_t line_of_row(std::size_t row) const;
-  // Notes the lines of the rows that follow `rows` others.
+  // Adds the lines of a block that starts at row `rows`.
   void add_lines(std::size_t rows, const RowBlock& block);
 };
 

@@ -12,14 +12,13 @@
 namespace ifog {
 namespace {
 
-constexpr double kNsPerSecondExact =
-    1e9;  // divided by, so that the result is the double nearest to the decimal time
+constexpr double kNsPerSecondExact = 1e9;  // division gives the double nearest to the decimal time
 
 Timeline timeline_of(const ifog_description& description) {
   return {description.sequence_modulus, description.nominal_rate_hz};
 }
 
-// Whatever a device says: what has no room wraps, and is a clock that jumps.
+// Wraps on overflow, which then looks like a clock jump.
 std::int64_t ns_since(const TimeOrigin& origin, std::int64_t time_ns) {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(time_ns) -
                                    static_cast<std::uint64_t>(origin.s) * 1'000'000'000U -
@@ -71,7 +70,7 @@ void SampleTimes::count_from(const ifog_sample& sample) {
       arrivals_.first_ns -= since_ns;
       return;
     }
-    // As samples where it is a whole number of them: then no time is a sum of two that were rounded.
+    // In whole samples if possible, so that no time is a sum of two rounded ones.
     const double samples = static_cast<double>(since_ns) / kNsPerSecondExact * description_.nominal_rate_hz;
     if (samples >= 0.0 && std::abs(samples - std::round(samples)) < 1e-6)
       count_ = static_cast<std::uint64_t>(std::llround(samples));
@@ -97,7 +96,7 @@ double SampleTimes::seconds(const ifog_sample& sample) const {
   }
 }
 
-// The sample's clock is set so that it comes as much later than the one before as it arrived later.
+// Sets the offset of the sample's clock by its arrival time relative to the previous one.
 void SampleTimes::begin_again(const ifog_sample& sample) {
   broken_ = false;
   const double later_s = static_cast<double>(sample.arrival_ns - arrivals_.last_ns) * 1e-9;
@@ -107,14 +106,14 @@ void SampleTimes::begin_again(const ifog_sample& sample) {
   offset_s_ += last_s_ + std::max(known ? later_s : 0.0, least_s) - seconds(sample);
 }
 
-// The time of the next sample of a device with neither counter nor clock, by when it arrived. What comes in
-// one delivery was measured one after the other. How it comes shows in the first few samples.
+// Time of the next sample of a device with neither counter nor clock, from arrivals. Samples of one delivery
+// were measured one after the other. The first few samples show which case it is.
 double SampleTimes::spread(const ifog_sample& sample, const Timeline::Step& step, double arrived_s) {
-  constexpr double kFollows = 0.02;             // of what a time is beside its arrival, a sample
+  constexpr double kFollows = 0.02;             // share of the distance to the arrival per sample
   constexpr double kLeast = 0.5, kMost = 1.25;  // periods between two samples
-  constexpr double kEven = 0.85;                // at least, where each comes as it was measured
+  constexpr double kEven = 0.85;                // smallest step if samples arrive as measured
   constexpr std::size_t kShows = 16;            // samples
-  constexpr double kResolution_s = 1e-9;        // of times of arrival
+  constexpr double kResolution_s = 1e-9;        // of arrival times
   const double period_s = 1.0 / description_.nominal_rate_hz;
   const double next_s = last_s_ + period_s, late_s = arrived_s - next_s;
   const double elapsed_s = static_cast<double>(sample.arrival_ns - arrivals_.last_ns) / kNsPerSecondExact;
@@ -122,8 +121,8 @@ double SampleTimes::spread(const ifog_sample& sample, const Timeline::Step& step
   arrivals_.bunched = arrivals_.bunched || elapsed_s < kEven * period_s || sample.at_once > 1 || delayed;
   if (delayed) return next_s;
   if (step.gap || step.clock_moved || std::abs(late_s) < kResolution_s) return arrived_s;
-  // Each by itself: its arrival, without a leap to where the first ones were behind it, or before it where
-  // more come than the rate says.
+  // Samples that arrive individually get their arrival time, without a jump where the first ones were late,
+  // or early because the rate is higher than nominal.
   if (!arrivals_.bunched && accepted_ >= kShows)
     return std::clamp(arrived_s, last_s_ + elapsed_s / kMost,
                       last_s_ + kMost * std::max(period_s, elapsed_s));
@@ -167,8 +166,8 @@ std::optional<SampleTimes::Stamped> SampleTimes::next(const ifog_sample& sample)
   if (restarted) begin_again(sample);
   broken_ = false;
   if (step.clock_set) ++counts_.clock_sets;
-  // Where the device's clock has stood still while it measured, by the sum of its steps; where it was set
-  // while the device counted on, by the counter.
+  // If the device's clock stood still while it measured: the sum of its steps. If it was set while the device
+  // continued to count: the counter.
   if (!first && !restarted && clock_ == Clock::device && (timeline_.clock_stood() || step.by_count))
     offset_s_ += last_s_ + step.dt_s - seconds(sample);
   double now = seconds(sample);

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a recording's samples were taken, on one axis of seconds: the times that every command prints for them
-// and that --from and --to mean.
+// Sample times of a recording in seconds: as printed by all commands and as used by --from and --to.
 //
-// The first of these that the samples have:
-//   - the device's clock, over its wraps, and over where it was set while the device counted on;
-//   - the sequence counter, unwrapped, over the nominal rate, from 0;
-//   - the arrival times, from 0. Where several samples arrive at once or arrivals scatter, samples are spaced
-//     evenly at the nominal rate, which slowly follows the arrivals; delayed samples are spaced evenly, too;
-//   - the number of the sample over the nominal rate, from 0.
-// Where a log's own times are kept, they are what the samples are known by: arrival times stand as they are,
-// and a counter counts on from the first of them.
+// The first available one of:
+//   - the device's clock, unwrapped, also across a change of the clock if the counter continues;
+//   - the sequence counter, unwrapped, / nominal rate, from 0;
+//   - the arrival times, from 0. If samples arrive together or irregularly they are spaced at the nominal
+//   rate, which slowly follows the arrivals; delayed samples are spaced evenly, too;
+//   - the number of the sample / nominal rate, from 0.
+// If a log's own times are kept, arrival times are used unchanged, and a counter continues from the first
+// one.
 #pragma once
 
 #include <cstddef>
@@ -22,10 +21,9 @@
 
 namespace ifog {
 
-// What the times say of the samples.
 struct SampleCounts {
-  std::size_t missing = 0;     // were not there by the device's counter, or by its clock where it has none
-  std::size_t ambiguous = 0;   // of these: the clock may have been set instead, and nothing decides
+  std::size_t missing = 0;     // missing by the device's counter, or by its clock without a counter
+  std::size_t ambiguous = 0;   // of these: ambiguous, because the clock may have been set instead
   std::size_t restarts = 0;    // the counter or the clock jumped back without a discontinuity
   std::size_t clock_sets = 0;  // the clock was set while the counter, which then gives the time, continued
   std::size_t repeated = 0;    // dropped as duplicates or because a later one had arrived
@@ -38,28 +36,28 @@ class SampleTimes {
 
   struct Stamped {
     double since_s = 0.0;    // since origin()
-    double elapsed_s = 0.0;  // since the sample before; NaN of the first
-    double period_s = 0.0;   // of the sample itself, also behind a gap
+    double elapsed_s = 0.0;  // since the previous sample; NaN for the first
+    double period_s = 0.0;   // of the sample itself, also after a gap
     bool restarted = false;  // the device or the recording restarted before this sample
   };
-  // nullopt: a duplicate, or overtaken by a later one. Throws std::runtime_error with one line when time
-  // does not go on (the sample's number, both times, the cause), or where there is none.
+  // nullopt: a duplicate, or overtaken by a later one. Throws std::runtime_error with one line if time does
+  // not increase (the sample's number, both times, the cause), or if there is none.
   std::optional<Stamped> next(const ifog_sample& sample);
 
-  // The next sample does not continue those before: its clock and counter may have restarted. The arrival
-  // times, which must be known, say how much later it is.
+  // The next sample does not continue those before; clock and counter may have restarted. Arrival times,
+  // which must be known, give the time between.
   void discontinuity() { broken_ = true; }
-  // The driver's options change with the next sample. If they change its clocks, it does not continue the
+  // Changes the driver's options from the next sample on. If its clocks change, it does not continue the
   // samples before.
   void go_on_as(const ifog_description& description);
-  // From here on a clock that jumps back means that the device restarted, even if that clock has no rollover.
-  // Without this call it is refused, because a wrong driver looks alike.
+  // From now on a clock that jumps back means that the device restarted, even without rollover. By default it
+  // is an error, because a wrong driver looks similar.
   void allow_restarts() { restarts_ = true; }
-  // The arrival times are the stamps of a log whose lines all have one, that of a stamp of zero being
-  // zero_ns. Nothing: they have none. Before the first sample.
+  // The arrival times are stamps of a log in which every line has one; zero_ns: that of a stamp of zero.
+  // nullopt: no stamps. To be called before the first sample.
   void keep_stamps(std::optional<std::int64_t> zero_ns) { arrivals_.zero_of_stamps_ns = zero_ns; }
 
-  // What times are counted from; known from the first sample on.
+  // Origin of the times; known from the first sample on.
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
   [[nodiscard]] const SampleCounts& counts() const { return counts_; }
 
@@ -77,12 +75,12 @@ class SampleTimes {
   Clock clock_ = Clock::undecided;
   Timeline timeline_;
   TimeOrigin origin_;
-  TimeOrigin device_from_;      // of the device's clock, that its times are counted from
-  std::int64_t device_ns_ = 0;  // the device's clock at the sample at hand, over its wraps
-  std::uint64_t count_ = 0;     // the unwrapped counter, or the number of the sample
+  TimeOrigin device_from_;      // origin of the device's clock
+  std::int64_t device_ns_ = 0;  // device's clock at the present sample, unwrapped
+  std::uint64_t count_ = 0;     // unwrapped counter, or number of the sample
   struct Arrivals {
     std::int64_t first_ns = 0, last_ns = 0;
-    bool bunched = false;  // several samples have one time of arrival, or times that scatter
+    bool bunched = false;  // several samples have one arrival time, or arrivals scatter
     std::optional<std::int64_t> zero_of_stamps_ns;
   } arrivals_;
   std::size_t accepted_ = 0;

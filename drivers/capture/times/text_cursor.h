@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a text from its left, a token at a time. A function that returns false or nothing has moved no further than
-// what it says.
+// Parses a text from the left, token by token. A function that fails does not advance, unless it says so.
 #pragma once
 
 #include <algorithm>
@@ -26,11 +25,11 @@ class TextCursor {
     return !rest_.empty() && characters.find(rest_.front()) != std::string_view::npos &&
            literal(rest_.front());
   }
-  // Blanks, at least one.
+  // At least one blank.
   bool blanks() { return !up_to(rest_.find_first_not_of(" \t")).empty(); }
-  // What is before the next blank.
+  // Text before the next blank.
   std::string_view word() { return up_to(rest_.find_first_of(" \t")); }
-  // What is before that character; nothing if there is none.
+  // Text before the character; empty if it does not occur.
   std::string_view until(char c) {
     const std::size_t end = rest_.find(c);
     return end == std::string_view::npos ? std::string_view() : up_to(end);
@@ -38,7 +37,7 @@ class TextCursor {
   std::string_view digits(std::size_t most = std::string_view::npos) {
     return up_to(std::min(rest_.find_first_not_of("0123456789"), most));
   }
-  // A decimal number of `fewest` to `most` digits; false for fewer, and for one that has no room.
+  // A decimal number of `fewest` to `most` digits; false for fewer digits or overflow.
   template <typename Number>
   bool number(std::size_t fewest, std::size_t most, Number& value) {
     const std::string_view found = digits(most);

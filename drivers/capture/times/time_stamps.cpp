@@ -9,10 +9,10 @@
 namespace ifog {
 namespace {
 
-constexpr int kExactPower = 15;  // ten to it, and a whole number below 2^53, are doubles
+constexpr int kExactPower = 15;  // powers of ten up to this, and integers below 2^53, are exact doubles
 constexpr double kWholeDoubles = 9007199254740992.0;
 constexpr std::int64_t kNsPerSecond = 1'000'000'000;
-constexpr std::int64_t kMostWhole = 4'600'000'000'000'000'000;  // the differences of two are 64 bits
+constexpr std::int64_t kMostWhole = 4'600'000'000'000'000'000;  // differences of two fit into 64 bits
 
 constexpr std::array<std::int64_t, 19> kTen = [] {
   std::array<std::int64_t, 19> powers{1};
@@ -27,7 +27,7 @@ struct Plain {
   int decimals = 0;
 };
 
-// The digits that follow, up to `most`; how many there were.
+// Reads up to `most` digits; returns their number.
 int take_digits(const char*& at, const char* end, int most, std::int64_t& value) {
   int digits = 0;
   for (; at != end && *at >= '0' && *at <= '9' && digits < most; ++at, ++digits)
@@ -54,19 +54,19 @@ std::int64_t floor_to(std::int64_t value, std::int64_t unit) {
   return value - over - (over < 0 ? unit : 0);
 }
 
-// A whole number of units in a second or of seconds in a unit; 0 where it is none.
+// The value if it is an integer, else 0.
 std::int64_t whole(double value) {
   const double nearest = std::round(value);
   return nearest >= 1.0 && std::abs(value / nearest - 1.0) < 1e-12 ? static_cast<std::int64_t>(nearest) : 0;
 }
 
-// The digits behind the point of one less what they say: of 0.25 those of 0.75. Not of nothing.
+// Decimal digits of one minus the fraction: 0.75 for 0.25. Not for zero.
 void complement(std::string& digits) {
   for (char& digit : digits) digit = static_cast<char>('0' + '9' - digit);
   digits.back() = static_cast<char>(digits.back() + 1);
 }
 
-// To digits behind the point; whether that makes one before it. No zeros stay at their end.
+// Adds ns to decimal digits, without trailing zeros; true on carry.
 bool add_ns(std::string& digits, std::int64_t ns) {
   constexpr std::size_t kOfNs = 9;
   if (ns == 0) return false;
@@ -80,8 +80,7 @@ bool add_ns(std::string& digits, std::int64_t ns) {
   return carry > 0;
 }
 
-// Days are counted by MATLAB from the year 0 and by spreadsheets from 1899-12-30; 1970-01-01 by each. As days
-// since 1970 the first of these would be in 3900 and the second, which is the year 2000, in 2070.
+// Day number of 1970-01-01: MATLAB counts from the year 0, spreadsheets from 1899-12-30, others from 1970.
 std::int64_t day_of_1970(double unit_s, std::int64_t day) {
   if (unit_s != 86'400.0) return 0;
   return day >= 700'000 ? 719'529 : day >= 36'526 ? 25'569 : 0;
@@ -110,11 +109,12 @@ TimeStamps::TimeStamps(std::string_view first, double unit_s)
   Plain time;
   if (!read_plain(first, time) || std::abs(static_cast<double>(time.whole)) * unit_s < kFineTimes_s) return;
   const std::int64_t below = time.whole - (time.fraction < 0 ? 1 : 0);
-  const auto part = std::find(kTen.begin(), kTen.begin() + 10, units_a_second_);  // of a second: a unit
+  // Units per second as a power of ten
+  const auto part = std::find(kTen.begin(), kTen.begin() + 10, units_a_second_);
   if (part != kTen.begin() + 10 && *part > 0) {
     const std::int64_t of_second = *part, ns_a_unit = kNsPerSecond / of_second;
     whole_ = below;
-    decimals_ = 9 - static_cast<int>(part - kTen.begin());  // of a ns in this unit
+    decimals_ = 9 - static_cast<int>(part - kTen.begin());  // of one ns in this unit
     const std::int64_t fraction = time.fraction < 0 ? ten_to(time.decimals) + time.fraction : time.fraction;
     fraction_ = time.decimals > decimals_ ? fraction / ten_to(time.decimals - decimals_)
                                           : fraction * ten_to(decimals_ - time.decimals);
@@ -128,7 +128,7 @@ TimeStamps::TimeStamps(std::string_view first, double unit_s)
   }
 }
 
-// One division, so that what is 0.01 s in every unit comes out so.
+// A single division, so that 0.01 s is the same in every unit.
 double TimeStamps::seconds(double value, double parts_of_unit) const {
   return units_a_second_ > 0 ? value / (parts_of_unit * static_cast<double>(units_a_second_))
                              : value / parts_of_unit * unit_s_;
@@ -147,7 +147,7 @@ bool TimeStamps::since(std::string_view text, double& value) const {
   const std::int64_t fraction =
       time.fraction * ten_to(behind - time.decimals) - fraction_ * ten_to(behind - decimals_);
   const auto ten = static_cast<double>(ten_to(behind));
-  // Then the one division is all that rounds.
+  // Then only one division rounds.
   if (behind <= kExactPower && std::abs(static_cast<double>(since)) < kWholeDoubles / ten - 2.0) {
     value = seconds(static_cast<double>(since * ten_to(behind) + fraction), ten);
     return true;
@@ -160,10 +160,10 @@ bool TimeStamps::since(std::string_view text, double& value) const {
 void append_time(std::string& out, const TimeOrigin& origin, double since_s) {
   const double below_s = std::floor(since_s);
   std::array<char, 400> text{};
-  // The digits of a number that is not negative, and of one that is turned round.
+  // Digits of the absolute value.
   const auto [end, error] =
       std::to_chars(text.data(), text.data() + text.size(), std::abs(since_s), std::chars_format::fixed);
-  (void)error;  // 400 characters hold any double
+  (void)error;  // 400 characters suffice for any double
   char* const point = std::find(text.data(), end, '.');
   std::string fraction(point == end ? end : point + 1, end);
   if (since_s < 0.0 && !fraction.empty()) complement(fraction);
