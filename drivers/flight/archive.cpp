@@ -18,12 +18,12 @@ namespace ifog {
 namespace {
 
 constexpr std::string_view kEnding = ".ifr", kOpen = ".open";
-// A computer without a clock of its own starts in 1970: what it wrote then is of unknown age.
+// A computer without a battery-backed clock starts in 1970: files written then have an unknown age.
 constexpr std::int64_t kClockIsSet_ns = 1'577'836'800LL * 1'000'000'000;  // 2020-01-01
 
 std::uint64_t random_number() {
   std::uint64_t out = 0;
-  // Without it the checksums still hold against all but a recording within a recording.
+  // Without it the checksums do not detect a recording within a recording.
   if (getrandom(&out, sizeof out, GRND_NONBLOCK) != sizeof out) out = 0;
   return out;
 }
@@ -40,11 +40,10 @@ std::string file_name(std::uint64_t number, std::int64_t wall_ns) {
   return name.data();
 }
 
-// More files than any recorder makes: a name with a greater number is somebody else's, and the next one would
-// not follow it.
+// Larger numbers are not from a recorder.
 constexpr std::uint64_t kMostFiles = 1'000'000'000'000;
 
-// The number of a name that this made; 0: it is of others.
+// Number in a file name of this class; 0 for others.
 std::uint64_t number_of(std::string_view name) {
   if (!name.ends_with(kEnding)) return 0;
   std::uint64_t number = 0;
@@ -83,15 +82,15 @@ std::string FlightArchive::complaint() const {
 }
 
 void FlightArchive::set_header(FlightHeader header) {
-  // The file in work keeps its own chain of checksums until it ends.
+  // The present file keeps its checksums until it ends.
   next_header_ = std::move(header);
 }
 
-// What is there already, and what a recorder that was killed left open: that is closed as it is.
+// Reads the folder and closes files left open by a killed recorder.
 int FlightArchive::look(std::int64_t now_ns, std::int64_t wall_ns) {
   std::vector<FlightFolder::File> files;
   if (const int error = folder_->list(files); error != 0) return error;
-  // What is known is not judged by the wall clock again, which may have been set meanwhile.
+  // Known ages are kept, as the wall clock may have been set.
   std::map<std::string, std::int64_t> known;
   for (const Kept& file : kept_.files) known[file.name] = file.last_ns;
   if (!file_.name.empty()) known[file_.name] = now_ns_;
@@ -125,7 +124,7 @@ int FlightArchive::write(BlockType type, std::span<const std::uint8_t> content) 
   std::vector<std::uint8_t> block;
   const BlockPlace place = type == BlockType::header ? BlockPlace{} : BlockPlace{header_.file, file_.bytes};
   append_block(block, type, place, content, deflater_);
-  // Room is made before it is used: the limit is never exceeded.
+  // Space is freed before it is used, so the limit is never exceeded.
   while (!kept_.files.empty() && kept_.bytes + file_.bytes + block.size() > limits_.bytes)
     if (const int error = remove_oldest(); error != 0) return error;
   const int error = folder_->append(block);
@@ -159,7 +158,7 @@ int FlightArchive::begin_file(std::int64_t now_ns, std::int64_t wall_ns) {
   int error = write(BlockType::header, header_payload(header_));
   if (error == 0 && !state.empty()) error = write(BlockType::data, state);
   if (error != 0) {
-    // Nothing of use is in it, and its number is free again.
+    // It contains nothing useful, and its number is free again.
     folder_->leave();
     folder_->remove(file_.name + std::string(kOpen));
     file_.bytes = 0;
@@ -178,7 +177,7 @@ int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_
                                              run_goes_on ? 1U : 0U};
   std::array<std::uint8_t, sizeof summary> bytes{};
   std::memcpy(bytes.data(), summary.data(), sizeof summary);
-  // Without it the file is as one that was being written when its writer was killed: whole to its last block.
+  // On an error the file is like that of a killed writer: complete up to its last block.
   int error = write(BlockType::end, bytes);
   if (error == ENOENT) {
     forget_file();
@@ -187,13 +186,13 @@ int FlightArchive::end_file(std::int64_t now_ns, std::int64_t wall_ns, bool run_
   if (const int finished = folder_->finish(file_.name); error == 0) error = finished;
   file_.open = false;
   file_.bytes = 0;
-  // Files may have been removed or put back meanwhile; what could not be renamed is adopted.
+  // Files may have been removed or added meanwhile; one that could not be renamed is adopted.
   kept_.known = false;
   if (const int looked = look(now_ns, wall_ns); error == 0) error = looked;
   return error;
 }
 
-// The open file has been removed, and its contents with it.
+// The open file was removed with its contents.
 void FlightArchive::forget_file() {
   folder_->leave();
   lost_.with_files += std::exchange(file_.load, {});
@@ -201,7 +200,7 @@ void FlightArchive::forget_file() {
   file_.bytes = 0;
 }
 
-// The waiting entries that are state are what the next file begins with.
+// The next file starts with the waiting state entries.
 void FlightArchive::remember_state() {
   std::span<const std::uint8_t> rest = waiting_.bytes;
   FlightEntry entry;
@@ -225,7 +224,7 @@ int FlightArchive::write_waiting(std::int64_t now_ns, std::int64_t wall_ns) {
     if (error == 0) error = write(BlockType::data, waiting_.bytes);
   }
   if (error == EBADF)
-    file_.open = kept_.known = false;  // a half-written block could not be removed: another file
+    file_.open = kept_.known = false;  // an incomplete block could not be removed: use another file
   if (error != 0) return error;
   file_.entries += waiting_.entries;
   if (header_.carries != FlightHeader::Carries::messages) remember_state();
@@ -245,11 +244,11 @@ int FlightArchive::remove_oldest() {
   return 0;
 }
 
-// Files, before anything is written; 0 or the disk's answer.
+// Prepares files before a write; returns 0 or the disk's error.
 int FlightArchive::tidy() {
   if (!kept_.known)
     if (const int error = look(now_ns_, wall_ns_); error != 0) return error;
-  // With what the next one begins with; of a sensor that has fallen silent without.
+  // Starts the next file, except for a sensor that is silent.
   const bool silent = now_ns_ - file_.since_ns >= limits_.file_ns + limits_.flush_ns;
   if (file_is_full(now_ns_) && (!waiting_.bytes.empty() || silent))
     if (const int error = end_file(now_ns_, wall_ns_, !waiting_.bytes.empty()); error != 0 && error != ENOENT)
@@ -260,7 +259,7 @@ int FlightArchive::tidy() {
 }
 
 void FlightArchive::turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush) {
-  // A disk that refused is asked once a second.
+  // After an error the disk is tried once a second.
   if (error_ != 0 && !flush && now_ns - now_ns_ < limits_.flush_ns) return;
   now_ns_ = now_ns;
   wall_ns_ = wall_ns;
@@ -275,7 +274,7 @@ void FlightArchive::turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush) 
 
 std::uint64_t FlightArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
   turn(now_ns, wall_ns, true);
-  // A full disk may still accept the end, which is small: the error is that of what was not accepted.
+  // A full disk may still have space for the small end; the error is that of the data.
   if (file_.open)
     if (const int ended = end_file(now_ns, wall_ns, false); waiting_.entries == 0) error_ = ended;
   waiting_.bytes.clear();

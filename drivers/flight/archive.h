@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps recordings in a folder: entries become blocks, blocks files, and the oldest files go when there are
-// too many. Whoever calls it waits for the disk, so no real-time thread does.
+// Stores recordings in a folder: entries become blocks, blocks become files, and the oldest files are removed
+// if there are too many. Calls wait for the disk, so real-time threads must not use it.
 //
-// Files are called NUMBER-UTC.ifr, with .open behind it while they are written; their order is that of the
-// numbers, whatever the wall clock did. A disk that takes nothing loses nothing here: what has been added
-// waits, and full() says that nothing more can be added until it has gone.
+// Files are called NUMBER-UTC.ifr, with .open appended while they are written; their order is that of the
+// numbers, regardless of the wall clock. If the disk rejects writes nothing is lost at once: added data wait,
+// and full() means that nothing more may be added.
 #pragma once
 
 #include <array>
@@ -28,12 +28,12 @@ struct ArchiveLimits {
   std::int64_t age_ns = 30LL * 86'400 * 1'000'000'000;
   std::uint64_t file_bytes = 16'000'000;
   std::int64_t file_ns = 3'600LL * 1'000'000'000;
-  // Data is written at the first turn that is so long after the turn that found it: with turns a quarter of a
-  // second apart, three quarters of a second after its arrival. A killed process loses a second at most.
+  // Delay of writes: data are written at the first turn() this long after the turn that found them. With four
+  // turns a second that is 0.75 s after arrival, so a killed process loses at most a second.
   std::int64_t flush_ns = 500'000'000;
 };
 
-// What was received and will be in no recording.
+// Received data that are in no recording.
 struct FlightLoss {
   std::uint64_t deliveries = 0, bytes = 0;
 
@@ -46,26 +46,24 @@ struct FlightLoss {
 
 class FlightArchive {
  public:
-  // now_ns throughout: a clock that nobody sets. wall_ns: for names and the age of files that were there.
+  // now_ns: unslewed clock. wall_ns: for names, and for the age of existing files.
   FlightArchive(std::unique_ptr<FlightFolder> folder, ArchiveLimits limits, FlightHeader header);
-  ~FlightArchive();  // close() at the time of the last turn()
+  ~FlightArchive();  // calls close() at the time of the last turn()
 
-  // One entry behind the others. Only while not full(). begins_delivery: it is the first of what one read
-  // brought.
+  // Appends an entry; only if not full(). begins_delivery: it is the first of one read.
   void add(const FlightEntryHead& head, std::span<const std::uint8_t> payload, bool begins_delivery = true);
   [[nodiscard]] bool full() const { return waiting_.bytes.size() >= kBlockTarget; }
-  // Writes what is due, begins and ends files, removes old ones. `flush`: all that waits is due.
+  // Writes due data, starts and ends files, removes old ones. flush: all waiting data are due.
   void turn(std::int64_t now_ns, std::int64_t wall_ns, bool flush = false);
   // From the next block on; ends the present file.
   void set_header(FlightHeader header);
-  // Writes what waits and ends the file. What the disk does not take now is lost: its entries are returned.
+  // Writes waiting data and ends the file. Returns the number of entries lost because the disk rejects them.
   std::uint64_t close(std::int64_t now_ns, std::int64_t wall_ns);
 
-  // errno of the disk's last answer, 0 while it is well; and in words, with what was expected.
+  // errno of the disk's last answer, 0 if none; complaint() is the message, with what was expected.
   [[nodiscard]] int error() const { return error_; }
   [[nodiscard]] std::string complaint() const;
-  // What is in no recording: with files that were removed while they were written, and what waited when it
-  // was closed and no disk took.
+  // Losses: with files that were removed while being written, and data that were waiting at close().
   [[nodiscard]] const FlightLoss& taken_away() const { return lost_.with_files; }
   [[nodiscard]] const FlightLoss& not_taken() const { return lost_.waiting; }
   [[nodiscard]] std::uint64_t bytes_written() const { return bytes_written_; }
@@ -78,22 +76,22 @@ class FlightArchive {
     std::uint64_t number;
     std::string name;
     std::uint64_t bytes;
-    std::int64_t last_ns;  // when it was last written, by the clock of now_ns
+    std::int64_t last_ns;  // last written, by the clock of now_ns
   };
   struct KeptFiles {
     std::deque<Kept> files;  // oldest first
     std::uint64_t bytes = 0;
-    bool known = false;  // the folder has been looked at since it may have changed
+    bool known = false;  // the folder's content is known
     std::uint64_t next_number = 1, removed = 0;
   };
   struct OpenFile {
     bool open = false;
-    std::string name;  // as it will be called
+    std::string name;  // final name
     std::uint64_t bytes = 0, entries = 0;
     std::int64_t since_ns = 0;
     FlightLoss load;  // deliveries in it
   };
-  // Entries that no file has yet.
+  // Entries that are not in a file yet.
   struct Waiting {
     std::vector<std::uint8_t> bytes;
     std::uint64_t entries = 0;
@@ -127,7 +125,7 @@ class FlightArchive {
   Waiting waiting_;
   Deflater deflater_;
   std::int64_t now_ns_ = 0, wall_ns_ = 0;  // of the last turn
-  // The latest value of each channel and the wall clock's shift: each file begins with them.
+  // Latest value of each channel and the wall clock's shift: every file starts with them.
   std::map<std::pair<FlightKind, std::uint16_t>, std::vector<std::uint8_t>> state_;
   Lost lost_;
   int error_ = 0;

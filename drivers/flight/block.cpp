@@ -11,7 +11,7 @@
 namespace ifog {
 namespace {
 
-// Recorded bytes are half noise: harder deflating takes five times the time for a tenth of the room.
+// Half of the recorded bytes is noise: higher levels take five times as long and save 10 %.
 constexpr int kLevel = 1;
 
 uLong crc(uLong before, std::span<const std::uint8_t> bytes) {
@@ -25,7 +25,7 @@ uLong crc_of(BlockPlace place) {
   return crc(crc32(0, nullptr, 0), bytes);
 }
 
-// Bytes 6 and 7 of a head are this, over all others.
+// Checksum of a head, in its bytes 6 and 7.
 std::uint16_t head_check(std::span<const std::uint8_t> head, BlockPlace place) {
   return static_cast<std::uint16_t>(crc(crc(crc_of(place), head.first(6)), head.subspan(8, 8)));
 }
@@ -52,11 +52,11 @@ Deflater::~Deflater() { deflateEnd(stream_.get()); }
 
 bool Deflater::append(std::vector<std::uint8_t>& to, std::span<const std::uint8_t> content) {
   const std::size_t at = to.size();
-  // One byte less than it has: what does not fit does not get smaller.
+  // One byte less than the content: the result must be smaller.
   const std::size_t room = content.empty() ? 0 : content.size() - 1;
   to.resize(at + room);
   deflateReset(stream_.get());
-  stream_->next_in = const_cast<std::uint8_t*>(content.data());  // zlib writes nothing there
+  stream_->next_in = const_cast<std::uint8_t*>(content.data());  // zlib does not write there
   stream_->avail_in = static_cast<uInt>(content.size());
   stream_->next_out = to.data() + at;
   stream_->avail_out = static_cast<uInt>(room);

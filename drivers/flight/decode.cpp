@@ -29,7 +29,7 @@ class Playback {
                                in_quotes(header.driver) + " after sensor " + in_quotes(first_.sensor) +
                                " of driver " + in_quotes(first_.driver) +
                                " or with other channels, expected recordings of one");
-    // The channels of another run are unknown until it says them.
+    // Channels are unknown at the start of another run.
     if (!begun_ || header.run != run_) {
       outside_.assign(header.channels.size(), {});
       wall_shift_ns_ = 0;
@@ -108,7 +108,7 @@ bool frame_of(const FlightEntry& entry, ifog_can_frame& frame) noexcept {
 
 void decode_flight(FlightReader& reader, DriverInstance& driver, const RecordedSamples& sink) {
   Playback playback(driver, sink);
-  // The first header may be read already: by whoever made the driver from it.
+  // The first header may have been read already.
   if (reader.counts().files > 0) playback.begin(reader.header());
   for (auto item = reader.next(); item != FlightReader::Item::end; item = reader.next()) {
     if (item == FlightReader::Item::header)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A flight recording through a driver again: the samples come as the daemon had them, with the same channels
-// from elsewhere at the same times.
+// Replays a flight recording through a driver: the same samples as in the daemon, with the same external
+// channels at the same times.
 #pragma once
 
 #include <cstdint>
@@ -15,30 +15,29 @@ namespace ifog {
 
 struct RecordedSample {
   const ifog_sample& sample;
-  std::int64_t read_ns;                   // when it came, or was read where that is not known; arrival clock
-  std::span<const ChannelValue> outside;  // channels from elsewhere, as they were then; in the header's order
-  std::int64_t wall_shift_ns;             // how far the wall clock had been set since the arrival clock began
+  std::int64_t read_ns;                   // arrival, or time of the read if that is unknown; arrival clock
+  std::span<const ChannelValue> outside;  // external channels at that time, in the header's order
+  std::int64_t wall_shift_ns;             // change of the wall clock since the arrival clock started
 };
 
 struct RecordedSamples {
   std::function<void(const RecordedSample&)> sample;
-  std::function<void()>
-      discontinuity;  // the device was opened again, or something of the recording is missing
-  // Before a discontinuity that the daemon did not have: something of the recording is missing. May be empty.
+  std::function<void()> discontinuity;  // the device was reopened, or part of the recording is missing
+  // Called before a discontinuity that the daemon did not have (missing recording). May be empty.
   std::function<void()> missing{};
-  // A file begins behind the first, before its samples: of another run, or with other settings, perhaps. The
-  // driver may be exchanged here for one with the options that the header names. May be empty.
+  // Called when another file starts, before its samples; it may be of another run or have other settings. The
+  // driver may be replaced here by one with the header's options. May be empty.
   std::function<void(const FlightHeader&)> file{};
-  // So many of the next samples, or of those just before, were merged into others before the daemon's filter.
-  // May be empty.
+  // Called with the number of samples, next or just before, that were merged before the daemon's filter. May
+  // be empty.
   std::function<void(std::uint64_t)> merged{};
 };
 
-// The next sample onto whatever `reader` gives, to its end. Throws std::runtime_error, without the file's
-// name: a file of another sensor, driver or kind behind the first.
+// Decodes everything from `reader`. Throws std::runtime_error, without the file's name, if a later file is of
+// another sensor, driver or kind.
 void decode_flight(FlightReader& reader, DriverInstance& driver, const RecordedSamples& sink);
 
-// A frame of a `can` entry; false: no frame that CAN has. Its arrival_ns is 0 where it is not known.
+// Frame of a `can` entry; false if it is invalid. arrival_ns is 0 if unknown.
 bool frame_of(const FlightEntry& entry, ifog_can_frame& frame) noexcept;
 
 }  // namespace ifog

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a flight recording holds, entry by entry: format.md has every byte. The same bytes go from the reader
-// thread to the recorder thread and into the file, so that recording is copying.
+// Entries of a flight recording; format.md describes every byte. The same bytes are passed from the reader
+// thread to the recorder thread and into the file.
 #pragma once
 
 #include <algorithm>
@@ -17,44 +17,44 @@ namespace ifog {
 static_assert(std::endian::native == std::endian::little, "the format is little-endian, and copied as it is");
 
 enum class FlightKind : std::uint8_t {
-  bytes = 1,    // what one read of a byte transport brought; time: of its last byte
+  bytes = 1,    // one read of a byte transport; time: of its last byte
   can = 2,      // one frame: u32 id, u8 flags (ifog_can_flags), u8 length, data
-  channel = 3,  // f64: the value of environment channel `index`; time: of the measurement
-  wall = 4,     // i64: how far the wall clock has been set since the arrival clock began, ns
-  lost = 5,     // u64 deliveries, u64 bytes: came before this and are not in the recording
+  channel = 3,  // f64: value of environment channel `index`; time: of the measurement
+  wall = 4,     // i64: change of the wall clock since the arrival clock started, ns
+  lost = 5,     // u64 deliveries, u64 bytes: received before this, but not in the recording
   message = 6,  // of LCM: `index` bytes of the channel's name, then the message; time: of its arrival
-  // u64: samples of this run that were added to others since the last such entry, before any filter: the
-  // ring behind the driver was full.
+  // u64: samples of this run merged with others before the filter since the last such entry, because the ring
+  // after the driver was full.
   merged = 7,
-  // On the way to the recorder only, never in a file. What comes behind it was filtered with the settings of
-  // number `length`: it goes into a file of its own, whose header says them.
+  // Only on the way to the recorder, never in a file. Later entries were filtered with settings number
+  // `length`; they go into a new file whose header has these settings.
   settings = 255,
 };
 
 enum FlightFlag : std::uint8_t {
-  kFlightReadTime = 1,  // the time is that of the read: when it arrived is not known
-  kFlightReopened = 2,  // the first since the device was opened again
+  kFlightReadTime = 1,  // the time is that of the read; the arrival time is unknown
+  kFlightReopened = 2,  // the first since the device was reopened
   kFlightStamped = 4,   // the time is the kernel's
 };
 
-// In front of each entry's payload. Times are of the arrival clock (drivers/transport/clock.h), of LCM
-// messages of the wall clock; ns since the epoch.
+// Head of each entry. Times are of the arrival clock (drivers/transport/clock.h), of LCM messages of the wall
+// clock; ns since the epoch.
 struct FlightEntryHead {
   FlightKind kind = FlightKind::bytes;
   std::uint8_t flags = 0;
   std::uint16_t index = 0;
-  std::uint32_t length = 0;  // of the payload
+  std::uint32_t length = 0;  // of the payload, bytes
   std::int64_t time_ns = 0;
 };
 static_assert(sizeof(FlightEntryHead) == 16);
 
-inline constexpr std::size_t kMostFlightPayload = 1U << 20U;  // of one entry
+inline constexpr std::size_t kMostFlightPayload = 1U << 20U;  // per entry
 
 struct FlightEntry {
   FlightEntryHead head;
   std::span<const std::uint8_t> payload;
 
-  // A payload of the right size, as a number; false: of another size.
+  // Reads a number at offset `at` of the payload; false if the payload is too short.
   template <typename T>
   bool value(T& out, std::size_t at = 0) const noexcept {
     if (payload.size() < at + sizeof out) return false;
@@ -63,8 +63,7 @@ struct FlightEntry {
   }
 };
 
-// The entry at the front of `content`, which is then without it. False: there is no whole entry, or one that
-// cannot be.
+// Removes the first entry from `content`. False: no complete or valid entry.
 inline bool take_entry(std::span<const std::uint8_t>& content, FlightEntry& out) noexcept {
   if (content.size() < sizeof out.head) return false;
   std::memcpy(&out.head, content.data(), sizeof out.head);
@@ -84,17 +83,17 @@ inline void append_entry(std::vector<std::uint8_t>& to, FlightEntryHead head,
   if (!payload.empty()) std::memcpy(to.data() + at + sizeof head, payload.data(), payload.size());
 }
 
-// The latest value of an environment channel that does not come in the sensor's frames, and how old it is.
+// Latest value and time of an environment channel that is not in the sensor's frames.
 struct ChannelValue {
   double value = std::numeric_limits<double>::quiet_NaN();
-  std::int64_t time_ns = 0;  // of the measurement, arrival clock; 0: none came yet
+  std::int64_t time_ns = 0;  // of the measurement, arrival clock; 0: none yet
 
-  // Age at the arrival `now_ns` of a sample; infinite until the first value, never negative.
+  // Age at the arrival `now_ns` of a sample; infinite before the first value, never negative.
   [[nodiscard]] float age_s(std::int64_t now_ns) const noexcept {
     if (time_ns == 0) return std::numeric_limits<float>::infinity();
     return std::max(0.0F, static_cast<float>(now_ns - time_ns) * 1e-9F);
   }
-  // To the bit, so that "no value" is the same as itself.
+  // Compares bits, so that NaN equals itself.
   [[nodiscard]] bool same(const ChannelValue& other) const noexcept {
     return time_ns == other.time_ns &&
            std::bit_cast<std::uint64_t>(value) == std::bit_cast<std::uint64_t>(other.value);

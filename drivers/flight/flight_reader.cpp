@@ -45,7 +45,7 @@ void FlightReader::drop(std::size_t bytes) {
   stream_.passed += bytes;
 }
 
-// The whole good block that begins here, into block_ and content_: of this file, or the header of another.
+// Reads the valid block that starts here into block_ and content_: of this file, or the header of another.
 bool FlightReader::block_here() {
   if (!ensure(kBlockHead)) return false;
   for (const bool header : {false, true}) {
@@ -64,7 +64,7 @@ FlightReader::Found FlightReader::next_block() {
   std::uint64_t skipped = 0;
   while (!block_here()) {
     if (!ensure(1)) break;
-    // To the next byte that may begin one.
+    // Skips to the next possible start of a block.
     const std::span<const std::uint8_t> bytes = ahead();
     const void* const next =
         bytes.size() > 1 ? std::memchr(bytes.data() + 1, kBlockSync & 0xFFU, bytes.size() - 1) : nullptr;
@@ -93,7 +93,7 @@ void FlightReader::finish_file(bool another_run) {
 
 FlightReader::Item FlightReader::begin_file() {
   FlightHeader fresh = parse_header(content_);
-  // The next file of the same run continues in the middle of a frame.
+  // The next file of a run may start within a frame.
   const bool goes_on = file_.begun && file_.closed && file_.whole && fresh.run == header_.run &&
                        fresh.number == header_.number + 1;
   const bool first = !file_.begun;
@@ -119,7 +119,7 @@ FlightReader::Item FlightReader::begin_file() {
   return Item::hole;
 }
 
-// A data block becomes entries, an end is compared with what was read.
+// Data blocks become entries; an end is compared with what was read.
 void FlightReader::take_block() {
   drop(block_.size());
   if (block_.type == BlockType::data) {
@@ -143,8 +143,8 @@ void FlightReader::take_block() {
   }
 }
 
-// By the wall clock, as it was when each run ended: a computer without a clock of its own begins in 1970 and
-// is set some seconds later. A clock that was set back, or never, says nothing of the time between two runs.
+// Time between runs by the wall clock at the end of each run: a computer without a battery-backed clock
+// starts in 1970 and is set some seconds later. Without a valid wall clock the time is unknown.
 void FlightReader::note_arrival() {
   const FlightEntryHead& head = entry_.head;
   if (std::int64_t set_ns = 0; head.kind == FlightKind::wall && entry_.value(set_ns))
@@ -171,10 +171,10 @@ void FlightReader::end_run() {
   run_.began_ns = run_.wall_set_ns = 0;
 }
 
-// False: it says what is missing, which is a hole.
+// False: the entry reports a loss.
 bool FlightReader::take_entry_ahead() {
   if (!take_entry(rest_, entry_)) {
-    // Its checksum is right: what wrote it was wrong, or is newer than this.
+    // The checksum is right, so the writer was faulty or is a later version.
     counts_.damaged_bytes += rest_.size();
     rest_ = {};
     file_.whole = false;
@@ -207,7 +207,7 @@ FlightReader::Item FlightReader::next() {
     } else if (header_block_) {
       return begin_file();
     } else if (found == Found::gap) {
-      return Item::hole;  // the block behind it comes with the next call
+      return Item::hole;  // the block after it comes with the next call
     } else {
       take_block();
     }

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads a flight recording, or several one after another, entry by entry, whatever happened to it: what is
-// torn or damaged is skipped and counted, and never read as data.
+// Reads one or several flight recordings entry by entry. Torn or damaged data are skipped and counted.
 #pragma once
 
 #include <cstddef>
@@ -18,17 +17,17 @@ namespace ifog {
 struct FlightCounts {
   std::uint64_t files = 0, blocks = 0, entries = 0;
   std::uint64_t damaged_bytes = 0;  // in the middle of a file
-  std::uint64_t torn_bytes = 0;     // at the end of a file: a block that was not written whole
-  // Without an end, and nothing of another run behind it: still written, or what wrote it was killed.
+  std::uint64_t torn_bytes = 0;     // at the end of a file: an incomplete block
+  // Without an end, and not followed by another run: still being written, or the writer was killed.
   std::uint64_t open_files = 0;
-  std::uint64_t missing_entries = 0;  // that a file's end tells of and are not there
+  std::uint64_t missing_entries = 0;  // according to a file's end
   std::uint64_t lost_deliveries = 0,
-                lost_bytes = 0;      // that were received and not recorded: the disk was too slow
-  std::uint64_t lost_messages = 0;   // the same of a recording of messages: LCM or the disk was too slow
-  std::uint64_t missing_files = 0;   // of a run, between those that are there
-  std::uint64_t early_files = 0;     // begun before the one in front of them had ended, in another run
+                lost_bytes = 0;      // received but not recorded: the disk was too slow
+  std::uint64_t lost_messages = 0;   // the same for a recording of messages
+  std::uint64_t missing_files = 0;   // of a run, between existing ones
+  std::uint64_t early_files = 0;     // started before the previous one had ended, in another run
   std::uint64_t merged_samples = 0;  // before the filter, see FlightKind::merged
-  // Runs of the recorder; those without an end that another follows; and the time from the last entry of one
+  // Runs of the recorder; runs without an end that are followed by another; time from the last entry of a run
   // to the first of the next.
   std::uint64_t runs = 0, cut_off_runs = 0;
   double between_runs_s = 0.0, longest_between_runs_s = 0.0;
@@ -36,19 +35,19 @@ struct FlightCounts {
 
 class FlightReader {
  public:
-  // As InputFile::read: up to so many bytes, fewer only at the end.
+  // As InputFile::read: up to this many bytes, fewer only at the end.
   using Source = std::function<std::size_t(char*, std::size_t)>;
   explicit FlightReader(Source source) : stream_{std::move(source), {}} {}
-  // Reads a recording in memory, which must stay as it is while the reader is used.
+  // Reads a recording in memory, which must not change while the reader is used.
   explicit FlightReader(std::span<const std::uint8_t> recording);
 
   enum class Item {
-    header,  // a file begins: header()
-    entry,   // entry(), valid until the next call; `lost` never comes, but as a hole
-    hole,    // between what came and what comes something is missing: forget half-read frames
+    header,  // a file starts: header()
+    entry,   // entry(), valid until the next call; losses are reported as `hole`
+    hole,    // something is missing here: discard incomplete frames
     end,
   };
-  // Throws std::runtime_error, without the file's name: no flight recording, or one of another version.
+  // Throws std::runtime_error, without the file's name: no flight recording, or another version.
   Item next();
 
   [[nodiscard]] const FlightHeader& header() const { return header_; }
@@ -75,23 +74,23 @@ class FlightReader {
   struct Stream {
     Source read;
     std::string held;
-    std::size_t at = 0;        // in held
+    std::size_t at = 0;        // index in held
     std::uint64_t passed = 0;  // bytes of the stream before held[at]
     bool ended = false;
   };
-  // The present file, or the last one.
+  // Present or last file.
   struct File {
-    std::uint64_t at = 0;       // where it begins in the stream
+    std::uint64_t at = 0;       // start in the stream
     std::uint64_t entries = 0;  // so far
     bool begun = false, closed = false;
-    bool whole = true;           // nothing of it is missing
-    bool run_goes_on = false;    // by its end, in another file
-    std::int64_t closed_ns = 0;  // wall clock, once it is closed
+    bool whole = true;           // no part is missing
+    bool run_goes_on = false;    // it continues in another file, according to its end
+    std::int64_t closed_ns = 0;  // wall clock
   };
   struct Run {
-    // Arrival of its first and last entry, 0: none has a known time; by how much its wall clock was set.
+    // Arrival of its first and last entry, 0: unknown; change of its wall clock.
     std::int64_t began_ns = 0, arrived_ns = 0, wall_set_ns = 0;
-    std::int64_t last_ended_ns = 0;  // the run before, by the wall clock; 0: there was none
+    std::int64_t last_ended_ns = 0;  // end of the previous run by the wall clock; 0: none
   };
 
   Stream stream_;
@@ -103,11 +102,11 @@ class FlightReader {
   BlockHead block_;
   bool header_block_ = false;
   std::vector<std::uint8_t> content_;
-  std::span<const std::uint8_t> rest_;  // of content_: entries to come
+  std::span<const std::uint8_t> rest_;  // remaining entries in content_
   FlightEntry entry_;
 };
 
-// "3 bytes damaged …", one line for each counter that says something is missing.
+// One line for each counter of losses: "3 bytes damaged …".
 std::vector<std::string> losses(const FlightCounts& counts);
 
 }  // namespace ifog

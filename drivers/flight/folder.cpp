@@ -44,14 +44,14 @@ class DiskFolder final : public FlightFolder {
 
  private:
   [[nodiscard]] std::string in(const std::string& name) const { return path_ + "/" + name; }
-  // A name is on the disk once its folder is.
+  // A new name is durable after its folder is synced.
   void sync_names() const {
     const int folder = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder < 0) return;
     ::fsync(folder);
     ::close(folder);
   }
-  // Under another name, which must be free.
+  // `to` must not exist.
   int rename_to(const std::string& from, const std::string& to) {
     const int error =
         result(::renameat2(AT_FDCWD, in(from).c_str(), AT_FDCWD, in(to).c_str(), RENAME_NOREPLACE));
@@ -66,13 +66,12 @@ class DiskFolder final : public FlightFolder {
   [[nodiscard]] bool is_there() const;
 
   std::string path_, open_name_;
-  int lock_fd_ = -1;  // of the folder: goes with the process, however that ends
+  int lock_fd_ = -1;  // of the folder; released when the process ends
   int fd_ = -1;
   off_t size_ = 0;
 };
 
-// A lock on the folder itself, so that no file has to be left in it. A file system that knows none does
-// without.
+// Locks the folder itself, so that no lock file is needed. Ignored if the file system has no locks.
 int DiskFolder::keep_to_oneself() {
   const int fd = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) return errno;
@@ -113,16 +112,16 @@ int DiskFolder::begin(const std::string& name) {
   leave();
   fd_ = ::open(in(name).c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0640);
   if (fd_ < 0) return errno;
-  // Whatever the umask: the group reads recordings, nobody else.
+  // Regardless of the umask: readable by the group only.
   ::fchmod(fd_, 0640);
-  // Tells others that it is being written; goes with the process, however that ends.
+  // Marks the file as being written; released when the process ends.
   ::flock(fd_, LOCK_EX | LOCK_NB);
   open_name_ = name;
   size_ = 0;
   return 0;
 }
 
-// Under its name, in its folder.
+// True if the open file still exists under its name.
 bool DiskFolder::is_there() const {
   struct stat open {
   }, named{};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folder that recordings are kept in, and what can go wrong with it, behind an interface: so that a year
-// of full disks can be gone through in a second.
+// Interface to the folder of recordings, so that disk errors can be simulated.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +10,7 @@
 
 namespace ifog {
 
-// Errors are errno's numbers, 0 for none. One file is open at a time.
+// Errors are errno values, 0 for none. One file is open at a time.
 class FlightFolder {
  public:
   struct File {
@@ -21,18 +20,17 @@ class FlightFolder {
   };
 
   virtual ~FlightFolder() = default;
-  // What is in it; made if it is not there. From then on it is this one's alone: EBUSY where another has it.
+  // Lists the folder, creating it if needed, and locks it; EBUSY if another process uses it.
   virtual int list(std::vector<File>& out) = 0;
-  // Makes the file `name` and leaves it open. It must not exist.
+  // Creates file `name` and leaves it open. It must not exist.
   virtual int begin(const std::string& name) = 0;
-  // Behind what the open file holds: all of it, or nothing is left of it. ENOENT: somebody has removed the file
-  // away.
+  // Appends all of the bytes to the open file or nothing. ENOENT: the file was removed.
   virtual int append(std::span<const std::uint8_t> bytes) = 0;
-  // The open file's content is on the disk, then its name becomes `name`. Closes it in any case.
+  // Syncs the open file, renames it to `name` and closes it in any case.
   virtual int finish(const std::string& name) = 0;
-  // Closes the open file as it is.
+  // Closes the open file unchanged.
   virtual void leave() = 0;
-  // A file that a recorder which was killed left open; EBUSY: it is still being written.
+  // Adopts a file left open by a killed recorder; EBUSY: it is still being written.
   virtual int take_over(const std::string& open_name, const std::string& name) = 0;
   virtual int remove(const std::string& name) = 0;
 

@@ -50,7 +50,7 @@ T number(std::string_view key, const std::string& text) {
   return out;
 }
 
-// So that no difference of two is beyond what holds it.
+// Limited, so that differences do not overflow.
 std::int64_t time_of_day(std::string_view key, const std::string& text) {
   const auto out = number<std::int64_t>(key, text);
   if (out < 0)
@@ -59,7 +59,7 @@ std::int64_t time_of_day(std::string_view key, const std::string& text) {
   return out;
 }
 
-// Keys whose value is a text as it stands; one that is not there is empty.
+// Keys with plain text values; missing ones are empty.
 struct Text {
   std::string_view key;
   std::string FlightHeader::*text;
@@ -108,7 +108,7 @@ void take(FlightHeader& out, std::string_view key, std::string value) {
 
 std::vector<std::uint8_t> header_payload(const FlightHeader& header) {
   std::string text;
-  // A key ends at the first '=': that of an option or a path has none left.
+  // A key ends at the first '='; option names and paths must not contain one.
   const auto add = [&text](const std::string& key, std::string_view value) {
     text += key + "=" + escaped(value) + "\n";
   };
