@@ -16,8 +16,8 @@ constexpr std::uint64_t low_bits(std::uint32_t n) {
   return n >= 64 ? ~std::uint64_t{0} : (std::uint64_t{1} << n) - 1;
 }
 
-// Runs over the pieces of a signal that lie in one byte each, from its least significant bits on.
-// visit(byte, shift in the byte, bits, shift in the value)
+// Calls visit(byte, shift in the byte, bits, shift in the value) for the signal's part in each byte, from the
+// least significant bits on.
 template <typename Visit>
 void pieces(const Signal& signal, Visit&& visit) noexcept {
   std::uint32_t done = 0;
@@ -31,10 +31,9 @@ void pieces(const Signal& signal, Visit&& visit) noexcept {
     }
     return;
   }
-  // Big-endian: positions counted from the frame's first, most significant bit run straight through the
-  // signal.
+  // Big-endian: bit positions counted from the frame's first, most significant bit are contiguous.
   const std::uint32_t first = signal.start_bit / 8 * 8 + (7 - signal.start_bit % 8);
-  std::uint32_t end = first + signal.length;  // behind the least significant bit
+  std::uint32_t end = first + signal.length;  // after the least significant bit
   while (done < signal.length) {
     const std::uint32_t byte = (end - 1) / 8;
     const std::uint32_t in_byte = byte * 8 + 8 - end;
@@ -62,14 +61,14 @@ double half_value(std::uint64_t bits) noexcept {
   return (bits & 0x8000U) != 0 ? -magnitude : magnitude;
 }
 
-// Rounded to nearest, ties to even; a finite value beyond the largest half (65504) gives infinity.
+// Rounded to nearest, ties to even; finite values above the largest half (65504) give infinity.
 std::uint64_t half_bits(double value) noexcept {
   const std::uint64_t sign = std::signbit(value) ? 0x8000U : 0U;
   const double magnitude = std::abs(value);
   if (std::isnan(magnitude)) return sign | 0x7E00U;
   if (magnitude >= 65520.0) return sign | kHalfInfinity;
   const int exponent = magnitude == 0.0 ? 1 - kHalfBias : std::max(std::ilogb(magnitude), 1 - kHalfBias);
-  // In units of the last place; 2048 of them carry into the exponent, as the sum does.
+  // In units of the last place; 2048 units carry into the exponent.
   const double units = std::nearbyint(std::ldexp(magnitude, kHalfFraction - exponent));
   const auto biased = static_cast<std::uint64_t>(exponent + kHalfBias - 1) << kHalfFraction;
   return sign | (biased + static_cast<std::uint64_t>(units));
@@ -108,7 +107,7 @@ double physical(const Signal& signal, std::uint64_t bits) noexcept {
       break;
     case ValueType::kSigned: {
       const std::uint64_t sign = std::uint64_t{1} << (signal.length - 1);
-      // Subtracting the sign bit's doubled weight in two's complement.
+      // Sign extension in two's complement.
       raw = static_cast<double>(static_cast<std::int64_t>((bits ^ sign) - sign));
       break;
     }
@@ -144,7 +143,7 @@ std::uint64_t raw_of(const Signal& signal, double value) {
   }
   const double rounded = std::round(raw);
   const bool is_signed = signal.type == ValueType::kSigned;
-  // Powers of two: exact in a double, and compared before the conversion that would be undefined beyond them.
+  // Powers of two are exact in a double, and the comparison avoids an undefined conversion.
   const double below = is_signed ? -std::ldexp(1.0, static_cast<int>(signal.length) - 1) : 0.0;
   const double above = std::ldexp(1.0, static_cast<int>(signal.length) - (is_signed ? 1 : 0));
   if (!(rounded >= below && rounded < above))

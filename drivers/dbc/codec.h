@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A signal's value from a frame's bytes, and into them. No allocation; frames of up to 64 bytes.
-//
-// The signal must have passed check_fits, and the data hold at least bytes_needed(signal).
+// Reads and writes a signal in a frame's bytes. No allocation; frames of up to 64 bytes. The signal must have
+// passed check_fits(), and the data must have at least bytes_needed(signal) bytes.
 #pragma once
 
 #include <cstdint>
@@ -11,21 +10,20 @@
 
 namespace ifog::dbc {
 
-// How many bytes of the frame reading the signal touches.
+// Number of bytes of the frame needed for the signal.
 std::size_t bytes_needed(const Signal& signal) noexcept;
 
-// The bits of the signal, right-aligned, without sign extension.
+// Bits of the signal, right-aligned, without sign extension.
 std::uint64_t raw_bits(const Signal& signal, std::span<const std::uint8_t> data) noexcept;
 void set_raw_bits(const Signal& signal, std::uint64_t bits, std::span<std::uint8_t> data) noexcept;
 
-// raw · scale + offset, with the sign, or as IEEE half, float or double.
+// raw · scale + offset; raw is signed, unsigned, or IEEE half, float or double.
 double physical(const Signal& signal, std::uint64_t bits) noexcept;
 
-// The nearest raw value. Throws std::invalid_argument: NaN in an integer, out of the signal's range.
+// Nearest raw value. Throws std::invalid_argument for NaN in an integer, or out of the signal's range.
 std::uint64_t raw_of(const Signal& signal, double value);
 
-// Whether a frame of these bytes carries the signal: its multiplexors, one depending on the other, select it.
-// False too if a multiplexor lies beyond the data.
+// True if the multiplexors in the frame select the signal. False if a multiplexor is beyond the data.
 bool selected(const Message& message, const Signal& signal, std::span<const std::uint8_t> data) noexcept;
 
 }  // namespace ifog::dbc

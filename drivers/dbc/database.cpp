@@ -39,14 +39,14 @@ void check_fits(const Database& database, const Message& message, const Signal& 
   constexpr std::uint32_t kLongestFrame = 64;
   if (message.length > kLongestFrame)
     refuse("is in a message of " + std::to_string(message.length) + " bytes, expected at most 64 (CAN FD)");
-  // Counted from the first bit of the frame in the order in which the signal runs through it.
+  // Counted from the first bit of the frame in the signal's bit order.
   const std::uint32_t first = signal.order == ByteOrder::kLittle
                                   ? signal.start_bit
                                   : signal.start_bit / 8 * 8 + (7 - signal.start_bit % 8);
   if (first + signal.length > message.length * 8)
     refuse("reaches beyond the " + std::to_string(message.length) + " bytes of its message");
   if (signal.scale == 0.0) refuse("has factor 0, expected any other number");
-  // Each is asked of every frame; one that depends on itself would be asked for ever.
+  // Detects a multiplexor that depends on itself.
   std::size_t depth = 0;
   for (std::size_t k = signal.selector; k != kNone; k = message.signals[k].selector) {
     const Signal& selector = message.signals[k];

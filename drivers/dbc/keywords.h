@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The keywords of a DBC file whose statements end with ';' and are read, if at all, for names only.
+// DBC keywords whose statements end with ';' and contain at most names that are needed.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace ifog::dbc {
 
-// They stand nowhere but at the beginning of a statement.
+// True for keywords that occur only at the start of a statement.
 constexpr bool stands_first_only(std::string_view keyword) {
   constexpr std::array<std::string_view, 23> kKeywords{"CM_",
                                                        "BA_",
@@ -36,7 +36,7 @@ constexpr bool stands_first_only(std::string_view keyword) {
   return std::find(kKeywords.begin(), kKeywords.end(), keyword) != kKeywords.end();
 }
 
-// Their statements say nothing about where a signal lies or what it is called.
+// True if the statement contains neither layout nor names of signals.
 constexpr bool carries_no_layout(std::string_view keyword) {
   constexpr std::array<std::string_view, 7> kOthers{"EV_",        "CAT_",       "FILTER",  "BU_SG_REL_",
                                                     "BU_EV_REL_", "BU_BO_REL_", "NS_DESC_"};

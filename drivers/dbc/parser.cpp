@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader behind parse_database: what it cannot read it names, marks and leaves behind.
+// Parser behind parse_database(); reports and skips invalid statements.
 #include <algorithm>
 #include <map>
 #include <stdexcept>
@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t kExtendedFlag = 0x80000000U;
 constexpr std::uint32_t kHighestStandard = 0x7FF;
 constexpr std::uint32_t kHighestExtended = 0x1FFFFFFF;
-// The pseudo message in which editors keep signals that belong to no message.
+// Pseudo message in which editors keep signals that belong to no message.
 constexpr std::string_view kOrphans = "VECTOR__INDEPENDENT_SIG_MSG";
 
 class Parser {
@@ -63,7 +63,7 @@ class Parser {
     building_ = named_ = nullptr;
   }
 
-  // What cannot be read may have been a BO_: signals behind it must not go to the message before.
+  // The unreadable statement may have been a BO_: later signals must not be added to the previous message.
   void unknown_message(const std::string& why) {
     Message m;
     m.line = in_.line();
@@ -74,7 +74,7 @@ class Parser {
     out_.messages.push_back(std::move(m));
     names_.emplace_back();
   }
-  // A signal of a message of out_; null: it has none of that name.
+  // Signal of a message of out_; null if there is none with this name.
   Signal* signal_of(Message& message, std::string_view name) {
     const auto& names = names_[static_cast<std::size_t>(&message - out_.messages.data())];
     const auto found = names.find(name);
@@ -94,7 +94,7 @@ class Parser {
     } else if (keyword == "NS_") {
       (void)in_.word("NS_");
       in_.sign(':');
-      // The list names other sections' keywords, so it must not be read as sections.
+      // The list contains keywords of other sections and must be skipped.
       for (std::string_view name = in_.peek_word();
            !name.empty() && name != "BS_" && name != "BU_" && name != "BO_" && name != "VERSION";
            name = in_.peek_word())
@@ -126,7 +126,7 @@ class Parser {
 
   void open_statement(std::size_t line) { (void)warn(line, "a statement without its closing ';'"); }
 
-  // Its ';' may be missing where the next statement begins, or at the end of the file.
+  // The ';' may be missing at the start of the next statement or at the end of the file.
   void end_statement(std::size_t line) {
     if (in_.accept(';') || in_.at_end()) return;
     if (!in_.begins_statement()) in_.fail("';'");
@@ -165,7 +165,7 @@ class Parser {
       m.refused = warn(m.line, "message " + printable(m.name) + " has id " + std::to_string(sent) +
                                    ", expected at most 11 bits, or 29 bits and bit 31 set");
     if (const auto other = by_id_.find(sent); !orphans && m.refused.empty() && other != by_id_.end()) {
-      // Which of the two a frame is, nothing says.
+      // It is ambiguous which of the two a frame is.
       Message& first = out_.messages[other->second];
       m.refused = warn(m.line, "message " + printable(m.name) + " has the id of " + printable(first.name) +
                                    " on line " + std::to_string(first.line));
@@ -223,8 +223,7 @@ class Parser {
     s.unit = in_.one_line_string("the unit in quotes");
   }
 
-  // Names with commas or blanks between, on the signal's line or the next; on with the next line behind a
-  // comma.
+  // Names separated by commas or blanks, on the signal's line or, after a comma, on the next.
   void receivers() {
     std::size_t line = in_.line();
     bool goes_on = true;
@@ -244,7 +243,7 @@ class Parser {
     }
   }
 
-  // "M", "m3", "m3M" for a multiplexor that is itself multiplexed, or "m" where SG_MUL_VAL_ gives the values.
+  // "M", "m3", "m3M" for a multiplexed multiplexor, or "m" if SG_MUL_VAL_ gives the values.
   void multiplexing(Signal& s, const std::string_view all) {
     std::string_view mark = all;
     if (mark.ends_with('M')) {
@@ -332,7 +331,7 @@ class Parser {
     if (!of_signal && named_message_ != nullptr) named_message_->long_name = name;
   }
 
-  // Editors leave lines behind when a message is deleted: null for a message that is not there.
+  // Message of a statement; null if it does not exist (editors leave lines of deleted messages).
   void named_message() {
     const auto sent = static_cast<std::uint32_t>(in_.integer("a message id", 0xFFFFFFFFU));
     const auto found = by_id_.find(sent);
@@ -351,7 +350,7 @@ class Parser {
     return found;
   }
 
-  // A signal marked mN depends on the message's one multiplexor, unless SG_MUL_VAL_ named another.
+  // A signal marked mN depends on the message's single multiplexor, unless SG_MUL_VAL_ names another one.
   void resolve_selectors() {
     for (Message& m : out_.messages) {
       std::vector<std::size_t> multiplexors;
@@ -378,8 +377,8 @@ class Parser {
   std::map<std::uint32_t, std::size_t> by_id_;                          // with the flag bit, as in the file
   std::vector<std::map<std::string, std::size_t, std::less<>>> names_;  // signals of each message
   Message* named_message_ = nullptr;
-  Signal* building_ = nullptr;  // which signal an error makes doubtful: the one being read,
-  Signal* named_ = nullptr;     // or the one that the statement is about
+  Signal* building_ = nullptr;  // signal that an error makes doubtful: the one being parsed,
+  Signal* named_ = nullptr;     // or the one named in the statement
   Signal dropped_;
   bool known_section_ = false;
 };

@@ -12,12 +12,12 @@
 namespace ifog::dbc {
 namespace {
 
-// Not std::isalpha: its answer depends on the locale, and DBC files carry Latin-1 in strings.
+// std::isalpha depends on the locale, and DBC files contain Latin-1 in strings.
 bool begins_word(char c) { return (c >= 'A' && c <= 'Z') || (c >= 'a' && c <= 'z') || c == '_'; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
 bool space(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; }
 
-// A longer one counts as an open quote, and the search for its end stays bounded.
+// Longer strings count as unclosed, so the search is bounded.
 constexpr std::size_t kLongestString = 65536;
 
 }  // namespace
@@ -99,9 +99,8 @@ double Scanner::number(const char* expected) {
   return value;
 }
 
-// A quote that was never closed would end at the next string's first quote and take along all that lies
-// between: it shows by a statement that begins on a line within, and no ';' behind. Then the string is not
-// read, and what follows its line is.
+// An unclosed quote would extend to the next string. It is detected by a line that starts a statement within
+// the string, without ';' after the string. Then parsing continues after the line.
 std::string_view Scanner::string(const char* expected) {
   skip_space();
   if (at_ == text_.size() || text_[at_] != '"') fail(expected);
@@ -173,9 +172,9 @@ bool Scanner::begins_statement() const {
   if (numbered) ahead.skip_digits();
   if (keyword == "VERSION") return ahead.next_is('"');
   if (keyword == "NS_" || keyword == "BS_" || keyword == "BU_") return ahead.next_is(':');
-  // Elsewhere it is BO_ 12 "text", BO_ 12 34 or, where attributes are declared, BO_ "name".
+  // Otherwise it is BO_ 12 "text", BO_ 12 34 or, in declarations of attributes, BO_ "name".
   if (keyword == "BO_") return numbered ? !ahead.peek_word().empty() : !ahead.next_is('"');
-  // Elsewhere it is SG_ 12 name "text", SG_ 12 name 34 or SG_ "name".
+  // Otherwise it is SG_ 12 name "text", SG_ 12 name 34 or SG_ "name".
   if (keyword == "SG_" && !numbered) return !ahead.next_is('"');
   if (keyword != "SG_" && keyword != "EV_") return false;
   const std::string_view name = ahead.peek_word();
