@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The places in the device's count and the values of the last frames that were accepted: they tell a duplicate
-// from a frame that was overtaken, and both from another device's.
+// Counter positions and values of the last accepted frames, to recognise duplicates, overtaken frames and
+// frames of another device.
 #pragma once
 
 #include <algorithm>
@@ -27,14 +27,14 @@ class RecentFrames {
   }
 
   [[nodiscard]] std::uint64_t size() const noexcept { return std::min(kept_, kMost); }
-  // Whether a frame was accepted so many samples before the last one, with these values or others.
+  // Tells if a frame was accepted `back` samples before the last one, with the same or other values.
   [[nodiscard]] Had had(std::uint64_t back, std::uint64_t digest) const noexcept {
     Had out = Had::no;
     for (std::uint64_t i = 0; i < size(); ++i)
       if (frames_[i].first + back == place_) out = frames_[i].second == digest ? Had::same : Had::other;
     return out;
   }
-  // The next frame, so many samples after the last.
+  // Adds the next frame, `samples` after the last one.
   void keep(std::uint64_t samples, std::uint64_t digest) noexcept {
     place_ += samples;
     frames_[kept_++ % kMost] = {place_, digest};
@@ -42,7 +42,7 @@ class RecentFrames {
   void forget() noexcept { kept_ = 0; }
 
  private:
-  std::uint64_t place_ = 0, kept_ = 0;  // the counter over its rollovers; frames
+  std::uint64_t place_ = 0, kept_ = 0;  // unwrapped counter; number of frames
   std::array<std::pair<std::uint64_t, std::uint64_t>, kMost> frames_{};
 };
 

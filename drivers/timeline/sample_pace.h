@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sample period of a device, as the arrivals of its frames measure it.
+// Sample period of a device, measured by the arrivals of its frames.
 #pragma once
 
 #include <algorithm>
@@ -17,27 +17,27 @@ class SamplePace {
   // The nominal rate is known.
   [[nodiscard]] bool known() const noexcept { return known_; }
   [[nodiscard]] double nominal_s() const noexcept { return nominal_s_; }
-  // As measured, or the nominal one until then.
+  // Measured period, or the nominal one before it is measured.
   [[nodiscard]] double period_s() const noexcept { return measured() ? elapsed_s_ / samples_ : nominal_s_; }
   [[nodiscard]] double time_s(std::uint64_t samples) const noexcept {
     return static_cast<double>(samples) * period_s();
   }
-  // Relative error of the period, at most, where deliveries are late by up to scatter_s.
+  // Largest relative error of the period, if deliveries are late by up to scatter_s.
   [[nodiscard]] double doubt(double scatter_s) const noexcept {
     return measured() ? std::min(kStatedRate, kCrystals + scatter_s / elapsed_s_) : kStatedRate;
   }
-  // The number of samples that a device takes in that time, 1 at least.
+  // Number of samples in that time, at least 1.
   [[nodiscard]] std::uint64_t samples_in(double time_s) const noexcept {
     return known_ ? at_least_one(time_s / period_s()) : 1;
   }
   static std::uint64_t at_least_one(double samples) noexcept {
     return samples >= 1.5 ? static_cast<std::uint64_t>(std::llround(std::min(samples, 1e18))) : 1;
   }
-  // False for what is read much faster than it was sampled, as from a file.
+  // False if data are read much faster than they were sampled, e.g. from a file.
   [[nodiscard]] bool arrivals_tell() const noexcept {
     return recent_published_s_ == 0.0 || recent_elapsed_s_ > 0.5 * recent_published_s_;
   }
-  // The next frames arrived elapsed_s after the one before, and their samples took published_s. steady: the
+  // Adds frames that arrived elapsed_s after the one before; their samples took published_s. steady: the
   // arrivals show the device's period, without a silence.
   void learn(double elapsed_s, double published_s, std::uint64_t samples, bool steady) noexcept {
     recent_elapsed_s_ = kForgets * recent_elapsed_s_ + elapsed_s;
@@ -49,10 +49,10 @@ class SamplePace {
   }
 
  private:
-  static constexpr double kMeasured_s = 1.0, kMeasuredSamples = 16.0;  // a period is measured behind these
+  static constexpr double kMeasured_s = 1.0, kMeasuredSamples = 16.0;  // needed for a measurement
   static constexpr double kMemory_s = 60.0, kForgets = 0.998;
-  static constexpr double kCrystals = 1e-4;    // the rates of two clocks differ by less
-  static constexpr double kStatedRate = 0.02;  // a nominal rate is off by less (KVH DSP-3000)
+  static constexpr double kCrystals = 1e-4;    // largest relative difference of two crystals
+  static constexpr double kStatedRate = 0.02;  // largest relative error of a nominal rate (KVH DSP-3000)
 
   [[nodiscard]] bool measured() const noexcept {
     return elapsed_s_ >= kMeasured_s && samples_ >= kMeasuredSamples;

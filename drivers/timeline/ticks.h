@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device's clock whose tick is not much shorter than a sample: its steps are none, one or two ticks though
-// nothing is lost, and only their sum tells time. Samples are spaced at the nominal period, and their sum stays
-// within two ticks of the clock's own.
+// Device clock whose tick is not much shorter than a sample: without losses its steps are none, one or two
+// ticks, and only their sum is accurate. Samples are spaced at the nominal period, and the sum stays within
+// two ticks of the clock.
 #pragma once
 
 #include <algorithm>
@@ -19,20 +19,20 @@ class Ticks {
   };
 
   explicit Ticks(double nominal_s) noexcept : nominal_s_(nominal_s) {}
-  // The clock was set or restarted: its sum begins here. Its tick is as it was.
+  // The clock was set or restarted: its sum starts again, its tick is kept.
   void jumped() noexcept { owed_s_ = 0.0; }
   // It has stood still between two samples.
   [[nodiscard]] bool stood() const noexcept { return stood_; }
   [[nodiscard]] bool known() const noexcept { return stood_ || tick_ns_ > 0; }
-  // Resolution of one step; at most a second while no tick has been seen.
+  // Resolution of one step; at most a second before a tick was seen.
   [[nodiscard]] double grain_s() const noexcept { return !stood_ ? 0.0 : tick_ns_ == 0 ? 1.0 : tick_s(); }
-  // For another sample with the stamp and the values of the one before.
+  // True if another sample with the same stamp and values is possible.
   [[nodiscard]] bool has_room() const noexcept { return stood_ && owed_s_ > -2.0 * tick_s(); }
 
-  // passed_ns ≥ 0 since the sample before; counted: samples by the counter, 0: there is none.
+  // passed_ns >= 0: since the previous sample; counted: samples by the counter, 0: none.
   [[nodiscard]] Step take(std::int64_t passed_ns, std::uint64_t counted) noexcept {
     const double passed_s = static_cast<double>(passed_ns) * 1e-9;
-    const bool first_tick = stood_ && tick_ns_ == 0;  // how long the clock had stood is unknown
+    const bool first_tick = stood_ && tick_ns_ == 0;  // how long the clock stood is unknown
     learn(passed_ns, passed_s);
     owed_s_ = coarse() ? owed_s_ + passed_s : passed_s;
     const double samples = (owed_s_ - (stood_ ? 1.0 : 0.25) * tick_s()) / nominal_s_;
@@ -49,15 +49,15 @@ class Ticks {
   }
 
  private:
-  static constexpr int kProof = 32;     // steps that show the tick
-  static constexpr double kFine = 4.0;  // ticks a period
+  static constexpr int kProof = 32;     // number of steps that confirm the tick
+  static constexpr double kFine = 4.0;  // ticks per period
 
   [[nodiscard]] double tick_s() const noexcept { return static_cast<double>(tick_ns_) * 1e-9; }
   [[nodiscard]] bool coarse() const noexcept {
     const double ticks = tick_ns_ > 0 && steps_ >= kProof ? nominal_s_ / tick_s() : 0.0;
     return stood_ || (ticks >= 1.0 && ticks < kFine && std::abs(ticks - std::round(ticks)) > 1e-7);
   }
-  // A step across missing samples is a multiple of the tick, too. A longer one may be a clock that was set.
+  // A step over missing samples is a multiple of the tick, too. A longer one may be a clock that was set.
   void learn(std::int64_t passed_ns, double passed_s) noexcept {
     stood_ = stood_ || passed_ns == 0;
     if (passed_ns == 0 || passed_s > kFine * std::max(nominal_s_, tick_ns_ > 0 ? tick_s() : 1.0)) return;
@@ -70,7 +70,7 @@ class Ticks {
   std::int64_t tick_ns_ = 0;
   int steps_ = 0;
   bool stood_ = false;
-  double owed_s_ = 0.0;  // the clock's sum less the published intervals
+  double owed_s_ = 0.0;  // the clock's sum minus the published intervals
 };
 
 }  // namespace ifog

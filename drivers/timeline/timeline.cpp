@@ -10,16 +10,16 @@
 namespace ifog {
 namespace {
 
-constexpr double kSilence_s = 0.25;     // no device restarts in less
-constexpr double kPrompt_s = 0.05;      // scheduling and an adapter's portions together
-constexpr double kAdapter_s = 0.02;     // a USB adapter collects bytes for 16 ms
-constexpr double kLatest_s = 2.0;       // a delivery that stays later than this is none
-constexpr double kStands_s = 1.0;       // a delayed line that drains shows it within this
-constexpr double kShrinks_s = 0.03;     // and is later by this much less
-constexpr int kEarly = 8, kStrays = 8;  // frames in a row: no single stamp or counter that was damaged
-constexpr double kClocksApart = 0.01;   // device clock and counter, of the time between
-constexpr double kNoSetting_s = 60.0;   // a clock that leaps by more, and nothing else does, was set
-constexpr double kStoodStill = 8.0;     // sample times: a step of more is a device that stood still
+constexpr double kSilence_s = 0.25;     // no device restarts faster
+constexpr double kPrompt_s = 0.05;      // scheduling and delay of an adapter
+constexpr double kAdapter_s = 0.02;     // USB adapters collect bytes for 16 ms
+constexpr double kLatest_s = 2.0;       // a delivery later than this is a gap
+constexpr double kStands_s = 1.0;       // a delayed line shows within this time that it drains
+constexpr double kShrinks_s = 0.03;     // by reducing its delay by this
+constexpr int kEarly = 8, kStrays = 8;  // consecutive frames; a single damaged stamp or counter has no effect
+constexpr double kClocksApart = 0.01;  // difference of device clock and counter, relative to the time between
+constexpr double kNoSetting_s = 60.0;  // a larger jump of only the clock means it was set
+constexpr double kStoodStill = 8.0;    // in sample times; a larger step means the device stood still
 
 double seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
 std::int64_t nanoseconds(double s) noexcept { return std::llround(std::clamp(s, -9e9, 9e9) * 1e9); }
@@ -29,7 +29,7 @@ std::int64_t nanoseconds(double s) noexcept { return std::llround(std::clamp(s, 
 Timeline::Timeline(std::uint64_t modulus, double rate_hz) noexcept
     : modulus_(modulus), pace_(rate_hz), ticks_(pace_.nominal_s()) {}
 
-// Uncertainty of a time by arrivals.
+// Uncertainty of a time from arrivals.
 double Timeline::slack_s(double time_s) const noexcept {
   return kAdapter_s + 2.0 * scatter_s_ + pace_.doubt(scatter_s_) * std::max(0.0, time_s);
 }
@@ -48,13 +48,13 @@ Timeline::Step Timeline::next(const Frame& frame) noexcept {
   const Look now = look(frame);
   Step step;
   if (now.counted) {
-    // What fills a place that is missing, or comes a second time, is of the device that is followed.
+    // A frame that fills a missing position, or comes twice, is of the tracked device.
     const bool was_found = two_.found();
     const std::uint64_t back = modulus_ - now.ahead;
     two_.saw(frame.sequence, modulus_,
              now.ahead == 0 || (back < recent_.size() && recent_.had(back, now.digest) != Had::other));
     if (two_.found()) return leave_out(frame);
-    if (was_found) {  // possibly of another device than what was accepted
+    if (was_found) {  // the accepted frames may have been of another device
       restart(now, step);
       step.time_ns = first(frame);
       return step;
@@ -83,7 +83,7 @@ Timeline::Look Timeline::look(const Frame& frame) const noexcept {
   now.counted = frame.counts && modulus_ > 0;
   now.clocked = frame.clocked && last_.clocked;
   if (now.counted) now.ahead = (frame.sequence % modulus_ + modulus_ - last_.sequence % modulus_) % modulus_;
-  // Samples read much faster than they were measured, as from a file, have arrival times that say nothing.
+  // Arrival times are invalid if samples are read much faster than measured, e.g. from a file.
   now.timed = frame.arrival_ns > 0 && due_ns_ > 0 && pace_.arrivals_tell();
   if (now.timed) look_at_arrival(frame, now);
   if (now.counted) now.counted_samples = rolled_over(now, frame.reopened);
@@ -97,14 +97,14 @@ void Timeline::look_at_arrival(const Frame& frame, Look& now) const noexcept {
   now.elapsed_s = seconds(ns_between(due_ns_, frame.arrival_ns));
   now.quiet_s = seen_ns_ > 0 ? seconds(ns_between(seen_ns_, frame.arrival_ns)) : now.elapsed_s;
   now.silent = std::min(now.quiet_s, now.elapsed_s) > kSilence_s + 2.0 * period_s;
-  // The first of many that were read at once was delayed by as much as those behind it took.
+  // The first of many samples in one read was delayed by the time of those after it.
   if (now.silent && frame.at_once > 1 && now.counted)
     now.elapsed_s = std::max(kSilence_s, now.elapsed_s - (frame.at_once - 1.0) * period_s);
   now.slack_s = slack_s(now.elapsed_s);
 }
 
-// Samples by the counter, behind a silence that it shows with the rollovers that bring it nearest to the
-// elapsed time. What else is late may be delayed.
+// Samples by the counter, after a silence with the number of rollovers nearest to the elapsed time. Other
+// lateness may be a delay.
 std::uint64_t Timeline::rolled_over(const Look& now, bool reopened) const noexcept {
   const bool round = now.silent || (reopened && !now.timed);
   const std::uint64_t least = now.ahead > 0 ? now.ahead : round ? modulus_ : 1;
@@ -114,8 +114,8 @@ std::uint64_t Timeline::rolled_over(const Look& now, bool reopened) const noexce
   return rounds > 0.0 ? least + static_cast<std::uint64_t>(std::min(rounds, 1e12)) * modulus_ : least;
 }
 
-// The stamp over its rollovers: nearest to what the counter says, or to the elapsed time behind a silence
-// that the counter cannot measure.
+// Unwrapped stamp: nearest to the counter, or to the elapsed time after a silence that the counter cannot
+// measure.
 void Timeline::look_at_clock(const Frame& frame, Look& now) const noexcept {
   std::int64_t step_ns = ns_between(last_.stamp_ns, frame.stamp_ns);
   if (frame.wrap_ns > 0) {
@@ -144,7 +144,7 @@ bool Timeline::Look::contradicts(double claimed_s) const noexcept {
   return timed && claimed_s > most_s + kClocksApart * claimed_s;
 }
 
-// A duplicate, or overtaken by what was accepted: counter or clock go back by little without a silence.
+// A duplicate, or overtaken: counter or clock goes back slightly without a silence.
 bool Timeline::out_of_turn(const Frame& frame, const Look& now) const noexcept {
   if (now.silent) return false;
   const bool again = now.digest == last_.digest && now.passed_s == 0.0;
@@ -161,7 +161,7 @@ bool Timeline::out_of_turn(const Frame& frame, const Look& now) const noexcept {
   return was == Had::same || (was == Had::no && !usual);
 }
 
-// The time that passed and what it took; also where no elapsed time is known.
+// Restart after the elapsed time, also if that is unknown.
 void Timeline::restart(const Look& now, Step& step) const noexcept {
   step.restarted = step.gap = true;
   step.dt_s = std::max(now.elapsed_s, pace_.nominal_s());
@@ -174,13 +174,13 @@ bool Timeline::clock_is_wrong(const Look& now) const noexcept {
   if (now.passed_s < 0.0 || now.contradicts(now.passed_s - grain_s)) return true;
   if (!now.counted || now.silent || delay_) return false;
   if (!now.timed) return now.ahead == 1 && now.passed_s > counted_s + kNoSetting_s;
-  // Where clock and counter disagree, the one nearer to the elapsed time is right.
+  // If clock and counter disagree, the one nearer to the elapsed time is right.
   const double apart_s = 2.0 * pace_.nominal_s() + kClocksApart * now.passed_s + grain_s;
   return std::abs(now.passed_s - counted_s) > apart_s &&
          std::abs(counted_s - now.elapsed_s) < std::abs(now.passed_s - now.elapsed_s);
 }
 
-// With the rollovers that the clock tells of. Where the counter stood, or restarted, the clock alone tells.
+// With rollovers from the clock. If the counter stood or restarted, the clock alone is used.
 std::uint64_t Timeline::samples_by_clock(const Look& now) const noexcept {
   const double grain_s = ticks_.grain_s(), usual_s = pace_.period_s();
   const double spare = now.passed_s / usual_s - static_cast<double>(now.ahead);
@@ -195,7 +195,7 @@ std::uint64_t Timeline::samples_by_clock(const Look& now) const noexcept {
                                             : SamplePace::at_least_one(samples);
 }
 
-// False: the device has no clock, or it says nothing here.
+// False: there is no clock, or it is invalid here.
 bool Timeline::by_clock(const Frame& frame, const Look& now, Step& step) noexcept {
   if (!now.clocked) return false;
   if (!clock_is_wrong(now)) {
@@ -227,18 +227,19 @@ void Timeline::by_counter(const Frame& frame, const Look& now, Step& step) const
   const bool short_of = now.silent && claimed_s < now.elapsed_s - now.slack_s - kPrompt_s;
   const bool wrong = step.samples > 1 && (never_timed || short_of || now.contradicts(claimed_s));
   step.dt_s = static_cast<double>(step.samples) * pace_.nominal_s();
-  if (wrong && now.ahead == 1) {  // kept by the line while nobody read it, for all that is known
+  if (wrong && now.ahead == 1) {  // possibly buffered on the line while nobody read it
     step.samples = 1;
     step.dt_s = pace_.nominal_s();
   } else if (wrong) {
-    // Without a silence no device restarts: one damaged counter is nobody's, a few in a row are.
+    // Devices do not restart without a silence: one damaged counter is ignored, a few consecutive ones are
+    // not.
     step.out_of_turn = !now.silent && !never_timed && !frame.reopened && strays_ < kStrays;
     restart(now, step);
   }
 }
 
-// For a device with neither, or whose clock begins. Behind a silence a frame that comes by itself is prompt;
-// else the interval is what the line of due times advances by, spread over a few samples.
+// For a device with neither, or whose clock starts. After a silence a single frame is prompt; otherwise the
+// interval is the advance of the due times, smoothed over a few samples.
 void Timeline::by_elapsed(const Frame& frame, const Look& now, Step& step) noexcept {
   constexpr std::uint32_t kAlone = 2;
   const bool prompt = frame.reopened || (frame.at_once > 0 && frame.at_once <= kAlone);
@@ -253,7 +254,7 @@ void Timeline::by_elapsed(const Frame& frame, const Look& now, Step& step) noexc
   owed_s_ -= more_s;
 }
 
-// What the arrival of an accepted frame says about the frames behind it.
+// Updates due times and delays from an accepted frame's arrival.
 void Timeline::settle(const Frame& frame, const Look& now, Step& step) noexcept {
   const bool by_time = (now.clocked && !step.by_count) || step.restarted || !pace_.known();
   const double due_s = by_time ? step.dt_s : pace_.time_s(step.samples);
@@ -277,7 +278,7 @@ void Timeline::meet_arrival(const Frame& frame, const Look& now, Step& step) noe
   if (delay_) step.late_s = std::max(0.0, late_s);
 }
 
-// What comes late is delayed until that has drained, or come to stand.
+// A late frame counts as delayed until the delay drains or persists.
 void Timeline::judge_delay(const Frame& frame, const Look& now, double late_s, Step& step) noexcept {
   const bool shown = now.counted && now.ahead != 1;
   if ((now.silent && late_s > kSilence_s + scatter_s_) ||
@@ -290,13 +291,13 @@ void Timeline::judge_delay(const Frame& frame, const Look& now, double late_s, S
     end_delay(frame, now, late_s, step);
 }
 
-// It stands: the silence was a gap, or deliveries take longer from its end on.
+// The delay persists: the silence was a gap, or deliveries take longer from now on.
 void Timeline::end_delay(const Frame& frame, const Look& now, double late_s, Step& step) noexcept {
   const double round_s = now.counted ? pace_.time_s(modulus_) : late_s;
   const double slack = slack_s(late_s), lost = std::round(late_s / round_s);
   const bool whole = now.counted && lost >= 1.0 && std::abs(lost * round_s - late_s) <= slack;
   const double usual_s = now.clocked ? kLatest_s : now.counted ? std::min(round_s - slack, kLatest_s) : 0.0;
-  // The stamps of a log are a wall clock's: where the device counts on, that was set.
+  // Stamps of a log are of a wall clock, which was set if the device's counter continues.
   const bool one_by_one = !delay_->shown && !(whole && late_s < kNoSetting_s);
   const bool set = frame.recorded && (now.clocked ? !delay_->shown : now.counted && one_by_one);
   delay_.reset();
@@ -310,8 +311,8 @@ void Timeline::end_delay(const Frame& frame, const Look& now, double late_s, Ste
   step.by_count = now.clocked;
 }
 
-// Nothing arrives before it was measured: the line of due times is the earliest that arrivals allow. It follows
-// slowly what comes later, for the device's crystal is another one.
+// Frames do not arrive before they were measured: the due times follow the earliest arrivals, and slowly
+// later ones, because crystals differ.
 void Timeline::follow(double late_s, std::int64_t arrival_ns) noexcept {
   constexpr double kFollows = 1.0 / 256.0, kForgets = 1.0 - 1.0 / 1024.0;
   if (late_s < -(kPrompt_s + scatter_s_) && ++early_ < kEarly) return;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a device took each of its frames, decided once for the daemon and for every reader of recordings.
+// Sample times of a device's frames, for the daemon and for all readers of recordings.
 //
-// The rule. Device time where there is one and it is not ahead of the elapsed time. Else the counter, with as
-// many rollovers as bring it nearest to the elapsed time. Else, where the two contradict each other, the
-// elapsed time and a gap of as many samples as that says: the device restarted.
-//   - Elapsed time is arrival time on an unslewed clock, counted from when the frame before was due: a frame
-//     that was delayed on its way shortens the next interval and no other.
-//   - A silence that the counter does not show is a delayed delivery until the frames behind it come at their
-//     pace for kStands_s. Then it is a gap, if it is longer than a rollover or than any delivery takes.
-//   - A frame whose counter or stamp goes back by little, without a silence, is a duplicate or was overtaken.
-//   - A stamp of arrival that is too early by itself moves nothing: kEarly of them in a row do.
+// Rule: device time if there is one and it does not exceed the elapsed time. Else the counter, with the
+// number of rollovers that is nearest to the elapsed time. If counter and elapsed time contradict each
+// other, the device restarted, and the gap has as many samples as the elapsed time gives.
+//   - Elapsed time is by arrivals on an unslewed clock, from the time when the previous frame was due: a
+//   delayed frame shortens only the next interval.
+//   - A silence that the counter does not show is a delayed delivery until the next frames arrive at their
+//   pace for kStands_s. Then it is a gap, if it is longer than a rollover or than any delivery.
+//   - A counter or stamp that goes back slightly, without a silence, is a duplicate or was overtaken.
+//   - A single early arrival stamp has no effect; kEarly consecutive ones have.
 #pragma once
 
 #include <cstdint>
@@ -29,55 +29,55 @@ class Timeline {
     bool counts = false;                     // it has a counter
     std::uint32_t sequence = 0;              // as sent
     bool clocked = false;                    // it has a stamp of the device's clock
-    std::int64_t stamp_ns = 0, wrap_ns = 0;  // as sent; it rolls over after wrap_ns, 0: never
+    std::int64_t stamp_ns = 0, wrap_ns = 0;  // as sent; rolls over after wrap_ns, 0: never
     std::int64_t arrival_ns = 0;             // on an unslewed clock; 0: unknown
     bool recorded = false;                   // by a log, whose clock may have been set
     std::uint32_t at_once = 0;               // samples in the same read; 0: unknown
-    bool reopened = false;                   // the device was closed and opened since the frame before
+    bool reopened = false;                   // the device was reopened since the previous frame
     std::span<const double> values;
   };
   struct Step {
-    std::uint64_t samples = 1;  // since the frame before
-    double dt_s = 0.0;          // they took
+    std::uint64_t samples = 1;  // since the previous frame
+    double dt_s = 0.0;          // time of these samples
     bool gap = false;
-    bool restarted = false;    // counter or clock jumped: the device was switched off and on
-    bool out_of_turn = false;  // a duplicate, overtaken, or of another device: dropped, all else is unset
-    bool clock_moved = false;  // deliveries take longer from here on: labels follow, no sample is missing
-    double late_s = 0.0;       // delayed by this much on its way; its arrival tells nothing of its time
-    bool by_count = false;     // dt_s is not what time_ns moved by
+    bool restarted = false;    // counter or clock jumped: the device restarted
+    bool out_of_turn = false;  // a duplicate, overtaken, or of another device: dropped, the rest is unset
+    bool clock_moved = false;  // deliveries take longer from now on: labels move, no sample is missing
+    double late_s = 0.0;       // delay of the delivery; its arrival does not give its time
+    bool by_count = false;     // dt_s is not the change of time_ns
     bool clock_set = false;    // because the device's clock was set while it measured
-    bool ambiguous = false;    // missing samples, or its clock was set: nothing known tells which
-    std::int64_t time_ns = 0;  // the device's clock over its rollovers
+    bool ambiguous = false;    // missing samples, or the clock was set; undecidable
+    std::int64_t time_ns = 0;  // device's clock, unwrapped
   };
 
-  // modulus: the counter rolls over after it; 0: the device has none. rate_hz: nominal; 0: unknown.
+  // modulus: of the counter; 0: none. rate_hz: nominal; 0: unknown.
   Timeline(std::uint64_t modulus, double rate_hz) noexcept;
 
-  // The first frame, or one that does not join those before. Returns its Step::time_ns.
+  // For the first frame, or one that does not continue the previous ones. Returns Step::time_ns.
   std::int64_t first(const Frame& frame) noexcept;
-  // The next. No allocation, no exception.
+  // For each further frame. No allocation, no exception.
   Step next(const Frame& frame) noexcept;
-  // The device's clock has stood still while it measured: only the sum of its steps tells time.
+  // The device's clock stood still while it measured: only the sum of its steps is valid.
   [[nodiscard]] bool clock_stood() const noexcept { return ticks_.stood(); }
-  // The sequence runs to and fro: two devices send on one line, and no frame is accepted.
+  // The sequence alternates: two devices send on one line, and frames are dropped.
   [[nodiscard]] bool two_devices() const noexcept { return two_.found(); }
 
  private:
-  // The frame at hand against the one before.
+  // The present frame relative to the previous one.
   struct Look {
-    bool counted = false, clocked = false;  // there is a count, a time of the device to go by
-    bool timed = false;                     // elapsed times tell something
-    bool silent = false;                    // nothing came for so long that the device may have been off
-    double elapsed_s = 0.0;                 // since the frame before was due
-    double quiet_s = 0.0;                   // since any frame came
-    double slack_s = 0.0;                   // to what elapsed_s is known
-    std::uint64_t ahead = 1;                // of the counter, less rollovers
-    std::uint64_t counted_samples = 1;      // with them
-    double passed_s = 0.0;                  // of the device's clock
+    bool counted = false, clocked = false;  // a count, or a device time, is available
+    bool timed = false;                     // elapsed times are valid
+    bool silent = false;                    // nothing arrived for so long that the device may have been off
+    double elapsed_s = 0.0;                 // since the previous frame was due
+    double quiet_s = 0.0;                   // since any frame arrived
+    double slack_s = 0.0;                   // uncertainty of elapsed_s
+    std::uint64_t ahead = 1;                // by the counter, without rollovers
+    std::uint64_t counted_samples = 1;      // including rollovers
+    double passed_s = 0.0;                  // by the device's clock
     std::int64_t time_ns = 0;
     std::uint64_t digest = 0;
 
-    // claimed_s is more than the elapsed time holds.
+    // True if claimed_s exceeds the elapsed time.
     [[nodiscard]] bool contradicts(double claimed_s) const noexcept;
   };
   struct Last {
@@ -86,11 +86,11 @@ class Timeline {
     std::int64_t stamp_ns = 0, time_ns = 0;
     std::uint64_t digest = 0;
   };
-  // A silence that is not decided yet.
+  // An undecided silence.
   struct Delay {
-    bool shown = false;         // the counter shows that samples are missing in it
-    double least_late_s = 0.0;  // since it began
-    std::int64_t least_ns = 0;  // when that was last undercut
+    bool shown = false;         // the counter shows missing samples in it
+    double least_late_s = 0.0;  // since its start
+    std::int64_t least_ns = 0;  // when that last decreased
   };
   using Had = RecentFrames::Had;
 
@@ -122,11 +122,11 @@ class Timeline {
   RecentFrames recent_;
   Last last_;
   std::int64_t due_ns_ = 0;     // when the last frame was due; 0: no arrival is known
-  std::int64_t seen_ns_ = 0;    // when any frame last arrived, accepted or not; 0: unknown
-  double owed_s_ = 0.0;         // by which due_ns_ moved and which no step has reported
-  int early_ = 0, strays_ = 0;  // frames in a row
+  std::int64_t seen_ns_ = 0;    // last arrival of any frame, accepted or not; 0: unknown
+  double owed_s_ = 0.0;         // shift of due_ns_ that no step has reported
+  int early_ = 0, strays_ = 0;  // consecutive frames
   std::optional<Delay> delay_;
-  double scatter_s_ = 0.0;  // most that deliveries are late by, of late
+  double scatter_s_ = 0.0;  // recent largest lateness of deliveries
   double each_s_ = 0.0;     // of the last counted sample by the device's clock
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Two devices on one line or bus: each counts for itself, so the sequence runs to and fro between two counts
-// that each grow by one. Neither can be chosen.
+// Detects two devices on one line or bus: the sequence alternates between two counts that each grow by one.
+// Neither can be chosen.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@ class TwoDevices {
  public:
   [[nodiscard]] bool found() const noexcept { return found_; }
   [[nodiscard]] bool suspected() const noexcept { return crossed_ > 0; }
-  // The next frame's count. own: it is of the device that is followed though it does not continue its count.
+  // Adds the next frame's count. own: it is of the tracked device although it does not continue its count.
   void saw(std::uint32_t sequence, std::uint64_t modulus, bool own) noexcept {
     const auto continues = [&](std::uint32_t one) { return (one + std::uint64_t{1}) % modulus == sequence; };
     if (sequence == last_) return;
@@ -30,11 +30,11 @@ class TwoDevices {
   }
 
  private:
-  static constexpr int kShows = 32;  // changes from one count to another: none of one device by chance
-  static constexpr int kGone = 256;  // frames in order: the other device has been unplugged
+  static constexpr int kShows = 32;  // changes between counts that one device does not make by chance
+  static constexpr int kGone = 256;  // consecutive frames: the other device was unplugged
 
   std::uint32_t last_ = 0;
-  std::array<std::uint32_t, 3> ends_{};  // of the last runs that each went on by one
+  std::array<std::uint32_t, 3> ends_{};  // of the last runs of consecutive counts
   int plain_ = 0, crossed_ = 0;
   bool found_ = false;
 };
