@@ -102,7 +102,7 @@ bool Housekeeping::open_all() {
     try {
       sensor->parts.pipeline->open();
       any = sensor->open = true;
-    } catch (const DeviceTaken&) {
+    } catch (const DeviceInUse&) {
       throw;
     } catch (const std::exception& error) {
       sensor->log->error("{}", error.what());

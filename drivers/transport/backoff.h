@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// When to try again to open a device that is gone: at once, then ever less often, but often enough that a
-// device that comes back is in use again well within a second.
+// Times of attempts to reopen a device: at once, then at growing intervals of at most 100 ms, so that a
+// returning device is used within a second.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@ class Backoff {
  public:
   static constexpr std::int64_t kFirst_ns = 10'000'000, kLongest_ns = 100'000'000;
 
-  // The device went away at `now_ns`.
+  // The device disappeared at `now_ns`.
   void restart(std::int64_t now_ns) {
     pause_ns_ = kFirst_ns;
     next_ns_ = now_ns;

@@ -10,7 +10,7 @@
 namespace ifog {
 namespace {
 
-// Two clocks read one after the other differ by as long as the thread was delayed in between.
+// Two clocks read in sequence differ by the thread's delay between.
 constexpr std::int64_t kSame_ns = 50'000;
 constexpr int kTries = 5;
 
@@ -20,14 +20,13 @@ std::int64_t clock_ns(clockid_t clock) noexcept {
   return static_cast<std::int64_t>(now.tv_sec) * 1'000'000'000 + now.tv_nsec;
 }
 
-// A slewed clock gains or loses at most this against the crystal (chrony's maxslewrate, a twelfth).
+// Limit of a slewed clock's error rate (chrony's maxslewrate is 1/12).
 constexpr std::int64_t kSlews = 8;
 constexpr std::int64_t kShortestSleep_ns = 1'000'000;
 constexpr std::int64_t kLook_ns = 1'000'000'000;
 
-// Time that the machine has slept since it was switched on: read where CLOCK_BOOTTIME has run ahead of
-// the crystal by more than slewing can make of the time between. Both ends of the interval are known to be
-// right, however long the thread was delayed between two readings.
+// Time asleep since boot: updated if CLOCK_BOOTTIME has gained more on the crystal than slewing could
+// explain. Both ends of the interval are valid, even if the thread was delayed between two readings.
 class TimeAsleep {
  public:
   std::int64_t at(std::int64_t raw_ns) noexcept {
@@ -65,7 +64,7 @@ std::int64_t unslewed_ns() noexcept {
   return raw_ns + asleep.at(raw_ns);
 }
 
-// Wall clock less the unslewed one, of a few tries the one with the least delay, and how far off it may be.
+// Wall clock - unslewed clock, from the try with the least delay, and its uncertainty.
 struct WallLess {
   std::int64_t ns, doubt_ns;
 };
@@ -88,7 +87,7 @@ const WallLess& at_start() noexcept {
 }
 std::int64_t epoch_ns() noexcept { return at_start().ns; }
 
-// Taken when the process starts, not at the first sample.
+// At process start, not at the first sample.
 [[maybe_unused]] const std::int64_t taken_at_start = epoch_ns();
 
 }  // namespace
@@ -115,8 +114,8 @@ void KernelStamps::begin(std::int64_t realtime, std::int64_t arrival) noexcept {
   now_ns_ = arrival;
   before_ns_ = started_ ? after_ns_ : realtime - arrival;
   after_ns_ = realtime - arrival;
-  // Until a stamp says otherwise what waited was stamped before the clock was set. What slewing makes of the
-  // time between is no setting.
+  // Without other evidence waiting data were stamped before the clock was set. Slewing is not counted as
+  // setting.
   const std::int64_t slewed_ns = (arrival - std::exchange(begun_ns_, arrival)) / kSlews;
   stepped_ = std::abs(after_ns_ - before_ns_) <= kSame_ns + slewed_ns;
   if (!started_) latest_ns_ = INT64_MIN;
@@ -129,7 +128,7 @@ std::int64_t KernelStamps::on_arrival_clock(std::int64_t stamp_ns) noexcept {
   if (!stepped_ && !fits(time)) {
     stepped_ = true;
     time = stamp_ns - after_ns_;
-    // Set more than once while it waited: nothing is known but that it is here.
+    // Set several times while it waited: only the present time is known.
     if (!fits(time)) time = now_ns_;
   }
   time = std::min(time, now_ns_);

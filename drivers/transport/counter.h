@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A counter with one writer and any number of readers. Relaxed: it says how much happened and orders nothing,
-// so a reader may see one counter ahead of another that was raised before it, by what is under way.
+// Counter with one writer and any number of readers. Relaxed memory order: a reader may see counters in
+// another order than they were changed.
 #pragma once
 
 #include <atomic>
@@ -10,7 +10,7 @@ namespace ifog {
 
 class Counter {
  public:
-  // One writer: a plain load and store do, no locked instruction.
+  // One writer: load and store suffice, without a locked instruction.
   void add(std::uint64_t n) noexcept { set(value() + n); }
   void set(std::uint64_t n) noexcept { count_.store(n, std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t value() const noexcept { return count_.load(std::memory_order_relaxed); }

@@ -30,7 +30,7 @@ ReceiveControl receive_control(const msghdr& message) noexcept {
     if (c->cmsg_type == SCM_TIMESTAMPING && c->cmsg_len >= CMSG_LEN(sizeof(scm_timestamping))) {
       scm_timestamping stamps{};
       std::memcpy(&stamps, CMSG_DATA(c), sizeof stamps);
-      said.arrival_ns = ns(stamps.ts[0]);  // [0] is software; [2], hardware, runs on a clock of its own
+      said.arrival_ns = ns(stamps.ts[0]);  // [0] is software; [2], hardware, has its own clock
     } else if (c->cmsg_type == SCM_TIMESTAMPNS && c->cmsg_len >= CMSG_LEN(sizeof(timespec))) {
       timespec stamp{};
       std::memcpy(&stamp, CMSG_DATA(c), sizeof stamp);
@@ -49,7 +49,7 @@ void ask_for_room(int fd, std::size_t wanted, const std::string& name, std::stri
   set(fd, SO_RCVBUF, bytes);
   int got = 0;
   socklen_t size = sizeof got;
-  // The kernel doubles what it is asked for.
+  // The kernel doubles the requested size.
   if (getsockopt(fd, SOL_SOCKET, SO_RCVBUF, &got, &size) != 0 || got / 2 < bytes)
     warn(warning, name,
          "receive buffer of " + std::to_string(got / 2) + " bytes instead of " + std::to_string(bytes) +

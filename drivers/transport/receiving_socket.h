@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a socket that receives is asked for (room, arrival times, a count of what was dropped), and what the
-// kernel then says with each packet. For CAN, UDP and TCP alike.
+// Options of a receiving socket (buffer size, arrival times, count of drops), and the kernel's data for each
+// packet. For CAN, UDP and TCP.
 #pragma once
 
 #include <sys/socket.h>
@@ -14,28 +14,28 @@
 
 namespace ifog {
 
-// Room in a msghdr for all that can be said: a time stamp of either kind and the drop counter.
+// Space in a msghdr for a time stamp of either kind and the drop counter.
 struct ControlRoom {
   alignas(cmsghdr) unsigned char bytes[CMSG_SPACE(sizeof(scm_timestamping)) + CMSG_SPACE(sizeof(timespec)) +
                                        CMSG_SPACE(sizeof(std::uint32_t))];
 };
 
 struct ReceiveControl {
-  std::int64_t arrival_ns = 0;  // CLOCK_REALTIME; 0: not said
+  std::int64_t arrival_ns = 0;  // CLOCK_REALTIME; 0: none
   bool has_drops = false;
   std::uint32_t drops = 0;  // since the socket was opened, modulo 2^32
 };
 
-// `message` as recvmsg filled it.
+// message: as filled by recvmsg.
 ReceiveControl receive_control(const msghdr& message) noexcept;
 
-// Room for what waits to be read, as the kernel counts it. What net.core.rmem_max forbids needs
-// CAP_NET_ADMIN; less than `wanted` is added to `warning`. `name` is the device's, for that.
+// Sets the receive buffer, as the kernel counts it. Exceeding net.core.rmem_max needs CAP_NET_ADMIN; if less
+// than `wanted` is granted this is added to `warning`, with the device's `name`.
 void ask_for_room(int fd, std::size_t wanted, const std::string& name, std::string& warning);
-// The kernel's time of arrival with each packet (SO_TIMESTAMPING, software; else SO_TIMESTAMPNS); none is
-// added to `warning`.
+// Requests the kernel's arrival time for each packet (SO_TIMESTAMPING, software; else SO_TIMESTAMPNS);
+// failure is added to `warning`.
 void ask_for_times(int fd, const std::string& name, std::string& warning);
-// With each packet, how many before it found no room (SO_RXQ_OVFL).
+// Requests the number of dropped packets with each packet (SO_RXQ_OVFL).
 void ask_for_drops(int fd) noexcept;
 
 }  // namespace ifog

@@ -10,11 +10,11 @@
 
 namespace ifog {
 
-DeviceTaken::DeviceTaken(const std::string& device)
+DeviceInUse::DeviceInUse(const std::string& device)
     : OpenError(device, "another process reads it", EBUSY, "a device or FIFO of this daemon's own") {}
 
 void claim(int fd, const std::string& device) {
-  if (::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) throw DeviceTaken(device);
+  if (::flock(fd, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) throw DeviceInUse(device);
 }
 
 void SoleReader::take(int fd, const std::string& device) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A FIFO or a serial line gives each byte to one reader: a second process at it would leave both with half.
+// Locks a FIFO or serial line for one reader: of two processes each would get a part of the bytes.
 #pragma once
 
 #include <string>
@@ -8,16 +8,16 @@
 
 namespace ifog {
 
-// Another process has said that it reads the device.
-struct DeviceTaken : OpenError {
-  explicit DeviceTaken(const std::string& device);
+// Another process has locked the device.
+struct DeviceInUse : OpenError {
+  explicit DeviceInUse(const std::string& device);
 };
 
-// Says so of what `fd` has open, for as long as it is open. Throws DeviceTaken.
+// Locks what `fd` has open, for as long as it is open. Throws DeviceInUse.
 void claim(int fd, const std::string& device);
 
-// Says so of what is open, until it is released, however often it is opened meanwhile: between two openings
-// nobody else gets in. What many may read, and a file system that knows no locks, is left as it is.
+// Keeps the lock until it is released, even if the device is closed and reopened. Devices with several
+// readers, and file systems without locks, are not locked.
 class SoleReader {
  public:
   SoleReader() = default;
@@ -25,13 +25,13 @@ class SoleReader {
   SoleReader(const SoleReader&) = delete;
   SoleReader& operator=(const SoleReader&) = delete;
 
-  // Claims what `fd` has open, which may be what is held already. Throws DeviceTaken, and holds what it held.
+  // Locks what `fd` has open, possibly again. Throws DeviceInUse, keeping the previous lock.
   void take(int fd, const std::string& device);
-  // For a child, too, that has inherited the descriptor.
+  // Also valid for a child process that has inherited the descriptor.
   void release() noexcept;
 
  private:
-  int held_ = -1;  // a descriptor of its own of what was opened first
+  int held_ = -1;  // own descriptor of what was opened first
 };
 
 }  // namespace ifog

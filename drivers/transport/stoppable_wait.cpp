@@ -18,13 +18,12 @@ namespace {
 
 constexpr long kRepeat_ns = 1'000'000;
 
-// What the signal's handler sees of the thread it interrupts: lock-free atomics, as the standard asks for.
+// State of the interrupted thread for the signal handler: lock-free atomics, as the standard requires.
 thread_local std::atomic<int> t_number{-1};
 thread_local std::atomic<bool> t_in_call{false}, t_rang{false};
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
 
-// The system's own calls: glibc's take a timer_t, which is a pointer, and a pointer that outlives its timer
-// cannot be given to ring().
+// System calls instead of glibc's, whose timer_t is a pointer and could be dangling in ring().
 bool set_timer(int number, int flags, const itimerspec& when) noexcept {
   return syscall(SYS_timer_settime, number, flags, &when, nullptr) == 0;
 }
@@ -32,8 +31,8 @@ bool set_timer(int number, int flags, const itimerspec& when) noexcept {
 void on_signal(int /*signal*/) {
   const int before = errno;
   t_rang.store(true, std::memory_order_relaxed);
-  // At its call the thread may have been just about to enter it: the next signal finds it there. Elsewhere it
-  // will look before it enters.
+  // A thread that was about to enter its call is reached by the next signal. Otherwise it checks before
+  // entering.
   const int number = t_number.load(std::memory_order_relaxed);
   if (number >= 0 && !t_in_call.load(std::memory_order_relaxed)) set_timer(number, 0, itimerspec{});
   errno = before;
@@ -41,7 +40,7 @@ void on_signal(int /*signal*/) {
 
 bool handle_signal() noexcept {
   struct sigaction action {};
-  action.sa_handler = on_signal;  // without SA_RESTART: a call that is interrupted ends
+  action.sa_handler = on_signal;  // without SA_RESTART, so that an interrupted call ends
   sigemptyset(&action.sa_mask);
   return sigaction(SIGURG, &action, nullptr) == 0;
 }
@@ -101,7 +100,7 @@ void ReadAlarm::off() noexcept {
 
 bool ReadAlarm::enter() noexcept {
   t_in_call.store(true, std::memory_order_relaxed);
-  // The handler runs in this thread: nothing but the compiler could put the look before the word.
+  // The handler runs in this thread, so only the compiler must not reorder.
   std::atomic_signal_fence(std::memory_order_seq_cst);
   if (!t_rang.load(std::memory_order_relaxed)) return true;
   leave();
@@ -128,7 +127,7 @@ StoppableWait::StoppableWait() : event_(eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) 
 StoppableWait::~StoppableWait() { close(event_); }
 
 void StoppableWait::stop() noexcept {
-  const int before = errno;  // a signal handler leaves errno as it was
+  const int before = errno;  // a signal handler must preserve errno
   stopped_.store(true);
   const std::uint64_t one = 1;
   [[maybe_unused]] const ssize_t written = write(event_, &one, sizeof one);
@@ -150,7 +149,7 @@ StoppableWait::Wake StoppableWait::wait(int fd, short events, std::int64_t until
       happened = fds[1].revents;
       return Wake::ready;
     }
-    // Interrupted by a signal: wait for the rest.
+    // Interrupted by a signal: waits for the remaining time.
   }
 }
 
@@ -160,7 +159,7 @@ StoppableWait::Entry StoppableWait::enter_call(std::int64_t until_ns) noexcept {
   do {
     if (!alarm.is_set(until_ns) && (until_ns <= monotonic_ns() || !alarm.set(until_ns)))
       return Entry::poll_first;
-    // After the alarm is set: what stop() rings from now on is not set again.
+    // After the alarm is set, so that stop()'s ringing is not overwritten.
     if (stopped_.load()) return Entry::stopped;
   } while (!alarm.enter());
   return Entry::call;

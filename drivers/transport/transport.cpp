@@ -10,7 +10,7 @@
 namespace ifog {
 namespace {
 
-// How long open() waits for the other end's answer.
+// Time that open() waits for an answer.
 constexpr std::int64_t kOpenLimit_ns = 1'000'000'000;
 
 }  // namespace
@@ -79,7 +79,7 @@ bool Transport::regain(std::int64_t until_ns) noexcept {
     }
     link_.open = true;
     link_.since_ns = monotonic_ns();
-    backlog_ = {};  // nothing piles up in a device that is away
+    backlog_ = {};  // no backlog while the device is away
     enter(TransportState::open, 0);
     if (std::exchange(link_.once, true)) {
       link_.returning = true;
@@ -93,8 +93,7 @@ void Transport::lost(int reason) noexcept {
   link_.open = false;
   enter(TransportState::gone, reason);
   const std::int64_t now = monotonic_ns();
-  // One that opens and at once goes away again (a busy server, a line that only errs) is not tried
-  // without a pause.
+  // A device that opens and disappears at once (a busy server, a faulty line) is retried after a pause.
   if (now - link_.since_ns > Backoff::kLongest_ns)
     backoff_.restart(now);
   else

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sensor's reader thread reads from: a serial line, a CAN interface, the network or a file, behind one
-// interface.
+// Source of a sensor's reader thread: serial line, CAN interface, network or file.
 //
 // Threads: open() and read() belong to the reader thread. stop(), stopped(), state(), reason(), counters(),
 // fault() and notices() may be called from any thread, stop() also from a signal handler.
@@ -26,27 +25,26 @@
 
 namespace ifog {
 
-// What one read() brought. Points into the transport: valid until the next read().
+// Data of one read(). Refers to the transport: valid until the next read().
 struct Delivery {
-  std::span<const std::uint8_t> bytes;  // a byte transport
-  // Arrival of the last of `bytes`; 0: not known, because this process was delayed and read late what
-  // may have come at any time since.
+  std::span<const std::uint8_t> bytes;  // of a byte transport
+  // Arrival of the last of `bytes`; 0: unknown, because this process was delayed and read late.
   std::int64_t arrival_ns = 0;
-  std::int64_t read_ns = 0;                // when it was read, arrival clock
-  bool stamped = false;                    // by the kernel: arrival_ns is right however late it was read
-  std::span<const ifog_can_frame> frames;  // a CAN transport; each frame has its own time
-  bool restarted = false;  // the first since the device was opened again: forget half-read frames
+  std::int64_t read_ns = 0;                // time of the read, arrival clock
+  bool stamped = false;                    // by the kernel: arrival_ns is right even after a late read
+  std::span<const ifog_can_frame> frames;  // of a CAN transport; each frame has its own time
+  bool restarted = false;                  // the first since the device was reopened: discard partial frames
 
   [[nodiscard]] bool empty() const { return bytes.empty() && frames.empty(); }
 };
 
-// A CAN frame that a sensor wants.
+// A wanted CAN frame.
 struct CanId {
   std::uint32_t id = 0;
   bool extended = false;
 };
 
-// A device that cannot be opened: one line with the device, the system's reason and what was expected.
+// A device cannot be opened: one line with the device, the system's reason and what was expected.
 struct OpenError : std::runtime_error {
   OpenError(const std::string& device, const std::string& what, int error, const std::string& expected);
   int reason;  // errno
@@ -54,92 +52,91 @@ struct OpenError : std::runtime_error {
 
 enum class TransportState {
   open,
-  gone,   // the device went away, or open() failed: read() keeps trying to get it back
-  ended,  // a file is at its end, or cannot be read any further (reason() is not 0): nothing more will come
+  gone,   // the device disappeared, or open() failed: read() keeps trying
+  ended,  // end of a file, or a read error (reason() is not 0): no more data
 };
 
 // Counters only grow.
 struct TransportCounters {
   std::uint64_t bytes = 0;         // delivered
   std::uint64_t frames = 0;        // delivered, CAN
-  std::uint64_t kernel_drops = 0;  // frames, datagrams or bytes the kernel had no room for
+  std::uint64_t kernel_drops = 0;  // frames, datagrams or bytes dropped by the kernel
   std::uint64_t error_frames = 0;  // CAN error frames; damaged serial bytes, overruns, breaks
-  std::uint64_t reopened = 0;      // times the device came back
-  std::uint64_t malformed = 0;  // lines of a log that are no frame, a file cut off in the middle, datagrams
-                                // from somebody else; see fault()
+  std::uint64_t reopened = 0;      // number of reopenings
+  std::uint64_t malformed = 0;     // invalid lines of a log, a truncated file, datagrams
+                                   // from other senders; see fault()
 };
 
-// The latest kind of fault in what was read, where it first was, which is where to begin to look; for one
-// line in the log: "PATH:LINE: WHAT".
+// Latest kind of fault in the data and its first position, for the log: "PATH:LINE: WHAT".
 struct TransportFault {
-  const char* what = nullptr;  // static text; nullptr: none so far
-  std::uint64_t line = 0;      // 0: not a matter of lines
-  std::string_view text{};     // what stands there, its beginning; lives as long as the transport
+  const char* what = nullptr;  // static text; nullptr: none
+  std::uint64_t line = 0;      // 0: not line-based
+  std::string_view text{};     // beginning of the text there; lives as long as the transport
 };
 
 class Transport {
  public:
-  // Throws std::runtime_error when the system has no eventfd left.
+  // Throws std::runtime_error if no eventfd is available.
   explicit Transport(std::string name) : name_(std::move(name)) {}
   virtual ~Transport() = default;
   Transport(const Transport&) = delete;
   Transport& operator=(const Transport&) = delete;
 
-  // `opening` is sent each time the device opens. Throws OpenError. The transport is then `gone`: whoever
-  // wants to wait for a device that is absent continues with read().
+  // `opening` is sent whenever the device opens. Throws OpenError; then the transport is `gone`, and read()
+  // waits for the device.
   void open(std::span<const std::uint8_t> opening);
 
-  // Waits until something arrives, `timeout` has passed or stop() is called, and returns what is there, empty
-  // for nothing. Never throws and, while the device is open, never allocates.
+  // Waits until data arrive, `timeout` has passed or stop() is called; returns the data, possibly empty.
+  // Never throws; does not allocate while the device is open.
   Delivery read(std::chrono::nanoseconds timeout) noexcept;
 
-  // After the last read(): counts what the kernel has still to say of bytes and frames it had no room for.
+  // To be called after the last read(): counts the kernel's last drops.
   void close_books() noexcept {
     if (link_.open) count_losses();
   }
 
-  // True: the source keeps until it is read, so a reader whose ring is full stops reading rather than lose
-  // samples.
+  // True: the source buffers until it is read, so a reader whose ring is full may stop reading without
+  // losses.
   [[nodiscard]] virtual bool holds_back() const { return false; }
-  // True: arrival times are those of a recording, times of day of another day included.
+  // True: arrival times are from a recording, possibly of another day.
   [[nodiscard]] virtual bool times_are_recorded() const { return false; }
 
-  // Ends a waiting read() at once and every later one immediately.
+  // Ends the present read() and all later ones.
   void stop() noexcept { waiting_.stop(); }
   [[nodiscard]] bool stopped() const { return waiting_.stopped(); }
 
   [[nodiscard]] const std::string& name() const { return name_; }
-  // Whoever sees a state sees its reason, too: errno of the latest failure.
+  // A state is published after its reason: errno of the latest failure.
   [[nodiscard]] TransportState state() const { return state_.load(std::memory_order_acquire); }
   [[nodiscard]] int reason() const { return reason_.load(std::memory_order_relaxed); }
   [[nodiscard]] TransportCounters counters() const;
   [[nodiscard]] TransportFault fault() const;
-  // What opening the device, for the first time or again, said.
+  // Messages from opening the device.
   [[nodiscard]] Notices& notices() { return notices_; }
 
  protected:
   using Wake = StoppableWait::Wake;
   using Received = StoppableWait::Received;
 
-  // Opens the device, again if need be, and sends opening(). False: the other end has not answered when
-  // `until_ns` of CLOCK_MONOTONIC has passed or stop() was called; the next call waits on. Throws OpenError.
+  // (Re)opens the device and sends opening(). False: no answer until `until_ns` of CLOCK_MONOTONIC or stop();
+  // the next call continues. Throws OpenError.
   virtual bool connect(std::string& warning, std::int64_t until_ns) = 0;
-  // read() of an open device, until `until_ns` of CLOCK_MONOTONIC. Calls lost(), left() or end() when there
-  // is no more.
+  // read() of an open device, until `until_ns` of CLOCK_MONOTONIC. Calls lost(), left() or end() when the
+  // data end.
   virtual Delivery receive(std::int64_t until_ns) noexcept = 0;
-  // Brings the counters of kernel drops and error frames up to what the kernel has counted against the open device.
+  // Updates the counters of kernel drops and error frames.
   virtual void count_losses() noexcept {}
-  // Whether receive() would find something at once.
+  // True if receive() would return data at once.
   [[nodiscard]] virtual bool more_waits() noexcept { return false; }
 
   [[nodiscard]] std::span<const std::uint8_t> opening() const { return opening_; }
-  // The device went away: connect() will be tried again.
+  // The device disappeared: connect() will be tried again.
   void lost(int reason) noexcept;
-  // It is open but nobody is at its other end until the next delivery.
+  // It is open, but without a sender until the next delivery.
   void left() noexcept;
   void end(int reason) noexcept { enter(TransportState::ended, reason); }
 
-  // Counts it as malformed, too. text: the line's.
+  // Also counts it as malformed. text: of the line.
   void report(const char* what, std::uint64_t line, std::string_view text = {}) noexcept;
 
   struct Counters {
@@ -154,9 +151,9 @@ class Transport {
   struct Link {
     std::int64_t since_ns = 0;  // of CLOCK_MONOTONIC
     bool open = false, once = false;
-    bool returning = false;  // the next delivery is the first since the device came back
+    bool returning = false;  // the next delivery is the first since the device was reopened
   };
-  // The first fault of each kind, written once and then published.
+  // First fault of each kind, written once before it is published.
   struct KindOfFault {
     TransportFault fault;
     std::array<char, 60> text{};
@@ -172,7 +169,7 @@ class Transport {
   Backoff backoff_;
   Link link_;
   Backlog backlog_;
-  // Relaxed: each stands for itself. A reader may see a state before its reason, which is words for a person.
+  // Relaxed: independent values. A reader may see a state before its reason, which is only for messages.
   std::atomic<TransportState> state_{TransportState::gone};
   std::atomic<int> reason_{0};
   Faults faults_;

@@ -16,7 +16,7 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kFramesAtOnce = 64;  // frames a system call
+constexpr std::size_t kFramesAtOnce = 64;  // frames per system call
 
 class CanTransport final : public Transport {
  public:
@@ -43,8 +43,8 @@ class CanTransport final : public Transport {
   CanSocket socket_;
   std::uint32_t drops_ = 0;
   bool blocks_ = false;
-  std::size_t filled_ = kFramesAtOnce;  // messages_ that are to be made ready
-  int leaving_ = 0;  // the interface went away with this errno; what waits in the socket is still read
+  std::size_t filled_ = kFramesAtOnce;  // number of messages_ to be prepared
+  int leaving_ = 0;  // errno of the interface's disappearance; waiting frames are still read
   KernelStamps stamps_;
   std::array<canfd_frame, kFramesAtOnce> raw_{};
   std::array<iovec, kFramesAtOnce> vectors_{};
@@ -57,7 +57,7 @@ bool CanTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   if (!opening().empty())
     throw OpenError(name(), "cannot send the driver's opening bytes", EOPNOTSUPP,
                     "a driver without them on CAN");
-  socket_.close();  // before another is opened: the interface may be a new one of the same name
+  socket_.close();  // before another is opened: it may be a new interface of the same name
   CanSocket fresh(settings_.interface);
   fresh.receive_only(settings_.ids, settings_.interface);
   socket_ = std::move(fresh);
@@ -98,10 +98,10 @@ Delivery CanTransport::receive(std::int64_t until_ns) noexcept {
   return {};
 }
 
-// What is in the socket: frames, or none and, where the interface is gone, why. ENETDOWN (set down) and
-// ENODEV (unplugged) are each said once; frames that came before are read after them.
+// Frames in the socket, or none and the reason why the interface is gone. ENETDOWN (set down) and ENODEV
+// (unplugged) are each reported once; earlier frames are read after them.
 int CanTransport::receive_waiting() noexcept {
-  constexpr int kErrors = 4;  // more than can be said of one socket
+  constexpr int kErrors = 4;  // more than one socket can report
   for (int errors = 0; errors < kErrors; ++errors) {
     const int n = receive_batch(MSG_DONTWAIT);
     if (n > 0) return n;
@@ -110,7 +110,7 @@ int CanTransport::receive_waiting() noexcept {
   return 0;
 }
 
-// False: it is no reason, only nothing there.
+// False: there are only no data.
 bool CanTransport::leaves_for(int error) noexcept {
   if (error == EINTR || error == EAGAIN) return false;
   leaving_ = error != 0 ? error : ENODEV;
@@ -118,18 +118,18 @@ bool CanTransport::leaves_for(int error) noexcept {
 }
 
 int CanTransport::receive_batch(int flags) noexcept {
-  // What the call before has written to.
+  // Resets the messages that the previous call used.
   for (std::size_t i = 0; i < filled_; ++i) {
     messages_[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
     messages_[i].msg_hdr.msg_flags = 0;
   }
   const int n = recvmmsg(socket_.fd(), messages_.data(), kFramesAtOnce, flags, nullptr);
-  // One that failed may have been begun.
+  // A failed message may be partly filled.
   filled_ = std::min(kFramesAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
   return n;
 }
 
-// With a frame the kernel says what it had no room for until then; after the last one it must be asked.
+// Each frame carries the count of drops before it; after the last one it must be requested.
 void CanTransport::count_losses() noexcept {
   std::array<std::uint32_t, SK_MEMINFO_VARS> info{};
   socklen_t size = sizeof info;
@@ -138,7 +138,7 @@ void CanTransport::count_losses() noexcept {
     count_drops(info[SK_MEMINFO_DROPS]);
 }
 
-// Modulo 2^32, as the kernel counts. A frame may say less than the socket: it waited since then.
+// Modulo 2^32, as in the kernel. A frame's count may be older than the socket's.
 void CanTransport::count_drops(std::uint32_t drops) noexcept {
   const std::uint32_t more = drops - drops_;
   if (more == 0 || more > UINT32_MAX / 2) return;

@@ -27,7 +27,7 @@ bool set_raw(int fd, int option, const Value& value) {
   return setsockopt(fd, SOL_CAN_RAW, option, &value, sizeof value) == 0;
 }
 
-// Everything about the interface that can be said before binding to it; returns its index.
+// Checks the interface before binding; returns its index.
 int checked_interface(int fd, const std::string& interface) {
   ifreq request{};
   if (interface.empty() || interface.size() >= IFNAMSIZ)
@@ -42,7 +42,7 @@ int checked_interface(int fd, const std::string& interface) {
   if (request.ifr_hwaddr.sa_family != ARPHRD_CAN)
     throw OpenError(interface, "cannot open", EPROTOTYPE, "a CAN interface, this one carries no CAN");
   ask(SIOCGIFFLAGS);
-  // Binding would work, but nothing would come.
+  // Binding would succeed, but nothing would arrive.
   if ((request.ifr_flags & IFF_UP) == 0)
     throw OpenError(interface, "cannot open", ENETDOWN,
                     "the interface up (ip link set " + interface + " up)");
@@ -86,7 +86,7 @@ void CanSocket::close() noexcept {
 
 void CanSocket::receive_only(std::span<const CanId> ids, const std::string& interface) const {
   std::vector<can_filter> filters;
-  // Remote frames carry no data: none is wanted.
+  // Remote frames carry no data and are not needed.
   for (const CanId& id : ids)
     filters.push_back({id.extended ? id.id | CAN_EFF_FLAG : id.id,
                        (id.extended ? CAN_EFF_MASK : CAN_SFF_MASK) | CAN_EFF_FLAG | CAN_RTR_FLAG});

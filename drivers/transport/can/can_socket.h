@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SocketCAN raw sockets: opening, and the two forms of a frame.
+// SocketCAN raw sockets: opening, and conversion of frames.
 #pragma once
 
 #include <linux/can.h>
@@ -13,11 +13,11 @@
 
 namespace ifog {
 
-// A non-blocking raw socket bound to an interface that is up, able to carry CAN FD. Owns it.
+// A non-blocking raw socket with CAN FD, bound to an interface that is up.
 class CanSocket {
  public:
   CanSocket() = default;
-  // Throws OpenError: no CAN in the kernel, no such interface, none that carries CAN, down.
+  // Throws OpenError: no CAN in the kernel, no such interface, not a CAN interface, down.
   explicit CanSocket(const std::string& interface);
   ~CanSocket() { close(); }
   CanSocket(const CanSocket&) = delete;
@@ -29,7 +29,7 @@ class CanSocket {
   [[nodiscard]] int fd() const { return fd_; }
   [[nodiscard]] bool is_open() const { return fd_ >= 0; }
 
-  // Only data frames of these ids (all, when empty), and every error frame. Throws OpenError.
+  // Receives only data frames of these ids (all if empty) and every error frame. Throws OpenError.
   void receive_only(std::span<const CanId> ids, const std::string& interface) const;
   void receive_nothing() const noexcept;
 
@@ -39,11 +39,10 @@ class CanSocket {
 
 enum class CanKind { data, remote, error, unknown };
 
-// `size` is what the socket returned: it tells classical frames from FD ones. Sets all but arrival_ns.
+// size: returned by the socket; it distinguishes classical from FD frames. Sets all but arrival_ns.
 CanKind from_socket(const canfd_frame& in, std::size_t size, ifog_can_frame& out) noexcept;
 
-// Returns the size to be sent. An FD length that no DLC stands for is padded with zeros to the next that one
-// does.
+// Returns the size to send. An FD length without a DLC is zero-padded to the next one.
 std::size_t to_socket(const ifog_can_frame& in, canfd_frame& out) noexcept;
 
 }  // namespace ifog

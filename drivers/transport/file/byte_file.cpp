@@ -25,7 +25,7 @@ bool is_gzip(int fd) {
 
 void ByteFile::open(const std::string& path) {
   const bool standard_input = path == "-";
-  // Without O_NONBLOCK the opening of a FIFO would wait for its writer, and nothing could end that wait.
+  // Without O_NONBLOCK opening a FIFO would wait for its writer and could not be stopped.
   const int fd =
       standard_input ? STDIN_FILENO : ::open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY);
   if (fd < 0) fail(path);
@@ -51,7 +51,7 @@ void ByteFile::open(const std::string& path) {
       ::close(fd);
       fail(path);
     }
-    gzdirect(gz);  // reads the header now: zlib's buffers are then there before the first fill()
+    gzdirect(gz);  // reads the header now, so that zlib's buffers are allocated before the first fill()
   }
   close_file();
   if (standard_input) sole_.release();
@@ -60,7 +60,7 @@ void ByteFile::open(const std::string& path) {
   owned_ = !standard_input;
   regular_ = S_ISREG(info.st_mode);
   fifo_ = S_ISFIFO(info.st_mode) && owned_;
-  // Another's standard input is left as it is.
+  // Flags of a foreign standard input are not changed.
   const int flags = fcntl(fd, F_GETFL);
   blocks_ = S_ISFIFO(info.st_mode) && flags >= 0 &&
             (owned_ ? fcntl(fd, F_SETFL, flags & ~O_NONBLOCK) == 0 : (flags & O_NONBLOCK) == 0);

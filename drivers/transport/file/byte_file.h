@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes of a file, a FIFO or the standard input in a fixed buffer: what is under the file transport.
+// Buffered bytes of a file, a FIFO or standard input, for the file transport.
 #pragma once
 
 #include <zlib.h>
@@ -17,10 +17,10 @@ class ByteFile {
  public:
   enum class Fill {
     more,       // bytes were added, or the buffer is full
-    none,       // nothing there now (poll fd()), or interrupted while it waited for some
-    end,        // the end of a file, or a FIFO's writer went away
-    error,      // errno says why
-    truncated,  // a gzip stream that ends early or is damaged
+    none,       // no data now (poll fd()), or interrupted while waiting
+    end,        // end of a file, or the FIFO's writer closed it
+    error,      // see errno
+    truncated,  // a truncated or damaged gzip stream
   };
 
   ByteFile() = default;
@@ -28,16 +28,16 @@ class ByteFile {
   ByteFile(const ByteFile&) = delete;
   ByteFile& operator=(const ByteFile&) = delete;
 
-  // Throws OpenError. A file open already stays open until the new one is: a FIFO so
-  // opened again loses nothing that a new writer has put in.
+  // Throws OpenError. An open file is closed only after the new one is open, so that a reopened FIFO loses
+  // nothing from a new writer.
   void open(const std::string& path);
   void close() noexcept;
   [[nodiscard]] bool is_open() const { return fd_ >= 0; }
   [[nodiscard]] bool is_fifo() const { return fifo_; }
-  // Readable when fill() may bring something; −1: always (a regular file).
+  // Readable if fill() may return data; −1: always (regular file).
   [[nodiscard]] int poll_fd() const { return regular_ ? -1 : fd_; }
 
-  // True: fill() waits until something is there, which only pipes are let.
+  // True: fill() waits for data (pipes only).
   [[nodiscard]] bool blocks() const { return blocks_; }
 
   // Reads once, without allocating.

@@ -20,7 +20,7 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kBatch = 64;  // frames a delivery
+constexpr std::size_t kBatch = 64;  // frames per delivery
 
 class FileTransport : public Transport {
  public:
@@ -49,14 +49,14 @@ class FileTransport : public Transport {
   [[nodiscard]] bool at_end() const { return at_end_; }
   [[nodiscard]] const Pace& pace() const { return pace_; }
 
-  // Adds to unread(), waiting until `until_ns` for it. False: nothing came, or the file is at its end.
+  // Adds to unread(), waiting until `until_ns`. False: no data, or end of file.
   bool fill(std::int64_t until_ns) noexcept;
-  // Waits until the recorded time is due; false when `until_ns` or stop() comes first.
+  // Waits until the recorded time is due; false if `until_ns` or stop() comes first.
   bool await(std::int64_t recorded_ns, std::int64_t until_ns) noexcept;
 
-  // A new file is open, nothing of it is read yet.
+  // Called for a newly opened file.
   virtual void begin() noexcept = 0;
-  // Takes one delivery from what is unread, empty when that is not enough for one.
+  // Returns one delivery from the unread bytes; empty if there are too few.
   virtual Delivery take(std::int64_t until_ns) noexcept = 0;
 
  private:
@@ -68,12 +68,12 @@ class FileTransport : public Transport {
   Pace pace_;
   int read_error_ = 0;
   bool at_end_ = false;
-  // Somebody has written since it was opened. Until then it is polled: reading a FIFO that no writer has
-  // opened yet looks like its end.
+  // Data have been written since it was opened. Until then it is polled, because reading a FIFO without a
+  // writer looks like its end.
   bool written_ = false;
 };
 
-// Nobody listens at the other end of a recording: opening() is not sent.
+// opening() is not sent to a recording.
 void FileTransport::reopen() {
   file_.open(settings_.path);
   at_end_ = written_ = false;
@@ -87,14 +87,14 @@ Delivery FileTransport::receive(std::int64_t until_ns) noexcept {
   return delivery;
 }
 
-// The reader has read all there was.
+// The end was reached.
 void FileTransport::finish() noexcept {
   if (!file_.is_fifo() || !settings_.await_writer || read_error_ != 0) {
     file_.close();
     end(read_error_);
     return;
   }
-  // The old descriptor would report its hang-up for ever: the next writer is awaited on a new one.
+  // The old descriptor would report its hang-up forever, so it is reopened.
   try {
     reopen();
     left();
@@ -152,7 +152,6 @@ bool FileTransport::await(std::int64_t recorded_ns, std::int64_t until_ns) noexc
   return waiting_.wait(-1, 0, std::min(due, until_ns), happened) != Wake::stopped && due <= until_ns;
 }
 
-// Raw bytes.
 class BytesFile final : public FileTransport {
  public:
   explicit BytesFile(FileSettings settings) : FileTransport(std::move(settings)) {
@@ -174,7 +173,7 @@ class BytesFile final : public FileTransport {
   }
 
   std::size_t block_;
-  std::size_t held_ = 0;  // of unread(), given out by the delivery before
+  std::size_t held_ = 0;  // part of unread() returned by the previous delivery
   std::int64_t opened_ns_ = 0;
   std::uint64_t delivered_ = 0;
 };
@@ -201,7 +200,6 @@ Delivery BytesFile::take(std::int64_t until_ns) noexcept {
   return delivery;
 }
 
-// A candump log.
 class CandumpFile final : public FileTransport {
  public:
   using FileTransport::FileTransport;
@@ -225,9 +223,9 @@ class CandumpFile final : public FileTransport {
   CandumpEntry entry_;
   CandumpClock clock_;
   CandumpBuses buses_;
-  bool refused_ = false;   // frames of two devices under one id: nothing more is read
-  bool pending_ = false;   // entry_ is read and not yet delivered
-  bool overlong_ = false;  // in a line longer than the buffer, reported already
+  bool refused_ = false;   // frames of two devices with one id: reading has ended
+  bool pending_ = false;   // entry_ was read but not delivered
+  bool overlong_ = false;  // within a line longer than the buffer, already reported
   std::uint64_t line_ = 0;
   std::int64_t shift_ns_ = 0;  // from the clock of deadlines to that of arrival times
   std::array<ifog_can_frame, kBatch> batch_{};
@@ -241,7 +239,7 @@ bool CandumpFile::wanted(const CandumpEntry& entry) const noexcept {
                      [&](const CanId& id) { return id.id == entry.frame.id && id.extended == extended; });
 }
 
-// True if no frame with the id of entry_ has come on another interface.
+// True if no frame with entry_'s id came from another interface.
 bool CandumpFile::of_one_device() noexcept {
   const std::string_view other = buses_.other(entry_.frame, entry_.interface);
   if (other.empty()) return true;
@@ -257,7 +255,7 @@ bool CandumpFile::of_one_device() noexcept {
   return false;
 }
 
-// The line's bytes stay where they are until the next fill().
+// The line stays valid until the next fill().
 bool CandumpFile::next_line(std::string_view& line, std::int64_t until_ns) noexcept {
   for (;;) {
     const std::span<const std::uint8_t> bytes = unread();
@@ -316,7 +314,7 @@ bool CandumpFile::next_frame(std::int64_t until_ns) noexcept {
 Delivery CandumpFile::take(std::int64_t until_ns) noexcept {
   std::size_t n = 0;
   while (n < batch_.size()) {
-    // With something in hand, only what is there already is added to it.
+    // After the first frame only available data are added.
     const std::int64_t until = n == 0 ? until_ns : monotonic_ns();
     if (!next_frame(until)) break;
     const bool timed = entry_.stamp != CandumpStamp::none;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The file transport: raw bytes or a candump log from a file, a FIFO or the standard input, as fast as the
-// reader takes them or at recorded times.
+// File transport: raw bytes or a candump log from a file, FIFO or standard input, as fast as the reader or at
+// recorded times.
 #pragma once
 
 #include <cstdint>
@@ -14,28 +14,26 @@ namespace ifog {
 
 struct FileSettings {
   enum class Format { bytes, candump };
-  // free: as fast as the reader takes it, nothing is lost when it pauses.
-  // recorded: against absolute deadlines, as the device would have delivered.
+  // free: as fast as the reader, without losses.
+  // recorded: by absolute deadlines, like the device.
   enum class Pace { free, recorded };
 
-  std::string path;  // "-" is the standard input
+  std::string path;  // "-" is standard input
   Format format = Format::bytes;
   Pace pace = Pace::free;
-  double speed = 1.0;  // recorded times go by this many times faster
+  double speed = 1.0;  // factor on the speed of recorded times
   double bytes_per_second =
-      0.0;  // bytes at recorded pace: required. At free pace it spaces the arrival times
-  std::uint32_t block_bytes =
-      0;                     // recorded bytes come in blocks of this, a device's frame; 0: what 1 ms brings
-  bool await_writer = true;  // a FIFO whose writer goes away waits for the next one; false: it has ended
-  // candump: frames of this interface only; empty: all, until frames of one id come on two, where it ends.
+      0.0;  // required for bytes at recorded pace; at free pace it spaces the arrival times
+  std::uint32_t block_bytes = 0;  // size of blocks of recorded bytes, e.g. a frame; 0: 1 ms
+  bool await_writer = true;       // wait for another writer of a FIFO; false: the file ends
+  // candump: only this interface; empty: all, until frames of one id come on two, which is the end.
   std::string interface;
-  std::vector<CanId> ids;  // candump: frames of these ids only; empty: all
+  std::vector<CanId> ids;  // candump: only frames of these ids; empty: all
 };
 
-// Arrival times: a candump log's own, at recorded pace moved so that the first frame is now; bytes, and
-// candump lines without a time: the moment of the read, or for bytes the moment of opening plus bytes /
-// bytes_per_second where that is given. A .gz file is read through zlib. Throws std::runtime_error on
-// settings that contradict each other.
+// Arrival times: a candump log's own, at recorded pace shifted so that the first frame is now. For bytes, and
+// lines without a time: the time of the read, or for bytes the time of opening plus bytes / bytes_per_second
+// if given. .gz is read through zlib. Throws std::runtime_error for contradictory settings.
 std::unique_ptr<Transport> make_file_transport(FileSettings settings);
 
 }  // namespace ifog

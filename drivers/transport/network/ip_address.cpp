@@ -10,7 +10,7 @@
 namespace ifog {
 namespace {
 
-// sockaddr_storage is what the socket calls take any address in.
+// sockaddr_storage can hold any address.
 template <typename Address>
 Address as(const sockaddr_storage& storage) {
   Address out{};

@@ -8,13 +8,12 @@
 
 namespace ifog {
 
-// Owns it.
 class IpSocket {
  public:
   IpSocket() = default;
-  // `type`: SOCK_DGRAM or SOCK_STREAM. Throws OpenError, which names `name`.
+  // type: SOCK_DGRAM or SOCK_STREAM. Throws OpenError with `name`.
   IpSocket(int family, int type, const std::string& name);
-  // The next connection of a listening TCP socket; not open where there is none, errno then says why.
+  // Next connection of a listening TCP socket; not open if there is none, with errno set.
   static IpSocket accepted(const IpSocket& listener) noexcept;
   ~IpSocket() { close(); }
   IpSocket(const IpSocket&) = delete;
@@ -25,7 +24,7 @@ class IpSocket {
 
   [[nodiscard]] int fd() const { return fd_; }
   [[nodiscard]] bool is_open() const { return fd_ >= 0; }
-  // 0, or errno.
+  // 0 or errno.
   [[nodiscard]] int set(int level, int option, int value) const noexcept;
   [[nodiscard]] int bind(const sockaddr_storage& address, socklen_t size) const noexcept;
   [[nodiscard]] int connect(const sockaddr_storage& address, socklen_t size) const noexcept;

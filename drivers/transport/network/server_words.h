@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a TCP server of a serial line says that is no gyro's: words before it hangs up ("Port already in
-// use"), and telnet (RFC 854), which doubles each byte FF and puts commands between.
+// Detects texts of a serial-to-TCP server: a message before it closes ("Port already in use"), and telnet
+// (RFC 854), which doubles each byte FF and inserts commands.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ class ServerWords {
     length_ += bytes.size();
     if (runs_ < kShow) count_runs(bytes);
   }
-  // All that was received, if it is a sentence; else "".
+  // All received bytes if they are a sentence; else "".
   [[nodiscard]] std::string_view sentence() const noexcept {
     std::string_view text(text_.data(), std::min(length_, text_.size()));
     while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.remove_suffix(1);
@@ -32,7 +32,7 @@ class ServerWords {
                        2 * std::count_if(text.begin(), text.end(), letter) > static_cast<long>(text.size());
     return words ? text : std::string_view();
   }
-  // It began with a telnet command, or has doubled every FF.
+  // True if it started with a telnet command, or doubled every FF.
   [[nodiscard]] bool telnet() const noexcept {
     const auto at = [this](std::size_t i) { return static_cast<std::uint8_t>(text_[i]); };
     const bool command = length_ >= 3 && at(0) == 0xFF && at(1) >= 0xFB && at(1) <= 0xFE && at(2) < 0x40;
@@ -40,7 +40,7 @@ class ServerWords {
   }
 
  private:
-  static constexpr int kShow = 32;  // runs of FF: of a line that is not doubled half are odd
+  static constexpr int kShow = 32;  // runs of FF; without doubling half of them are odd
 
   void count_runs(std::span<const std::uint8_t> bytes) noexcept {
     for (const std::uint8_t byte : bytes) {

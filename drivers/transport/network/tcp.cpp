@@ -23,7 +23,7 @@
 namespace ifog {
 namespace {
 
-// The kernel's own limit is minutes, and its later attempts are up to a minute apart.
+// The kernel's limit is minutes, with up to a minute between attempts.
 constexpr std::int64_t kAttempt_ns = 500'000'000;
 constexpr std::int64_t kHearOut_ns = 300'000'000;
 constexpr int kQuietBeforeProbe_s = 1, kProbeEvery_s = 1, kProbes = 2;
@@ -53,9 +53,9 @@ class TcpTransport final : public Transport {
   IpAddress host_;
   IpSocket socket_;
   bool blocks_ = false;
-  std::int64_t limit_ns_ = 0;  // of the attempt under way
+  std::int64_t limit_ns_ = 0;  // deadline of the present attempt
   ServerWords words_;
-  bool turned_away_ = false;  // the last connection brought words and was closed
+  bool turned_away_ = false;  // the last connection sent a message and was closed
   bool telnet_told_ = false;
   KernelStamps stamps_;
   ControlRoom control_{};
@@ -68,7 +68,7 @@ void TcpTransport::refuse(const std::string& what, int error, const std::string&
 }
 
 bool TcpTransport::connect(std::string& warning, std::int64_t until_ns) {
-  // A connection that was lost is closed; one that is open here is an attempt of the call before.
+  // An open socket here is an attempt of the previous call.
   if (!socket_.is_open()) begin();
   short happened = 0;
   switch (waiting_.wait(socket_.fd(), POLLOUT, std::min(until_ns, limit_ns_), happened)) {
@@ -113,7 +113,7 @@ void TcpTransport::check_answer() {
   if (getsockopt(socket_.fd(), SOL_SOCKET, SO_ERROR, &error, &size) != 0) error = errno;
   sockaddr_storage ours{}, theirs{};
   socklen_t ours_size = sizeof ours, theirs_size = sizeof theirs;
-  // On this computer a port nobody listens on may be given to the socket that asks for it, which then talks
+  // A local port without a listener may be assigned to the connecting socket itself, which is then connected
   // to itself (simultaneous open, RFC 9293, 3.5).
   if (error == 0 && getsockname(socket_.fd(), reinterpret_cast<sockaddr*>(&ours), &ours_size) == 0 &&
       getpeername(socket_.fd(), reinterpret_cast<sockaddr*>(&theirs), &theirs_size) == 0 &&
@@ -122,7 +122,7 @@ void TcpTransport::check_answer() {
   if (error != 0) refuse("cannot connect", error, "a device or server that listens there");
 }
 
-// A server that turned us away may do so again: its line counts as open if it does not, for a while.
+// A server that rejected us may do so again; the line counts as open after a while without rejection.
 void TcpTransport::hear_out(std::int64_t until_ns) {
   std::array<std::uint8_t, 256> said{};
   for (ssize_t n = 0;;) {
@@ -153,7 +153,7 @@ void TcpTransport::hung_up(int error) noexcept {
   lost(error);
 }
 
-// 64 bytes at most: a fresh socket has room for them.
+// At most 64 bytes, which fit into a new socket's buffer.
 void TcpTransport::send_opening() {
   if (opening().empty()) return;
   const ssize_t n = send(socket_.fd(), opening().data(), opening().size(), MSG_NOSIGNAL);

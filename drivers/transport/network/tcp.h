@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The TCP transport: a sensor or a serial server that listens, to which this end connects. Connects again
-// whenever the connection goes.
+// TCP transport: connects to a listening sensor or serial server, and reconnects after a loss.
 #pragma once
 
 #include <cstdint>
@@ -12,20 +11,19 @@
 namespace ifog {
 
 struct TcpSettings {
-  std::string host;  // a numeric address, IPv4 or IPv6; a link-local one with its interface, fe80::20%eth0
+  std::string host;  // numeric IPv4 or IPv6 address; a link-local one with its interface, fe80::20%eth0
   std::uint16_t port = 0;
 
   bool operator==(const TcpSettings&) const = default;
 };
 
-// "" or what is wrong with the settings: the key, its value and what was expected.
+// "" or the error in the settings: key, value and what was expected.
 std::string tcp_complaint(const TcpSettings& settings);
 
-// Arrival times are the kernel's, of the last byte read. A connection is given up when the other end closes
-// it or, cable pulled or power lost, answers no probe for three seconds; an attempt to connect after half a
-// second, so that a device that comes back is in use within a second, however often it was asked in vain. No
-// byte is lost on the way: what the kernel has no room for the sender keeps. Throws std::runtime_error on
-// settings that tcp_complaint() finds wrong.
+// Arrival times are the kernel's, of the last byte read. A connection is lost if the other end closes it or
+// answers no probe for three seconds (cable, power). An attempt to connect ends after 0.5 s, so that a
+// returning device is used within a second. No bytes are lost: the sender keeps what the kernel has no space
+// for. Throws std::runtime_error for settings with a tcp_complaint().
 std::unique_ptr<Transport> make_tcp_transport(const TcpSettings& settings);
 
 }  // namespace ifog

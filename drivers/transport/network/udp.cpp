@@ -22,16 +22,16 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kDatagramsAtOnce = 16;  // datagrams a system call
-constexpr std::size_t kLongest = 1U << 16U;   // no UDP payload is longer
+constexpr std::size_t kDatagramsAtOnce = 16;  // datagrams per system call
+constexpr std::size_t kLongest = 1U << 16U;   // largest UDP payload
 constexpr std::int64_t kInterfacePeriod_ns = 500'000'000;
 
 struct Addresses {
-  IpAddress local;  // listened on: an address or a group
+  IpAddress local;  // address or group to listen on
   std::optional<IpAddress> host;
 };
 
-// "" and the addresses, or what is wrong.
+// Resolves the addresses; returns "" or the error.
 std::string resolve(const UdpSettings& settings, Addresses& out) {
   const auto wrong = [](const char* key, const std::string& value, const std::string& expected) {
     return std::string(key) + " = " + in_quotes(value) + ": expected " + expected;
@@ -73,7 +73,7 @@ class UdpTransport final : public Transport {
     std::int64_t ns;
     bool stamped;
   };
-  // The datagrams of one system call.
+  // Datagrams of one system call.
   struct Batch {
     std::vector<std::uint8_t> bytes = std::vector<std::uint8_t>(kDatagramsAtOnce * kLongest);
     std::array<iovec, kDatagramsAtOnce> vectors{};
@@ -81,8 +81,8 @@ class UdpTransport final : public Transport {
     std::array<ControlRoom, kDatagramsAtOnce> control{};
     std::array<mmsghdr, kDatagramsAtOnce> messages{};
     std::array<Arrival, kDatagramsAtOnce> arrivals{};
-    std::size_t filled = kDatagramsAtOnce;  // messages that are to be made ready
-    std::size_t count = 0, next = 0;        // read, and handed on of these
+    std::size_t filled = kDatagramsAtOnce;  // number of messages to be prepared
+    std::size_t count = 0, next = 0;        // number read; next to be delivered
   };
 
   bool connect(std::string& warning, std::int64_t until_ns) override;
@@ -106,8 +106,8 @@ class UdpTransport final : public Transport {
   unsigned interface_index_ = 0;
   std::int64_t next_look_ns_ = 0;
   std::uint32_t drops_ = 0;
-  std::uint16_t sends_from_ = 0;  // the port of the host that sends; 0: none has
-  std::int64_t sent_ns_ = 0;      // when it last did
+  std::uint16_t sends_from_ = 0;  // the host's sending port; 0: none yet
+  std::int64_t sent_ns_ = 0;      // time of its last datagram
   KernelStamps stamps_;
   bool blocks_ = false;
   Batch batch_;
@@ -141,8 +141,7 @@ bool UdpTransport::connect(std::string& warning, std::int64_t /*until_ns*/) {
   };
   if (addresses_.local.is_v6())
     require(fresh.set(IPPROTO_IPV6, IPV6_V6ONLY, 1), "cannot keep to IPv6", "a kernel with IPv6");
-  // Several programs may listen to a group. Without one a second listener would take the first one's
-  // datagrams.
+  // Several programs may listen to a group. Otherwise a second listener would get the first one's datagrams.
   if (!settings_.group.empty())
     require(fresh.set(SOL_SOCKET, SO_REUSEADDR, 1), "cannot share the port", "a kernel that allows it");
   socklen_t size = 0;
@@ -204,8 +203,8 @@ Delivery UdpTransport::receive(std::int64_t until_ns) noexcept {
   return next();
 }
 
-// A group is left for good, and without a word, when its interface goes: one of the same name that comes back
-// has to be joined again.
+// Group membership is lost silently when the interface disappears; a new interface of this name must be
+// joined again.
 void UdpTransport::look_at_interface() noexcept {
   const std::int64_t now = monotonic_ns();
   if (interface_index_ == 0 || now < next_look_ns_) return;
@@ -216,7 +215,7 @@ void UdpTransport::look_at_interface() noexcept {
 }
 
 int UdpTransport::receive_batch(bool may_wait) noexcept {
-  // What the call before has written to.
+  // Resets the messages that the previous call used.
   for (std::size_t i = 0; i < batch_.filled; ++i) {
     batch_.messages[i].msg_hdr.msg_namelen = sizeof(sockaddr_storage);
     batch_.messages[i].msg_hdr.msg_controllen = sizeof(ControlRoom);
@@ -224,13 +223,13 @@ int UdpTransport::receive_batch(bool may_wait) noexcept {
   }
   const int n = recvmmsg(socket_.fd(), batch_.messages.data(), kDatagramsAtOnce,
                          may_wait ? MSG_WAITFORONE : MSG_DONTWAIT, nullptr);
-  // One that failed may have been begun.
+  // A failed message may be partly filled.
   batch_.filled = std::min(kDatagramsAtOnce, static_cast<std::size_t>(std::max(n, 0)) + 1);
   return n;
 }
 
 void UdpTransport::give_up(int error) noexcept {
-  // An answer to the opening bytes that nobody listens yet: the sensor may still wake up.
+  // ECONNREFUSED answers the opening bytes if the sensor does not listen yet.
   if (error == EINTR || error == EAGAIN || error == ECONNREFUSED) return;
   socket_.close();
   lost(error);
@@ -243,7 +242,7 @@ void UdpTransport::take(std::size_t received) noexcept {
   for (std::size_t i = 0; i < batch_.count; ++i) {
     const ReceiveControl said = receive_control(batch_.messages[i].msg_hdr);
     if (said.has_drops) {
-      counters_.kernel_drops.add(said.drops - drops_);  // modulo 2^32, as the kernel counts
+      counters_.kernel_drops.add(said.drops - drops_);  // modulo 2^32, as in the kernel
       drops_ = said.drops;
     }
     const bool stamped = said.arrival_ns != 0;
@@ -253,7 +252,7 @@ void UdpTransport::take(std::size_t received) noexcept {
 
 bool UdpTransport::is_of_port(std::size_t i) noexcept {
   const std::uint16_t port =
-      ntohs(reinterpret_cast<const sockaddr_in&>(batch_.senders[i]).sin_port);  // v6 too
+      ntohs(reinterpret_cast<const sockaddr_in&>(batch_.senders[i]).sin_port);  // also valid for IPv6
   if (settings_.host_port != 0) return port == settings_.host_port;
   const bool another = sends_from_ != 0 && port != sends_from_;
   if (another && batch_.arrivals[i].ns < sent_ns_ + 2'000'000'000 /* no sensor restarts in less */)

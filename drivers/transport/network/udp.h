@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The UDP transport: datagrams that a sensor or a serial server sends to a port of this computer, or to a
-// multicast group.
+// UDP transport: datagrams of a sensor or serial server to a port of this computer or a multicast group.
 #pragma once
 
 #include <cstdint>
@@ -13,31 +12,30 @@ namespace ifog {
 
 // Addresses are numeric, IPv4 or IPv6.
 struct UdpSettings {
-  std::uint16_t port = 0;  // of this computer, to which the sensor sends
-  // The address of this computer that is listened on; empty: all, of IPv6 where `host` is of it, else of
-  // IPv4.
+  std::uint16_t port = 0;  // of this computer; the sensor sends to it
+  // Local address to listen on; empty: all, of IPv6 if `host` is, else of IPv4.
   std::string bind;
-  std::string group;      // a multicast group in place of `bind`
-  std::string interface;  // where the group is joined: required with it
-  // Datagrams from elsewhere are dropped and counted. A driver's opening bytes go there, and without it
-  // nowhere. Empty: from anywhere.
+  std::string group;      // multicast group instead of `bind`
+  std::string interface;  // required with `group`: where it is joined
+  // Only datagrams from here are accepted; others are counted. Opening bytes are sent here. Empty: from
+  // anywhere, and no opening bytes.
   std::string host;
-  // The port that the host's datagrams come from, and opening bytes go to. 0: that of the first sender, until it has
-  // been silent for two seconds; opening bytes go to `port`.
+  // Port of the host's datagrams and for opening bytes. 0: port of the first sender, until it is silent for
+  // two seconds; opening bytes go to `port`.
   std::uint16_t host_port = 0;
-  // Room for what waits for the reader, as the kernel counts it. What net.core.rmem_max forbids needs
-  // CAP_NET_ADMIN, else it is a warning.
+  // Receive buffer as the kernel counts it. Exceeding net.core.rmem_max needs CAP_NET_ADMIN, else there is a
+  // warning.
   std::uint32_t receive_buffer_bytes = 1U << 20U;
 
   bool operator==(const UdpSettings&) const = default;
 };
 
-// "" or what is wrong with the settings: the key, its value and what was expected.
+// "" or the error in the settings: key, value and what was expected.
 std::string udp_complaint(const UdpSettings& settings);
 
-// Each delivery is one datagram with the kernel's time of its arrival; datagrams the socket had no room for
-// are kernel drops (SO_RXQ_OVFL). Opens again when its address or the group's interface goes away and comes
-// back. Throws std::runtime_error on settings that udp_complaint() finds wrong.
+// A delivery is one datagram with the kernel's arrival time. Kernel drops are counted by SO_RXQ_OVFL. Reopens
+// if its address or the group's interface disappears and returns. Throws std::runtime_error for settings with
+// a udp_complaint().
 std::unique_ptr<Transport> make_udp_transport(const UdpSettings& settings);
 
 }  // namespace ifog

@@ -19,15 +19,13 @@ namespace ifog {
 namespace {
 
 constexpr std::int64_t kSendLimit_ns = 1'000'000'000;
-// Once the device is gone its driver tells no more, so what the line has counted by then is as old as this at
-// most.
+// Largest age of the line's error counters when the device disappears, since they cannot be read then.
 constexpr std::int64_t kErrorPeriod_ns = 100'000'000;
 constexpr std::int64_t kAnswerLimit_ns = 500'000'000;
 // The slowest rate of a KVH 1750 is 1 Hz.
 constexpr std::int64_t kSilentLimit_ns = 1'200'000'000;
 
-// A read waits for the first byte and brings what is there. False: it cannot be had, the line is to be
-// polled.
+// Makes reads wait for the first byte and return all available. False: not possible, the line must be polled.
 bool wait_for_bytes(int fd) {
   termios line{};
   if (tcgetattr(fd, &line) != 0) return false;
@@ -56,9 +54,9 @@ class SerialTransport final : public Transport {
   SerialSettings settings_;
   SerialOpener open_port_;
   std::unique_ptr<SerialPort> port_;
-  std::optional<SetUpDialogue> dialogue_;  // while it is under way
-  std::int64_t answer_by_ns_ = 0;          // CLOCK_MONOTONIC; 0: the line is still to be sent
-  std::int64_t heard_ns_ = 0;              // likewise, the last byte
+  std::optional<SetUpDialogue> dialogue_;  // while it runs
+  std::int64_t answer_by_ns_ = 0;          // CLOCK_MONOTONIC; 0: the line is not sent yet
+  std::int64_t heard_ns_ = 0;              // last byte, CLOCK_MONOTONIC
   bool tried_ = false;
   LineErrors errors_;
   bool errors_known_ = false, blocks_ = false;
@@ -86,7 +84,7 @@ bool SerialTransport::connect(std::string& warning, std::int64_t until_ns) {
   return true;
 }
 
-// One line at a time. False: not done by then, or stopped; the next call continues.
+// One line at a time. False: not finished, or stopped; the next call continues.
 bool SerialTransport::set_up(std::int64_t until_ns) {
   while (!dialogue_->done()) {
     if (answer_by_ns_ == 0) {
@@ -122,7 +120,7 @@ void SerialTransport::refuse_answer() {
       differs ? EPROTO : ETIMEDOUT, in_quotes(dialogue_->expected()));
   port_.reset();
   dialogue_.reset();
-  // What open() throws is logged by its caller.
+  // Exceptions of open() are logged by its caller.
   if (std::exchange(tried_, true)) notices().keep_warning(error.what());
   throw error;
 }
@@ -173,15 +171,15 @@ Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
     delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(got.n));
     return delivery;
   }
-  // Nothing to read is no fault of the device (another process may have read it), a hang-up is.
+  // No data is no fault (another process may have read them), a hang-up is.
   const int error = got.error;
   const bool hung_up = (got.happened & (POLLHUP | POLLERR | POLLNVAL)) != 0;
   if (error == EINTR || (!hung_up && (error == 0 || error == EAGAIN))) {
-    blocks_ = false;  // it does not wait for bytes, or no longer does: another process has set it otherwise
+    blocks_ = false;  // it does not wait for bytes: another process changed the settings
     return {};
   }
   count_losses();
-  // Closed at once: while it is held open the kernel gives a returning USB adapter another name.
+  // Closed at once, since the kernel would give a returning USB adapter another name.
   port_.reset();
   lost(error == 0 || error == EAGAIN ? ENODEV : error);
   return {};

@@ -18,7 +18,7 @@
 namespace ifog {
 namespace {
 
-// libserialport keeps the system's errno only for SP_ERR_FAIL.
+// libserialport has the system's errno only for SP_ERR_FAIL.
 int error_of(sp_return result) {
   switch (result) {
     case SP_ERR_FAIL:
@@ -32,7 +32,7 @@ int error_of(sp_return result) {
   }
 }
 
-// Line settings as people write them: 921600 8N1.
+// Line settings as text: 921600 8N1.
 std::string written(const SerialSettings& s) {
   const char* const letter = "NEO";
   return std::to_string(s.baud) + " " + std::to_string(s.data_bits) + letter[static_cast<int>(s.parity)] +
@@ -65,7 +65,7 @@ class LibSerialPort final : public SerialPort {
 
 sp_port* find_port(const std::string& device) {
   std::array<char, PATH_MAX> resolved{};
-  // libserialport knows kernel names only.
+  // libserialport needs kernel names.
   if (realpath(device.c_str(), resolved.data()) == nullptr)
     throw OpenError(device, "cannot open", errno, "a serial device");
   sp_port* port = nullptr;
@@ -81,7 +81,7 @@ LibSerialPort::LibSerialPort(const SerialSettings& settings, std::string& warnin
           "a serial device that this user may read and write");
     open_ = true;
     check(sp_get_port_handle(port_, &fd_), "cannot open", "a file descriptor");
-    // The kernel's own refusal does not hold for root.
+    // The kernel's exclusive mode does not apply to root.
     claim(fd_, device_);
     ioctl(fd_, TIOCEXCL);
     set_driver_options(settings, warning);
@@ -94,7 +94,7 @@ LibSerialPort::LibSerialPort(const SerialSettings& settings, std::string& warnin
     check(sp_set_stopbits(port_, static_cast<int>(settings.stop_bits)), what, "1 or 2 stop bits");
     check(sp_set_flowcontrol(port_, SP_FLOWCONTROL_NONE), what, "a line without flow control");
     verify(settings);
-    // Bytes from before this moment would get a wrong arrival time.
+    // Earlier bytes would get a wrong arrival time.
     check(sp_flush(port_, SP_BUF_INPUT), "cannot discard old input", "a serial device");
   } catch (...) {
     if (open_) sp_close(port_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A serial line as libserialport opens it, set up and checked.
+// A serial line opened by libserialport, set up and checked.
 #pragma once
 
 #include <cstdint>
@@ -13,27 +13,27 @@ namespace ifog {
 struct SerialSettings {
   enum class Parity { none, even, odd };
 
-  std::string device;  // a udev symlink will do
+  std::string device;  // may be a udev symlink
   std::uint32_t baud = 0;
   std::uint32_t data_bits = 8;
   Parity parity = Parity::none;
   std::uint32_t stop_bits = 1;
-  // The UART's clock / 16 where the driver has it wrong, as setserial's baud_base: a speed above it is
-  // otherwise not reached. 0: leave it. Needs CAP_SYS_ADMIN.
+  // UART clock / 16 if the driver assumes a wrong one, as setserial's baud_base; needed for higher speeds. 0:
+  // unchanged. Needs CAP_SYS_ADMIN.
   std::uint32_t baud_base = 0;
-  // Lines that set the device up, each answered, see SetUpDialogue; none: nothing is sent.
+  // Lines that set the device up, each with an answer (SetUpDialogue); empty: none.
   std::vector<std::string> set_up{};
 
   bool operator==(const SerialSettings&) const = default;
 };
 
-// What went wrong on a line since its driver was loaded, as TIOCGICOUNT tells it, modulo 2^32.
+// Errors of a line since its driver was loaded (TIOCGICOUNT), modulo 2^32.
 struct LineErrors {
-  std::uint32_t lost = 0;     // bytes that the UART or the kernel's buffer had no room for
-  std::uint32_t damaged = 0;  // wrong framing or parity; a break is a framing error all along
+  std::uint32_t lost = 0;     // overruns of UART or kernel buffer, bytes
+  std::uint32_t damaged = 0;  // framing or parity errors; a break is a continuous framing error
 };
 
-// Owns the line; closed with it.
+// Owns and closes the line.
 class SerialPort {
  public:
   virtual ~SerialPort() = default;
@@ -42,11 +42,11 @@ class SerialPort {
   virtual bool errors(LineErrors& out) const noexcept;
 };
 
-// Throws OpenError; `warning` gets what was asked for but can be done without.
+// Throws OpenError; `warning` gets what was not granted but is not essential.
 using SerialOpener = std::function<std::unique_ptr<SerialPort>(const SerialSettings&, std::string& warning)>;
 
-// Raw, no flow control, old input discarded. The speed is read back, and one that is more than 2 % off (the
-// most an asynchronous line of 10 bits bears) refused: some UARTs silently stay at another.
+// Raw, no flow control, old input discarded. The speed is read back and rejected if more than 2 % off (limit
+// of an asynchronous 10-bit line), as some UARTs silently keep another.
 std::unique_ptr<SerialPort> open_serial_port(const SerialSettings& settings, std::string& warning);
 
 }  // namespace ifog

@@ -10,7 +10,7 @@ namespace {
 constexpr std::string_view kArrow = " -> ";
 constexpr std::size_t kMostCharacters = 1000;  // characters; a custom filter (=FC20) has some hundred
 
-// Without blanks and in capitals: the manual writes answers both ways.
+// Without blanks, upper case: the manual uses both notations.
 std::string plain(std::string_view text) {
   std::string out;
   for (const char c : text)
@@ -55,7 +55,7 @@ bool SetUpDialogue::take(std::span<const std::uint8_t> bytes) {
   return false;
 }
 
-// The end of a line that may have begun as bytes of a frame. What is refused is repeated behind the word.
+// Evaluates a complete line, which may start with bytes of a frame. Rejected text follows the word "INVALID".
 bool SetUpDialogue::judge(const std::string& text) {
   if (const std::size_t invalid = text.find("INVALID"); invalid != std::string::npos) {
     refusal_ = text.substr(invalid);

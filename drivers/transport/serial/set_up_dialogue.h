@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sets a device up by lines of text, one at a time, each with its answer: what is sent when, and whether what
-// comes back is the answer. No I/O. As KVH's IMU take it (1775 IMU technical manual 56-0298, sections 7 and 8):
-// "=DR,1000" is answered by "DR,1000", "?DR" by "DR," and the value, what is refused by "INVALID" and more,
-// whatever the case of the letters; until =CONFIG,1 is answered, frames of bytes come in between.
+// Dialogue that sets up a device with lines of text, one at a time, each with its answer. No I/O. As for
+// KVH's IMU (1775 IMU technical manual 56-0298, sections 7 and 8): "=DR,1000" is answered by "DR,1000", "?DR"
+// by "DR," and the value, errors by "INVALID" and a text, in any case; frames of bytes may be in between
+// until =CONFIG,1 is answered.
 #pragma once
 
 #include <cstddef>
@@ -16,26 +16,26 @@ namespace ifog {
 
 class SetUpDialogue {
  public:
-  // A line is "=COMMAND", "?QUERY" whatever its answer, or "WORDS -> ANSWER".
+  // A line is "=COMMAND", "?QUERY" with any answer, or "WORDS -> ANSWER".
   explicit SetUpDialogue(const std::vector<std::string>& lines);
-  // What is wrong with such a line, "expected …"; "": nothing.
+  // Error in such a line, "expected …"; "": none.
   static std::string complaint(std::string_view line);
 
   [[nodiscard]] bool done() const { return at_ == lines_.size(); }
-  // The line that waits for its answer, as configured, and what was to come back.
+  // The line that waits for its answer, as configured, and the expected answer.
   [[nodiscard]] const std::string& line() const { return lines_[at_].sent; }
   [[nodiscard]] const std::string& expected() const { return lines_[at_].answer; }
-  // What has come since the line was sent. True: it is answered, the next one's turn.
+  // Takes received bytes. True: the line is answered.
   bool take(std::span<const std::uint8_t> bytes);
-  // An answer that differs, "": there was none.
+  // The wrong answer; "": no answer.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
-  // All answers so far, with commas.
+  // All answers so far, separated by commas.
   [[nodiscard]] const std::string& answers() const { return answers_; }
 
  private:
   struct Line {
     std::string sent, answer;
-    bool any;  // whatever follows the answer's first word
+    bool any;  // anything may follow the answer's first word
   };
   bool judge(const std::string& text);
 

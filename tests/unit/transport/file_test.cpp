@@ -300,7 +300,7 @@ TEST_F(FileTransport, AFifoIsOneReaders) {
   auto first = opened();
   // Also after its writer has gone and it is open again.
   for (int round = 0; round < 2; ++round) {
-    EXPECT_THROW(opened(), ifog::DeviceTaken) << round;
+    EXPECT_THROW(opened(), ifog::DeviceInUse) << round;
     { std::ofstream(settings_.path) << "abc"; }
     EXPECT_EQ(first->read(kForever).bytes.size(), 3U) << round;
     while (first->state() == TransportState::open) first->read(kForever);

@@ -191,7 +191,7 @@ TEST(SerialTransport, ALineIsOneReaders) {
   const int first = line(), second = line();
   ifog::SoleReader one, other;
   one.take(first, "gyro");
-  EXPECT_THROW(other.take(second, "gyro"), ifog::DeviceTaken);
+  EXPECT_THROW(other.take(second, "gyro"), ifog::DeviceInUse);
   const pid_t child = fork();  // has the descriptors, too
   if (child == 0) pause();
   one.release();
