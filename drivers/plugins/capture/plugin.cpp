@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver `capture`: a CSV capture as a sensor, each row a sample with the row's time as the device's. For
-// trying the daemon on a recording; it is fed by the file transport.
+// Driver `capture`: a CSV capture as a sensor; each row is a sample with the row's time as device time. For
+// trying the daemon with a recording, by the file transport.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -27,10 +27,10 @@ constexpr std::array kOptions{
 
 struct SetUp {
   std::vector<std::string> axes;      // "x", …, or one ""
-  std::vector<std::string> channels;  // names of environment columns
+  std::vector<std::string> channels;  // environment columns
   double rate_hz = 0.0;
 
-  // The columns in the order of samples: rates, then channels.
+  // Columns in the order of samples: rates, then channels.
   [[nodiscard]] std::vector<std::string> columns() const {
     std::vector<std::string> all;
     for (const std::string& axis : axes)
@@ -105,7 +105,7 @@ class Driver {
         if (std::isfinite(values[i])) sample_.valid_axes |= 1U << i;
       }
       for (std::size_t i = 0; i < set_up_.channels.size(); ++i) {
-        if (!std::isfinite(values[axes + i])) continue;  // the last known value stays
+        if (!std::isfinite(values[axes + i])) continue;  // the last value stays
         sample_.environment[i] = values[axes + i];
         sample_.environment_fresh |= 1U << i;
       }

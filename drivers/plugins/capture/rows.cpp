@@ -18,7 +18,7 @@ std::string_view trimmed(std::string_view cell) {
   return cell;
 }
 
-// Takes the next cell off the line; false after the last.
+// Removes the next cell from the line; false after the last.
 bool next_cell(std::string_view& line, bool& more, std::string_view& cell) {
   if (!more) return false;
   const std::size_t comma = line.find(',');
@@ -28,7 +28,7 @@ bool next_cell(std::string_view& line, bool& more, std::string_view& cell) {
   return true;
 }
 
-// A number, or NaN for an empty cell. False: neither.
+// Parses a number, or NaN for an empty cell; false otherwise.
 bool parse(std::string_view cell, double& value) {
   value = std::numeric_limits<double>::quiet_NaN();
   if (cell.empty()) return true;
@@ -36,13 +36,13 @@ bool parse(std::string_view cell, double& value) {
   return error == std::errc() && end == cell.data() + cell.size() && !std::isinf(value);
 }
 
-// Seconds in plain digits, to the ns, which a double of the epoch's size does not tell; false: no such text.
+// Parses seconds in plain digits to ns, which a double could not resolve; false otherwise.
 bool nanoseconds_in(std::string_view cell, std::int64_t& ns) {
-  constexpr std::int64_t kMost = 900'000'000'000'000'000;  // a further digit has room
+  constexpr std::int64_t kMost = 900'000'000'000'000'000;  // one more digit fits
   const bool negative = cell.starts_with('-');
   if (negative || cell.starts_with('+')) cell.remove_prefix(1);
   std::int64_t size = 0;
-  int decimals = -1;  // behind the point, once there is one
+  int decimals = -1;  // decimal digits, after the point
   for (const char c : cell) {
     if (c == '.' && decimals < 0) {
       decimals = 0;
@@ -76,7 +76,7 @@ void Rows::restart() noexcept {
 }
 
 bool Rows::end_line() noexcept {
-  const std::size_t bytes = waiting() + 1;  // with its end
+  const std::size_t bytes = waiting() + 1;  // including its end
   const std::string_view line = trimmed({line_.data(), std::exchange(length_, 0)});
   const std::size_t beyond = std::exchange(overlong_, 0);
   const bool remark = beyond == 0 && (line.empty() || line.front() == '#');
@@ -106,7 +106,7 @@ bool Rows::read_header(std::string_view line) noexcept {
 }
 
 bool Rows::read_row(std::string_view line) noexcept {
-  constexpr double kMostSeconds = 9e9;  // what an int64 of nanoseconds holds
+  constexpr double kMostSeconds = 9e9;  // limit of int64 in ns
   std::size_t column = 0;
   std::int64_t time_ns = 0;
   std::string_view cell;

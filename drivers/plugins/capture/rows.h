@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of a CSV capture from its bytes in any portions: `#` lines, a header whose first column is time_s,
-// rows. Nothing is allocated after construction.
+// Parses rows of a CSV capture from bytes in any portions: `#` lines, a header that starts with time_s, rows.
+// No allocation after construction.
 #pragma once
 
 #include <array>
@@ -13,22 +13,21 @@
 
 namespace ifog::capture_rows {
 
-constexpr std::size_t kMostColumns = 256;    // of a capture
-constexpr std::size_t kLongestLine = 16384;  // bytes
+constexpr std::size_t kMostColumns = 256;    // per capture
+constexpr std::size_t kLongestLine = 16384;  // in bytes
 
 struct Counters {
   std::uint64_t good = 0;     // rows
-  std::uint64_t format = 0;   // lines that are neither a header with the wanted columns nor a row under it
-  std::uint64_t framed = 0;   // bytes of all other lines
-  std::uint64_t skipped = 0;  // bytes of these, of lines too long, and of a last line without its end
+  std::uint64_t format = 0;   // lines that are neither a header with the wanted columns nor a row
+  std::uint64_t framed = 0;   // bytes of other lines
+  std::uint64_t skipped = 0;  // bytes of those, of too long lines, and of an incomplete last line
 };
 
 class Rows {
  public:
   explicit Rows(std::vector<std::string> wanted);
 
-  // Calls row(time_ns, values) for each complete row: the wanted columns in the wanted order, NaN where
-  // empty.
+  // Calls row(time_ns, values) for each complete row: the wanted columns in the wanted order, NaN if empty.
   template <typename Row>
   void feed(std::span<const std::uint8_t> bytes, Row&& row) noexcept {
     for (const std::uint8_t byte : bytes) {
@@ -39,12 +38,10 @@ class Rows {
       }
     }
   }
-  // What follows is another capture with its own header.
+  // Another capture with its own header follows.
   void restart() noexcept;
   [[nodiscard]] const Counters& counters() const { return counters_; }
-  [[nodiscard]] std::size_t waiting() const {
-    return length_ + overlong_;
-  }  // bytes of a line without its end
+  [[nodiscard]] std::size_t waiting() const { return length_ + overlong_; }  // bytes of an incomplete line
 
  private:
   void put(char c) noexcept {
@@ -53,7 +50,7 @@ class Rows {
     else
       ++overlong_;
   }
-  // True: the line was a row, now in time_ns_ and values_.
+  // True: the line was a row; time_ns_ and values_ are set.
   bool end_line() noexcept;
   bool read_header(std::string_view line) noexcept;
   bool read_row(std::string_view line) noexcept;
@@ -66,7 +63,7 @@ class Rows {
       slot_{};               // by column of the file: index into values_, −1: not wanted
   std::size_t columns_ = 0;  // 0: no header yet
   std::int64_t time_ns_ = 0;
-  bool timed_ = false;  // time_ns_ is that of a row before
+  bool timed_ = false;  // time_ns_ is from a previous row
   Counters counters_;
 };
 

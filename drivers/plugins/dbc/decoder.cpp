@@ -13,14 +13,14 @@
 namespace ifog::dbc {
 namespace {
 
-// Also of what is no number: a frame that comes twice brings the same NaN.
+// NaN equals NaN, since a repeated frame has the same NaN.
 bool same_value(double a, double b) noexcept { return a == b || (std::isnan(a) && std::isnan(b)); }
 
 constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 constexpr std::uint32_t bit(std::size_t i) { return 1U << i; }
 
-// A float that holds anything may hold what no int64 of nanoseconds can.
+// A float may be out of range for int64 in ns.
 std::optional<std::int64_t> nanoseconds(double seconds) {
   constexpr double kMost = 9e9, kNsPerSecond = 1e9;
   if (!(std::abs(seconds) < kMost)) return {};
@@ -64,10 +64,10 @@ void Decoder::learn_order() {
     });
   };
   if (std::all_of(picks_.axes.begin(), picks_.axes.end(), carries_counter)) {
-    beginning_axes_ = all_axes_;  // in any order: the counter tells
+    beginning_axes_ = all_axes_;  // any axis may begin: the counter decides
     return;
   }
-  // By id, then by the multiplexor's value, the order in which a device sends.
+  // By id, then by multiplexor value: the order in which a device sends.
   const auto order = [](const Axis& axis) {
     const Signal& s = *axis.pick.signal;
     return std::pair(axis.pick.message->id,
@@ -86,7 +86,7 @@ void Decoder::begin_sample() noexcept {
   frames_ = 0;
 }
 
-// What is left of a sample may be a late copy of the one before.
+// True if an incomplete sample may be a late copy of the previous one.
 bool Decoder::repeats_last() const noexcept {
   if (!last_.counted || !counted_ || !counter_moved_ || sample_.sequence != last_.sequence) return false;
   for (std::size_t i = 0; i < last_.value.size(); ++i)
@@ -164,7 +164,7 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
   if (brings != 0 && present_ == all_axes_) complete(frame.arrival_ns, emit, sink);
 }
 
-// Whether the values of the frame's axes are those that are known already.
+// True if the frame's axes have the same values as before.
 bool Decoder::repeats(const Wanted& wanted, std::span<const std::uint8_t> data,
                       const double* known) const noexcept {
   for (const Entry& entry : wanted.entries) {
@@ -211,7 +211,7 @@ void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
   }
 }
 
-// Ranges in real files are often wrong, of signed signals most: a value beyond is kept and said.
+// Ranges in real files are often wrong, especially of signed signals, so values beyond are kept and reported.
 void Decoder::judge(const Signal& signal, double value) noexcept {
   if (!has_range(signal) || !std::isfinite(value) || in_range(signal, value)) return;
   beyond_ = true;

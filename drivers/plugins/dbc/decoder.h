@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From CAN frames to samples by a DBC file's description. No allocation after construction.
+// Converts CAN frames to samples by a DBC file. No allocation after construction.
 #pragma once
 
 #include <array>
@@ -11,17 +11,16 @@
 
 namespace ifog::dbc {
 
-// A sample may be spread over several frames; it is complete when every axis has arrived. The frames of one
-// sample are distinguished from those of the next by
-//   - the counter, in each frame that carries it;
-//   - an axis that comes a second time;
-//   - where some axis's frame carries no counter: the frame of the lowest id. It begins a sample, because
-//     frames queued together leave in the order of their ids (arbitration).
-// So when a frame is lost, no sample is made of two: what is left of it is dropped and counted. A frame that
-// comes twice, same counter and same values, changes nothing and is counted too; a sample of one frame passes
-// on, and whoever counts samples sees it. A value beyond the range that the file states ([min|max]) is kept,
-// counted and flagged. Environment, status and time may be in frames of their own; they go with the next
-// sample that completes.
+// A sample may consist of several frames; it is complete when every axis has arrived. The frames of different
+// samples are distinguished by
+//   - the counter, in frames that carry it;
+//   - an axis that arrives a second time;
+//   - if some axis's frame has no counter: the frame of the lowest id, which begins a sample, since queued
+//   frames are sent in the order of their ids (arbitration).
+// So a lost frame never merges two samples: the incomplete one is dropped and counted. A repeated frame (same
+// counter, same values) is ignored and counted; a repeated sample of one frame is passed on and detected
+// later. A value beyond the range in the file ([min|max]) is kept, counted and flagged. Environment, status
+// and time may be in other frames; they belong to the next complete sample.
 class Decoder {
  public:
   explicit Decoder(const Picks& picks);
@@ -29,19 +28,19 @@ class Decoder {
   void decode(const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept;
   void reset() noexcept;
 
-  // frames_other: of an id that no signal is picked from. frames_format: too short for a signal. frames_good:
-  // all others, with frames_repeated among them. samples_incomplete: begun and given up, and frames whose
-  // sample's beginning was lost.
+  // frames_other: ids without a picked signal. frames_format: too short for a signal. frames_good: all
+  // others, including frames_repeated. samples_incomplete: incomplete samples, and frames without the
+  // beginning of their sample.
   [[nodiscard]] const ifog_driver_counters& counters() const { return counters_; }
 
  private:
   enum class Role : std::uint8_t { kAxis, kCounter, kStatus, kTime, kEnvironment };
   struct Entry {
     Role role;
-    std::size_t index;  // of the axis or the environment channel
+    std::size_t index;  // of the axis or environment channel
     const Message* message;
     const Signal* signal;
-    std::size_t bytes;   // the frame must have, for this signal
+    std::size_t bytes;   // required length of the frame
     double si_per_unit;  // axes only
   };
   struct Wanted {
@@ -65,13 +64,12 @@ class Decoder {
   const Picks& picks_;
   std::vector<Wanted> wanted_;
   std::uint32_t all_axes_ = 0;        // bit i: axis i
-  std::uint32_t beginning_axes_ = 0;  // any of which begins a sample
-  std::uint32_t present_ = 0;         // axes of the sample being gathered
-  std::uint32_t good_ = 0;            // of them, those with a value that can be
+  std::uint32_t beginning_axes_ = 0;  // any of these begins a sample
+  std::uint32_t present_ = 0;         // axes of the present sample
+  std::uint32_t good_ = 0;            // of these, axes with a plausible value
   bool counted_ = false;              // its counter is known
-  std::uint32_t frames_ = 0;          // that brought axes of it
-  // The last whole one, if it was counted. A counter that has never moved does not tell one sample from
-  // another.
+  std::uint32_t frames_ = 0;          // number of frames with its axes
+  // Last complete sample, if it had a counter. A counter that never changed does not distinguish samples.
   struct Last {
     bool counted = false;
     std::uint32_t sequence = 0;
@@ -79,7 +77,7 @@ class Decoder {
   } last_;
   bool counter_moved_ = false;
   ifog_sample sample_{};
-  bool timed_ = false;   // its clock has been read
+  bool timed_ = false;   // its clock was read
   bool beyond_ = false;  // since the last sample
   ifog_driver_counters counters_{};
 };

@@ -12,7 +12,7 @@
 namespace ifog::dbc {
 namespace {
 
-// Lengths a CAN FD frame can have; up to 8 any.
+// Lengths of CAN FD frames above 8.
 constexpr std::array<std::uint32_t, 7> kLongLengths{12, 16, 20, 24, 32, 48, 64};
 
 std::uint8_t frame_length(std::uint32_t message_length) {
@@ -47,7 +47,7 @@ void Encoder::add(Role role, std::size_t index, const Pick& pick) {
   for (Layout& layout : layouts_) {
     if (layout.message != pick.message) continue;
     if (!everywhere && layout.selection != selection && !layout.selection.empty()) continue;
-    // A frame that so far needed no multiplexor may carry this selection as well as any other.
+    // A frame without a multiplexor so far may use this selection.
     if (!everywhere) layout.selection = selection;
     layout.entries.push_back({role, index, pick.signal});
     layout.carries_axis = layout.carries_axis || role == Role::kAxis;
@@ -58,7 +58,7 @@ void Encoder::add(Role role, std::size_t index, const Pick& pick) {
   Layout layout;
   layout.message = pick.message;
   layout.selection = selection;
-  // What stands in every frame of the message stands in this one too.
+  // Signals that are in every frame of the message are in this one, too.
   for (const Layout& other : layouts_)
     if (other.message == pick.message && !everywhere) {
       for (const Entry& entry : other.entries)
@@ -79,7 +79,7 @@ std::uint64_t Encoder::bits_of(const Entry& entry, const ifog_sample& sample) co
     case Role::kCounter:
       return sent_;
     case Role::kStatus:
-      // A sample that did not come from such a device has a status all the same: the good one.
+      // A sample from elsewhere has no such status; the valid one is sent.
       if (picks_.status_good && sample.valid_axes != 0)
         return (sample.status & ~picks_.status_mask) | *picks_.status_good;
       return sample.status;
@@ -88,7 +88,7 @@ std::uint64_t Encoder::bits_of(const Entry& entry, const ifog_sample& sample) co
         throw std::invalid_argument("the time signal needs the device's time, and the sample has none");
       double units = static_cast<double>(sample.device_time_ns) * 1e-9 / picks_.seconds_per_unit;
       const Signal& s = *entry.signal;
-      // An integer clock wraps as the device's would.
+      // An integer clock wraps like the device's.
       if (s.type == ValueType::kUnsigned) {
         const double range = std::ldexp(std::abs(s.scale), static_cast<int>(s.length));
         units -= range * std::floor((units - s.offset) / range);
@@ -114,7 +114,7 @@ void Encoder::put(const Layout& layout, const ifog_sample& sample, ifog_emit_can
   for (const auto& [selector, value] : layout.selection) set_raw_bits(*selector, value, data);
   for (const Entry& entry : layout.entries) {
     const bool integer = is_integer(entry.signal->type);
-    // An integer has no way to say "unknown"; the bits stay 0.
+    // An integer cannot express "unknown"; the bits stay 0.
     if (entry.role == Role::kEnvironment && integer && std::isnan(sample.environment[entry.index])) continue;
     set_raw_bits(*entry.signal, bits_of(entry, sample), data);
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The inverse of the decoder: the frames a device described by the DBC file would have sent for a sample.
+// Encodes a sample as frames of a device described by a DBC file.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,8 @@ class Encoder {
  public:
   explicit Encoder(const Picks& picks);
 
-  // Emits the frames of one sample: those without an axis first (only when they bring a fresh environment
-  // value), then the axes' in the order of their ids. Throws std::invalid_argument with one line: a value its
-  // signal cannot hold.
+  // Emits the frames of one sample: first those without an axis (only with a fresh environment value), then
+  // the axes' by id. Throws std::invalid_argument with one line for a value that its signal cannot hold.
   void encode(const ifog_sample& sample, ifog_emit_can emit, void* sink);
 
  private:
@@ -26,7 +25,7 @@ class Encoder {
     std::size_t index;
     const Signal* signal;
   };
-  // One frame: a message with a choice of its multiplexors' values.
+  // One frame: a message with certain multiplexor values.
   struct Layout {
     const Message* message = nullptr;
     std::vector<std::pair<const Signal*, std::uint64_t>> selection;

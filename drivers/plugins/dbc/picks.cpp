@@ -110,7 +110,7 @@ class Reader {
       for (const Signal& s : m.signals)
         if (n++ < kShown) list += (list.empty() ? "" : ", ") + shown(Pick{&m, &s});
     list += n > kShown ? ", … (" + std::to_string(n) + " in all)" : "";
-    // It may stand on a line that could not be read.
+    // It may be on a line that could not be parsed.
     const std::vector<std::string>& bad = out_.database.warnings;
     if (!bad.empty())
       list += "; " + std::to_string(bad.size()) + " bad lines in it, the first: " + bad.front();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which signals of a DBC file the sensor is made of: the driver's options, resolved.
+// Signals of a DBC file that make up the sensor: the driver's options, resolved.
 #pragma once
 
 #include <algorithm>
@@ -17,13 +17,13 @@
 
 namespace ifog::dbc {
 
-// Addresses inside Picks::database, which does not change after reading.
+// Pointers into Picks::database, which does not change.
 using Pick = SignalInMessage;
 
 struct Axis {
-  std::string name;  // "x", "y", "z", or "" for the one axis of `signal`
+  std::string name;  // "x", "y", "z", or "" for the single axis of `signal`
   Pick pick;
-  double si_per_unit = 1.0;  // rad or rad/s per physical unit of the signal
+  double si_per_unit = 1.0;  // rad or rad/s per physical unit
 };
 
 struct Environment {
@@ -44,18 +44,18 @@ struct Picks {
   std::uint32_t counter_modulus = 0;
   std::optional<Pick> status;
   std::uint32_t status_mask = 0xFFFFFFFFU;
-  std::optional<std::uint32_t> status_good;  // valid when (status & mask) equals this; nothing: always
+  std::optional<std::uint32_t> status_good;  // valid if (status & mask) equals this; nullopt: always
   std::optional<Pick> time;
   double seconds_per_unit = 1.0;  // of `time`
   std::vector<Environment> environments;
   double rate_hz = 0.0;
 };
 
-// Fills `out`. Throws std::exception with one line: the DBC file's own errors with file and line; an option
+// Fills `out`. Throws std::exception with one line: errors of the DBC file with file and line; of an option
 // with key, value and what was expected.
 void read_picks(const plugin::Options& options, Picks& out);
 
-// The driver's option list, ended by an entry without key.
+// The driver's option list, terminated by an entry without key.
 const ifog_option* option_list();
 
 }  // namespace ifog::dbc

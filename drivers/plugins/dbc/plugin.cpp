@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver `dbc`: any gyro on a CAN bus that a Vector DBC file describes. The options pick the signals.
+// Driver `dbc`: any gyro on a CAN bus that a Vector DBC file describes. The options select the signals.
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -46,7 +46,7 @@ class Driver {
   }
 
  private:
-  // Axes, status, time and environment together need fewer ids than the table holds.
+  // The table of ids is large enough for axes, status, time and environment.
   static_assert(IFOG_MAX_AXES + 2 + IFOG_MAX_ENVIRONMENT <= IFOG_MAX_CAN_IDS);
   static void want(ifog_description& out, const Pick& pick) {
     const std::uint32_t extended = pick.message->extended ? 1 : 0;

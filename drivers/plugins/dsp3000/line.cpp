@@ -12,7 +12,7 @@ void skip_blanks(std::string_view& text) {
   while (!text.empty() && text.front() == ' ') text.remove_prefix(1);
 }
 
-// Takes the digits in front; returns how many there were.
+// Removes leading digits; returns their number.
 std::size_t take_digits(std::string_view& text, std::int32_t& value, std::size_t most) {
   std::size_t n = 0;
   while (n < most && !text.empty() && text.front() >= '0' && text.front() <= '9') {
@@ -50,7 +50,7 @@ std::size_t format_line(const Reading& reading, char* out) noexcept {
   std::int32_t rest = negative ? -reading.micro_degrees : reading.micro_degrees;
   std::int32_t unit = 100 * kMicro;
   for (; unit > 0; unit /= 10) {
-    // No zeros in front of the last whole digit.
+    // Omits leading zeros except before the point.
     if (rest >= unit || unit <= kMicro || (at != out && at[-1] != '-'))
       *at++ = static_cast<char>('0' + rest / unit);
     rest %= unit;

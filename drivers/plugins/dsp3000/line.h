@@ -4,9 +4,8 @@
 //
 //   (-)xxx.xxxxxx y CR LF      y is 1 for valid data, 0 for a fault
 //
-// There is no checksum and no counter: a lost or changed digit is a wrong value that nothing can tell. What
-// can be held to is the form, six decimals exactly, which catches most of what a bad line does. Loggers write
-// other line ends: any is accepted.
+// There is no checksum or counter, so a lost or changed digit is undetectable. Only the form is checked
+// (exactly six decimals), which detects most errors of a bad line. Any line end is accepted, for logs.
 #pragma once
 
 #include <cstddef>
@@ -21,14 +20,13 @@ struct Reading {
   bool valid = false;
 };
 
-inline constexpr std::size_t kLongestLine = 32;  // with some blanks in front; the line end not counted
+inline constexpr std::size_t kLongestLine = 32;  // including leading blanks, without the line end
 inline constexpr std::int32_t kHighest = 999'999'999;
 
-// `line` without CR and LF. Nothing if it has not the form above. Blanks around the two words are passed
-// over.
+// line: without CR and LF. nullopt for another form. Surrounding blanks are ignored.
 std::optional<Reading> parse_line(std::string_view line) noexcept;
 
-// Writes the line with its CR LF into at least kLongestLine bytes; returns the length. |micro_degrees| <=
+// Writes the line with CR LF into at least kLongestLine bytes; returns the length. |micro_degrees| <=
 // kHighest.
 std::size_t format_line(const Reading& reading, char* out) noexcept;
 

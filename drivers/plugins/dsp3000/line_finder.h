@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cuts a byte stream into the lines of line.h.
+// Splits a byte stream into the lines of line.h.
 #pragma once
 
 #include <array>
@@ -17,17 +17,17 @@ class LineFinder {
  public:
   struct Counters {
     std::uint64_t good = 0;
-    std::uint64_t malformed = 0;      // lines that have not the form
-    std::uint64_t bytes_skipped = 0;  // bytes that are part of no good line
-    std::uint64_t bytes_framed = 0;   // bytes of good lines and of line ends
+    std::uint64_t malformed = 0;      // lines of another form
+    std::uint64_t bytes_skipped = 0;  // bytes outside valid lines
+    std::uint64_t bytes_framed = 0;   // bytes of valid lines and line ends
   };
 
-  // Calls found(Reading) for each good line, in order. No allocation. A line ends with CR, LF or any row of
-  // them, as loggers write it; or with its datagram.
+  // Calls found(Reading) for each valid line, in order. No allocation. A line ends with any sequence of CR
+  // and LF, or with its datagram.
   template <typename Found>
   void feed(std::span<const std::uint8_t> bytes, Found&& found) noexcept {
     if (bytes.empty()) return;
-    // A whole line was left, and what follows does not end it: each comes in a datagram of its own.
+    // A complete line without an end: each line is in its own datagram.
     if (length_ > 0 && !ends(static_cast<char>(bytes.front())) && parse_line({line_.data(), length_})) {
       datagrams_ = true;
       if (const std::optional<Reading> reading = end(0)) found(*reading);
@@ -38,7 +38,7 @@ class LineFinder {
       if (const std::optional<Reading> reading = end(0)) found(*reading);
   }
 
-  // The next line is not trusted until a line end has gone by: the tail of a number is a number too.
+  // The next line is ignored until a line end, because the tail of a number is a number too.
   void reset() noexcept {
     counters_.bytes_skipped += length_;
     length_ = 0;
@@ -50,7 +50,7 @@ class LineFinder {
 
  private:
   std::optional<Reading> take(char c) noexcept {
-    if (length_ == line_.size()) {  // longer than any line: what follows is out of step too
+    if (length_ == line_.size()) {  // too long; ignored until the next line end
       counters_.bytes_skipped += length_;
       length_ = 0;
       in_step_ = false;
@@ -61,7 +61,7 @@ class LineFinder {
   }
 
   [[nodiscard]] static bool ends(char c) noexcept { return c == '\r' || c == '\n'; }
-  // ending: bytes that end the line, and are part of it.
+  // ending: bytes of the line end.
   std::optional<Reading> end(std::size_t ending) noexcept {
     const std::string_view line(line_.data(), std::exchange(length_, 0));
     const bool whole = std::exchange(in_step_, true);
@@ -73,7 +73,7 @@ class LineFinder {
     (reading ? counters_.bytes_framed : counters_.bytes_skipped) += line.size() + ending;
     if (reading)
       ++counters_.good;
-    else if (whole)  // what comes before the first line end is no fault of the line's
+    else if (whole)  // text before the first line end is no fault
       ++counters_.malformed;
     return reading;
   }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver `dsp3000`: KVH DSP-3000 with the digital 100 Hz interface.
+// Driver `dsp3000`: KVH DSP-3000 with the digital 100 Hz interface.
 //
-// Rate, incremental and integrated angle look alike on the line, so the configuration says which it is. The
-// lines carry no counter and no time, and the device's clock is 2 to 3 % off the nominal 100 a second: time
-// is to come from the arrivals, not from the nominal rate.
+// Rate, incremental and integrated angle have the same format, so the configuration must tell which it is.
+// There is no counter or time, and the device's clock is 2 to 3 % off the nominal 100 Hz: times must come
+// from arrivals, not from the nominal rate.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -114,7 +114,7 @@ class Driver {
   double rad_per_unit_;
   double rate_hz_;
   LineFinder finder_;
-  // A decoder trusts no line before it has seen a line end: the first thing encoded is one.
+  // A decoder ignores everything before the first line end, so it is sent first.
   bool started_ = false;
 };
 

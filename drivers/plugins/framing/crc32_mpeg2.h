@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// CRC-32/MPEG-2: polynomial 0x04C11DB7, starts at 0xFFFFFFFF, most significant bit first, not inverted at the
-// end. Check value for "123456789": 0x0376E6E7 (catalogue of parametrised CRC algorithms).
+// CRC-32/MPEG-2: polynomial 0x04C11DB7, initial value 0xFFFFFFFF, most significant bit first, not inverted.
+// Check value of "123456789": 0x0376E6E7 (catalogue of parametrised CRC algorithms).
 //
-// Eight bytes at a time by eight tables (M. E. Kounavis and F. L. Berry, "Novel Table Lookup-Based Algorithms
-// for High-Performance CRC Generation", IEEE Transactions on Computers 57(11), 2008): byte by byte each
-// look-up waits for the one before, which for a frame of 36 bytes is most of what decoding it takes.
+// Processes eight bytes at a time with eight tables (M. E. Kounavis and F. L. Berry, "Novel Table
+// Lookup-Based Algorithms for High-Performance CRC Generation", IEEE Transactions on Computers 57(11), 2008);
+// byte by byte the dependent look-ups would dominate the decoding time.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace ifog::framing {
 
-// By table and byte: what the byte leaves with so many bytes of zeros behind it.
+// By table and byte: remainder of the byte followed by this many zero bytes.
 struct Crc32Mpeg2Tables {
   static constexpr std::size_t kTables = 8;
   std::array<std::array<std::uint32_t, 256>, kTables> after{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What plugins make of a frame's fields: walks through them, of either byte order; numbers made to fit into one; time
-// stamps; and the environment channels of a sample, held from the frames that bring them to those that do not.
+// Fields of frames in either byte order: reading and writing, numbers limited to a field, time stamps, and
+// environment channels, which hold their values between frames.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +18,12 @@
 
 namespace ifog::framing {
 
-// Reads from bytes that have been checked to be enough.
+// Reads from bytes whose number has been checked.
 template <std::endian kOrder>
 class FieldReader {
  public:
   explicit FieldReader(const std::uint8_t* at) : at_(at) {}
-  // An unsigned number of so many bytes, at most four.
+  // Unsigned number of up to four bytes.
   std::uint32_t number(unsigned bytes) {
     std::uint32_t out = 0;
     for (unsigned i = 0; i < bytes; ++i)
@@ -31,7 +31,7 @@ class FieldReader {
     at_ += bytes;
     return out;
   }
-  // The same in two's complement.
+  // Two's complement number.
   std::int32_t whole(unsigned bytes) {
     const unsigned unused = 32U - 8U * bytes;
     return std::bit_cast<std::int32_t>(number(bytes) << unused) >> unused;
@@ -43,12 +43,12 @@ class FieldReader {
   const std::uint8_t* at_;
 };
 
-// Writes into the bytes of a frame. Throws std::length_error where the frame has no room for the field.
+// Writes into a frame's bytes. Throws std::length_error if the field does not fit.
 template <std::endian kOrder>
 class FieldWriter {
  public:
   explicit FieldWriter(std::span<std::uint8_t> room) : room_(room) {}
-  // The lowest bytes of it.
+  // The lowest bytes of the value.
   void number(std::uint32_t value, unsigned bytes) {
     if (bytes > room_.size()) throw std::length_error("the frame has no room for what is to go into it");
     for (unsigned i = 0; i < bytes; ++i)
@@ -62,7 +62,7 @@ class FieldWriter {
   std::span<std::uint8_t> room_;
 };
 
-// The nearest count in two's complement of so many bits. Throws std::invalid_argument beyond them.
+// Nearest count in two's complement of `bits`. Throws std::invalid_argument if out of range.
 inline std::int32_t count_of(double value, unsigned bits, const std::string& what) {
   const double most = std::ldexp(1.0, static_cast<int>(bits) - 1);
   const double count = std::round(value);
@@ -72,7 +72,7 @@ inline std::int32_t count_of(double value, unsigned bits, const std::string& wha
   return static_cast<std::int32_t>(count);
 }
 
-// Throws std::invalid_argument for a number too large; what is not finite stays so.
+// Throws std::invalid_argument for a number too large; non-finite values are kept.
 inline float float_of(double value, const std::string& what) {
   if (std::isfinite(value) && std::abs(value) > static_cast<double>(std::numeric_limits<float>::max()))
     throw std::invalid_argument(what + " is " + std::to_string(value) +
@@ -83,7 +83,7 @@ inline float float_of(double value, const std::string& what) {
 class Channels {
  public:
   Channels() { held_.fill(std::numeric_limits<double>::quiet_NaN()); }
-  // A new value, sent with this sample. A value that is not finite is none.
+  // Sets a new value of this sample; ignored if not finite.
   void set(ifog_sample& sample, std::size_t channel, double value) noexcept {
     if (!std::isfinite(value)) return;
     held_[channel] = value;
@@ -97,14 +97,14 @@ class Channels {
   std::array<double, IFOG_MAX_ENVIRONMENT> held_{};
 };
 
-// A count of ticks, as it is sent.
+// Time stamp in ticks.
 class Stamp {
  public:
-  // A stamp whose tick has so many nanoseconds.
+  // tick_ns: nanoseconds per tick.
   explicit constexpr Stamp(std::int64_t tick_ns) : tick_ns_(tick_ns) {}
   [[nodiscard]] constexpr std::int64_t time_ns(std::int64_t ticks) const noexcept { return ticks * tick_ns_; }
-  // The inverse: the stamp a device sends at this time, which rolls over after `modulus` ticks. Times
-  // before the origin stay in order.
+  // Stamp that a device sends at this time, rolling over after `modulus` ticks. Times before the origin stay
+  // in order.
   [[nodiscard]] std::uint32_t stamp_at(std::int64_t time_ns, std::int64_t modulus) const noexcept {
     const std::int64_t ticks = time_ns / tick_ns_ - (time_ns % tick_ns_ < 0 ? 1 : 0);
     const std::int64_t stamp = ticks % modulus;

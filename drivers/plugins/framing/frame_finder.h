@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finds the intact frames in a byte stream, whatever is between, before or inside them.
+// Finds intact frames in a byte stream with any other bytes between, before or inside them.
 //
-// At each position that holds a header the frame's bytes are awaited and its checksum is tried. A frame that
-// fails is skipped by ONE byte, not by its length: so a frame whose header lies inside a damaged one is
-// found. While a frame is not yet whole the positions behind its header are tried too: a header that damage
-// or chance has made, and that announces bytes which never come, holds back nothing. So an intact frame comes
-// out with its own last byte, never later. The price is that a whole frame, checksum and all, inside another
-// one's payload is accepted and the outer one lost; no device sends that. Of frames that overlap the
-// one that ends first is accepted, also where all bytes arrive at once: a recording gives the frames that the
-// line gave, however either was cut into portions.
+// At each position with a header, the frame's bytes are awaited and its checksum is tested. A failed frame is
+// skipped by one byte, so a frame that starts inside a damaged one is found. While a frame is incomplete
+// later positions are tested too, so a false header delays nothing: an intact frame is delivered with its
+// last byte. Drawback: a complete frame inside another's payload is accepted and the outer one lost; no
+// device sends that. Of overlapping frames the one that ends first is accepted, even if all bytes arrive at
+// once, so the result does not depend on portions.
 #pragma once
 
 #include <algorithm>
@@ -27,14 +25,13 @@ namespace ifog::framing {
 
 struct FrameCounters {
   std::uint64_t intact = 0;
-  // A header, but the checksum of what follows does not fit. Within an intact frame it is none: payload may
-  // look like one.
+  // A header with a wrong checksum. Not counted within an intact frame, whose payload may look like a header.
   std::uint64_t checksum_failed = 0;
-  std::uint64_t bytes_skipped = 0;  // bytes that are part of no intact frame
+  std::uint64_t bytes_skipped = 0;  // bytes outside intact frames
   std::uint64_t bytes_framed = 0;   // bytes of intact frames
 };
 
-// What a header says.
+// Information of a header.
 struct Announced {
   enum class Is { none, unknown_yet, frame };
   Is is = Is::none;        // unknown_yet: the bytes so far may begin a header
@@ -45,7 +42,7 @@ struct Announced {
 //   static constexpr std::size_t kLongest;                         of a frame, bytes
 //   Announced at(std::span<const std::uint8_t>) const noexcept;    of the header there; at least a byte
 //   bool intact(std::span<const std::uint8_t>) const noexcept;     checksum of a whole frame
-// and, where every header begins with the same byte,
+// and, if every header starts with the same byte,
 //   static constexpr std::uint8_t kFirst;
 template <typename Protocol>
 class FrameFinder {
@@ -64,13 +61,13 @@ class FrameFinder {
     }
   }
 
-  // Forgets what is half read; the bytes count as skipped.
+  // Discards an incomplete frame; its bytes count as skipped.
   void reset() noexcept {
     pass_over(end_);
     forget();
   }
 
-  // As the host wants them. `unused`: of the intact frames, those that the driver was configured to ignore.
+  // Counters for the host. unused: intact frames that the driver ignores by configuration.
   void copy_to(ifog_driver_counters& out, std::uint64_t unused = 0) const noexcept {
     out = {};
     out.frames_good = counters_.intact - unused;
@@ -81,7 +78,7 @@ class FrameFinder {
     out.bytes_pending = waiting();
   }
   [[nodiscard]] const FrameCounters& counters() const { return counters_; }
-  [[nodiscard]] std::size_t waiting() const { return end_ - begin_; }  // bytes that may yet begin a frame
+  [[nodiscard]] std::size_t waiting() const { return end_ - begin_; }  // bytes that may begin a frame
 
  private:
   struct Place {
@@ -89,7 +86,7 @@ class FrameFinder {
   };
 
   std::size_t take(std::span<const std::uint8_t> bytes) noexcept {
-    // next() leaves less than a frame behind, so there is always room after this.
+    // next() leaves less than a frame, so there is always enough space after this.
     if (kBuffer - end_ < bytes.size() && begin_ != 0) {
       std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);
       failed_ >>= begin_;
@@ -103,9 +100,9 @@ class FrameFinder {
     return n;
   }
 
-  // The next intact frame; without one, bytes that can begin none any more are skipped.
+  // Next intact frame; without one, skips bytes that cannot begin a frame.
   std::optional<Place> next() noexcept {
-    std::size_t keep = end_;  // the first position that may yet begin a frame
+    std::size_t keep = end_;  // first position that may begin a frame
     for (std::size_t at = begin_; at < end_; ++at) {
       if (failed_.test(at)) continue;
       const std::span<const std::uint8_t> rest(buffer_.data() + at, end_ - at);
@@ -128,7 +125,7 @@ class FrameFinder {
     return std::nullopt;
   }
 
-  // Bytes before it that are not yet consumed are part of no intact frame.
+  // Unconsumed bytes before it are part of no intact frame.
   void pass_over(std::size_t upto) noexcept {
     counters_.bytes_skipped += upto - begin_;
     if (!any_failed_) return;
@@ -140,13 +137,13 @@ class FrameFinder {
   }
   void forget() noexcept {
     begin_ = end_ = 0;
-    // Frame by frame, as from a line, there is seldom anything to clear.
+    // If the bytes come frame by frame there is seldom anything to clear.
     if (!std::exchange(any_failed_, false)) return;
     failed_.reset();
     sum_failed_.reset();
   }
 
-  // The sum of a frame is tried once, however the stream comes in portions.
+  // A frame's checksum is computed once, for any portions.
   bool intact(std::size_t at, std::size_t length) noexcept {
     if (protocol_.intact({buffer_.data() + at, length})) return true;
     sum_failed_.set(at);
@@ -154,7 +151,7 @@ class FrameFinder {
     return false;
   }
 
-  // For an intact frame and those inside it: what would have come out had the bytes come one by one.
+  // For an intact frame and those inside it: the frame that would have been found byte by byte.
   Place ends_first(Place outer) noexcept {
     std::size_t end = outer.at + outer.length;
     Place first = outer;
@@ -169,7 +166,7 @@ class FrameFinder {
     return first;
   }
 
-  // The first position from `at` on that may hold a header; `end` for none before it.
+  // First position from `at` on that may hold a header; `end` if there is none.
   [[nodiscard]] std::size_t candidate(std::size_t at, std::size_t end) const noexcept {
     if constexpr (requires { Protocol::kFirst; }) {
       const auto* const found =
@@ -186,12 +183,12 @@ class FrameFinder {
     ++counters_.intact;
   }
 
-  // Large against a frame, so that the remainder is moved to the front seldom.
+  // Large compared with a frame, so the remainder is rarely moved.
   static constexpr std::size_t kBuffer = 2 * Protocol::kLongest + 4096;
   Protocol protocol_;
   std::array<std::uint8_t, kBuffer> buffer_{};
-  std::bitset<kBuffer> failed_;      // positions known to begin no frame
-  std::bitset<kBuffer> sum_failed_;  // those of them with a header
+  std::bitset<kBuffer> failed_;      // positions that begin no frame
+  std::bitset<kBuffer> sum_failed_;  // of these, positions with a header
   bool any_failed_ = false;
   std::size_t begin_ = 0, end_ = 0;
   FrameCounters counters_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frames of a KVH device in a byte stream: what the finder of intact frames has to know of them.
+// Frames of a KVH device for the finder of intact frames.
 #pragma once
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Protocol {
 
 using FrameFinder = framing::FrameFinder<Protocol>;
 
-// The fields of a frame that was found.
+// Fields of a found frame.
 inline Frame unpack_found(std::span<const std::uint8_t> frame) noexcept {
   return unpack(*header_at(frame), frame);
 }

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver `kvh1750`: KVH 1725, 1750 and 1775 IMU and DSP-1760, message formats A, B and C.
+// Driver `kvh1750`: KVH 1725, 1750 and 1775 IMU and DSP-1760, message formats A, B and C.
 //
-// The bytes carry numbers without their meaning: radians or degrees, rate or delta angle, the temperature's
-// scale are set in the device (=ANGUNITS, =ANGFMT, =LINFMT, =TEMPUNITS) and must be said to the driver. Mind
-// that KVH delivers devices that send delta angles, while the default here is rate.
+// Radians or degrees, rate or delta angle, and the temperature's scale are settings of the device (=ANGUNITS,
+// =ANGFMT, =LINFMT, =TEMPUNITS) and must be given to the driver. KVH delivers devices that send delta angles;
+// the default here is rate.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,7 +37,7 @@ constexpr std::array<const char*, kEnvironments> kEnvironmentNames{
 enum class Acceleration { kSpecificForce, kDeltaVelocity };
 
 struct SetUp {
-  std::optional<Format> format;  // nothing: whatever arrives
+  std::optional<Format> format;  // nullopt: any
   double rad_per_unit = 1.0;
   bool delta_angle = false;
   Acceleration acceleration = Acceleration::kSpecificForce;
@@ -146,7 +146,7 @@ class Driver {
 
   void counters(ifog_driver_counters& out) const { finder_.copy_to(out, other_format_); }
 
-  // Throws std::invalid_argument: a value the format has no room for.
+  // Throws std::invalid_argument for a value that does not fit.
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {
     const Frame frame = frame_of(sample);
     std::array<std::uint8_t, kLongestFrame> bytes{};
@@ -222,7 +222,7 @@ class Driver {
                                   "magnetic field");
       return;
     }
-    // The format has no "no temperature"; 0 is what a device without the sensor sends.
+    // The format cannot express a missing temperature; devices without the sensor send 0.
     const double counts = std::isfinite(temperature) ? std::round(set_up_.as_sent(temperature)) : 0.0;
     if (counts < std::numeric_limits<std::int16_t>::min() ||
         counts > std::numeric_limits<std::int16_t>::max())

@@ -22,7 +22,7 @@ constexpr double kRateCounts = 67108864.0, kHighRateCounts = 12304174.0;  // per
 constexpr double kTemperatureCounts = 256.0;                              // per °C
 constexpr double kMostAtStandardScale_radps = 0x1p31 / kRateCounts;       // 1833 °/s
 
-// Classes of frames a device sends; the highest bit marks a page of a large one.
+// Frame classes that a device sends; the highest bit marks a page of a large frame.
 bool is_class(std::uint8_t value) {
   const unsigned kind = value & 0x7FU;
   return kind <= 5 || kind == 0x10;
@@ -36,7 +36,7 @@ void unpack_short(Reader& in, Imu& imu) noexcept {
 }
 
 void unpack_data(Reader& in, Imu& imu) noexcept {
-  in.skip(24);  // the rates and accelerations of the moment
+  in.skip(24);  // instantaneous rates and accelerations
   imu.temperature_degC = static_cast<double>(in.real());
   for (double& each : imu.acceleration_mps2) each = static_cast<double>(in.real());
   for (double& each : imu.rate_radps) each = static_cast<double>(in.real());
@@ -70,7 +70,7 @@ std::uint16_t crc16(std::span<const std::uint8_t> bytes) noexcept {
 }
 
 bool unpack(std::span<const std::uint8_t> frame, Imu& imu) noexcept {
-  // The finder took no frame of these messages for intact that has another length.
+  // The finder has checked the length of these messages.
   if (frame[3] != 0 || (frame[2] != kImuShort && frame[2] != kImuData)) return false;
   Reader in(frame.data() + kHeader);
   imu.message = frame[2];

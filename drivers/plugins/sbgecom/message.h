@@ -1,19 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// The IMU messages of the SBG Systems sbgECom protocol. Everything is little-endian.
-// Source: SBG Systems, sbgECom binary protocol and binary messages (firmware reference manual), "Standard
-// Frame", "CRC Definition", SBG_ECOM_LOG_IMU_DATA (03), SBG_ECOM_LOG_IMU_SHORT (44).
+// IMU messages of the SBG Systems sbgECom protocol. Little-endian. Source: SBG Systems, sbgECom binary
+// protocol and binary messages (firmware reference manual), "Standard Frame", "CRC Definition",
+// SBG_ECOM_LOG_IMU_DATA (03), SBG_ECOM_LOG_IMU_SHORT (44).
 //
 //   FF 5A, message, class, uint16 length of the data, data, CRC, 33
 //
-// The CRC has the polynomial 0x8408 (0x1021 reflected) and starts at 0; it covers message, class, length and
+// The CRC has the polynomial 0x8408 (0x1021 reflected), initial value 0, over message, class, length and
 // data.
 //
 //   IMU_SHORT, 32 bytes: uint32 time stamp in µs, uint16 status, three int32 accelerations, three int32
-//   rates,
-//                        int16 temperature, in counts
+//   rates, int16 temperature, in counts
 //   IMU_DATA, 58 bytes:  time stamp and status likewise, then floats: three accelerations (m/s²), three rates
-//                        (rad/s), temperature (°C), three velocity and three angle increments over the
-//                        interval, both divided by it (m/s², rad/s)
+//   (rad/s), temperature (°C), three velocity and three angle increments over the interval, divided by it
+//   (m/s², rad/s)
 #pragma once
 
 #include <array>
@@ -25,7 +24,7 @@
 
 namespace ifog::sbgecom {
 
-inline constexpr std::uint8_t kImuData = 3, kImuShort = 44;  // messages of class 0
+inline constexpr std::uint8_t kImuData = 3, kImuShort = 44;  // of class 0
 inline constexpr std::size_t kImuDataLength = 58, kImuShortLength = 32;
 inline constexpr std::size_t kHeader = 6, kTrailer = 3,
                              kLongestImuFrame = kHeader + kImuDataLength + kTrailer;
@@ -44,10 +43,10 @@ struct Imu {
   double temperature_degC = 0.0;
 };
 
-// Reads the IMU message in an intact frame; false: it is another message.
+// Reads an IMU message from an intact frame; false: it is another message.
 bool unpack(std::span<const std::uint8_t> frame, Imu& imu) noexcept;
-// Returns the frame's length. IMU_SHORT gets the scale its rates need, and the status bit that says so.
-// Throws std::invalid_argument for what the message has no room for.
+// Returns the frame's length. IMU_SHORT uses the scale that its rates need, with the status bit. Throws
+// std::invalid_argument for values that do not fit.
 std::size_t pack(const Imu& imu, std::span<std::uint8_t, kLongestImuFrame> out);
 
 // CRC-16/KERMIT.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver `sbgecom`: SBG Systems Ellipse, Apogee, Ekinox, Quanta, Pulse, IMU logs of the sbgECom protocol.
+// Driver `sbgecom`: SBG Systems Ellipse, Apogee, Ekinox, Quanta, Pulse; IMU logs of the sbgECom protocol.
 //
-// Both messages give the mean rate and specific force over the interval between two of them, coning and
-// sculling of what happens within it included: multiplied by the interval they are the increments.
+// Both messages contain mean rate and specific force between two messages, including coning and sculling:
+// times the interval they are the increments.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -29,7 +29,7 @@ constexpr std::array kOptions{
     ifog_option{"message", "auto | imu_short | imu_data", "auto",
                 "IMU log set in the device; auto takes whichever arrives. Where both are on, choose one"},
     ifog_option{"rate_hz", "a number > 0, at most 100000", "200", "rate of the log set in the device"},
-    // The widest range of a product (Pulse-40); a narrower device says in its status when it is left.
+    // Widest range of a product (Pulse-40); narrower devices report saturation in their status.
     ifog_option{"full_scale", "a number > 0, at most 10000", "2000",
                 "maximum input rate in deg/s: what reaches it is saturated"},
     ifog_option{nullptr, nullptr, nullptr, nullptr}};
@@ -72,7 +72,7 @@ class Driver {
   // The device's other messages are good frames, too.
   void counters(ifog_driver_counters& out) const { finder_.copy_to(out); }
 
-  // Throws std::invalid_argument: no time, or a value the message has no room for.
+  // Throws std::invalid_argument: no time, or a value that does not fit.
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {
     if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) == 0)
       throw std::invalid_argument("the message carries the device's time, and the sample has none");
@@ -90,7 +90,7 @@ class Driver {
         imu.status = static_cast<std::uint16_t>(imu.status | kAccelerationOk << axis);
       }
     }
-    // The message has no "no temperature".
+    // The message cannot express a missing temperature.
     if (std::isfinite(sample.environment[kTemperature]))
       imu.temperature_degC = sample.environment[kTemperature];
     std::array<std::uint8_t, kLongestImuFrame> bytes{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver `stdbin`: iXblue (Exail) fibre-optic INS, AHRS and gyrocompasses (Octans, Quadrans, Hydrins,
-// Phins, Rovins, …), STDBIN telegrams of versions 2 to 5.
+// Driver `stdbin`: iXblue (Exail) fibre-optic INS, AHRS and gyrocompasses (Octans, Quadrans, Hydrins, Phins,
+// Rovins, …), STDBIN telegrams of versions 2 to 5.
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -17,10 +17,10 @@ namespace ifog::stdbin {
 namespace {
 
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
-// The stamp is a time of day once the device knows it, else since power-up.
+// The stamp is the time of day if the device knows it, else since power-up.
 constexpr std::int64_t kTick_ns = 100'000, kTicksOfADay = 864'000'000,
                        kTicksOfTheField = std::int64_t{1} << 32U;
-// The part of a 32-bit counter that a count of lost samples needs.
+// Part of the 32-bit counter that suffices to count losses.
 constexpr std::uint32_t kSequenceModulus = 1U << 16U;
 
 // Environment channels.
@@ -88,7 +88,7 @@ class Driver {
 
   void counters(ifog_driver_counters& out) const { finder_.copy_to(out, without_rate_); }
 
-  // Throws std::invalid_argument: no time, an axis missing, or a value no float holds.
+  // Throws std::invalid_argument: no time, a missing axis, or a value that no float holds.
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {
     if ((sample.flags & IFOG_SAMPLE_DEVICE_TIME) == 0)
       throw std::invalid_argument("the telegram carries the device's time, and the sample has none");
@@ -112,7 +112,7 @@ class Driver {
   }
 
  private:
-  // Nothing where none of the three is there.
+  // nullopt if all three are missing.
   static std::optional<Triad> triad_of(const double* values, const char* what) {
     Triad out{};
     bool any = false;
@@ -128,7 +128,7 @@ class Driver {
     sample.arrival_ns = arrival_ns;
     sample.status = telegram.sensor_status.value_or(0);
     sample.sequence = telegram.counter % kSequenceModulus;
-    // A stamp that has passed a day is none of the time of day.
+    // A stamp above a day is no time of day.
     beyond_a_day_ = beyond_a_day_ || telegram.validity_100us >= kTicksOfADay;
     sample.device_time_ns = stamp_.time_ns(telegram.validity_100us);
     sample.device_wrap_ns = stamp_.time_ns(beyond_a_day_ ? kTicksOfTheField : kTicksOfADay);

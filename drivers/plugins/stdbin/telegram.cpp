@@ -12,7 +12,7 @@ namespace {
 using Reader = framing::FieldReader<std::endian::big>;
 using Writer = framing::FieldWriter<std::endian::big>;
 
-// Lengths by bit of the mask; 0: none is published for it.
+// Lengths by bit of the mask; 0: not published.
 using Lengths = std::array<std::uint8_t, 32>;
 constexpr Lengths kNavigation{12, 12, 16, 8,  12, 12, 12, 21, 16, 12, 12, 8,  8,  4,  8,  16,
                               12, 4,  4,  12, 4,  12, 12, 12, 8,  12, 16, 12, 12, 12, 12, 0};
@@ -49,7 +49,7 @@ Header read_header(const std::uint8_t* bytes) noexcept {
 
 struct Sum {
   std::size_t length = 0;
-  bool exact = true;  // every bit's length is known
+  bool exact = true;  // the length of every bit is known
 };
 
 Sum sum_of(std::uint32_t mask, const Lengths& lengths) noexcept {
@@ -66,7 +66,7 @@ bool agrees(std::size_t stated, std::size_t length, bool exact) {
   return exact ? stated == length : stated >= length;
 }
 
-// Where a block begins, behind the header; nothing if it is not there or not to be found.
+// Offset of a block after the header; nullopt if it is absent or undeterminable.
 std::optional<std::size_t> place_of(unsigned wanted, std::uint32_t mask, const Lengths& lengths) noexcept {
   if ((mask >> wanted & 1U) == 0) return std::nullopt;
   const Sum before = sum_of(mask & ((1U << wanted) - 1U), lengths);

@@ -11,7 +11,7 @@ namespace {
 using Reader = framing::FieldReader<std::endian::big>;
 using Writer = framing::FieldWriter<std::endian::big>;
 
-// Each triad of the datagram in its order, with the bytes of a count.
+// Calls use for each triad of the datagram in order, with the bytes per count.
 template <typename Fields, typename Use>
 void each_triad(const Content& content, Fields& fields, Use&& use) {
   use(fields.gyro, 3U);

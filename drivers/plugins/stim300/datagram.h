@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Normal Mode datagram of the Sensonor STIM300, in counts. Everything is big-endian.
-// Source: STIM300 datasheet TS1524 rev. 31, tables 5-20 to 5-23, section 5.5.7; the identifiers with AUX,
-// which PPS has replaced, from its revisions up to 19.
+// Normal Mode datagram of the Sensonor STIM300, in counts. Big-endian. Source: STIM300 datasheet TS1524 rev.
+// 31, tables 5-20 to 5-23, section 5.5.7; identifiers with AUX, replaced by PPS, from revisions up to 19.
 //
-//   identifier, then of what it announces in this order:
+//   identifier, then what it announces, in this order:
 //   gyro, accelerometer, inclinometer: three int24 and a status byte each
 //   temperatures of each of these that is present: three int16 and a status byte each
 //   PPS or AUX: an int24 and a status byte
-//   then counter (uint8), latency in µs (uint16), CRC (uint32), and CR LF where the device is set so
+//   then counter (uint8), latency in µs (uint16), CRC (uint32), and CR LF if configured
 //
-// The CRC is CRC-32/MPEG-2 over all bytes before it and as many zeros, never sent, as make them full words.
+// The CRC is CRC-32/MPEG-2 over all bytes before it, zero-padded to full words (the padding is not sent).
 #pragma once
 
 #include <algorithm>
@@ -75,15 +74,15 @@ struct Datagram {
   Triad gyro_temperature, acceleration_temperature, inclination_temperature;
   std::int32_t extra = 0;  // PPS or AUX
   std::uint8_t extra_status = 0;
-  std::uint8_t counter = 0;  // of the internal samples, 2000 a second
+  std::uint8_t counter = 0;  // of the 2000 internal samples per second
   std::uint16_t latency_us = 0;
 };
 
-// What the identifier announces; nothing if it is none.
+// Content announced by the identifier; nullopt if it is invalid.
 std::optional<Content> content_of(std::uint8_t identifier) noexcept;
 
 Datagram unpack(const Content& content, std::span<const std::uint8_t> bytes) noexcept;
-// CRC included; returns its length.
+// Includes the CRC; returns the length.
 std::size_t pack(const Datagram& datagram, std::span<std::uint8_t, kLongestDatagram> out);
 bool crc_fits(std::span<const std::uint8_t> datagram) noexcept;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The driver `stim300`: Normal Mode datagrams of the Sensonor STIM300.
+// Driver `stim300`: Normal Mode datagrams of the Sensonor STIM300.
 //
-// The identifier says what a datagram holds; the units of the counts are set in the device and must be said
-// to the driver.
+// The identifier tells the content; the units of the counts are settings of the device and must be given to
+// the driver.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@
 namespace ifog::stim300 {
 namespace {
 
-constexpr double kStandardGravity = 9.80665;  // m/s² per g, as the datasheet has it
+constexpr double kStandardGravity = 9.80665;  // m/s² per g, by the datasheet
 constexpr double kRadiansPerDegree = std::numbers::pi / 180.0;
 constexpr double kFullScale_radps = 400.0 * kRadiansPerDegree;  // datasheet, table 5-3
 constexpr double kInternalRate_hz = 2000.0;                     // section 7.5.2.2.18
@@ -54,18 +54,18 @@ constexpr std::array<const char*, kEnvironments> kNames{"accel_x_mps2",
 static_assert(kEnvironments <= IFOG_MAX_ENVIRONMENT);
 
 struct SetUp {
-  std::optional<Content> datagram;  // nothing: whatever arrives
+  std::optional<Content> datagram;  // nullopt: any
   ifog_kind kind = IFOG_RATE;
   double counts_per_g = 0.0, counts_per_mps = 0.0;  // of the accelerometer's range
   bool delta_velocity = false;
   bool terminated = false;
-  double rate_hz = 0.0;            // 0: at an external trigger
-  std::uint32_t counter_step = 0;  // internal samples from one datagram to the next; 0: any
+  double rate_hz = 0.0;            // 0: external trigger
+  std::uint32_t counter_step = 0;  // internal samples per datagram; 0: any
 
-  [[nodiscard]] double gyro_scale() const {  // rad/s or rad a count
+  [[nodiscard]] double gyro_scale() const {  // rad/s or rad per count
     return kRadiansPerDegree / (kind == IFOG_RATE ? kRateCounts : kAngleCounts);
   }
-  [[nodiscard]] double acceleration_scale() const {  // m/s² a count
+  [[nodiscard]] double acceleration_scale() const {  // m/s² per count
     return delta_velocity ? rate_hz / counts_per_mps : kStandardGravity / counts_per_g;
   }
   [[nodiscard]] double inclination_scale() const {
@@ -118,7 +118,7 @@ SetUp read_set_up(const plugin::Options& options) {
   return s;
 }
 
-// Bit i: this axis of what the status byte goes with may be used.
+// Bit i: axis i is usable according to the status byte.
 unsigned usable_axes(std::uint8_t status) {
   if ((status & (kIntegrityError | kStartUp)) != 0) return 0;
   if ((status & (kOverload | kChannelError)) == 0) return 7;
@@ -163,12 +163,12 @@ class Driver {
 
   void counters(ifog_driver_counters& out) const {
     finder_.copy_to(out, other_datagram_);
-    // A header is a single byte that any other byte may equal: a sum that fails tells of no frame. What is
-    // lost shows in the bytes skipped and in the sequence.
+    // Any byte may look like the one-byte header, so a wrong checksum does not prove a frame. Losses show in
+    // the skipped bytes and the sequence.
     out.frames_crc = 0;
   }
 
-  // Throws std::invalid_argument: a value the datagram has no room for.
+  // Throws std::invalid_argument for a value that does not fit.
   void encode(const ifog_sample& sample, ifog_emit_bytes emit, void* sink) {
     std::array<std::uint8_t, kLongestDatagram> bytes{};
     const std::size_t length = pack(datagram_of(sample), bytes);
@@ -214,7 +214,7 @@ class Driver {
     return sample;
   }
 
-  // Values that are not there become 0 with the status of a channel error.
+  // Missing values become 0 with the status of a channel error.
   static Triad triad_of(const double* values, double scale, unsigned bits, const std::string& what) {
     Triad out;
     for (unsigned axis = 0; axis < 3; ++axis) {
@@ -233,7 +233,7 @@ class Driver {
     for (unsigned axis = 0; axis < 3; ++axis) {
       const bool valid = (sample.valid_axes & 1U << axis) != 0;
       gyro[axis] = valid ? sample.value[axis] : std::nan("");
-      // An angle continues where its counts wrap.
+      // An angle wraps like its counts.
       if (set_up_.kind == IFOG_ANGLE) gyro[axis] = wrapped(gyro[axis]);
     }
     out.gyro = triad_of(gyro.data(), set_up_.gyro_scale(), 24, "gyro value");
@@ -270,7 +270,7 @@ class Driver {
 
   static double wrapped(double angle) {
     const double within = std::remainder(angle, kAngleWrap_rad);
-    // The interval is closed below: what rounds to its upper end is its lower one.
+    // The interval includes its lower end: a value that rounds to the upper end becomes the lower one.
     const double half_count = 0.5 * kRadiansPerDegree / kAngleCounts;
     return within >= 0.5 * kAngleWrap_rad - half_count ? within - kAngleWrap_rad : within;
   }
