@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kErrorLength = 4096;
 using ErrorText = std::array<char, kErrorLength>;
 
-// The settings in the plugin's own order, defaults filled in.
+// Settings in the plugin's order with defaults.
 std::vector<ifog_setting> complete(const ifog_driver& table, const DriverSettings& settings) {
   const std::string who = std::string("driver ") + table.name + ": ";
   std::vector<std::string_view> known;
@@ -50,7 +50,7 @@ bool ended(const char (&name)[N]) {
   return std::memchr(name, '\0', N) != nullptr;
 }
 
-// What an encoder hands over, through C: an allocation that fails waits for its end.
+// Collects an encoder's output through C; a failed allocation is reported afterwards.
 template <typename Item>
 struct Collected {
   std::vector<Item>& out;
@@ -65,7 +65,7 @@ struct Collected {
   }
 };
 
-// What the host will use as sizes and indices must hold for any plugin, ours or not.
+// Sizes and indices must be valid for any plugin.
 const char* impossible(const ifog_description& d) {
   if (d.kind > IFOG_ANGLE) return "a kind that is none of rate, delta angle, angle";
   if (d.axes < 1 || d.axes > IFOG_MAX_AXES) return "a number of axes outside 1 … 3";
@@ -149,7 +149,7 @@ void DriverInstance::encode_bytes(const ifog_sample& sample, std::vector<std::ui
   const int failed = table().encode_bytes(instance_, &sample, emit, &collected, error.data(), error.size());
   if (collected.thrown) std::rethrow_exception(collected.thrown);
   if (failed == 0) return;
-  out.resize(before);  // a sample is encoded whole or not at all
+  out.resize(before);  // a sample is encoded completely or not at all
   throw std::runtime_error(std::string("driver ") + table().name + ": " +
                            printable(error.data(), kLongestMessage));
 }

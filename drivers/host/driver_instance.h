@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One configured driver of one sensor: the C table of a plugin with its instance, owned.
+// One configured driver of one sensor: owns the plugin's instance.
 #pragma once
 
 #include <algorithm>
@@ -21,14 +21,14 @@
 
 namespace ifog {
 
-// Option key to its value as text: the sensor's [sensor.options] table, or `--option key=value`.
+// Option keys and values as text: the sensor's [sensor.options] table, or `--option key=value`.
 using DriverSettings = std::map<std::string, std::string>;
 
 class DriverInstance {
  public:
-  // Checks the keys against the plugin's list, fills in the defaults, creates. Throws std::runtime_error with
-  // one line that names the driver, the key, its value and what was expected: an unknown key, a missing one,
-  // a value the plugin refuses, a description out of the interface's bounds.
+  // Checks the keys, fills in defaults, creates the instance. Throws std::runtime_error with one line
+  // (driver, key, value, what was expected): unknown or missing key, a value that the plugin rejects, a
+  // description outside the interface's limits.
   DriverInstance(std::shared_ptr<const Plugin> plugin, const DriverSettings& settings);
   ~DriverInstance();
   DriverInstance(DriverInstance&& other) noexcept;
@@ -42,12 +42,12 @@ class DriverInstance {
   [[nodiscard]] bool takes_bytes() const { return (table().transports & IFOG_TRANSPORT_BYTES) != 0; }
   [[nodiscard]] bool takes_can() const { return (table().transports & IFOG_TRANSPORT_CAN) != 0; }
   [[nodiscard]] ifog_driver_counters counters() const;
-  // What the plugin could do without but its user should know: one line each.
+  // Warnings of the plugin for the user, one line each.
   [[nodiscard]] const std::vector<std::string>& warnings() const { return warnings_; }
 
-  // Hot path. `sink` is called with each const ifog_sample& as its last byte is seen. What it throws is
-  // thrown on once the plugin has returned, and the sink gets none of the samples between: nothing may be
-  // thrown through a plugin's C functions. Only for a driver that takes_bytes() / takes_can().
+  // Hot path. Calls `sink` with each const ifog_sample& when its last byte arrives. An exception of the sink
+  // is rethrown after the plugin returns (never through its C functions); later samples of this call are not
+  // passed. Only for drivers that takes_bytes() / takes_can().
   template <typename Sink>
   void decode_bytes(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, Sink&& sink) {
     Emission<std::remove_reference_t<Sink>> emission{sink, {}, portion_.at_once(bytes.size())};
@@ -64,13 +64,13 @@ class DriverInstance {
   }
   void reset() { table().reset(instance_); }
 
-  // The inverse: the sample as the device would have sent it. Throw std::runtime_error: the plugin has no
-  // encoder for that transport, or the sample cannot be expressed in the format.
+  // Encodes a sample as the device would send it. Throw std::runtime_error: no encoder for that transport, or
+  // the sample cannot be expressed in the format.
   void encode_bytes(const ifog_sample& sample, std::vector<std::uint8_t>& out);
   void encode_can(const ifog_sample& sample, std::vector<ifog_can_frame>& out);
 
  private:
-  // A sink on its way through C.
+  // Passes samples to a sink through C.
   template <typename Sink>
   struct Emission {
     Sink& sink;
@@ -100,8 +100,8 @@ class DriverInstance {
     }
   };
 
-  // About how many samples a portion of bytes brings, by the bytes a sample of this device has had so far. Asked
-  // always of a device with neither counter nor clock to tell a late delivery by, of others where it is many.
+  // Estimated number of samples in a delivery, from the mean bytes per sample so far. Always used for devices
+  // with neither counter nor clock, for others only if it is large.
   struct Portion {
     bool asked = false;
     std::uint64_t bytes = 0, samples = 0;
@@ -126,15 +126,15 @@ class DriverInstance {
   std::vector<std::string> warnings_;
 };
 
-// The keys of those settings that name files, by the plugin's list.
+// Keys of the settings that are file names, by the plugin's list.
 std::vector<std::string> file_settings(const ifog_driver& table, const DriverSettings& settings);
 
-// The settings with those files in `folder` where their paths are relative; "": where the process is.
+// Settings with relative file paths resolved in `folder`; "": the working directory.
 DriverSettings with_files_in(const std::filesystem::path& folder, const ifog_driver& table,
                              DriverSettings settings);
 
-// Finds, loads and creates in one go. Relative paths in the settings begin in `files_from`; "": where the
-// process is.
+// Finds and loads the plugin and creates the instance. Relative paths in settings start in `files_from`; "":
+// the working directory.
 DriverInstance make_driver(const std::string& name, const DriverSettings& settings,
                            const std::vector<std::string>& folders = plugin_folders(),
                            const std::filesystem::path& files_from = {});

@@ -17,7 +17,7 @@ namespace {
 
 class OpenFile {
  public:
-  // Non-blocking: a FIFO of that name is refused, not waited for.
+  // Non-blocking: a FIFO is rejected without waiting.
   explicit OpenFile(const std::string& path)
       : fd_(open(path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {}
   ~OpenFile() {
@@ -41,7 +41,7 @@ std::string who_may_write(const std::string& path, const struct stat& info) {
     return "anybody may write it, expected a file that only its owner may change";
   const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
   struct stat holder {};
-  // In a folder with the sticky bit nobody can put another file in its place.
+  // The sticky bit protects files against replacement.
   if (stat(folder.c_str(), &holder) == 0 && (holder.st_mode & S_IWOTH) != 0 &&
       (holder.st_mode & S_ISVTX) == 0)
     return "anybody may write its folder, expected one that only its owner may change";

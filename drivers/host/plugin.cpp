@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The first thing required that the table lacks, or null.
+// First missing required function, or null.
 const char* missing_function(const ifog_driver& table) {
   if (table.options == nullptr) return "options";
   for (const ifog_option* option = table.options; option->key != nullptr; ++option)
@@ -45,8 +45,8 @@ std::vector<fs::path> objects_in(const fs::path& folder) {
   return files;
 }
 
-// The folder `plugins` of the build tree that the running program was built in, known by its CMakeCache.txt;
-// empty for an installed program. So no path of the building machine ends up in what is installed.
+// Folder `plugins` of the build tree that contains the running program, detected by its CMakeCache.txt; empty
+// for an installed program. So no build path is in an installed program.
 fs::path build_tree_folder(const fs::path& program) {
   constexpr int kDeepest = 5;
   fs::path folder = program.parent_path();
@@ -61,7 +61,7 @@ fs::path build_tree_folder(const fs::path& program) {
 std::shared_ptr<const Plugin> Plugin::load(const std::string& path) {
   const auto refuse = [&](const std::string& why) -> void { throw std::runtime_error(path + ": " + why); };
   if (const std::string flaw = object_flaw(path); !flaw.empty()) refuse(flaw);
-  // A path without a slash would be searched for in the library path instead.
+  // dlopen() searches a path without a slash in the library path.
   void* handle = dlopen(fs::absolute(path).c_str(), RTLD_NOW | RTLD_LOCAL);
   if (handle == nullptr) refuse(std::string("cannot load: ") + dlerror());
   const std::shared_ptr<Plugin> plugin(new Plugin(path, handle));
@@ -70,7 +70,7 @@ std::shared_ptr<const Plugin> Plugin::load(const std::string& path) {
   if (entry == nullptr) refuse("is no ifogd plugin: it has no function ifog_driver_entry");
   const ifog_driver* table = entry();
   if (table == nullptr) refuse("ifog_driver_entry returned no table");
-  // First of all: with another version no other field can be trusted to be where it is looked for.
+  // Checked first: with another version no other field is valid.
   if (table->abi != IFOG_DRIVER_ABI)
     refuse("built for interface version " + std::to_string(table->abi) + ", this program has version " +
            std::to_string(IFOG_DRIVER_ABI) + "; build the plugin against this version");
@@ -115,7 +115,7 @@ std::shared_ptr<const Plugin> find_plugin(const std::string& name, const std::ve
   std::set<std::string> known;
   std::string searched;
   for (const std::string& folder : folders) {
-    // A name with a slash would leave the folder.
+    // Names with a slash would leave the folder.
     const fs::path file = fs::path(folder) / (name + ".so");
     if (name.find('/') == std::string::npos && fs::exists(file, ignored)) return Plugin::load(file.string());
     for (const fs::path& object : objects_in(folder)) known.insert(object.stem().string());

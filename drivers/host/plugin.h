@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Finding and loading protocol plugins.
-//
-// The file of driver NAME is NAME.so, so that starting a sensor loads that one object and no other.
+// Finds and loads protocol plugins. The file of driver NAME is NAME.so, so a sensor loads only its own
+// object.
 #pragma once
 
 #include <memory>
@@ -12,11 +11,11 @@
 
 namespace ifog {
 
-// A loaded plugin. Unloaded when the last owner goes, so instances keep it alive.
+// A loaded plugin. Unloaded with its last owner, so instances keep it alive.
 class Plugin {
  public:
   // Throws std::runtime_error with one line: cannot be loaded, no ifog_driver_entry, another interface
-  // version (both numbers are named), a name that is not the file's, a table with a function missing.
+  // version (with both numbers), a name that is not the file's, a missing function.
   static std::shared_ptr<const Plugin> load(const std::string& path);
   ~Plugin();
   Plugin(const Plugin&) = delete;
@@ -32,24 +31,23 @@ class Plugin {
   const ifog_driver* table_ = nullptr;
 };
 
-// Where plugins are looked for, in this order: `first` (the configuration's), the colon-separated
-// IFOG_PLUGIN_PATH, the build tree's folder when the running program lies in a build tree, lib/ifogd/plugins
-// next to the program's bin, the folder of the installation prefix. Folders that do not exist are skipped,
-// except those of `first`.
+// Search path: `first` (from the configuration), colon-separated IFOG_PLUGIN_PATH, the build tree's folder if
+// the program is in one, lib/ifogd/plugins next to the program's bin, the installation prefix. Missing
+// folders are skipped, except those of `first`.
 std::vector<std::string> plugin_folders(const std::vector<std::string>& first = {});
 
-// The plugin NAME.so of the first folder that has it. Throws std::runtime_error: not there (what is there and
-// where was looked are named), or as Plugin::load.
+// NAME.so from the first folder that has it. Throws std::runtime_error: not found (with the available plugins
+// and the search path), or as Plugin::load.
 std::shared_ptr<const Plugin> find_plugin(const std::string& name, const std::vector<std::string>& folders);
 
 struct FoundPlugin {
   std::string path;
-  std::shared_ptr<const Plugin> plugin;  // null when refused
-  std::string refusal;                   // the line Plugin::load threw
-  bool hidden = false;                   // a folder before this one has a plugin of the same name
+  std::shared_ptr<const Plugin> plugin;  // null if refused
+  std::string refusal;                   // message from Plugin::load
+  bool hidden = false;                   // an earlier folder has a plugin of the same name
 };
 
-// Every *.so of the folders, loaded, by folder and name.
+// Loads every *.so of the folders; by folder and name.
 std::vector<FoundPlugin> list_plugins(const std::vector<std::string>& folders);
 
 }  // namespace ifog

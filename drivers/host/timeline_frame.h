@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of a driver's sample that determines its time.
+// Part of a driver's sample that determines its time.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace ifog {
 
-// Points into the sample.
+// Refers to the sample.
 inline Timeline::Frame timeline_frame(const ifog_sample& sample, std::size_t axes) noexcept {
   Timeline::Frame frame;
   frame.counts = (sample.flags & IFOG_SAMPLE_SEQUENCE) != 0;

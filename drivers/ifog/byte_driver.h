@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// The C table of a plugin that decodes a stream of bytes, filled in from a C++ class. Header only.
+// Makes the C table of a plugin for a byte stream from a C++ class. Header only.
 //
 // The class has
-//   explicit Driver(const ifog::plugin::Options&);        throws std::exception with the line the user reads
+//   explicit Driver(const ifog::plugin::Options&);        throws std::exception with the user's error message
 //   void describe(ifog_description&) const;
-//   void decode(std::span<const std::uint8_t>, std::int64_t arrival_ns, ifog_emit_sample, void* sink);   no throw
+//   void decode(std::span<const std::uint8_t>, std::int64_t arrival_ns, ifog_emit_sample, void* sink); no throw
 //   void reset();
 //   void counters(ifog_driver_counters&) const;
-// and, if it can make the device's bytes as well,
+// and optionally, to make the device's bytes,
 //   void encode(const ifog_sample&, ifog_emit_bytes, void* sink);   throws std::exception with the reason
 #pragma once
 

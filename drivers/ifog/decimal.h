@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A number in a text from outside: in digits with a point, no locale. The one home of the rule, header only,
-// so that a plugin built out of tree reads numbers as the programs here do.
+// Parses a decimal number with a point, independent of the locale. Header only, so that out-of-tree plugins
+// parse numbers in the same way.
 #pragma once
 
 #include <charconv>
@@ -12,7 +12,7 @@ namespace ifog {
 
 namespace decimal {
 
-// True if a number in digits that no double holds is too small rather than too large.
+// True if a number outside the range of double is too small, not too large.
 inline bool too_small(std::string_view digits) noexcept {
   long double wide = 0.0L;
   const bool holds = std::from_chars(digits.data(), digits.data() + digits.size(), wide).ec == std::errc();
@@ -23,8 +23,7 @@ inline bool too_small(std::string_view digits) noexcept {
 
 }  // namespace decimal
 
-// As std::from_chars, but a plus sign may lead, and what is too small for a double is 0: a measurement so
-// near to zero is good, and no less so for the digits it was written with.
+// As std::from_chars, but accepts a leading plus sign and rounds too small numbers to 0.
 inline std::from_chars_result read_decimal(const char* begin, const char* end, double& value) noexcept {
   if (end - begin > 1 && *begin == '+' && begin[1] != '-') ++begin;
   std::from_chars_result read = std::from_chars(begin, end, value);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// "Did you mean": the name that somebody may have wanted to write.
+// Suggestions "did you mean" for misspelt names.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,7 @@
 
 namespace ifog {
 
-// Fewest single characters to put in, take out, exchange or swap with their neighbour (Damerau's distance, in
-// the form that edits no part twice).
+// Edit distance: insertions, deletions, replacements and swaps of neighbours (Damerau; restricted form).
 inline std::size_t edits_between(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before_last, last(b.size() + 1), now(b.size() + 1);
   std::iota(last.begin(), last.end(), std::size_t{0});
@@ -29,10 +28,10 @@ inline std::size_t edits_between(std::string_view a, std::string_view b) {
   return last[b.size()];
 }
 
-// ", did you mean 'allan'?" where one of the names is near, else "". The first of the nearest.
+// ", did you mean 'allan'?" with the first of the nearest names, or "".
 template <typename Names>
 std::string did_you_mean(std::string_view written, const Names& names) {
-  constexpr std::size_t kLongest = 64;  // what is longer was no slip of the finger
+  constexpr std::size_t kLongest = 64;  // longer names are no misspellings
   const std::size_t most = std::min<std::size_t>(2, written.size() / 3);
   std::size_t fewest = most + 1;
   std::string_view nearest;
@@ -45,8 +44,8 @@ std::string did_you_mean(std::string_view written, const Names& names) {
   return nearest.empty() ? "" : ", did you mean '" + std::string(nearest) + "'?";
 }
 
-// The same with all of the names: ", did you mean 'allan'? Known here: allan, tune", or ", expected one of:
-// allan, tune" where none is near.
+// The same with all names: ", did you mean 'allan'? Known here: allan, tune", or ", expected one of: allan,
+// tune".
 template <typename Names>
 std::string meant_or_known(std::string_view written, const Names& names) {
   std::string known;
@@ -55,8 +54,8 @@ std::string meant_or_known(std::string_view written, const Names& names) {
   return meant.empty() ? ", expected one of: " + known : meant + " Known here: " + known;
 }
 
-// What a value that has to be one of some words should have been: "one of allan, tune; did you mean
-// 'allan'?". `also` stands behind the words: what else could be written there.
+// Expected values: "one of allan, tune; did you mean 'allan'?". also: text after the list, for further
+// possibilities.
 template <typename Names>
 std::string one_of(std::string_view written, const Names& names, std::string_view also = "") {
   std::string out = "one of ";

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reading a plugin's settings, for plugins written in C++. Header only, so that a plugin needs nothing but
-// this folder.
+// Reads a plugin's settings in C++. Header only.
 //
-// The host passes every option the plugin lists, the default where the user gave no value, so a plugin only
-// has to check values. What these throw is the line the user reads; `create_or_explain` carries it over the C
-// interface.
+// The host passes every option that the plugin lists, with defaults, so a plugin only checks values.
+// Exceptions contain the user's error message; `create_or_explain` passes it through the C interface.
 #pragma once
 
 #include <cmath>
@@ -29,7 +27,7 @@ class Options {
  public:
   explicit Options(std::span<const ifog_setting> settings) : settings_(settings) {}
 
-  // "" where the host passed no such key.
+  // "" if the host passed no such key.
   [[nodiscard]] std::string_view text(std::string_view key) const {
     for (const ifog_setting& setting : settings_)
       if (key == setting.key) return setting.value;
@@ -38,7 +36,7 @@ class Options {
 
   [[nodiscard]] bool given(std::string_view key) const { return !text(key).empty(); }
 
-  // The value that goes with the word the user chose.
+  // The value that belongs to the chosen word.
   template <typename T>
   [[nodiscard]] T choice(std::string_view key,
                          std::initializer_list<std::pair<std::string_view, T>> words) const {
@@ -51,7 +49,7 @@ class Options {
     fail(key, one_of(value, known));
   }
 
-  // A finite number in [low, high]; `expected` says so in words.
+  // A finite number in [low, high]; `expected` is the text of that range.
   [[nodiscard]] double number(std::string_view key, double low, double high,
                               const std::string& expected) const {
     const std::string_view value = text(key);
@@ -71,8 +69,8 @@ class Options {
   std::span<const ifog_setting> settings_;
 };
 
-// For `create`: runs `make`, which returns a new instance, and turns an exception into the interface's NULL
-// and line.
+// For `create`: calls `make`, which returns a new instance, and converts an exception to NULL and the
+// message.
 template <typename Make>
 void* create_or_explain(const ifog_setting* settings, std::size_t count, char* error, std::size_t error_size,
                         Make&& make) noexcept {
@@ -87,8 +85,7 @@ void* create_or_explain(const ifog_setting* settings, std::size_t count, char* e
   return nullptr;
 }
 
-// Warnings that come with a new instance, one a line, for the host to log. The last line counts those that do
-// not fit.
+// Warnings of a new instance, one per line, for the host's log. The last line counts those that do not fit.
 inline void explain_warnings(std::span<const std::string> warnings, char* error, std::size_t error_size) {
   constexpr std::size_t kForCount = 64;
   std::string all;
@@ -103,7 +100,7 @@ inline void explain_warnings(std::span<const std::string> warnings, char* error,
   if (error_size != 0) std::snprintf(error, error_size, "%s", all.c_str());
 }
 
-// Copies into a name field of ifog_description; a longer text is cut, the end is always marked.
+// Copies into a name field of ifog_description; longer texts are cut, always zero-terminated.
 inline void set_name(char (&field)[IFOG_NAME_LENGTH], std::string_view name) {
   std::snprintf(field, IFOG_NAME_LENGTH, "%.*s", static_cast<int>(name.size()), name.data());
 }

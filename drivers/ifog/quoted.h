@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Foreign text in a message to people: bounded, and nothing in it that a terminal or a log would act on. The
-// one home of this rule, header only, so that a plugin built out of tree quotes as the programs here do.
+// Quotes foreign text in messages: limited in length, without characters that a terminal or log would
+// interpret. Header only, so that out-of-tree plugins quote in the same way.
 #pragma once
 
 #include <algorithm>
@@ -16,9 +16,9 @@ inline constexpr std::size_t kLongestMessage = 2000;  // a whole message that qu
 
 namespace quoting {
 
-// Length of the UTF-8 sequence that `text` begins with if it is well formed (RFC 3629) and to be seen, else
-// 0. Not to be seen: control characters, C1 included, and what turns the direction of writing, breaks a line
-// or has no width (U+200B-200F, 2028-202E, 2060-206F, FEFF).
+// Length of the valid, printable UTF-8 sequence (RFC 3629) at the start of `text`, else 0. Not printable:
+// control characters including C1, and those that change direction, break lines or have no width
+// (U+200B-200F, 2028-202E, 2060-206F, FEFF).
 inline std::size_t visible(std::string_view text) noexcept {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const std::uint32_t first = byte(0);
@@ -41,8 +41,8 @@ inline std::size_t visible(std::string_view text) noexcept {
 
 }  // namespace quoting
 
-// At most about `longest` bytes of the text, then "… (N bytes)". Line end and tab as \n and \t, other bytes
-// that are not to be seen as \xNN.
+// At most about `longest` bytes of the text, then "… (N bytes)". Line end and tab as \n and \t, other
+// non-printable bytes as \xNN.
 inline std::string printable(std::string_view text, std::size_t longest = kLongestQuote) {
   constexpr std::string_view kHex = "0123456789abcdef";
   std::string out;

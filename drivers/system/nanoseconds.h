@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Times in nanoseconds of any size, whatever a device says: no overflow is undefined.
+// Arithmetic with nanoseconds of any value, without undefined overflow.
 #pragma once
 
 #include <cstdint>
@@ -7,11 +7,11 @@
 
 namespace ifog {
 
-// From one time to another; wraps where there is no room, which is a clock that jumps.
+// Difference; wraps on overflow, which then looks like a clock jump.
 inline std::int64_t ns_between(std::int64_t from_ns, std::int64_t to_ns) noexcept {
   return static_cast<std::int64_t>(static_cast<std::uint64_t>(to_ns) - static_cast<std::uint64_t>(from_ns));
 }
-// So much later, or as late as there is room for.
+// Sum; saturates on overflow.
 inline std::int64_t ns_after(std::int64_t time_ns, std::int64_t by_ns) noexcept {
   constexpr std::int64_t kLeast = std::numeric_limits<std::int64_t>::min(),
                          kMost = std::numeric_limits<std::int64_t>::max();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Words of a command that is printed to be copied, or kept to be run again. The one home of this rule.
+// Quotes words of shell commands that are printed for copying or stored.
 #pragma once
 
 #include <algorithm>
@@ -11,8 +11,8 @@
 
 namespace ifog {
 
-// A word as a shell takes it again, whatever it holds: in quotes unless it is a plain name. What a terminal
-// would act on, and nobody could copy, stands as $'\033' (bash, zsh, ksh; POSIX since 2024).
+// Word quoted for a shell unless it is a plain name. Non-printable characters as $'\033' (bash, zsh, ksh;
+// POSIX since 2024).
 inline std::string shell_word(std::string_view word) {
   constexpr std::string_view kPlain =
       "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=./:,@%";
@@ -36,7 +36,7 @@ inline std::string shell_word(std::string_view word) {
   return out + "'";
 }
 
-// The same for a file, which must not look like an option: "./-x.csv".
+// The same for a file name, which must not look like an option: "./-x.csv".
 inline std::string shell_file(std::string_view path) {
   const bool dashed = path.size() > 1 && path.front() == '-';
   return shell_word((dashed ? "./" : "") + std::string(path));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Room for numbers that are more than memory is for: a file without a name in $TMPDIR or else /var/tmp or
-// /tmp, which nothing is left of when the program ends however it ends. Header only, for all above this.
+// Unnamed file for numbers that do not fit into memory, in $TMPDIR or else /var/tmp or /tmp. It disappears
+// with the process. Header only.
 #pragma once
 
 #include <fcntl.h>
@@ -19,7 +19,7 @@ namespace ifog {
 
 class UnnamedFile {
  public:
-  // Throws std::runtime_error with one line, as all of it: no room there, an error of its device.
+  // All functions throw std::runtime_error with one line: no space, or an I/O error.
   UnnamedFile() : fd_(opened()) {}
   ~UnnamedFile() {
     if (fd_ >= 0) ::close(fd_);
@@ -30,7 +30,7 @@ class UnnamedFile {
     return *this;
   }
 
-  // first: the place of the first of the numbers in the file, counted in numbers.
+  // first: position in the file, counted in numbers.
   void write(std::size_t first, std::span<const double> numbers) {
     write(first * sizeof(double), numbers.data(), numbers.size_bytes());
   }
@@ -47,7 +47,7 @@ class UnnamedFile {
     }
   }
 
-  // to: as many as are wanted, all of them there. Several threads may read at once.
+  // Reads to.size() numbers, which must exist. Several threads may read at once.
   void read(std::size_t first, std::span<double> to) const {
     read(first * sizeof(double), to.data(), to.size_bytes());
   }
@@ -64,7 +64,7 @@ class UnnamedFile {
     }
   }
 
-  // Room for so many bytes, all of them zero, reserved at once, so that no later write finds the disk full.
+  // Allocates this many zero bytes, so that later writes cannot fail because of a full disk.
   void reserve(std::size_t bytes) {
     int error = 0;
     do error = ::posix_fallocate(fd_, 0, static_cast<off_t>(bytes));
@@ -73,9 +73,9 @@ class UnnamedFile {
     if (error != 0) fail("cannot write");
   }
 
-  // The file's, for what maps it.
+  // For mmap().
   [[nodiscard]] int descriptor() const { return fd_; }
-  // what: that could not be done, with errno as it was left.
+  // what: the failed action; errno is set.
   [[noreturn]] static void fail(const char* what) {
     const std::string reason = std::generic_category().message(errno);
     throw std::runtime_error(folder() + ": " + what + " a file for what is longer than memory is for: " +
@@ -86,7 +86,7 @@ class UnnamedFile {
   static std::string folder() {
     const char* const named = std::getenv("TMPDIR");
     if (named != nullptr && *named != '\0') return named;
-    // What is in /tmp may be memory again.
+    // /tmp may be in memory.
     return ::access("/var/tmp", W_OK | X_OK) == 0 ? "/var/tmp" : "/tmp";
   }
 

@@ -36,7 +36,7 @@ constexpr std::array kAngles{Unit{"rad", 1.0},
                              Unit{"degre", kDegree},
                              Unit{"degres", kDegree},
                              Unit{"degreofarc", kDegree},
-                             Unit{"degdeg", kDegree},  // the sign and the word
+                             Unit{"degdeg", kDegree},  // sign and word
                              Unit{"cdeg", kDegree * 1e-2},
                              Unit{"mdeg", kDegree * 1e-3},
                              Unit{"millideg", kDegree * 1e-3},
@@ -59,8 +59,8 @@ constexpr std::array kAngles{Unit{"rad", 1.0},
                              Unit{"turns", kTurn},
                              Unit{"umdr", kTurn}};
 
-// What stands for a turn where the time is a minute and only there. By ISO 80000-3 "1/min" is a rotational
-// frequency, while "1/s" may be an angular velocity as well; r, U (Umdrehung) and tr (tour) are revolutions.
+// Revolution in "per minute" only. By ISO 80000-3 "1/min" is a rotational frequency, while "1/s" may be an
+// angular velocity; r, U (Umdrehung) and tr (tour) are revolutions.
 constexpr std::array<std::string_view, 5> kPerMinute{"1", "", "r", "u", "tr"};
 
 constexpr std::array kRates{
@@ -89,21 +89,21 @@ struct Spelling {
   std::string_view from, to;
 };
 
-// Longer ones first: the byte B0 alone is Latin-1, and within C2 B0 it is not.
+// Longer ones first: the byte B0 is Latin-1 only outside C2 B0.
 constexpr std::array kSpellings{
     Spelling{"\xC3\x82\xC2\xB0", "deg"},  // UTF-8 read as Latin-1 and encoded again
     Spelling{"\xC2\xB0", "deg"},
-    Spelling{"\xC2\xBA", "deg"},              // the ordinal sign, easily mistaken for it
+    Spelling{"\xC2\xBA", "deg"},              // ordinal sign, often used by mistake
     Spelling{"\x81\x8B", "deg"},              // Shift-JIS
     Spelling{"\xA1\xE3", "deg"},              // GBK
     Spelling{"\xA1\xC6", "deg"},              // CP949
-    Spelling{"\xC2\xB5", "u"},                // the micro sign
-    Spelling{"\xCE\xBC", "u"},                // the Greek letter
-    Spelling{"\xC2\xB7", "*"},                // a middle dot
-    Spelling{"\xE2\x8B\x85", "*"},            // the dot operator
-    Spelling{"\xE2\x81\xBB\xC2\xB9", "^-1"},  // as superscripts
-    Spelling{"\xCB\x9A", "deg"},              // the ring above
-    Spelling{"\xE2\x81\xB0", "deg"},          // a superscript nought
+    Spelling{"\xC2\xB5", "u"},                // micro sign
+    Spelling{"\xCE\xBC", "u"},                // Greek letter
+    Spelling{"\xC2\xB7", "*"},                // middle dot
+    Spelling{"\xE2\x8B\x85", "*"},            // dot operator
+    Spelling{"\xE2\x81\xBB\xC2\xB9", "^-1"},  // superscripts
+    Spelling{"\xCB\x9A", "deg"},              // ring above
+    Spelling{"\xE2\x81\xB0", "deg"},          // superscript zero
     Spelling{"&deg;", "deg"},
     Spelling{"&#176;", "deg"},
     Spelling{"\xE5\xBA\xA6", "deg"},                      // 度, of arc
@@ -112,14 +112,14 @@ constexpr std::array kSpellings{
     Spelling{"\xD0\xB3\xD1\x80\xD0\xB0\xD0\xB4", "deg"},  // град
     Spelling{"\xD1\x80\xD0\xB0\xD0\xB4", "rad"},          // рад
     Spelling{"\xD1\x81", "s"},                            // с
-    Spelling{"\xE3\xF0\xE0\xE4", "deg"},                  // the three in Windows' Cyrillic
+    Spelling{"\xE3\xF0\xE0\xE4", "deg"},                  // the three above in Windows-1251
     Spelling{"\xF0\xE0\xE4", "rad"},
     Spelling{"\xF1", "s"},
-    Spelling{"\xE2\x80\xB2", "arcmin"},  // the prime and the double prime
+    Spelling{"\xE2\x80\xB2", "arcmin"},  // prime and double prime
     Spelling{"\xE2\x80\xB3", "arcsec"},
-    Spelling{"\"", "arcsec"},   // as typewriters have it
+    Spelling{"\"", "arcsec"},   // typewriter form
     Spelling{"\xC3\xA9", "e"},  // é
-    Spelling{"\xC2\xA0", " "},  // a blank that no line breaks at
+    Spelling{"\xC2\xA0", " "},  // no-break space
     Spelling{"**", "^"},
     Spelling{"(-1)", "-1"},
     Spelling{"{-1}", "-1"},
@@ -136,8 +136,7 @@ std::string_view trimmed(std::string_view text, std::string_view what) {
   return text.substr(from, text.find_last_not_of(what) - from + 1);
 }
 
-// In ASCII, lower case, without blanks at the ends and brackets around. "" where case decides and leaves it
-// open.
+// In ASCII, lower case, trimmed, without brackets. "" if the case is decisive and ambiguous.
 std::string plain(std::string_view text) {
   constexpr std::string_view kBlank = " \t";
   text = trimmed(text, kBlank);
@@ -206,14 +205,14 @@ std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rat
 
 namespace {
 
-// SI value = value * scale + offset, within a quantity. In lower case, where `plain` leaves no other.
+// SI value = value * scale + offset, within a quantity. Lower case, as from plain().
 struct QuantityUnit {
   std::string_view name;
   double scale, offset = 0.0;
 };
 
 struct Quantity {
-  std::string_view shown;  // for a message
+  std::string_view shown;  // for messages
   std::span<const QuantityUnit> units;
 };
 
