@@ -18,8 +18,8 @@ void SharedBooks::write(const ReaderBooks& books) noexcept {
   static_assert(sizeof(ReaderBooks) == kEntries.size() * sizeof(std::uint64_t), "every entry is shared");
   const std::uint32_t version = version_.load(std::memory_order_relaxed);
   version_.store(version + 1, std::memory_order_relaxed);
-  // Release and acquire on each entry in place of fences, which ThreadSanitizer does not understand: who
-  // reads a new entry also sees that the version was odd.
+  // Release and acquire on each entry instead of fences, which ThreadSanitizer does not support: a reader of
+  // a new entry also sees the odd version.
   for (std::size_t i = 0; i < kEntries.size(); ++i)
     entries_[i].store(books.*kEntries[i], std::memory_order_release);
   version_.store(version + 2, std::memory_order_release);

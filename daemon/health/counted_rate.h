@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rate in Hz by a count that is read from time to time: by the last reading alone where it grew by many,
-// else over the last ten events.
+// Rate in Hz from a counter that is read from time to time: from the last reading if it grew by many, else
+// over the last ten events.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@ namespace ifog {
 
 class CountedRate {
  public:
-  // count: never less than before; interval_s: since the reading before, > 0; expected_hz > 0.
+  // count: not decreasing; interval_s: since the previous reading, > 0; expected_hz > 0.
   double of(std::int64_t count, double interval_s, double expected_hz) noexcept {
     const auto more = static_cast<double>(count - last_count_);
     last_count_ = count;
@@ -34,7 +34,7 @@ class CountedRate {
 
  private:
   static constexpr double kMany = 10.0;
-  static constexpr double kSilent = 3.0;  // periods, and none comes any more
+  static constexpr double kSilent = 3.0;  // periods without an event after which the rate is zero
 
   std::int64_t last_count_ = 0;
   double counted_ = 0.0, since_s_ = 0.0, quiet_s_ = 0.0, rate_hz_ = 0.0;

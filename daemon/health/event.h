@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the hot path has to say, without formatting it: plain data that housekeeping words later.
+// Events of the hot path as plain data; housekeeping makes the text.
 #pragma once
 
 #include <array>
@@ -11,17 +11,17 @@
 namespace ifog {
 
 enum class EventKind : std::uint8_t {
-  gap,               // count: samples missing, sequence: before this one
+  gap,               // count: missing samples, sequence: before this one
   device_restart,    // the device's counter or clock jumped back
-  reopened,          // the device was closed and is open again
+  reopened,          // the device was closed and reopened
   overflow,          // the ring was full
   noise_learned,     // a: process noise, b: measurement noise, from the first rest
-  model_in_use,      // sequence: the first sample with the new parts
-  divergence,        // the estimator started again
-  clock_step,        // the wall clock was set; a: how far it is now from where it was at start-up, s
-  sensor_clock_set,  // the device's own clock was set while it measured on
-  label_moved,       // the device stood still, or deliveries take another time: times of day follow
-  beyond_stated,     // a: the first value beyond the range that the format's description states, b: its limit
+  model_in_use,      // sequence: first sample with the new parts
+  divergence,        // the estimator restarted
+  clock_step,        // the wall clock was set; a: its offset since start-up, s
+  sensor_clock_set,  // the device's clock was set while it measured
+  label_moved,       // the device paused, or the delivery time changed: labels follow
+  beyond_stated,     // a: first value outside the range stated in the format, b: its limit
   publish_failed,
 };
 
@@ -34,7 +34,7 @@ struct Event {
   std::array<char, IFOG_NAME_LENGTH> name{};  // of the signal
 };
 
-// One line for the log, without the sensor's name.
+// Text of one line, without the sensor's name.
 std::string describe(const Event& event);
 
 }  // namespace ifog

@@ -10,7 +10,7 @@ constexpr std::size_t kWalkState = LevelFilter::kStates - 1;
 
 }  // namespace
 
-// The walk's start is diffuse: after one mean it is that mean, less what the other states and the noise have.
+// The walk starts diffuse: after one mean it is that mean, minus the other states and the noise.
 void LevelFilter::begin(double mean) noexcept {
   state_ = {};
   state_[kWalkState] = mean;
@@ -49,7 +49,7 @@ void LevelFilter::take(double mean, double blocks, const Vector& keep, double co
   predict(keep, blocks);
   update(mean);
   const double square = innovation_ * innovation_ / total_;
-  // Written so that no count at all means no limit.
+  // Without a count there is no limit.
   const bool beyond = square * count > most_squares * squares_ && count > 0.0;
   squares_ += beyond ? most_squares * squares_ / count : square;
   logs_ += std::log(total_);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A Kalman filter of one level, for a pair of ratios to the white noise of a block's mean: the variance of a decade of
-// bias instability, and of a walk's step from block to block.
+// Kalman filter of a level, for given ratios to the white noise of a block's mean: variance per decade of
+// bias instability, and variance of the walk's step per block.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace ifog {
 
 class LevelFilter {
  public:
-  // One Gauss-Markov process a decade, and the walk.
+  // One Gauss-Markov process per decade, and the walk.
   static constexpr std::size_t kStates = 6;
   using Vector = std::array<double, kStates>;
   struct Ratios {
@@ -19,19 +19,19 @@ class LevelFilter {
   };
 
   explicit LevelFilter(Ratios ratios) : ratios_(ratios) {}
-  // The level is unknown but for this mean; what made the filter likely stays.
+  // Forgets the level except for this mean; keeps the likelihood.
   void begin(double mean) noexcept;
-  // keep: what becomes of each state in so many blocks. A mean counts for most_squares times the
-  // mean square of `count` at most.
+  // keep: decay of each state over the blocks. The mean's square is limited to most_squares times the mean
+  // square of `count`.
   void take(double mean, double blocks, const Vector& keep, double count, double most_squares) noexcept;
 
   [[nodiscard]] const Ratios& ratios() const noexcept { return ratios_; }
-  // The last mean's innovation, and its variance in units of the white noise.
+  // Innovation of the last mean, and its variance in units of the white noise.
   [[nodiscard]] double innovation() const noexcept { return innovation_; }
   [[nodiscard]] double total() const noexcept { return total_; }
   [[nodiscard]] Vector gain() const noexcept;
   [[nodiscard]] double level() const noexcept;
-  // Sum of squares of innovations over `total`, and of log `total`.
+  // Sum of squared innovations / `total`, and of log `total`.
   [[nodiscard]] double squares() const noexcept { return squares_; }
   [[nodiscard]] double log_variance() const noexcept { return logs_; }
 

@@ -13,17 +13,16 @@ namespace {
 constexpr std::size_t kWalk = LevelNoise::kStates - 1;
 // Time constants of the processes, in blocks.
 constexpr std::array<double, kWalk> kTimes{1.0, 10.0, 100.0, 1e3, 1e4};
-// Ratios of the table, half a decade apart, and none.
+// Ratios of the table, half a decade apart, and zero.
 constexpr double kStepOfTable = 0.5;
 constexpr double kLeastInstability = -3.5, kLeastWalk = -7.0;  // powers of ten
 constexpr int kInstabilities = 9, kWalks = 17;
 constexpr double kTwoErrors = 2.0;
-// As many units of log likelihood below the best as one standard error is.
+// Loss of log-likelihood that corresponds to one standard error.
 constexpr double kUnlikelier = 0.5;
-// A mean counts for this many variances at most, once there are a few: a step or a slow turn is no noise, and
-// would hide the next ones for as long as the watch has run.
+// Limit of a mean in variances, after a few means: a step or slow turn is no noise and would hide later ones.
 constexpr double kClip = 25.0, kFew = 30.0;
-// The choice is made again when the number of blocks has grown by a twentieth.
+// The choice is repeated when the number of blocks has grown by 5 %.
 constexpr double kChosenAgain = 1.05;
 
 double sum(const LevelNoise::Vector& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
@@ -46,8 +45,8 @@ double LevelNoise::level() const noexcept {
   return has_level_ ? filters_[chosen_].level() : std::numeric_limits<double>::quiet_NaN();
 }
 
-// squares: of the filter in use, before this mean. The noise is not known better than the blocks so far
-// allow: its variance as large as two standard errors make it.
+// squares: of the filter in use, before this mean. The noise variance is increased by two standard errors, as
+// allowed by the number of blocks.
 void LevelNoise::innovate(double squares) noexcept {
   const double noise = count_ > 0.0 ? squares / count_ * (1.0 + kTwoErrors * std::sqrt(2.0 / count_)) : 0.0;
   if (!(noise > 0.0)) return;
@@ -76,7 +75,7 @@ const LevelNoise::Innovation& LevelNoise::take(double mean, double blocks) noexc
   return innovation_;
 }
 
-// The quickest level that may well be the right one: steps are found in one that is assumed slower than it is.
+// Chooses the fastest level that is still likely: a level assumed too slow would show false steps.
 void LevelNoise::choose() noexcept {
   chosen_at_ = count_;
   std::vector<double> likelihood(filters_.size());

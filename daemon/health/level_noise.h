@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The level of a sensor at rest, by the means of blocks of its samples: what the next mean should be, and how
-// far off it may be. White noise, bias instability (1/f) and rate random walk, each as large as all that has
-// come makes it likely.
+// Level of a sensor at rest from block means: prediction of the next mean and its uncertainty. White noise,
+// bias instability (1/f) and rate random walk, each with its most likely size.
 //
-// The state is one Gauss-Markov process a decade of time, from one block to 10 000, of equal variance, whose
-// sum has a spectrum of 1/f between (M. S. Keshner, Proc. IEEE 70, 1982), and a walk, whose start is
-// anybody's guess. A Kalman filter for each pair of a table of ratios to the white noise (level_filter.h);
-// the likelihood chooses, for as long as the sensor rests: what is learned in an hour is a guess compared with what
-// days show.
+// States: one Gauss-Markov process per decade of time, from one block to 10 000, with equal variance, whose
+// sum has a 1/f spectrum between (M. S. Keshner, Proc. IEEE 70, 1982); and a diffuse walk. One Kalman filter
+// for each pair of noise ratios in a table (level_filter.h); the likelihood over the whole rest chooses.
 #pragma once
 
 #include <cstddef>
@@ -23,22 +20,22 @@ class LevelNoise {
   using Vector = LevelFilter::Vector;
   struct Innovation {
     bool known = false;
-    double value = 0.0;   // of variance 1
+    double value = 0.0;   // with variance 1
     double spread = 0.0;  // its standard deviation, in the unit of the means
-    double scale = 1.0;   // the same in that of the white noise
-    Vector keep{};        // what became of each state since the mean before
-    Vector gain{};        // how much of the innovation each state takes
+    double scale = 1.0;   // the same in units of the white noise
+    Vector keep{};        // decay of each state since the previous mean
+    Vector gain{};        // gain of each state
   };
 
   LevelNoise();
-  // The next mean, `blocks` after the one before (1: its neighbour).
+  // Adds the next mean, `blocks` after the previous one (1: adjacent).
   const Innovation& take(double mean, double blocks) noexcept;
-  // The level is anybody's guess from here on; what is known of the noise stays.
+  // Forgets the level; keeps the knowledge of the noise.
   void forget_level() noexcept { has_level_ = false; }
   [[nodiscard]] double level() const noexcept;
   [[nodiscard]] double blocks() const noexcept { return count_; }
-  // In units of the white noise of a block's mean: variance of a decade of the bias instability; variance of
-  // the walk's step from block to block.
+  // In units of the white noise of a block mean: variance per decade of the bias instability; variance of the
+  // walk's step per block.
   [[nodiscard]] double instability() const noexcept { return filters_[chosen_].ratios().instability; }
   [[nodiscard]] double walk() const noexcept { return filters_[chosen_].ratios().walk; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tests of a sensor's noise and bias need of its samples at rest: sums that only grow,
-// kept by the filter's hot path. Whoever looks from time to time takes differences.
+// Sums over samples at rest for the tests of noise and bias, updated by the hot path. They only grow; readers
+// use differences.
 #pragma once
 
 #include <array>
@@ -15,12 +15,12 @@ struct RestSums {
   struct Axis {
     double samples = 0.0, rate = 0.0;      // compensated, rad/s
     double square = 0.0;                   // of innovations, (rad/s)^2
-    double pairs = 0.0, product = 0.0;     // of innovations of neighbours
-    double moved = 0.0, moved_rate = 0.0;  // samples that are not of rest, and their rates
+    double pairs = 0.0, product = 0.0;     // of neighbouring innovations
+    double moved = 0.0, moved_rate = 0.0;  // number and sum of rates of samples not at rest
   };
   std::array<Axis, kMaxAxes> axis{};
 
-  // at_rest: of all axes. No allocation, no lock.
+  // at_rest: all axes are. No allocation, no lock.
   void add(std::size_t a, bool at_rest, double rate_radps, double innovation_radps) noexcept {
     Axis& sums = axis[a];
     if (!at_rest) {
@@ -39,7 +39,7 @@ struct RestSums {
     last_[a] = innovation_radps;
     last_known_[a] = true;
   }
-  // The next value is no neighbour of the last one.
+  // The next value does not follow the last one.
   void break_off(std::size_t a) noexcept { last_known_[a] = false; }
 
  private:

@@ -10,17 +10,17 @@
 namespace ifog {
 namespace {
 
-constexpr double kFewestSamples = 100.0;  // of a block
-constexpr double kMostlyAtRest = 0.9;     // of a block that counts
-constexpr double kLoud = 1.5;             // times the mean square
+constexpr double kFewestSamples = 100.0;  // per block
+constexpr double kMostlyAtRest = 0.9;     // of a block that is used
+constexpr double kLoud = 1.5;             // factor of the mean square
 constexpr double kOddCorrelation = 0.1, kOddErrors = 5.0;
-// Turned by so much, rad, the Earth's rate along an axis may be another by 0.015 °/h.
+// Turned by this angle, rad, the Earth's rate along an axis may change by 0.015 °/h.
 constexpr double kTurned = 1e-3;
 constexpr int kSilence = 10;  // looks without a sample: the device may have been off
 constexpr double kRange_s = 600.0, kRangeShare = 0.5;
-constexpr double kTellStep = 360.0;  // blocks
+constexpr double kTellStep = 360.0;  // in blocks
 constexpr double kCusums = 3.0;
-constexpr double kLatest = 0.2;  // weight of a block in how loud it is now
+constexpr double kLatest = 0.2;  // weight of a block in the present noise level
 
 double blocks_between_alarms(std::size_t axes, double block_s, double share) {
   return SensorWatch::kAlarmEvery_s / block_s * static_cast<double>(axes) / share;
@@ -75,8 +75,7 @@ void SensorWatch::take(const RestSums& sums, std::uint64_t samples, std::uint64_
   before_ = sums;
 }
 
-// How far the sensor was turned while it did not rest: a step of the bias, too, ends a rest for a moment, but
-// makes no angle.
+// Angle turned while not at rest. A step of the bias also ends a rest briefly, but makes no angle.
 void SensorWatch::follow_motion(Axis& axis, const RestSums::Axis& now, const RestSums::Axis& before) const {
   const double moved = now.moved - before.moved;
   const double level = axis.level.level();
@@ -100,7 +99,7 @@ void SensorWatch::take_block(Axis& axis, const RestSums::Axis& sums) {
   axis.skipped += std::max(1.0, std::round((resting + moved) / block_samples_));
   axis.at_block = sums;
   if (resting < kMostlyAtRest * (resting + moved) || !(pairs > 0.0) || !(square > 0.0)) return;
-  // A noisier mean strays further by itself, which is no step.
+  // With higher noise means scatter more, which is no step.
   if (test_noise(axis, square, correlation, pairs)) return;
   test_level(axis, mean);
   axis.skipped = 0.0;
@@ -118,7 +117,7 @@ bool SensorWatch::test_noise(Axis& axis, double square, double correlation, doub
     axis.odd_neighbours.take(strange);
     odd = loud || strange;
   }
-  // What is odd teaches nothing of what is usual.
+  // Unusual blocks are not learned.
   if (odd) return loud;
   if (!axis.loud.alarmed()) axis.louder = 0.0;
   axis.blocks += 1.0;
@@ -131,7 +130,7 @@ void SensorWatch::test_level(Axis& axis, double mean) {
   const LevelNoise::Innovation& innovation = axis.level.take(mean, axis.skipped);
   axis.bias_for = std::max(0.0, axis.bias_for - 1.0);
   if (!innovation.known) return;
-  // Also while it learns: how far sums go is part of that.
+  // Also while learning, because the variance of sums is learned too.
   const bool stepped = axis.steps.take(innovation);
   if (axis.level.blocks() < kLearned) return;
   axis.follows.take(innovation.value);

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests that look at a sensor for ever and may cry wolf once in a given time, on figures of blocks of its
-// samples at rest. Nothing here is a real-time thread's.
+// Continuous tests with a given time between false alarms, on figures of blocks at rest. Not for real-time
+// threads.
 //
-// CUSUM of a log likelihood ratio (E. S. Page, Biometrika 41, 1954): above h = ln(blocks), the time to a
-// false alarm is `blocks` or more, whatever the law, as long as the ratio is one (G. Lorden, Ann. Math.
-// Statist. 42, 1971). Where what holds is further from the alternative than the law that the ratio has, it is
-// longer.
+// CUSUM of a log-likelihood ratio (E. S. Page, Biometrika 41, 1954): with threshold h = ln(blocks) the mean
+// time to a false alarm is at least `blocks`, for any distribution with that likelihood ratio (G. Lorden,
+// Ann. Math. Statist. 42, 1971), and longer if the truth is further from the alternative.
 #pragma once
 
 #include <algorithm>
@@ -13,20 +12,19 @@
 
 namespace ifog {
 
-// Whether a state that is rare has become usual: blocks are odd with probability 0.01 at most before, 0.9
-// after.
+// Tests if a rare state has become usual: blocks are odd with probability 0.01 at most before, 0.9 after.
 class UsualCusum {
  public:
   explicit UsualCusum(double threshold) : threshold_(threshold) {}
   void take(bool odd) noexcept {
     constexpr double kBefore = 0.01, kAfter = 0.9;
     static const double up = std::log(kAfter / kBefore), down = std::log((1.0 - kAfter) / (1.0 - kBefore));
-    // No further than it takes as long to come back as it took to rise.
+    // Limited, so that recovery takes no longer than the rise.
     sum_ = std::clamp(sum_ + (odd ? up : down), 0.0, 2.0 * threshold_);
     if (sum_ > threshold_) alarmed_ = true;
     if (sum_ == 0.0) alarmed_ = false;
   }
-  // Once beyond the threshold, until it is back at zero.
+  // True above the threshold, until the sum is zero again.
   [[nodiscard]] bool alarmed() const noexcept { return alarmed_; }
   void restart() noexcept {
     sum_ = 0.0;
@@ -38,7 +36,7 @@ class UsualCusum {
   bool alarmed_ = false;
 };
 
-// Whether a white series of variance 1 has come to follow its own last value by `kFollows`.
+// Tests if a white series of variance 1 has become correlated with its last value by `kFollows`.
 class ColourCusum {
  public:
   static constexpr double kFollows = 0.6;

@@ -12,18 +12,18 @@ namespace {
 double density(double x) { return std::exp(-0.5 * x * x) / std::sqrt(2.0 * std::numbers::pi); }
 double distribution(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
-// The variance of sums counts as that of white innovations until so many independent sums say otherwise.
+// Number of independent sums before their variance is estimated; until then it is that of white innovations.
 constexpr double kBelieved = 100.0;
-// Sums weigh by their number, the newest most, as what filter is in use changes while it learns: of n,
-// weights 1 … n, the mean is known as by three quarters of them.
+// Sums are weighted by their number, the newest most, since the filter in use changes while it learns: with
+// weights 1 … n the mean is as accurate as that of 0.75 n sums.
 constexpr double kNewestWeighs = 2.0, kKnownAs = 0.75;
-// Below it nothing is near.
+// Smaller values are ignored.
 constexpr double kLeastOfNote = 2.5;
 
-// A squared sum over its variance, which is that of white innovations or more, where the level's noise is
-// none of the table's, or less, where the filter takes the level for quicker than it is. The variance is
-// known by so many sums, which makes it the square of a Student's t: about as rare as the normal square that
-// this returns (D. L. Wallace, Ann. Math. Statist. 30, 1959).
+// Squared sum / its variance, converted from known degrees of freedom. The variance is that of white
+// innovations, or more if the level's noise is not in the table, or less if the filter assumes a too fast
+// level. It is estimated from so many sums, so this is a squared Student's t; returns the normal square of
+// about equal probability (D. L. Wallace, Ann. Math. Statist. 30, 1959).
 double as_of_known_variance(double square, double mean_square, double independent) {
   const double known_by = kBelieved + independent;
   return known_by * std::log1p(square / (kBelieved + independent * mean_square));
@@ -59,7 +59,7 @@ void StepTest::extend(Window& window, const LevelNoise::Innovation& innovation) 
   for (std::size_t i = 0; i < LevelNoise::kStates; ++i) window.absorbed[i] += innovation.gain[i] * left;
 }
 
-// How many false alarms this would be one of, as a share of those allowed.
+// Expected number of such values / that of false alarms allowed.
 double StepTest::look(std::size_t number) noexcept {
   const Window& window = windows_[(begun_ - kLengths[number]) % kLongest];
   Spread& seen = spreads_[number];
@@ -80,7 +80,7 @@ bool StepTest::take(const LevelNoise::Innovation& innovation) noexcept {
     nearest = std::min(nearest, look(i));
   nearest_ = std::min(nearest_, nearest);
   if (nearest >= 1.0) {
-    // A step teaches nothing about the noise that the next one is measured by.
+    // A step must not change the noise by which the next one is tested.
     for (std::size_t i = 0; i < kLengths.size() && kLengths[i] <= begun_; ++i) {
       spreads_[i].count += 1.0;
       spreads_[i].mean_square +=
@@ -93,7 +93,7 @@ bool StepTest::take(const LevelNoise::Innovation& innovation) noexcept {
   return true;
 }
 
-// Whichever block it began with.
+// Most likely first block of the step.
 double StepTest::likeliest(std::size_t in_use) const noexcept {
   const auto* const best = std::max_element(
       windows_.begin(), windows_.begin() + static_cast<std::ptrdiff_t>(in_use),
