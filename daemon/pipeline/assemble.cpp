@@ -77,7 +77,7 @@ AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
   plan.filter = {sensor.name + ":filt", sensor.realtime.filter_priority, sensor.realtime.filter_cpus};
   plan.processors = shared(processors, sensor.realtime.reader_cpus);
   plan.spin = sensor.realtime.spin;
-  // Whoever gave the filter processors of its own wants its steps done there.
+  // If the filter has its own processors, its steps are done there.
   plan.direct = sensor.realtime.direct && (sensor.realtime.filter_cpus.empty() ||
                                            sensor.realtime.filter_cpus == sensor.realtime.reader_cpus);
   out.pipeline = std::make_unique<Pipeline>(std::move(plan), std::move(transport), std::move(driver),

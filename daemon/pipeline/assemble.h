@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a sensor's configuration to its pipeline.
+// Builds a pipeline from a sensor's configuration.
 #pragma once
 
 #include <map>
@@ -16,21 +16,21 @@
 namespace ifog {
 
 struct AssembledSensor {
-  // Outlives the pipeline, whose reader writes its tape; null without a flight recorder.
+  // Must outlive the pipeline, whose reader writes its tape; null without flight recorder.
   std::unique_ptr<Recorder> recorder;
   std::unique_ptr<Pipeline> pipeline;
   std::shared_ptr<ChannelTable> outside;
   std::vector<std::string> channels;  // names, as in ChainSettings
   NoiseMemory noise;
   ChainChoice choice;                 // in use, or offered to the filter
-  std::vector<std::string> left_out;  // effects of the model that are not corrected, in words
-  std::vector<std::string> remarks;   // on axes of the model that the sensor does not have
+  std::vector<std::string> left_out;  // effects of the model that are not corrected, as text
+  std::vector<std::string> remarks;   // about axes of the model that the sensor does not have
 };
 
-// By processors that readers may run on, each named once and in order; none named: all that there are.
+// By the readers' processors, sorted and unique; empty: all.
 using ReadersProcessors = std::map<std::vector<int>, std::shared_ptr<SharedProcessors>>;
 
-// processors: of the sensors before, to which this one's are added. Throws std::runtime_error with one line.
+// processors: of earlier sensors; this one's are added. Throws std::runtime_error with one line.
 AssembledSensor assemble(const SensorConfig& sensor, const Config& config,
                          std::unique_ptr<Publisher> publisher, ReadersProcessors& processors);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Events on their way out of the hot path, through a ring.
+// Ring of events from the hot path.
 #pragma once
 
 #include <cstdint>

@@ -48,9 +48,9 @@ bool FilterStage::step() noexcept {
 }
 
 void FilterStage::run(bool spin) noexcept {
-  // A source that waits to be read has nobody else's time, one that spins a processor of its own.
+  // A source that waits for its reader takes no time from others; a spinning thread has its own processor.
   const bool shares = !spin && !queue_.waits_when_full();
-  std::int64_t slept_ns = 0;  // in all
+  std::int64_t slept_ns = 0;  // total
   for (;;) {
     const bool stepped = step();
     if (answer_.state.load(std::memory_order_acquire) == Ask::asked) answer();
@@ -72,7 +72,7 @@ void FilterStage::run(bool spin) noexcept {
   }
 }
 
-// Its time here, and not on the processor, is what keeps others of its priority waiting.
+// Pauses here, because waiting at the processor would block others of its priority.
 void FilterStage::stand_back(std::int64_t slept_ns) noexcept {
   const std::int64_t now_ns = monotonic_ns();
   const std::int64_t rest_ns = share_.rest_ns(now_ns, [&] { return now_ns - slept_ns - rested_ns_; });
@@ -135,7 +135,7 @@ void FilterStage::follow_noise(const Increment& in) noexcept {
       intervals_.allan[i].restart();
       answer_.now.rest.break_off(i);
     }
-    // A merged sample is a mean over another time than its neighbours': no difference may use it.
+    // A merged sample has another averaging time than its neighbours, so no difference may use it.
     if (in.samples == 1 && ((in.valid_axes >> i) & 1U) != 0) {
       intervals_.allan[i].add(out_.compensated_radps[i]);
       answer_.now.rest.add(i, (out_.estimate.flags & kAtRest) != 0, out_.compensated_radps[i],
@@ -149,14 +149,14 @@ void FilterStage::follow_noise(const Increment& in) noexcept {
 
 void FilterStage::adopted(std::uint64_t sequence) noexcept {
   output_.encoder.use(chain_.parts());
-  // A reload that gave the same model is no other one.
+  // A reload with the same model does not count as another one.
   if (chain_.parts().model_identity() != answer_.now.model.data()) answer_.now.model_since_ns = 0;
   noise_known_ = chain_.parts().noise_known();
   counters_.filter_resets.add(1);
   events_.report({.kind = EventKind::model_in_use, .sequence = sequence});
 }
 
-// False: the reader was at its books all the time. It is not waited for, because it may wait for this
+// False: the reader was writing its accounts all the time. It is not waited for, as it may need this
 // processor.
 bool FilterStage::answer() noexcept {
   constexpr int kTries = 1000;
@@ -168,7 +168,7 @@ bool FilterStage::answer() noexcept {
                        .sent = counters_.published.value(),
                        .failed = counters_.lcm_failures.value(),
                        .merged = counters_.merged.value()};
-  // After the filter's own: whatever that has received is in the reader's.
+  // After the filter's own, so that everything received is in the reader's.
   for (int tries = 0; !reader_books_.try_read(answer_.now.reader); relax())
     if (++tries == kTries) return false;
   answer_.now.allan_period_s = intervals_.count > 0 ? intervals_.mean_s : 1.0 / facts_.nominal_rate_hz;
@@ -196,12 +196,12 @@ bool FilterStage::ask() noexcept {
 }
 
 bool FilterStage::take_snapshot(FilterSnapshot& out) noexcept {
-  // Nobody else touches the chain once its consumer is done, so the last word needs no question and cannot be
-  // older than the last sample.
+  // After the consumer's end nobody else uses the chain, so the last snapshot needs no request and is up to
+  // date.
   if (answer_.finished.load(std::memory_order_acquire)) answer();
   if (answer_.state.load(std::memory_order_acquire) != Ask::answered) return false;
   out = answer_.given;
-  // Release: the next answer may be written as soon as this is seen, and not before `out` has it all.
+  // Release: the next answer may be written afterwards, not before `out` is complete.
   answer_.state.store(Ask::none, std::memory_order_release);
   return true;
 }

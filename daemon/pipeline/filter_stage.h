@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The filter's work: queue → signal chain → encoder → publisher. Stage 2 of a pipeline, done by whichever
-// thread is the queue's consumer at the time: the filter thread, or the reader thread in its place
-// (HandOver).
+// Stage 2 of a pipeline: queue → signal chain → encoder → publisher. Executed by the queue's present
+// consumer: the filter thread, or the reader thread instead (HandOver).
 #pragma once
 
 #include <array>
@@ -30,26 +29,26 @@
 
 namespace ifog {
 
-// What housekeeping wants to know of the filter, copied by the filter thread itself when asked.
+// State of the filter for housekeeping, copied by the filter thread on request.
 struct FilterSnapshot {
-  // Nothing is known about channels before the first sample.
+  // Channels are unknown before the first sample.
   FilterSnapshot() {
     channel.fill(std::numeric_limits<double>::quiet_NaN());
     channel_age_s.fill(std::numeric_limits<float>::infinity());
   }
   EstimatorHealth health;
   RestSums rest;
-  bool has_health = false;              // false during start-up
+  bool has_health = false;              // false while the noise is learned
   std::optional<LearnedNoise> learned;  // ChainParts::learned()
-  DurationHistogram latency;            // since the snapshot before
+  DurationHistogram latency;            // since the previous snapshot
   std::array<double, kMaxChannels> channel;
   std::array<float, kMaxChannels> channel_age_s;
   std::array<char, 64> model{};
-  std::int64_t model_since_ns = 0;  // utime of the first sample with it; 0: there was none
-  // One moment: what lies between them is in the ring.
+  std::int64_t model_since_ns = 0;  // utime of the first sample with it; 0: none
+  // One consistent moment: the difference is in the ring.
   ReaderBooks reader;
   FilterBooks books;
-  // Allan deviation of the compensated rate at 2^k samples since start-up, motion included.
+  // Allan deviation of the compensated rate at 2^k samples since start-up, including motion.
   double allan_period_s = 0.0;
   int allan_octaves = 0;
   std::array<std::array<double, StreamingAllan::kOctaves>, kMaxAxes> allan_radps{};
@@ -58,37 +57,36 @@ struct FilterSnapshot {
 struct FilterCounters {
   Counter published, device_samples, lcm_failures, channel_stale, out_of_range, filter_resets;
   Counter corrections_refused, merged, imu_failures;
-  Counter stood_back;  // times it had used its share of a processor, see ProcessorShare
+  Counter stood_back;  // number of pauses, see ProcessorShare
 };
 
 class FilterStage {
  public:
-  // measure_latency: false where arrival times are not of today (a log read at its own pace).
-  // also: what is sent of each sample besides rate_t.
+  // measure_latency: false if arrival times are not present ones (a log). also: further types sent for each
+  // sample.
   FilterStage(std::unique_ptr<ChainParts> parts, const SensorFacts& facts, std::string channel,
               const std::vector<PublishedType>& also, std::unique_ptr<Publisher> publisher,
               IncrementQueue& queue, const SharedBooks& reader_books, EventQueue& events,
               bool measure_latency);
 
-  // Until the queue is closed and empty. spin: never sleeps, for a machine with a processor to spare.
+  // Runs until the queue is closed and empty. spin: never sleeps, for a spare processor.
   void run(bool spin) noexcept;
-  // The queue's consumer: the oldest increment, to its end. False: the queue is empty.
+  // For the queue's consumer: processes the oldest increment. False: the queue is empty.
   bool step() noexcept;
 
-  // Any one other thread.
-  // New parts, in use from the next delivery on; parts offered before and not yet in use are replaced. number:
-  // of their settings, as a recording notes it.
+  // For any one other thread: new parts, used from the next delivery on, replacing unused earlier offers.
+  // number: of their settings, for recordings.
   void offer(std::unique_ptr<ChainParts> parts, std::uint32_t number = 1) {
     exchange_.offer(std::move(parts), number);
   }
-  // Frees parts that are out of use.
+  // Frees unused parts.
   void collect_retired() noexcept { exchange_.collect_retired(); }
-  // The reader's part of it.
+  // The reader's interface to it.
   [[nodiscard]] PartsExchange& exchange() noexcept { return exchange_; }
-  // Asks for a snapshot; look again later. False: the last one has not come yet. After the end of run() there
-  // is one at every call, without a question.
+  // Requests a snapshot. False: the last one is not ready yet. After the end of run() there is one at every
+  // call, without request.
   bool ask() noexcept;
-  // True: `out` has the snapshot asked for.
+  // True: `out` has the requested snapshot.
   bool take_snapshot(FilterSnapshot& out) noexcept;
   [[nodiscard]] const FilterCounters& counters() const noexcept { return counters_; }
 
@@ -118,17 +116,17 @@ class FilterStage {
   bool measure_latency_;
   bool noise_known_;
   ChainOutput out_;
-  // A sample clock may be per cents off what it is said to be: the averaging times are those of the samples.
+  // A sample clock may be off by per cents, so averaging times use measured intervals.
   struct Intervals {
     std::array<StreamingAllan, kMaxAxes> allan;
     std::uint64_t count = 0;
     double mean_s = 0.0;
   } intervals_;
   struct Answer {
-    FilterSnapshot now;    // filled as samples go by
+    FilterSnapshot now;    // filled with each sample
     FilterSnapshot given;  // belongs to housekeeping while the state is `answered`
     std::atomic<Ask> state{Ask::none};
-    std::atomic<bool> finished{false};  // the last sample has been processed
+    std::atomic<bool> finished{false};  // the last sample was processed
   } answer_;
   PartsExchange exchange_;
   FilterCounters counters_;

@@ -8,15 +8,15 @@
 namespace ifog {
 namespace {
 
-// Increments that the reader takes on at once. A serial adapter that collects for a millisecond brings five
-// at 5 kHz; a recording read in one piece, hundreds, keeps two processors busy.
+// Increments that the reader processes at once. A serial adapter that collects for 1 ms brings five at 5 kHz;
+// a recording brings hundreds, which use two processors.
 constexpr std::size_t kMost = 8;
 
-// Share of a delivery's time that the reader may spend in the filter: what is left is for reading the next.
+// Share of a delivery's time for the filter; the rest is for reading the next one.
 constexpr double kShare = 0.5;
 
-// Deliveries that are left to the filter thread after two that took too long: at first, and after so many
-// more doublings at most.
+// Deliveries left to the filter thread after two that took too long: initially, and the largest number of
+// doublings.
 constexpr std::uint64_t kShortestPause = 16;
 constexpr int kDoublings = 8;
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of the increments of a delivery: the filter thread takes them, or, when it sleeps, the reader
-// thread does its step itself.
+// Processing of a delivery's increments: by the filter thread, or by the reader thread itself if the filter
+// thread sleeps.
 //
-// Waking a thread costs more than everything else that is done with a sample: a system call on one processor,
-// the way out of idle on another. An idle filter thread therefore stays asleep, and the reader takes its
-// place at the queue for as long as it has brought something (tests/bench/latency has the figures). What was
-// promised stays true: a delivery finds the filter thread asleep or goes into the ring, the reader never
-// waits for it, and a filter that is too slow cannot hold the reader up for longer than one delivery of a few
-// samples. Two in a row that took too much of a sample's time (one may be the machine's doing), and the
-// filter thread does the work again, for twice as long each further time.
+// Waking a thread costs more than all other work on a sample (a system call, leaving idle). So an idle filter
+// thread stays asleep and the reader takes its place at the queue (figures in tests/bench/latency). The
+// reader never waits for the filter thread: if that is awake, a delivery goes into the ring. A slow filter
+// delays the reader by one delivery of a few samples at most. After two consecutive deliveries that took too
+// long the filter thread does the work, each time for twice as long.
 #pragma once
 
 #include <cstddef>
@@ -25,11 +23,10 @@ class HandOver {
   // direct: false leaves every step to the filter thread.
   HandOver(IncrementQueue& queue, FilterStage& filter, double nominal_rate_hz, bool direct);
 
-  // Reader thread, after each delivery.
+  // For the reader thread, after each delivery.
   void delivered() noexcept;
 
-  // Any thread may read them: deliveries whose steps the reader has done, and those of them that took it too
-  // long.
+  // For any thread: deliveries processed by the reader, and those of them that took too long.
   [[nodiscard]] std::uint64_t done_here() const noexcept { return done_here_.value(); }
   [[nodiscard]] std::uint64_t too_long() const noexcept { return too_long_.value(); }
 
@@ -38,7 +35,7 @@ class HandOver {
   FilterStage& filter_;
   const std::int64_t limit_ns_;
   const bool direct_;
-  std::uint64_t left_to_filter_ = 0;  // so many deliveries more
+  std::uint64_t left_to_filter_ = 0;  // number of further deliveries
   int too_long_in_a_row_ = 0;
   Counter done_here_, too_long_;
 };

@@ -7,7 +7,7 @@
 namespace ifog {
 namespace {
 
-// Between two looks for room, by a producer that is allowed to wait: short compared with a ring of increments.
+// Interval between checks for space, of a producer that may wait; short compared with a ring of increments.
 constexpr auto kPause = std::chrono::microseconds(50);
 
 }  // namespace
@@ -20,7 +20,7 @@ Increment& IncrementQueue::next() noexcept {
     }
     return *slot_;
   }
-  // Behind a waiting increment nothing may go in directly: order would be lost.
+  // While an increment waits outside, none may enter directly, to keep the order.
   slot_ = has_waiting_ && !place_waiting() ? nullptr : ring_.claim();
   return slot_ != nullptr ? *slot_ : spare_;
 }

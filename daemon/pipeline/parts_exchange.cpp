@@ -22,7 +22,7 @@ void PartsExchange::collect_retired() noexcept {
 
 std::uint32_t PartsExchange::mark(std::uint64_t samples) noexcept {
   if (offered_.load(std::memory_order_relaxed) == nullptr) return 0;
-  // In this order: an offer that is no longer due has been retired before.
+  // In this order: an offer that is no longer due was retired before.
   if (due_.load(std::memory_order_acquire) != nullptr || retired_.load(std::memory_order_acquire) != nullptr)
     return 0;
   Offer* const offer = offered_.exchange(nullptr, std::memory_order_acq_rel);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// New parts of the signal chain on their way from housekeeping to the sample they take effect at. The reader
-// says which: the first of a delivery, so that a recording can say it, too, and whoever filters it later
-// exchanges them at the same sample.
+// Passes new parts of the signal chain from housekeeping to the sample at which they take effect. The reader
+// determines it: the first sample of a delivery, so that a recording can note it and a replay exchanges the
+// parts at the same sample.
 #pragma once
 
 #include <atomic>
@@ -19,17 +19,16 @@ class PartsExchange {
   PartsExchange(const PartsExchange&) = delete;
   PartsExchange& operator=(const PartsExchange&) = delete;
 
-  // Housekeeping. Parts offered before and not yet marked are replaced. number: of these settings, not 0.
+  // Housekeeping: offers parts, replacing unmarked earlier ones. number: of these settings, not 0.
   void offer(std::unique_ptr<ChainParts> parts, std::uint32_t number);
-  // Frees parts that are out of use.
+  // Frees unused parts.
   void collect_retired() noexcept;
 
-  // Reader, before it decodes a delivery, `samples` having been pushed: the number of the settings that are
-  // in use from the next sample on, 0 where they are what they were.
+  // Reader, before it decodes a delivery, with `samples` pushed so far: number of the settings from the next
+  // sample on; 0 if unchanged.
   [[nodiscard]] std::uint32_t mark(std::uint64_t samples) noexcept;
 
-  // The queue's consumer, `samples` of the pushed being behind it: exchanges the chain's parts where that is
-  // due. False: nothing is.
+  // The queue's consumer, after `samples` samples: exchanges the chain's parts if due. False: not due.
   [[nodiscard]] bool exchange(std::uint64_t samples, SignalChain& chain) noexcept;
 
  private:
@@ -39,8 +38,8 @@ class PartsExchange {
     std::uint64_t from_sample = 0;
   };
 
-  // An offer goes from one to the next. Only one is due at a time, and not before the parts that went before
-  // it have been freed: their place is free when it is exchanged.
+  // Stages of an offer. Only one is due at a time, and only after the previously retired parts were freed, so
+  // there is a free place for the next ones.
   std::atomic<Offer*> offered_{nullptr};
   std::atomic<Offer*> due_{nullptr};
   std::atomic<Offer*> retired_{nullptr};

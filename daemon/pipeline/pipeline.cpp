@@ -46,7 +46,7 @@ std::string Pipeline::start() {
       reader_.run();
     });
   } catch (const std::system_error&) {
-    // The filter thread waits for a queue that nobody would close.
+    // Otherwise the filter thread would wait forever.
     queue_.close();
     filter_thread_.join();
     throw;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One sensor: its reader thread, its filter thread and the queue between them. Pipelines share nothing but
-// the account of the processors that their readers run on.
+// One sensor: reader thread, filter thread and the queue between. Pipelines share only the account of their
+// readers' processors.
 #pragma once
 
 #include <future>
@@ -18,14 +18,14 @@ namespace ifog {
 
 struct PipelinePlan {
   std::string lcm_channel;          // of rate_t
-  std::vector<PublishedType> also;  // what is sent of each sample besides rate_t
+  std::vector<PublishedType> also;  // further types sent for each sample
   SensorFacts facts;
   std::size_t ring_slots = 1024;
   ThreadPlan reader, filter;
   bool spin = false;
-  Tape* tape = nullptr;  // of the flight recorder, which outlives the pipeline
-  bool direct = true;    // an idle filter's step is done by the reader thread, see HandOver
-  // The readers of those processors; null: the reader is their only one.
+  Tape* tape = nullptr;  // of the flight recorder, which must outlive the pipeline
+  bool direct = true;    // the reader thread does an idle filter's step, see HandOver
+  // Readers on those processors; null: the reader is the only one.
   std::shared_ptr<SharedProcessors> processors{};
 };
 
@@ -36,15 +36,15 @@ class Pipeline {
            std::unique_ptr<Publisher> publisher);
   ~Pipeline();  // stops
 
-  // Sends the driver's opening bytes. Throws std::runtime_error as Transport::open; start() may follow all
-  // the same: the reader keeps trying.
+  // Sends the driver's opening bytes. Throws std::runtime_error as Transport::open; start() is possible
+  // nevertheless, and the reader keeps trying.
   void open();
-  // Starts both threads; returns what of their real-time settings could not be had, "" for nothing. Throws
-  // std::system_error when the system has no thread left; nothing runs then.
+  // Starts both threads; returns the real-time settings that failed, or "". Throws std::system_error if no
+  // thread is available; then nothing runs.
   std::string start();
-  // No more is read, what has been read is published. Waits for both threads.
+  // Stops reading; publishes what was read. Waits for both threads.
   void stop() noexcept;
-  // Both threads have come to their end (a file was read).
+  // Both threads have ended (a file was read).
   [[nodiscard]] bool ended() const noexcept { return ended_.load(std::memory_order_acquire); }
 
   [[nodiscard]] const PipelinePlan& plan() const noexcept { return plan_; }
@@ -52,12 +52,12 @@ class Pipeline {
   [[nodiscard]] FilterStage& filter() noexcept { return filter_; }
   [[nodiscard]] const IncrementQueue& queue() const noexcept { return queue_; }
   [[nodiscard]] const HandOver& hand_over() const noexcept { return hand_over_; }
-  // One thread, once a second: which of the two got no processor since this was asked last though it was
-  // ready to run, "reader" or "filter"; null: neither.
+  // For one thread, once a second: "reader" or "filter" if that thread was ready but got no processor time
+  // since the last call; else null.
   [[nodiscard]] const char* starved();
-  // What the transport could not get and does without, once; "" for nothing new.
+  // Missing features of the transport, once; "" if nothing is new.
   std::string take_transport_warning() { return reader_.transport().notices().take_warning(); }
-  // How the device has answered to its set-up, likewise.
+  // The device's answers to its set-up, likewise.
   std::string take_transport_answers() { return reader_.transport().notices().take_answers(); }
   // Next event of either thread.
   bool take_event(Event& out) noexcept { return reader_events_.take(out) || filter_events_.take(out); }

@@ -10,9 +10,9 @@ namespace ifog {
 namespace {
 
 constexpr auto kTurn = std::chrono::milliseconds(250);
-// While increments wait outside a full ring: a source that falls silent must not keep them there.
+// Timeout while increments wait outside a full ring, so that they do not wait for a silent source.
 constexpr auto kImpatientTurn = std::chrono::milliseconds(1);
-// Between two looks for room on the tape.
+// Interval between checks for space on the tape.
 constexpr auto kReaderPause = std::chrono::milliseconds(1);
 
 }  // namespace
@@ -44,7 +44,7 @@ void Reader::take(const ifog_sample& sample) noexcept {
   const bool complete = incrementer_.next(reading_, increment);
   now_.samples = incrementer_.counts().samples;
   now_.repeated = incrementer_.counts().repeated;
-  // Before the filter can have it: what that has received must be in these books.
+  // Before the filter can have it: these accounts must include what the filter has received.
   links_.books.write(now_);
   if (!complete) return;
   report(increment, before);
@@ -146,7 +146,7 @@ void Reader::stand_back() noexcept {
 }
 
 void Reader::record(const Delivery& delivery) noexcept {
-  // A source that keeps its bytes until they are read loses none to a recorder that is at work.
+  // A source that buffers until it is read can wait for a working recorder.
   if (transport_->holds_back())
     while (!transport_->stopped() && links_.tape->worth_waiting(delivery))
       std::this_thread::sleep_for(kReaderPause);
@@ -165,7 +165,7 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   }
   if (!delivery.empty() || delivery.restarted) {
     turn_ns_ = delivery.read_ns;
-    // A recording that is read at its own pace brings its own times of day.
+    // A recording at its own pace has its own times of day.
     if (!transport_->times_are_recorded()) reading_.wall_shift_ns = wall_shift_.at(turn_ns_);
     look_outside();
     const std::uint32_t settings = links_.exchange.mark(pushed_);
@@ -176,10 +176,10 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   for (const ifog_can_frame& frame : delivery.frames) driver_.decode_can(frame, sink);
   publish_counters();
   links_.hand_over.delivered();
-  // After all that anybody waits for.
+  // After everything that is urgent.
   if (links_.tape != nullptr && (!delivery.empty() || delivery.restarted)) record(delivery);
   counters_.turns.add(1);
-  // A source that waits to be read has nobody else's time.
+  // A source that waits for its reader takes no time from others.
   if (!delivery.empty() && !transport_->holds_back()) stand_back();
   return !transport_->stopped() && !(delivery.empty() && transport_->state() == TransportState::ended);
 }
@@ -188,7 +188,7 @@ void Reader::run() noexcept {
   while (turn(links_.queue.has_waiting() ? kImpatientTurn : kTurn)) {
   }
   transport_->close_books();
-  // The bytes of a frame that never ended count as skipped.
+  // Bytes of an incomplete last frame count as skipped.
   const std::uint64_t skipped = driver_.counters().bytes_skipped;
   driver_.reset();
   if (!transport_->stopped()) counters_.bytes_at_end.set(driver_.counters().bytes_skipped - skipped);

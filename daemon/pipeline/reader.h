@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reader thread's work: transport → plugin → increments → queue. Stage 1 of a pipeline.
+// Stage 1 of a pipeline, the reader thread: transport → plugin → increments → queue.
 #pragma once
 
 #include <array>
@@ -26,47 +26,47 @@
 
 namespace ifog {
 
-// Any thread may read them; relaxed, for each stands for itself.
+// Readable by any thread; relaxed, since independent.
 struct ReaderCounters {
   Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
   Counter saturated, implausible, channel_implausible, channel_drops;
   Counter values_beyond;  // of ifog_driver_counters
   Counter frames_crc, bytes_skipped, frames_repeated, samples_incomplete;
-  Counter stood_back;                       // times it had used its share of a processor, see ProcessorShare
-  Counter bytes_at_end;                     // of a file that ends within a frame; also in bytes_skipped
+  Counter stood_back;                       // number of pauses, see ProcessorShare
+  Counter bytes_at_end;                     // incomplete last frame of a file; also in bytes_skipped
   std::atomic<std::uint32_t> axes_seen{0};  // Incrementer::axes_seen()
   std::atomic<bool> mixed{false};           // Incrementer::mixed()
   std::atomic<double> clock_offset_ppm{0.0};
   std::atomic<double> interval_error{0.0};  // Incrementer::interval_error()
 };
 
-// What the reader shares with the other parts of its pipeline.
+// Links of the reader to the other parts of its pipeline.
 struct ReaderLinks {
   IncrementQueue& queue;
   HandOver& hand_over;
   PartsExchange& exchange;
   SharedBooks& books;
   EventQueue& events;
-  Tape* tape = nullptr;  // of the flight recorder, null without one
+  Tape* tape = nullptr;  // of the flight recorder, or null
 };
 
 class Reader {
  public:
-  // processors: that it shares with other readers, if any.
+  // processors: shared with other readers, or null.
   Reader(std::unique_ptr<Transport> transport, DriverInstance driver, const SensorFacts& facts,
          std::shared_ptr<const ChannelTable> outside, const ReaderLinks& links,
          SharedProcessors* processors = nullptr);
 
-  // Until the transport is stopped or its file has ended. Opening is the caller's. Closes the queue.
+  // Runs until the transport is stopped or its file has ended. The caller opens it. Closes the queue.
   void run() noexcept;
-  // One wait of the transport and all it brought. False: it is over.
+  // One wait for the transport and its data. False: it has ended.
   bool turn(std::chrono::nanoseconds timeout) noexcept;
 
   [[nodiscard]] Transport& transport() noexcept { return *transport_; }
   [[nodiscard]] const Transport& transport() const noexcept { return *transport_; }
   [[nodiscard]] const DriverInstance& driver() const noexcept { return driver_; }
   [[nodiscard]] const ReaderCounters& counters() const noexcept { return counters_; }
-  // Any thread that may wait for the reader's.
+  // For any thread that may wait for the reader.
   [[nodiscard]] ReaderBooks books() const noexcept { return links_.books.read(); }
 
  private:
@@ -85,7 +85,7 @@ class Reader {
   Incrementer incrementer_;
   ReaderLinks links_;
   Reading reading_;
-  // Channels from elsewhere, the same for all samples of a delivery: so they are recorded.
+  // External channels, constant for all samples of a delivery, as in the recording.
   std::array<ChannelValue, kMaxChannels> outside_now_;
   WallShift wall_shift_;
   ProcessorShare share_;
@@ -94,7 +94,7 @@ class Reader {
     std::uint64_t overflows = 0;
     bool beyond = false;
   } reported_;
-  std::uint64_t pushed_ = 0;  // samples
+  std::uint64_t pushed_ = 0;  // in samples
   ReaderBooks now_;
   ReaderCounters counters_;
 };

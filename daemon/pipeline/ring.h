@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Single producer, single consumer, wait-free, no allocation after construction.
+// Ring buffer for a single producer and a single consumer; wait-free, no allocation after construction.
 //
-// Slots are filled and read in place (claim/commit, front/pop): an increment is several hundred bytes, and
-// queues that hand values over copy it twice. Each side keeps a copy of the other's index on its own cache
-// line and looks at the shared one only when the copy says full or empty, so that the cores exchange the
-// slots and the line of the index that moved, and not both indices at every slot. tests/bench/ring measures
-// it with Boost.Lockfree and moodycamel's ReaderWriterQueue.
+// Slots are filled and read in place (claim/commit, front/pop), since increments are several hundred bytes.
+// Each side caches the other's index on its own cache line and reads the shared one only if the cached one
+// says full or empty, which reduces cache traffic. tests/bench/ring compares it with Boost.Lockfree and
+// moodycamel's ReaderWriterQueue.
 //
-// Full means full: claim() returns null and the caller decides (see IncrementQueue, which merges).
+// If the ring is full claim() returns null, and the caller decides (IncrementQueue merges).
 #pragma once
 
 #include <atomic>
@@ -20,11 +19,11 @@ namespace ifog {
 template <typename T>
 class Ring {
  public:
-  // Room for at least `capacity` slots, rounded up to a power of two.
+  // capacity: rounded up to a power of two.
   explicit Ring(std::size_t capacity)
       : mask_(std::bit_ceil(capacity) - 1), slots_(std::make_unique<T[]>(mask_ + 1)) {}
 
-  // Producer: the next slot to fill, null when the ring is full. The same slot until commit().
+  // Producer: next slot to fill, null if full; the same slot until commit().
   [[nodiscard]] T* claim() noexcept {
     const std::size_t head = head_.load(std::memory_order_relaxed);
     if (head - tail_seen_ > mask_) {
@@ -37,7 +36,7 @@ class Ring {
     head_.store(head_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
 
-  // Consumer: the oldest slot, null when the ring is empty. Valid until pop().
+  // Consumer: oldest slot, null if empty; valid until pop().
   [[nodiscard]] T* front() noexcept {
     const std::size_t tail = tail_.load(std::memory_order_relaxed);
     if (tail == head_seen_) {
@@ -48,8 +47,8 @@ class Ring {
   }
   void pop() noexcept { tail_.store(tail_.load(std::memory_order_relaxed) + 1, std::memory_order_release); }
 
-  // Any thread. Slots committed and not popped; of what is popped or committed during the call either may
-  // count. The consumer never sees fewer, the producer never more, than there are when the call returns.
+  // Any thread: number of committed slots, with or without concurrent changes. The consumer never sees fewer,
+  // the producer never more, than there are on return.
   [[nodiscard]] std::size_t size() const noexcept {
     const std::size_t tail = tail_.load(std::memory_order_acquire);
     return head_.load(std::memory_order_acquire) - tail;
@@ -57,7 +56,7 @@ class Ring {
   [[nodiscard]] std::size_t capacity() const noexcept { return mask_ + 1; }
 
  private:
-  // 64 rather than std::hardware_destructive_interference_size, whose value depends on compiler flags.
+  // Not std::hardware_destructive_interference_size, which depends on compiler flags.
   static constexpr std::size_t kLine = 64;
   const std::size_t mask_;
   const std::unique_ptr<T[]> slots_;

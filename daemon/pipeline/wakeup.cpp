@@ -16,7 +16,7 @@ bool Wakeup::change(std::uint32_t from, std::uint32_t to) noexcept {
 
 void Wakeup::notify() noexcept {
   for (;;) {
-    // Adding nothing is a write all the same: a place in the chain.
+    // Adding zero is a write, and so part of the chain.
     switch (state_.fetch_or(0, std::memory_order_acq_rel)) {
       case kAsleep:
         if (!change(kAsleep, kAwake)) continue;
@@ -44,7 +44,7 @@ void Wakeup::give_back(bool wake_it) noexcept {
 void Wakeup::wake() noexcept { syscall(SYS_futex, &state_, FUTEX_WAKE_PRIVATE, 1, nullptr, nullptr, 0); }
 
 void Wakeup::sleep() noexcept {
-  // The word goes to and fro while the place is lent; the sleeper notices only when it falls asleep again.
+  // The state changes while the place is lent; the sleeper notices only when it sleeps again.
   for (std::uint32_t now; (now = state_.load(std::memory_order_acquire)) != kAwake;)
     syscall(SYS_futex, &state_, FUTEX_WAIT_PRIVATE, now, nullptr, nullptr, 0);
 }

@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Wakes the one consumer of a ring, with a system call only when it sleeps; or lends the producer the
-// consumer's place while it sleeps, so that nobody need be woken at all.
+// Wakes the consumer of a ring, with a system call only if it sleeps; or lends its place to the producer
+// while it sleeps, so that waking is unnecessary.
 //
-// The consumer announces its sleep, looks at the ring once more and only then sleeps; the producer commits
-// and then looks for the announcement. Every access to the announcement is a read-modify-write, so they form
-// one chain: either the producer's comes later and finds the announcement, or the consumer's comes later and,
-// by reading from it, sees the slot. No fence is needed, which ThreadSanitizer would not understand.
+// The consumer announces its sleep, checks the ring again and then sleeps; the producer commits and then
+// checks the announcement. All accesses to the announcement are read-modify-write and form one chain: either
+// the producer sees the announcement, or the consumer sees the slot. So no fence is needed (ThreadSanitizer
+// does not support them).
 //
-// Who may act as the consumer follows from one word: the consumer while it is `awake`, the producer while it
-// is `lent` (or `lent_called`: somebody wants the consumer as soon as it is given back), nobody while it is
-// `asleep`.
+// One word determines who is the consumer: the consumer itself if `awake`, the producer if `lent` (or
+// `lent_called`: the consumer is wanted after the return), nobody if `asleep`.
 #pragma once
 
 #include <atomic>
@@ -19,21 +18,21 @@ namespace ifog {
 
 class Wakeup {
  public:
-  // Any thread, after what the consumer waits for has been made visible.
+  // Any thread, after it has published what the consumer waits for.
   void notify() noexcept;
 
-  // Producer, likewise. True: the consumer sleeps and stays asleep, and the caller is the consumer until
-  // give_back(). False: it is awake and will see what has been made visible.
+  // Producer, likewise. True: the consumer stays asleep, and the caller is the consumer until give_back().
+  // False: it is awake and will see the data.
   bool borrow() noexcept;
-  // wake: something is left for the consumer.
+  // wake: data are left for the consumer.
   void give_back(bool wake) noexcept;
 
-  // Consumer: sleeps until notify() unless ready() holds. ready() may be called while the place is lent: it
-  // looks at atomics only.
+  // Consumer: sleeps until notify() unless ready() is true. ready() may be called while the place is lent, so
+  // it must use atomics only.
   template <typename Ready>
   void wait(Ready&& ready) noexcept {
     state_.exchange(kAsleep, std::memory_order_acq_rel);
-    if (ready()) notify();  // wakes itself, or asks for its place back
+    if (ready()) notify();  // wakes itself, or asks for its place
     sleep();
   }
 
