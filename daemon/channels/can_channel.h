@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One signal of a DBC file as an environment channel.
+// Environment channel from one signal of a DBC file.
 #pragma once
 
 #include <string>
@@ -13,12 +13,12 @@ namespace ifog {
 
 class CanChannel {
  public:
-  // signal: "SIGNAL" or "MESSAGE.SIGNAL". Throws std::runtime_error with one line: the file, a signal that is
-  // not there or is in several messages.
+  // signal: "SIGNAL" or "MESSAGE.SIGNAL". Throws std::runtime_error with one line: an error of the file, a
+  // signal that is missing or in several messages.
   CanChannel(const std::string& dbc_file, const std::string& signal);
 
   [[nodiscard]] CanId id() const { return {message_.id, message_.extended}; }
-  // False: the frame does not carry the signal. NaN: beyond the range the file states.
+  // False: the frame does not carry the signal. NaN: outside the range in the file.
   bool decode(const ifog_can_frame& frame, double& value) const noexcept;
 
  private:
@@ -26,7 +26,7 @@ class CanChannel {
   std::size_t signal_ = 0;
 };
 
-// As configured; throws KeyError, of the key in the sensor that the complaint is due to.
+// As configured; throws KeyError with the sensor's key that causes the error.
 CanChannel can_channel(const ChannelConfig& channel);
 
 }  // namespace ifog

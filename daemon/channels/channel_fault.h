@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a channel has no new value, as plain data that any thread may leave and housekeeping words.
+// Reason why a channel has no new value, as plain data for any thread; housekeeping makes the text.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@ namespace ifog {
 
 struct ChannelFault {
   enum class Kind : std::uint8_t {
-    silent,        // nothing has come, or nothing more
-    unreadable,    // file: opening or reading it failed, error
-    no_file,       // file: a folder, a FIFO, a device
-    empty,         // file: holds nothing
-    no_number,     // file: holds something else, or more
-    no_message,    // lcm: what came is no message of the types that carry values
-    no_field,      // lcm: what came is one, without the field
-    late,          // lcm: older than the value that is held
-    clock_behind,  // lcm: values come, dated by a clock that is behind by error seconds
-    impossible,    // the value is beyond what it can be
+    silent,        // nothing was received, or nothing more
+    unreadable,    // file: opening or reading failed with `error`
+    no_file,       // file: a folder, FIFO or device
+    empty,         // file: empty
+    no_number,     // file: not a single number
+    no_message,    // lcm: a message of a type without values
+    no_field,      // lcm: the message does not have the field
+    late,          // lcm: older than the last value
+    clock_behind,  // lcm: the sender's clock is behind by `error` seconds
+    impossible,    // the value is outside its possible range
   };
   Kind kind = Kind::silent;
   int error = 0;  // errno; clock_behind: s
@@ -28,7 +28,7 @@ struct ChannelFault {
   bool operator==(const ChannelFault&) const = default;
 };
 
-// One line: the channel, where it should come from, what is wrong there, what was expected.
+// One line: the channel, its source, the fault, what was expected.
 std::string describe(const ChannelConfig& channel, const ChannelFault& fault);
 
 }  // namespace ifog

@@ -31,7 +31,7 @@ namespace {
 
 constexpr auto kSourceTurn = std::chrono::milliseconds(250);
 
-// The way of a value into the sensor's table: scaled, and refused where it cannot be.
+// Writes a channel's values into the sensor's table: scaled, or rejected if impossible.
 class Entrance {
  public:
   explicit Entrance(ChannelSources::Wanted wanted)
@@ -40,8 +40,8 @@ class Entrance {
   [[nodiscard]] const ChannelConfig& config() const { return wanted_.config; }
   [[nodiscard]] const std::shared_ptr<ChannelTable>& table() const { return wanted_.table; }
 
-  // again: the reading that came last has come once more. It agrees with itself, which shows nothing, and is
-  // counted once. Whether it is held now.
+  // again: the last reading was received again. It confirms nothing and is counted once. True: the value is
+  // accepted.
   bool put(double number, std::int64_t time_ns, bool again = false) {
     const double value = number * wanted_.config.scale + wanted_.config.offset;
     again = again && value == last_;
@@ -56,9 +56,9 @@ class Entrance {
       refuse(fault);
     return good_;
   }
-  // The reading is no value.
+  // Rejects the reading.
   void refuse(const ChannelFault& fault) { wanted_.table->refuse(wanted_.index, fault); }
-  // Counted where something came that is no number; a file that is not there, or empty, has brought nothing.
+  // Counted if something other than a number was received; a missing or empty file is not counted.
   void miss(const ChannelFault& fault) {
     if (fault.kind == ChannelFault::Kind::no_number)
       refuse(fault);
@@ -70,7 +70,7 @@ class Entrance {
   ChannelSources::Wanted wanted_;
   PlausibleValue plausible_;
   double last_ = 0.0;
-  bool good_ = false;  // last_ is
+  bool good_ = false;  // last_ is valid
 };
 
 class FileChannel {
@@ -94,7 +94,7 @@ class FileChannel {
   FileWriting writing_;
 };
 
-// LCM takes the name as a regular expression for whole names; a channel is called what it is called.
+// LCM interprets names as regular expressions, so special characters are escaped.
 std::string as_written(const std::string& name) {
   std::string out;
   for (const char c : name) {
@@ -104,7 +104,7 @@ std::string as_written(const std::string& name) {
   return out;
 }
 
-// One LCM channel and field.
+// One LCM channel and its field.
 class LcmChannel {
  public:
   explicit LcmChannel(ChannelSources::Wanted wanted)
@@ -124,13 +124,13 @@ class LcmChannel {
     }
     const bool dated = utime > 0 && utime < INT64_MAX / 1000;
     const std::int64_t now_ns = realtime_ns(), measured_ns = (dated ? utime : message.recv_utime) * 1000;
-    // A date that is still to come shows that its clock, or this computer's, has been set back.
+    // A last value dated in the future shows that a clock was set back.
     if (dated && held_ns_ > 0 && held_ns_ <= now_ns && measured_ns < held_ns_ - kSameTime_ns)
       return in_.refuse({.kind = ChannelFault::Kind::late});
     const bool again = dated && last_ns_ > 0 && std::abs(measured_ns - last_ns_) <= kSameTime_ns;
     if (dated && !again) last_ns_ = measured_ns;
-    // What was measured in the future was measured when it came first: else it would never grow old. What is
-    // refused is not held, whatever its date: those before it are not late for it.
+    // A measurement dated in the future counts from its first reception; otherwise it would never become old.
+    // A rejected value is not stored, whatever its date.
     if (!again) at_ns_ = arrival_clock_ns() - age_ns(now_ns - measured_ns, dated);
     const bool held = in_.put(value, at_ns_, again);
     if (held && dated && !again) held_ns_ = measured_ns;
@@ -140,13 +140,13 @@ class LcmChannel {
   }
 
  private:
-  // A status tells ages, from which the same time comes back to within its rounding.
+  // A status contains ages, from which the time is recovered to within rounding.
   static constexpr std::int64_t kSameTime_ns = 2'000;
   static constexpr std::int64_t kSecond_ns = 1'000'000'000, kBehind_ns = kSecond_ns;
-  static constexpr std::int64_t kFollows_ns = 1'000'000;  // a message: clocks drift
+  static constexpr std::int64_t kFollows_ns = 1'000'000;  // per message; the estimate follows clock drift
 
-  // How old what was measured is. Values that are each new and all seem to be as old come from a computer
-  // whose clock is behind: the least age of them is its clock's, and what is more is theirs.
+  // Age of a measurement. If new values all have a large age, the sender's clock is behind: the smallest age
+  // is that of the clock.
   std::int64_t age_ns(std::int64_t by_date_ns, bool dated) noexcept {
     if (!dated) return std::max<std::int64_t>(0, by_date_ns);
     const std::int64_t least_ns = std::min(by_date_ns, least_ns_ + kFollows_ns);
@@ -158,17 +158,17 @@ class LcmChannel {
   Entrance in_;
   LcmField field_;
   std::int64_t last_ns_ = 0,
-               held_ns_ = 0;  // by its own clock, of the last and of the value held; 0: none that tells
-  std::int64_t at_ns_ = 0;    // of the last, on the clock of arrivals
-  std::int64_t least_ns_ = 0, behind_ns_ = 0;  // age by date, of those with a new one; of its clock
+               held_ns_ = 0;  // by its own clock, of the last value and the stored one; 0: unknown
+  std::int64_t at_ns_ = 0;    // of the last one, arrival clock
+  std::int64_t least_ns_ = 0, behind_ns_ = 0;  // smallest age by date, of new values; lag of the clock
   bool dated_before_ = false;
 };
 
-// All signals wanted from one CAN interface.
+// All signals of one CAN interface.
 struct CanGroup {
   std::vector<std::pair<Entrance, CanChannel>> channels;
   std::unique_ptr<Transport> transport;
-  std::uint64_t drops = 0;  // of the kernel, reported to the sensors so far
+  std::uint64_t drops = 0;  // kernel drops reported to the sensors so far
 
   void listen() {
     while (!transport->stopped()) {
@@ -181,7 +181,7 @@ struct CanGroup {
     transport->close_books();
     tell_drops();
   }
-  // Each sensor once, however many of its channels are on this bus.
+  // Once per sensor, regardless of its number of channels on this bus.
   void tell_drops() {
     const std::uint64_t now = transport->counters().kernel_drops;
     if (now == drops) return;
@@ -213,7 +213,7 @@ struct ChannelSources::Impl {
       if (one.lcm_channel() == channel) one.take(*message);
   }
 
-  // Throws std::runtime_error: LCM cannot use the URL now.
+  // Throws std::runtime_error if LCM cannot use the URL now.
   void subscribe() {
     lcm = lcm_create(lcm_url.c_str());
     if (lcm == nullptr)
@@ -285,7 +285,7 @@ void ChannelSources::start() {
     try {
       bus.transport->open({});
     } catch (const std::exception&) {
-      // read() keeps trying; until then the channel is stale, which is flagged.
+      // read() keeps trying; meanwhile the channel is stale, which is flagged.
     }
     impl_->threads.emplace_back([group = &bus] { group->listen(); });
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Listens to the sources of environment channels that do not come in a sensor's frames, and keeps the latest
-// value of each where the sensor's reader thread looks. One ordinary thread for all of them.
+// Reads environment channels from outside a sensor's frames and stores their latest values for the sensor's
+// reader thread. One ordinary thread for all.
 #pragma once
 
 #include <functional>
@@ -19,20 +19,19 @@ class ChannelSources {
   struct Wanted {
     ChannelConfig config;
     std::shared_ptr<ChannelTable> table;
-    int index = 0;  // in the table
+    int index = 0;  // index in the table
   };
 
   using CanOpener = std::function<std::unique_ptr<Transport>(const CanSettings&)>;
 
-  // Opens nothing. Throws std::runtime_error with one line: a DBC file or a signal that is not there, a field
-  // nobody knows.
-  // `make_can` is there for tests, on machines without CAN.
+  // Opens nothing. Throws std::runtime_error with one line: a missing DBC file or signal, an unknown field.
+  // make_can: for tests without CAN.
   ChannelSources(std::vector<Wanted> wanted, const std::string& lcm_url,
                  const CanOpener& make_can = make_can_transport);
   ~ChannelSources();  // stops
 
-  // Opens what there is; what is not may come yet, and until then its channels are stale. Throws
-  // std::runtime_error with one line when LCM cannot be had.
+  // Opens the sources; missing ones are retried, and their channels are stale. Throws std::runtime_error with
+  // one line if LCM is not available.
   void start();
   void stop();
 

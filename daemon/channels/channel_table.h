@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of environment channels that do not come in the sensor's own frames. Written by whoever listens to
-// their source, read by the sensor's reader thread at every sample.
+// Values of environment channels from outside the sensor's frames. Written by the source's thread, read by
+// the sensor's reader thread at every sample.
 #pragma once
 
 #include <atomic>
@@ -18,19 +18,19 @@ class ChannelTable {
   explicit ChannelTable(int channels)
       : entries_(std::make_unique<Entry[]>(static_cast<std::size_t>(channels))) {}
 
-  // One writer a channel.
+  // One writer per channel.
   void set(int channel, double value, std::int64_t time_ns) noexcept {
     Entry& entry = entries_[static_cast<std::size_t>(channel)];
     entry.value.store(value, std::memory_order_relaxed);
     entry.time_ns.store(time_ns, std::memory_order_release);
     entry.fault.store({}, std::memory_order_relaxed);
   }
-  // The reading is no value, or an impossible one: the last value is held and ages.
+  // The reading is invalid: the last value is held and ages.
   void refuse(int channel, ChannelFault fault) noexcept {
     miss(channel, fault);
     refused_.fetch_add(1, std::memory_order_relaxed);
   }
-  // Nothing was received, for that reason; it stands until the next one.
+  // Nothing was received, for this reason, which is kept until the next one.
   void miss(int channel, ChannelFault fault) noexcept {
     entries_[static_cast<std::size_t>(channel)].fault.store(fault, std::memory_order_relaxed);
   }
@@ -38,12 +38,11 @@ class ChannelTable {
     return entries_[static_cast<std::size_t>(channel)].fault.load(std::memory_order_relaxed);
   }
   [[nodiscard]] std::uint64_t refused() const noexcept { return refused_.load(std::memory_order_relaxed); }
-  // So many messages of a source of these channels were lost before they could be read.
+  // Counts messages of these channels' source that were lost before they could be read.
   void lose(std::uint64_t messages) noexcept { drops_.fetch_add(messages, std::memory_order_relaxed); }
   [[nodiscard]] std::uint64_t drops() const noexcept { return drops_.load(std::memory_order_relaxed); }
 
-  // The value is at least as new as its time says: updates that come between the two loads show in the value
-  // alone.
+  // The value is at least as new as its time: an update between the two loads affects only the value.
   [[nodiscard]] ChannelValue latest(int channel) const noexcept {
     const Entry& entry = entries_[static_cast<std::size_t>(channel)];
     ChannelValue out;
@@ -56,7 +55,7 @@ class ChannelTable {
   struct Entry {
     std::atomic<double> value{std::numeric_limits<double>::quiet_NaN()};
     std::atomic<std::int64_t> time_ns{0};
-    std::atomic<ChannelFault> fault{};  // of the last that came; silent after a good value
+    std::atomic<ChannelFault> fault{};  // of the last reading; `silent` after a valid value
   };
   std::unique_ptr<Entry[]> entries_;
   std::atomic<std::uint64_t> refused_{0}, drops_{0};

@@ -16,11 +16,11 @@
 namespace ifog {
 namespace {
 
-// A file that has been wrong for so long is reported, whatever age is allowed; before a channel's first value
-// sooner, as a name may be mistyped.
+// Delays before a faulty file is reported, for any allowed age; shorter before the first value, because the
+// name may be wrong.
 constexpr double kLasting_s = 10.0, kFirst_s = 2.0;
 
-// A channel of the sensor's frames has no entry while the default maximum age applies.
+// Channels of the sensor's frames have no entry if the default age applies.
 ChannelConfig of_frame(const std::string& name, const std::vector<ChannelConfig>& configured) {
   const auto found = std::find_if(configured.begin(), configured.end(),
                                   [&](const ChannelConfig& channel) { return channel.name == name; });
@@ -61,7 +61,7 @@ bool ChannelWatch::is_configured(const std::string& name) const {
 
 std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const ChannelTable& outside) {
   std::vector<News> out;
-  // Before the sensor's first sample nothing is known of any.
+  // Nothing is known before the sensor's first sample.
   if (status.samples_in == 0 || status.state != status_t::STATE_RUNNING) return out;
   const std::size_t all = status.channel_name.size();
   if (seen_.empty()) {
@@ -85,15 +85,15 @@ std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const
     const double age_s = status.channel_age_s[c];
     const bool never = std::isinf(age_s);
     const bool old = !never && channel.max_age_s > 0.0 && age_s > channel.max_age_s;
-    // What a driver's frames could bring and these do not is missed by nobody, unless a correction goes
-    // without it.
+    // A channel that the driver's frames may contain but do not is reported only if it is configured or a
+    // correction needs it.
     const bool wanted = !from_frame || is_configured(channel.name) || status.channel_stale > 0;
     const bool awaited =
         never && wanted && seen.looked_s > (channel.max_age_s > 0.0 ? channel.max_age_s : kLasting_s);
     const bool gone = never ? seen.faulty_s >= kFirst_s
                             : channel.source == ChannelConfig::Source::file && seen.faulty_s >= kLasting_s &&
                                   age_s > kLasting_s;
-    // What was reported of a channel without a value stands until one arrives.
+    // A report is valid until a value arrives.
     const bool missing = old || awaited || gone || (never && seen.reported);
     if (missing == seen.reported) continue;
     seen.reported = missing;

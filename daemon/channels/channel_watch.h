@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which channels of a sensor are without a new value, reported once by name when it begins and once when it is
-// over. Housekeeping's, once a second.
+// Reports channels without new values, once by name at the beginning and once at the end. Called by
+// housekeeping once a second.
 #pragma once
 
 #include <ifog/status_t.hpp>
@@ -21,22 +21,22 @@ class ChannelWatch {
 
   explicit ChannelWatch(const SensorConfig& sensor);
 
-  // What is not there before anything is opened: files, CAN interfaces. It may come yet.
+  // Sources that do not exist before anything is opened (files, CAN interfaces); they may appear later.
   [[nodiscard]] std::vector<std::string> absent();
-  // status: this second's, with names and ages of the sensor's channels. outside: those that do not come in
-  // its frames, the last of them.
+  // status: of this second, with names and ages of the sensor's channels. outside: the channels from outside
+  // its frames, which are the last ones.
   [[nodiscard]] std::vector<News> look(const status_t& status, const ChannelTable& outside);
 
  private:
   struct Seen {
-    double looked_s = 0.0, faulty_s = 0.0;  // since the sensor has sent, and since there is a known reason
+    double looked_s = 0.0, faulty_s = 0.0;  // since the sensor's first sample; since a reason is known
     bool reported = false, behind_reported = false;
   };
 
   [[nodiscard]] bool is_configured(const std::string& name) const;
 
   std::vector<ChannelConfig> configured_, outside_;
-  std::vector<bool> absent_;  // of the outside ones, reported by absent()
+  std::vector<bool> absent_;  // of the outside channels, reported by absent()
   std::vector<Seen> seen_;
 };
 

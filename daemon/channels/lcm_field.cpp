@@ -91,9 +91,9 @@ bool LcmField::read_status(std::span<const std::uint8_t> message, double& value,
     if (found == status.channel_name.end()) return false;
     const auto index = static_cast<std::size_t>(found - status.channel_name.begin());
     value = status.channel_value[index];
-    // What that sensor holds is as old as it says.
+    // The value has the age given by that sensor.
     const double age_s = status.channel_age_s[index];
-    constexpr double kOldest_s = 1e9;  // beyond it nothing is worth having; and it fits the µs
+    constexpr double kOldest_s = 1e9;  // older values are useless, and it fits into µs
     if (!std::isfinite(value) || !(age_s >= 0.0 && age_s < kOldest_s)) return false;
     utime -= static_cast<std::int64_t>(age_s * 1e6);
     return true;

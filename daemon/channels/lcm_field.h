@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which number of an LCM message an environment channel takes.
+// Number of an LCM message used for an environment channel.
 #pragma once
 
 #include <cstdint>
@@ -10,20 +10,20 @@
 
 namespace ifog {
 
-// The bytes are one whole message of the three types that carry fields.
+// True if the bytes are one complete message of a type that carries fields.
 bool is_message(std::span<const std::uint8_t> bytes);
 
 class LcmField {
  public:
-  // "NAME": the ifog.channel_t of that name, or a number of an ifog.status_t: input_rate_hz, …
+  // Field by name: "NAME": the ifog.channel_t of that name, or a number of an ifog.status_t: input_rate_hz, …
   // "FIELD[i]": of an ifog.rate_t raw, compensated, denoised; of an ifog.status_t nis_mean, whiteness,
   //   measurement_noise; i = 0 … 2.
-  // "channel_value[NAME]": another sensor's channel, from its ifog.status_t.
-  // Throws std::runtime_error with one line: brackets on a field that has none of that kind.
+  // "channel_value[NAME]": another sensor's channel, from its ifog.status_t. Throws std::runtime_error with
+  // one line for brackets on another field.
   explicit LcmField(const std::string& text);
 
-  // False: no message, another type, or the message does not have it. The type is known by LCM's fingerprint.
-  // utime: of the measurement, µs since the epoch, 0 when the message does not say.
+  // False: invalid message, another type, or without the field. The type is recognised by LCM's fingerprint.
+  // utime: of the measurement, µs since the epoch, 0 if unknown.
   bool read(std::span<const std::uint8_t> message, double& value, std::int64_t& utime) const;
 
  private:

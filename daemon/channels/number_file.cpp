@@ -55,7 +55,7 @@ std::variant<double, ChannelFault> read_number_file(const std::string& path, Fil
   const int error = errno;
   close(fd);
   if (length < 0) return ChannelFault{.kind = ChannelFault::Kind::unreadable, .error = error};
-  // No number is so long: its end would be missing.
+  // Too long for a number; its end would be missing.
   if (static_cast<std::size_t>(length) == text.size())
     return ChannelFault{.kind = ChannelFault::Kind::no_number};
   return number_in({text.data(), static_cast<std::size_t>(length)});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A file that holds one number and nothing else: hwmon, thermal zones, IIO.
+// Reads a file that contains a single number: hwmon, thermal zones, IIO.
 #pragma once
 
 #include <sys/types.h>
@@ -13,8 +13,7 @@
 
 namespace ifog {
 
-// Which writing of a file it was that was read. What the kernel makes up at each read (sysfs, procfs) is
-// never the same.
+// Identifies a version of a file. For files generated at each read (sysfs, procfs) it always differs.
 struct FileWriting {
   dev_t device = 0;
   ino_t file = 0;
@@ -27,11 +26,10 @@ struct FileWriting {
   }
 };
 
-// The number, or why there is none. Blanks and line ends may stand around it; every other character that is
-// not of the number makes it none: half of "21,5" is no measurement.
+// The number, or the reason why there is none. Blanks and line ends may surround it; other characters make it
+// invalid, such as "21,5".
 std::variant<double, ChannelFault> number_in(std::string_view text);
-// The same of a file's text. Never waits: a FIFO in the place of the file would hold up every other channel,
-// and the end of the daemon.
+// The same for a file. Never blocks: a FIFO would delay all other channels and the daemon's end.
 std::variant<double, ChannelFault> read_number_file(const std::string& path, FileWriting& writing);
 
 }  // namespace ifog

@@ -16,8 +16,8 @@
 namespace ifog {
 namespace {
 
-// Channels become columns of captures, next to the time and the rates: a name that is one of those would stand
-// there twice, and what reads captures and models knows a channel's quantity by its unit.
+// Channels are columns of captures besides time and rates, so they must not have these names; and their unit
+// must be in the name, for captures and models.
 void check_name(TableReader& in, const std::string& name, const ReadingContext& context) {
   std::string axis;
   if (name == "time_s" || axis_of(name, "rate", axis) || axis_of(name, "reference_rate", axis)) {
@@ -37,7 +37,7 @@ void check_name(TableReader& in, const std::string& name, const ReadingContext& 
                             "\"temperature_degC\"");
 }
 
-// Limits that let nothing through of what the unit can be.
+// Rejects limits that exclude all values possible in the unit.
 void check_unit(TableReader& in, const ChannelConfig& channel) {
   const Measurable can_be = measurable(channel.name);
   std::ostringstream words;

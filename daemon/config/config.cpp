@@ -29,7 +29,7 @@ std::string as_text(const toml::table& table) {
   return text.str();
 }
 
-// Notes the line of every key, nested tables included; a channel's keys stand under its name.
+// Notes the line of every key, including nested tables; keys of a channel are under its name.
 void note_lines(const toml::table& table, const std::string& path, KeyLines& out) {
   for (const auto& [key, node] : table) {
     const std::string here = path + std::string(key.str());
@@ -87,8 +87,8 @@ RecordConfig read_record(const toml::table& table, const std::string& where, Rea
   take(in.integer("file_bytes", 100'000, 1'000'000'000), out.file_bytes);
   take(in.number("file_s", {1.0, 1e6}), out.file_s);
   take(in.integer("buffer_bytes", 262'144, 1'000'000'000), out.buffer_bytes);
-  // With fewer than four files, removing the oldest would remove most of what there is. A number that is
-  // wrong by itself has been reported.
+  // With fewer than four files, removing the oldest would remove most data. Not checked after an error of a
+  // single number.
   if (context.errors.size() == errors_before && out.bytes / 4 < out.file_bytes)
     in.complain(in.has("bytes") ? "bytes" : "file_bytes",
                 ": bytes = " + std::to_string(out.bytes) + " with file_bytes = " +
@@ -195,7 +195,7 @@ std::string SensorConfig::lcm_channel() const {
 
 namespace {
 
-// Names of those that differ.
+// Names of the keys that differ.
 std::string differing(std::initializer_list<std::pair<const char*, bool>> keys) {
   std::string out;
   for (const auto& [key, same] : keys)
@@ -272,7 +272,8 @@ Config parse(const std::string& text, const std::string& path, bool recorded) {
   for (const toml::table* const sensor : sensors) {
     out.sensors.push_back(read_sensor(*sensor, context));
     const SensorConfig& read = out.sensors.back();
-    // By LCM channel, which has capitals only; a sensor takes three, and `a_status` has the second of `a`.
+    // LCM channel names are in capitals; a sensor uses three, and `a_status` conflicts with the second of
+    // `a`.
     std::string claimed;
     for (const std::string_view ending : {std::string_view(), kStatusEnding, kImuEnding})
       if (const std::string channel = read.lcm_channel() + std::string(ending);
@@ -317,7 +318,7 @@ void use_adopted_models(Config& config, const std::string& folder) {
     if (!sensor.model.empty() || !is_in_state_folder(path)) continue;
     sensor.model = path;
     sensor.model_adopted = true;
-    // So that a flight recording, too, names the model that was in use.
+    // So that flight recordings contain the model in use.
     toml::table table = parse_toml(sensor.text, "");
     table["sensor"][0].as_table()->insert_or_assign("model", sensor.model);
     sensor.text = as_text(table);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The daemon's configuration, a TOML file. Every key, its unit, range and default is in
-// daemon/examples/reference.toml, which a test reads.
+// The daemon's configuration, a TOML file. daemon/examples/reference.toml has every key with unit, range and
+// default, and is tested.
 #pragma once
 
 #include <cstdint>
@@ -24,16 +24,16 @@ namespace ifog {
 struct TransportConfig {
   enum class Kind { serial, can, udp, tcp, file };
   Kind kind = Kind::file;
-  // serial; its baud 0: what the driver says
+  // serial; baud 0: from the driver
   SerialSettings serial;
   // can
-  std::string interface;  // "can0"; file: of a candump log's frames, empty for all
+  std::string interface;  // can: "can0"; file: only this interface of a candump log, "" for all
   UdpSettings udp;
   TcpSettings tcp;
   // file
-  std::string path;       // "-" is the standard input
+  std::string path;       // "-" is standard input
   bool candump = false;   // else raw bytes
-  bool recorded = false;  // at recorded times, else as fast as it goes
+  bool recorded = false;  // at recorded times; else as fast as possible
   double speed = 1.0;
   double bytes_per_second = 0.0;
   std::uint32_t block_bytes = 0;
@@ -46,15 +46,15 @@ struct ChannelConfig {
   enum class Source { frame, can, lcm, file };
   std::string name;  // as in the model file: NAME_UNIT
   Source source = Source::frame;
-  double max_age_s = 10.0;           // older is stale; 0: never
+  double max_age_s = 10.0;           // older values are stale; 0: never
   std::string interface;             // can: "can0"
   std::string dbc, signal;           // can: file, and MESSAGE.SIGNAL or SIGNAL
   std::string lcm_channel;           // lcm: carries ifog.channel_t, ifog.rate_t or ifog.status_t
-  std::string field;                 // lcm: which of it, see LcmField; "": the name
-  std::string path;                  // file: holds one number, as hwmon's temp1_input
+  std::string field;                 // lcm: see LcmField; "": the name
+  std::string path;                  // file: contains one number, e.g. hwmon's temp1_input
   double scale = 1.0, offset = 0.0;  // value = number * scale + offset; lcm, can and file
-  Limits limits;                     // of the value; what is beyond is no measurement
-  double period_s = 1.0;             // file: how often it is read
+  Limits limits;                     // of the value; others are invalid
+  double period_s = 1.0;             // file: reading interval
 
   bool operator==(const ChannelConfig&) const = default;
 };
@@ -63,57 +63,57 @@ struct RealtimeConfig {
   int reader_priority = 0, filter_priority = 0;  // SCHED_FIFO; 0: ordinary
   std::vector<int> reader_cpus, filter_cpus;
   bool spin = false;   // the filter thread never sleeps
-  bool direct = true;  // the reader thread does an idle filter's step
+  bool direct = true;  // the reader thread does the step of an idle filter
   int ring_slots = 1024;
 
   bool operator==(const RealtimeConfig&) const = default;
 };
 
-// The flight recorder.
+// Flight recorder.
 struct RecordConfig {
-  std::string folder;                   // its files are in FOLDER/SENSOR; "": nothing is recorded
-  std::uint64_t bytes = 1'000'000'000;  // of all of the sensor's files
+  std::string folder;                   // files are in FOLDER/SENSOR; "": no recording
+  std::uint64_t bytes = 1'000'000'000;  // limit for all of the sensor's files
   double days = 30.0;                   // older files are removed
   std::uint64_t file_bytes = 16'000'000;
-  double file_s = 3600.0;                  // a file is ended at this size or age, whichever comes first
-  std::uint64_t buffer_bytes = 4'194'304;  // what may wait for the disk
+  double file_s = 3600.0;                  // limits of size and age at which a file is closed
+  std::uint64_t buffer_bytes = 4'194'304;  // limit of data waiting for the disk
 
   bool operator==(const RecordConfig&) const = default;
 };
 
-// Lines of the file by the path of their key.
+// Lines of the file by key path.
 using KeyLines = std::map<std::string, std::uint32_t, std::less<>>;
 
 struct SensorConfig {
   std::string name;  // letters, digits, _ and -; LCM channel IFOG_<NAME in capitals>
   std::string driver;
-  std::string model;                   // path, "" for none
+  std::string model;                   // path, or ""
   bool model_adopted = false;          // it is in the state folder
-  double nominal_rate_hz = 0.0;        // 0: what the driver says
-  double range_radps = 0.0;            // full scale of every axis; 0: what the driver says
+  double nominal_rate_hz = 0.0;        // 0: from the driver
+  double range_radps = 0.0;            // full scale of every axis; 0: from the driver
   Limits limits;                       // of every axis's rate, rad/s
-  bool imu = false;                    // ifog.imu_t at sample rate, too
-  std::vector<PublishedType> publish;  // other types on channels of the user's choosing
+  bool imu = false;                    // publish ifog.imu_t at the sample rate, too
+  std::vector<PublishedType> publish;  // further types on configured channels
   double start_up_s = 4.0;
-  bool powered_with_computer = false;  // switched on with it: time since power-up is time since boot
+  bool powered_with_computer = false;  // powered with the computer: time since power-up is time since boot
   TransportConfig transport;
   std::map<std::string, std::string> options;  // of the driver
-  std::string folder;                          // of the file, where relative paths in the options begin
+  std::string folder;                          // folder of the file, for relative paths in options
   FilterChoice filter;
   RealtimeConfig realtime;
   RecordConfig record;
   std::vector<ChannelConfig> channels;
-  std::string text;        // this sensor alone as a configuration, as it was written
+  std::string text;        // this sensor alone as a configuration
   std::uint32_t line = 0;  // in the file, for messages
   KeyLines lines;          // "driver", "transport.port", "channel.supply_V.path"
 
-  // The key's line; of a key that is not there that of its table.
+  // Line of the key, or of its table if the key is absent.
   [[nodiscard]] std::uint32_t line_of(std::string_view key) const;
   [[nodiscard]] std::string lcm_channel() const;  // "IFOG_NAME"
-  // Keys and tables in which `other` differs and that only a restart can change: a model, a filter and its
-  // start-up are exchanged between two samples, a device or a driver is not. "" for none.
+  // Keys and tables that differ in `other` and need a restart: models, filters and start-up can be exchanged
+  // between two samples, devices and drivers cannot. "" if none.
   [[nodiscard]] std::string restart_for(const SensorConfig& other) const;
-  // This one with what of `fresh` needs no restart, in `text`, too.
+  // This configuration with the parts of `fresh` that need no restart, also in `text`.
   [[nodiscard]] SensorConfig reloaded(const SensorConfig& fresh) const;
 };
 
@@ -122,34 +122,33 @@ struct Config {
   std::vector<std::string> plugin_folders;
   std::string lcm_url = "udpm://239.255.76.67:7667?ttl=0";
   std::string log_level = "info";
-  std::string state_folder;  // where learned noise is kept; "": the service manager's STATE_DIRECTORY, if any
+  std::string state_folder;  // folder of learned noise; "": the service manager's STATE_DIRECTORY, if any
   bool lock_memory = true;
   std::vector<SensorConfig> sensors;
   KeyLines lines;  // of the table [daemon]: "lcm_url"
 
-  [[nodiscard]] std::string restart_for(const Config& other) const;  // of the table [daemon], likewise
+  [[nodiscard]] std::string restart_for(const Config& other) const;  // the same for the table [daemon]
 };
 
-// Everything that is wrong, one line each, joined by '\n'.
+// All errors, one line each, joined by '\n'.
 struct ConfigError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// What is wrong with a sensor once its parts are made, with the key it is due to, as in SensorConfig::lines.
+// Error in a complete sensor, with the key that causes it, as in SensorConfig::lines.
 struct KeyError : std::runtime_error {
   KeyError(std::string at, const std::string& what) : std::runtime_error(what), key(std::move(at)) {}
   std::string key;
 };
 
-// Throws ConfigError. Relative paths in it (models, DBC files, captures, plugin folders) are relative to the
-// file. A sensor without `model` has the one that was adopted for it, see use_adopted_models().
+// Throws ConfigError. Relative paths (models, DBC files, captures, plugin folders) are relative to the file.
+// A sensor without `model` uses the adopted one, see use_adopted_models().
 Config read_config(const std::string& path);
 Config parse_config(const std::string& text, const std::string& path);
-// As the daemon has once put it into a flight recording: what runs no more is read all the same.
+// A configuration from a flight recording; also accepts what would no longer run.
 Config parse_recorded_config(const std::string& text, const std::string& path);
 
-// Gives every sensor without a model the one that is kept for it in the state folder, if any. folder "":
-// none.
+// Gives every sensor without a model the one in the state folder, if any. folder "": none.
 void use_adopted_models(Config& config, const std::string& folder);
 
 }  // namespace ifog

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How a number of an LCM message is named: `field` of a channel with source = "lcm".
+// Name of a number in an LCM message: `field` of a channel with source = "lcm".
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 
 namespace ifog {
 
-// By axis, of ifog.rate_t and of ifog.status_t.
+// By axis, in ifog.rate_t and in ifog.status_t.
 inline constexpr std::array<std::string_view, 3> kRateFields{"raw", "compensated", "denoised"};
 inline constexpr std::array<std::string_view, 3> kStatusAxisFields{"nis_mean", "whiteness",
                                                                    "measurement_noise"};
@@ -23,14 +23,14 @@ inline constexpr const char* kLcmFieldExpected =
     "i = 0 ... 2";
 
 struct LcmFieldName {
-  std::string name, within;  // NAME, what stands in brackets
-  int axis = -1;             // −1: none in brackets
+  std::string name, within;  // NAME, and the text in brackets
+  int axis = -1;             // −1: no axis
 
   [[nodiscard]] bool of_rate() const {
     return axis >= 0 && std::find(kRateFields.begin(), kRateFields.end(), name) != kRateFields.end();
   }
 
-  // "NAME", "FIELD[i]", "channel_value[NAME]". Nothing: brackets on a field that has none of that kind.
+  // Parses "NAME", "FIELD[i]", "channel_value[NAME]". nullopt for brackets on another field.
   static std::optional<LcmFieldName> parse(const std::string& text) {
     LcmFieldName out;
     out.name = text.substr(0, text.find('['));

@@ -47,11 +47,11 @@ std::string lcm_url_complaint(const std::string& url) {
   if (!url.starts_with(kScheme)) return kForm;
   std::string_view rest = std::string_view(url).substr(kScheme.size());
   const std::size_t mark = std::min(rest.find('?'), rest.size());
-  // LCM's own group and port where none is said.
+  // Default group and port of LCM.
   if (mark != 0 && !is_multicast(rest.substr(0, mark))) return kForm;
   rest.remove_prefix(mark);
   while (!rest.empty()) {
-    rest.remove_prefix(1);  // ? or &
+    rest.remove_prefix(1);  // '?' or '&'
     const std::size_t end = std::min(rest.find('&'), rest.size());
     if (!is_option(rest.substr(0, end))) return kForm;
     rest.remove_prefix(end);

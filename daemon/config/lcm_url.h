@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether LCM can use a URL. LCM itself prints its own manual where it cannot, and continues with what it takes
-// for a default where it does not understand an option.
+// Checks if LCM can use a URL. LCM itself prints its manual if it cannot, and uses defaults for options it
+// does not understand.
 #pragma once
 
 #include <string>
 
 namespace ifog {
 
-// "" or what was expected. tcpq://, memq://, file:// and mpudpm:// are LCM's to understand.
+// "" or what was expected. tcpq://, memq://, file:// and mpudpm:// are left to LCM.
 std::string lcm_url_complaint(const std::string& url);
 
 }  // namespace ifog

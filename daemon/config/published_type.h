@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is published of each sample besides rate_t.
+// Types published for each sample besides rate_t.
 #pragma once
 
 #include <string>
@@ -7,12 +7,12 @@
 
 namespace ifog {
 
-// The types, by the names that the configuration has for them.
+// Names of the types in the configuration.
 inline constexpr std::string_view kImuType = "ifog.imu_t", kInertialType = "ifog.inertial_t",
                                   kInsType = "bot_core.ins_t", kMicrostrainType = "microstrain.ins_t",
                                   kKvhBatchType = "bot_core.kvh_raw_imu_batch_t";
 
-// A type and the LCM channel that carries it.
+// A type and its LCM channel.
 struct PublishedType {
   std::string type, channel;
 

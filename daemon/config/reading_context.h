@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The readers of a configuration's tables, and what they share.
+// Readers of a configuration's tables, and their common context.
 #pragma once
 
 #include <filesystem>
@@ -17,36 +17,36 @@ namespace ifog {
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr Range kNotNegative{0.0, kInfinity};
 
-// Into the setting where the key was given.
+// Sets the value if the key was given.
 template <typename T, typename U>
 void take(std::optional<U>&& given, T& setting) {
   if (given) setting = static_cast<T>(std::move(*given));
 }
 
-// What the readers of all tables share.
+// Common context of all table readers.
 struct ReadingContext {
   std::string file;
   std::filesystem::path folder;
-  // The configuration is a flight recording's: what was recorded is read, whether it is sensible or not.
+  // The configuration is from a flight recording, so it is accepted even if not sensible.
   bool recorded = false;
   std::vector<std::string> errors;
 
-  // "-" is the standard input, not a file.
+  // "-" is standard input, not a file.
   [[nodiscard]] std::string absolute(const std::string& path) const {
     if (path.empty() || path == "-") return path;
     return (folder / path).lexically_normal().string();
   }
 };
 
-// `where`: the table's key path. Complaints go into the context.
+// where: key path of the table. Errors are added to the context.
 TransportConfig read_transport(const toml::table& table, const std::string& where, ReadingContext& context);
 PublishedType read_publish(const toml::table& table, const std::string& where, ReadingContext& context);
 ChannelConfig read_channel(const toml::table& table, const std::string& where, ReadingContext& context);
-// minimum, maximum and max_step of values that are within ±most.
+// Reads minimum, maximum and max_step; values are within ±most.
 Limits read_limits(TableReader& in, double most, const ReadingContext& context);
 
-// What no sensor shows alone: two that read one source and would take each other's bytes, and channels that
-// lead a sensor's published rate back into its own correction. Complaints, one line each; no file is opened.
+// Errors of sensor combinations: two that read one source, and channels that feed a sensor's published rate
+// back into its own correction. One line each; no file is opened.
 std::vector<std::string> shared_sources(const Config& config);
 std::vector<std::string> feedback_loops(const Config& config);
 

@@ -24,7 +24,7 @@ std::string complaint(const Config& config, const SensorConfig& sensor, const st
          printable("sensor." + key + what, kLongestMessage);
 }
 
-// The device, FIFO or standard input that a transport reads from; "" for one that many may read.
+// Device, FIFO or standard input of a transport; "" if several readers are possible.
 std::string device_of(const TransportConfig& transport) {
   if (transport.kind == Kind::serial) return transport.serial.device;
   if (transport.kind != Kind::file) return "";
@@ -33,7 +33,7 @@ std::string device_of(const TransportConfig& transport) {
   return transport.path != "-" && regular ? "" : transport.path;
 }
 
-// By whatever names: a link of udev's and the device it leads to, standard input and what it is.
+// Compares devices behind names: udev links, and standard input.
 bool same_device(std::string a, std::string b) {
   if (a.empty() || b.empty()) return false;
   for (std::string* const name : {&a, &b})
@@ -43,13 +43,13 @@ bool same_device(std::string a, std::string b) {
   }, of_b{};
   if (stat(a.c_str(), &of_a) == 0 && stat(b.c_str(), &of_b) == 0)
     return of_a.st_dev == of_b.st_dev && of_a.st_ino == of_b.st_ino;
-  // Not there now: as far as the names say.
+  // If it does not exist, only the names are compared.
   std::error_code failed;
   const auto place = std::filesystem::weakly_canonical(a, failed);
   return !failed && place == std::filesystem::weakly_canonical(b, failed) && !failed;
 }
 
-// However they are written; with the same interface, which need not be there now.
+// Compares addresses in any notation, with the same interface, which need not exist now.
 bool same_address(const std::string& a, const std::string& b) {
   const std::size_t end_a = std::min(a.find('%'), a.size()), end_b = std::min(b.find('%'), b.size());
   const auto first = IpAddress::parse(a.substr(0, end_a)), second = IpAddress::parse(b.substr(0, end_b));
@@ -68,8 +68,8 @@ bool any_address(const UdpSettings& udp) {
   return udp.bind.empty() || same_address(udp.bind, "0.0.0.0") || same_address(udp.bind, "::");
 }
 
-// Whether one of two sockets could not be bound, or would be sent the other's datagrams. Those of a group all
-// get their own copy.
+// True if one of two sockets could not be bound, or would get the other's datagrams. Members of a group all
+// get copies.
 bool same_port(const UdpSettings& a, const UdpSettings& b) {
   if (a.port != b.port || a.port == 0 || is_v6(a) != is_v6(b)) return false;
   if (!a.group.empty() && !b.group.empty()) return false;
@@ -78,7 +78,7 @@ bool same_port(const UdpSettings& a, const UdpSettings& b) {
   return any_address(a.group.empty() ? a : b);
 }
 
-// Where the later of two sensors takes from the earlier one; key "": nowhere.
+// Place where the later of two sensors reads the earlier one's source; key "": none.
 struct Shared {
   std::string key, what;
 };
@@ -94,7 +94,7 @@ Shared shared(const TransportConfig& first, const TransportConfig& second) {
   return {};
 }
 
-// The sensors whose corrected rate this one takes as a channel, and itself where it takes its own at all.
+// Sensors whose corrected rate this one uses as a channel, possibly itself.
 std::vector<std::pair<const SensorConfig*, const ChannelConfig*>> taken_from(const Config& config,
                                                                              const SensorConfig& sensor) {
   std::vector<std::pair<const SensorConfig*, const ChannelConfig*>> out;

@@ -37,7 +37,7 @@ std::string describe(Range range) {
 std::string as_written(const toml::node& node) {
   if (node.is_table()) return "a table";
   if (const auto* number = node.as_floating_point()) {
-    // Shortest text that reads back the same: toml++ prints 0.1 with 17 digits.
+    // Shortest exact text: toml++ prints 0.1 with 17 digits.
     std::array<char, 32> digits{};
     return {digits.data(), std::to_chars(digits.data(), digits.data() + digits.size(), number->get()).ptr};
   }
@@ -73,7 +73,7 @@ const toml::node* TableReader::find(std::string_view key) {
 
 void TableReader::wrong(std::string_view key, const toml::node& node, const std::string& expected) {
   std::string value = as_written(node);
-  // 50.0 is no whole number in TOML, and would look like one.
+  // 50.0 is not an integer in TOML, but looks like one.
   if (expected.starts_with("a whole number") && node.is_floating_point() &&
       value.find_first_not_of("-0123456789") == std::string::npos)
     value += ".0";
@@ -157,11 +157,11 @@ void TableReader::filter_setting(const FilterSetting& setting, FilterChoice& cho
   const std::optional<SettingValue> value = setting_value(*node);
   const std::string text = node->value<std::string>().value_or("");
   if (!value || !choose(setting, *value, choice)) return wrong(setting.key, *node, expected(setting, text));
-  // What has its name elsewhere than in the table.
+  // Names that are defined elsewhere.
   if (const std::string name = expected_name(setting, text); !name.empty()) wrong(setting.key, *node, name);
 }
 
-// All its elements, or none where `read` accepts not each of them.
+// All elements, or none if `read` rejects one.
 template <typename Element, typename Read>
 std::optional<std::vector<Element>> TableReader::list(std::string_view key, const std::string& expected,
                                                       Read&& read) {

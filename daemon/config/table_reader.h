@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads one table of a TOML file strictly: every key is asked for by name, with its type and range; what was
-// never asked for is unknown, and an error. All errors are gathered, each one line: file:line: key = value:
-// what was expected.
+// Strict reader of one TOML table: keys are read by name, type and range; keys that were not read are errors.
+// Collects all errors, one line each: file:line: key = value: what was expected.
 #pragma once
 
 #include <toml++/toml.h>
@@ -18,13 +17,13 @@
 namespace ifog {
 
 struct Range {
-  double least, most;          // both allowed
-  bool without_least = false;  // but the least
+  double least, most;          // inclusive
+  bool without_least = false;  // excludes the least
 };
 
 class TableReader {
  public:
-  // `where`: the table's key path, "" for the root. `errors` outlives the reader.
+  // where: key path of the table, "" for the root. `errors` must outlive the reader.
   TableReader(const toml::table& table, std::string where, std::string file, std::vector<std::string>& errors)
       : table_(table), where_(std::move(where)), file_(std::move(file)), errors_(errors) {}
 
@@ -33,27 +32,27 @@ class TableReader {
   std::optional<double> number(std::string_view key, Range range);
   std::optional<std::int64_t> integer(std::string_view key, std::int64_t least, std::int64_t most);
   std::optional<bool> boolean(std::string_view key);
-  // One row of the table of filter settings, into `choice` where the key is there.
+  // Reads one filter setting into `choice`, if the key is there.
   void filter_setting(const FilterSetting& setting, FilterChoice& choice);
   std::optional<std::vector<int>> integers(std::string_view key, int least, int most);
   std::optional<std::vector<std::string>> texts(std::string_view key);
-  // As text() and integer(), and an error when it is not there.
+  // As text() and integer(), but an error if absent.
   std::string required_text(std::string_view key, const char* expected);
   std::optional<std::int64_t> required_integer(std::string_view key, std::int64_t least, std::int64_t most);
 
-  // A table under `key`; null when there is none or it is something else (an error).
+  // Table of this key; null if there is none, or another type (an error).
   const toml::table* table(std::string_view key);
-  // Tables of [[key]]; empty when there are none.
+  // Tables of [[key]]; empty if there are none.
   std::vector<const toml::table*> tables(std::string_view key);
 
-  // The key exists, whatever it is.
+  // True if the key exists, with any type.
   [[nodiscard]] bool has(std::string_view key) const { return table_.contains(key); }
-  // The key's line; the table's own for a key that is not there.
+  // Line of the key, or of the table if it is absent.
   [[nodiscard]] std::uint32_t line(std::string_view key) const;
   [[nodiscard]] std::string path(std::string_view key) const;
-  // An error at a key that was read, or at the table.
+  // Adds an error at a key or at the table.
   void complain(std::string_view key, const std::string& what);
-  // Every key that was not asked for is an error that names the known ones.
+  // Adds an error for every key that was not read, with the known ones.
   void refuse_the_rest();
 
  private:
@@ -68,7 +67,7 @@ class TableReader {
   std::set<std::string, std::less<>> asked_;
 };
 
-// A node as the user wrote it, shortened.
+// Text of a node, shortened.
 std::string as_written(const toml::node& node);
 
 }  // namespace ifog

@@ -26,7 +26,7 @@ SerialSettings read_serial(TableReader& in) {
   return out;
 }
 
-// What concerns more keys than one is found by the transport itself; a single wrong key has been reported before.
+// Errors of key combinations come from the transport; not checked after an error of a single key.
 void check_network(TableReader& in, const std::string& complaint, std::size_t errors_before,
                    const ReadingContext& context) {
   if (complaint.empty() || context.errors.size() != errors_before) return;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr const char* kCompiler =
 #if defined(__clang__)
-    __VERSION__;  // it names itself
+    __VERSION__;  // contains the compiler's name
 #else
     "GCC " __VERSION__;
 #endif

@@ -5,8 +5,7 @@
 
 namespace ifog {
 
-// What --version says, as it wants to be in a question or a report of a fault: the program's version, those
-// of what it exchanges with others, and what it was built by and for.
+// Text of --version for reports: versions of the program and its interfaces, compiler and platform.
 std::string version_text(const std::string& program);
 
 }  // namespace ifog
