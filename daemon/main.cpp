@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifogd: reads gyros, denoises, publishes. Exit 0 good, 1 failed, 2 usage or a configuration that cannot
-// work.
+// ifogd: reads gyros, denoises, publishes. Exit codes: 0 success, 1 failure, 2 usage or configuration error.
 #include <fcntl.h>
 #include <signal.h>
 #include <unistd.h>
@@ -30,15 +29,15 @@
 
 namespace {
 
-// A standard stream that was closed would be the number of the next thing opened, and the log would go into a
-// gyro's serial line. And whoever reads the log may go away without taking the daemon along.
+// Opens closed standard streams, so that the log cannot go into a gyro's serial line; and ignores SIGPIPE, so
+// that the log's reader cannot end the daemon.
 void keep_standard_streams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
     if (fcntl(fd, F_GETFD) < 0 && open("/dev/null", O_RDWR) < 0) std::abort();
   signal(SIGPIPE, SIG_IGN);
 }
 
-// The publisher of --check, which opens nothing.
+// Publisher of --check, which opens nothing.
 class NowherePublisher final : public ifog::Publisher {
  public:
   bool publish(const char*, std::span<const std::uint8_t>) noexcept override { return false; }
@@ -48,7 +47,7 @@ std::unique_ptr<ifog::Publisher> publish_nowhere(const std::string&) {
   return std::make_unique<NowherePublisher>();
 }
 
-// The parser tells of --config that is missing before an option that it does not know, or a file without it.
+// The parser would report a missing --config before an unknown option or a file without it.
 std::string unknown_option(const CLI::App& app, int argc, const char* const* argv) {
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
@@ -62,7 +61,7 @@ std::string unknown_option(const CLI::App& app, int argc, const char* const* arg
   return "";
 }
 
-// What was asked for and cannot be written has failed.
+// Failed if the output could not be written.
 int said(int code) {
   std::cout.flush();
   if (std::cout && std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
@@ -73,7 +72,7 @@ int said(int code) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  // First of all: a reload that is asked for while the configuration is read takes place after it, and an end at once.
+  // First of all: a reload requested while the configuration is read happens after it, an end at once.
   ifog::block_reload();
   keep_standard_streams();
   CLI::App app{"ifogd: real-time daemon for fibre-optic gyros", "ifogd"};
@@ -98,7 +97,7 @@ int main(int argc, char** argv) {
     const std::string folder = ifog::state_folder(config.state_folder);
     ifog::Housekeeping housekeeping(std::move(config), check ? publish_nowhere : ifog::make_lcm_publisher);
     if (check) {
-      // The state folder need not be there: another user may run the daemon.
+      // The state folder may be missing: another user may run the daemon.
       if (const std::string missed = ifog::state_folder_complaint(folder); !missed.empty())
         std::fprintf(stderr, "%s: %s\n", file.c_str(), missed.c_str());
       std::printf("%s: good, %zu sensor(s)\n", file.c_str(), sensors);

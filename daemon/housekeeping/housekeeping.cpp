@@ -25,8 +25,8 @@ namespace {
 constexpr std::int64_t kTick_ns = 100'000'000;
 constexpr int kTicksPerSecond = 10;
 constexpr std::int64_t kReloadEvery_ns = 1'000'000'000;
-constexpr std::uint64_t kWordedPerSecond = 5;  // event lines of one sensor; the rest is in the counters
-// A thread that has not come round for this long is stuck; the watchdog then restarts the service.
+constexpr std::uint64_t kWordedPerSecond = 5;  // event lines per sensor; the rest only in the counters
+// A thread without progress for this long is stuck; then the watchdog restarts the service.
 constexpr int kStuck_s = 3;
 
 std::vector<std::string> axis_names(const ifog_description& description) {
@@ -94,8 +94,8 @@ Housekeeping::~Housekeeping() = default;
 
 void Housekeeping::notify(const std::string& state) { sd_notify(0, state.c_str()); }
 
-// A device that is absent is waited for, also where it is the only one: a gyro may be powered later than its
-// computer. A file that is not there is none that comes. False: no sensor is there or may come.
+// Absent devices are waited for, even a single one, since a gyro may be powered later. A missing file is not
+// waited for. False: no sensor is there or may appear.
 bool Housekeeping::open_all() {
   bool any = false;
   for (const auto& sensor : sensors_) {
@@ -141,7 +141,7 @@ void Housekeeping::start_all() {
 }
 
 void Housekeeping::claim(const Sensor& sensor, const std::string& channel) {
-  if (claims_.emplace_back(config_.lcm_url, channel).taken())
+  if (claims_.emplace_back(config_.lcm_url, channel).in_use())
     sensor.log->warn(
         "another daemon publishes on {} of this lcm_url: subscribers receive both as one sensor; expected "
         "a name or a channel of its own for each",
@@ -181,8 +181,7 @@ void Housekeeping::publish(Sensor& sensor) {
     sensor.log->warn("LCM did not take the status message");
 }
 
-// A thread that gets no processor is not stuck, nor is the other one that waits for it or whose step it does:
-// to start the daemon again would not help either.
+// A thread without processor time is not stuck, nor is the one that waits for it; a restart would not help.
 void Housekeeping::count_idle(Sensor& sensor) {
   Pipeline& pipeline = *sensor.parts.pipeline;
   const char* const starved = pipeline.starved();
@@ -208,7 +207,7 @@ void Housekeeping::count_idle(Sensor& sensor) {
 void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   Pipeline& pipeline = *sensor.parts.pipeline;
   sensor.answered = pipeline.filter().take_snapshot(sensor.snapshot);
-  // A filter that does not come round takes nothing from what the reader brings: that waits.
+  // If the filter makes no progress, the reader's data wait.
   if (!sensor.answered) sensor.snapshot.reader = pipeline.reader().books();
   count_idle(sensor);
   if (sensor.unworded > 0) sensor.log->warn("{} more such lines in this second", sensor.unworded);
@@ -274,7 +273,7 @@ void Housekeeping::stop_all() {
 }
 
 void Housekeeping::each_second(double interval_s) {
-  // Whoever had it may be gone by now.
+  // The previous holder may have ended.
   if (!mark_.is_set() && mark_.set(state_folder(config_.state_folder)).empty() && mark_.is_set())
     log_->info("{}: marked as this daemon's", state_folder(config_.state_folder));
   double rate = 0.0;
@@ -298,12 +297,12 @@ void Housekeeping::each_second(double interval_s) {
            std::to_string(std::lround(rate)) + " samples/s published");
 }
 
-// Before anything is opened: of two daemons with one state folder, the second has touched nothing.
+// Before anything is opened: of two daemons with one state folder, the second must not touch anything.
 void Housekeeping::mark_as_running() {
   const std::string folder = state_folder(config_.state_folder);
   std::string missed = make_state_folder(folder);
   if (missed.empty()) missed = mark_.set(folder);
-  if (mark_.is_taken()) throw std::runtime_error(missed);
+  if (mark_.in_use()) throw std::runtime_error(missed);
   if (!missed.empty()) log_->warn("{}", missed);
 }
 
@@ -332,8 +331,8 @@ int Housekeeping::run() {
       log_->info("stopping on {}", signal == SIGTERM ? "SIGTERM" : "SIGINT");
       break;
     }
-    // Within the tick, which continues to its status and its sign of life; the first at once, a flood of them
-    // as one a second.
+    // Within the tick, which continues with status and watchdog; the first reload at once, more of them once
+    // a second.
     reload_asked = mark_.serve() || reload_asked;
     if (reload_asked && monotonic_ns() - reloaded_ns >= kReloadEvery_ns) {
       reload_asked = false;
@@ -350,7 +349,7 @@ int Housekeeping::run() {
     if (tick % kTicksPerSecond != 0 || ended) continue;
     const std::int64_t now_ns = monotonic_ns();
     each_second(static_cast<double>(now_ns - std::exchange(second_ns, now_ns)) * 1e-9);
-    // After a long halt of the machine, no burst of overdue seconds.
+    // After a long halt of the computer, no burst of overdue seconds.
     deadline_ns = std::max(deadline_ns, now_ns - kTick_ns);
   }
   stop_all();

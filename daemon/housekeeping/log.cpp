@@ -18,12 +18,12 @@
 namespace ifog {
 namespace {
 
-constexpr const char* kDaemon = "ifogd";  // name of the log that belongs to no sensor
+constexpr const char* kDaemon = "ifogd";  // log of no sensor
 
 // By spdlog's levels, from trace to critical.
 constexpr std::array<int, 6> kPriorities{LOG_DEBUG, LOG_DEBUG, LOG_INFO, LOG_WARNING, LOG_ERR, LOG_CRIT};
 
-// spdlog's own systemd sink carries no fields besides its own; `journalctl IFOG_SENSOR=x` needs one.
+// spdlog's systemd sink has no further fields, which `journalctl IFOG_SENSOR=x` needs.
 class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
  protected:
   void sink_it_(const spdlog::details::log_msg& message) override {
@@ -42,8 +42,7 @@ class JournalSink final : public spdlog::sinks::base_sink<std::mutex> {
   void flush_() override {}
 };
 
-// systemd.exec(5): the variable names the device and inode of the journal's socket if that is our standard
-// error.
+// systemd.exec(5): the variable contains device and inode of the journal's socket if that is standard error.
 bool under_the_journal() {
   const char* const stream = std::getenv("JOURNAL_STREAM");
   struct stat err {};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the log goes: to the journal with fields of its own when systemd runs us, else to the standard error.
-// Only housekeeping logs; the pipelines' threads report events.
+// Log: the journal with additional fields under systemd, else standard error. Only housekeeping logs; other
+// threads report events.
 #pragma once
 
 #include <spdlog/logger.h>
@@ -12,7 +12,7 @@ namespace ifog {
 
 // One sink for all; level: debug | info | warning | error.
 void set_up_log(const std::string& level);
-// `sensor` goes before each line, and into the journal's field IFOG_SENSOR; "" for the daemon itself.
+// sensor: prefix of each line, and the journal's field IFOG_SENSOR; "" for the daemon.
 std::shared_ptr<spdlog::logger> make_log(const std::string& sensor);
 
 }  // namespace ifog

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Housekeeping::reload(): the configuration read again, and what of it is exchanged between two samples.
+// Housekeeping::reload(): rereads the configuration and exchanges parts between two samples.
 #include <algorithm>
 #include <exception>
 #include <memory>
@@ -17,7 +17,7 @@
 namespace ifog {
 namespace {
 
-// Null: there is none of that name.
+// Null if there is none of that name.
 const SensorConfig* sensor_named(const Config& config, const std::string& name) {
   const auto found = std::find_if(config.sensors.begin(), config.sensors.end(),
                                   [&](const SensorConfig& sensor) { return sensor.name == name; });
@@ -42,7 +42,7 @@ void Housekeeping::say_what_needs_a_restart(const Config& fresh) {
   }
 }
 
-// Everything that a sensor's part of the fresh configuration makes, before anything of it is used. Throws
+// Builds everything for a sensor from the new configuration, before any of it is used. Throws
 // std::runtime_error with one line.
 Housekeeping::Renewed Housekeeping::renew(Sensor& sensor, const SensorConfig& fresh) {
   // Only what can change between two samples.
@@ -51,7 +51,7 @@ Housekeeping::Renewed Housekeeping::renew(Sensor& sensor, const SensorConfig& fr
   ChainSettings settings =
       sensor_chain_settings(out.config, sensor.parts.pipeline->reader().driver().description(), model);
   out.choice = chain_choice(out.config, model.get());
-  // A sensor that is configured as before continues: its filter has learned the noise and found the rate.
+  // An unchanged sensor continues with its filter, its learned noise and rate.
   if (out.choice == sensor.parts.choice) return out;
   settings.learned = sensor.snapshot.learned ? sensor.snapshot.learned : sensor.parts.noise.recalled();
   settings.powered_ns = powered_ns(out.config);
@@ -74,13 +74,13 @@ void Housekeeping::use(Renewed renewed) {
                    sensor.config.model.empty() ? "none" : sensor.config.model);
   sensor.parts.choice = std::move(renewed.choice);
   const std::uint32_t number = ++sensor.settings;
-  // Before the filter can have the parts: the recorder must know what their note means.
+  // Before the filter can have the parts, because the recorder needs the header for their note.
   if (sensor.parts.recorder != nullptr)
     sensor.parts.recorder->set_header(
         flight_header(sensor.config, config_, sensor.parts.pipeline->reader().driver(), renewed.noise),
         number);
   sensor.parts.pipeline->filter().offer(std::move(renewed.parts), number);
-  // What was usual of the sensor need not be so any more.
+  // The usual behaviour of the sensor may change.
   sensor.report.renew_watch();
 }
 

@@ -16,10 +16,10 @@
 namespace ifog {
 namespace {
 
-constexpr double kWrongRate = 0.01;  // no quartz is off by more
-constexpr int kInVain = 5;           // seconds of input without a frame that are worth a word
+constexpr double kWrongRate = 0.01;  // no quartz has a larger error
+constexpr int kInVain = 5;           // seconds of input without a frame before a warning
 
-// Open, and nothing new for this long: no data.
+// Time without data after which an open device counts as silent.
 double silence_s(double rate_hz) { return std::max(2.0, 3.0 / rate_hz); }
 constexpr const char* kFrozen =
     "the device sends the same frame again and again: its counter or clock stands still, nothing of it is "
@@ -71,7 +71,7 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
     case TransportState::gone:
       return status_t::STATE_REOPENING;
     case TransportState::ended:
-      // A fault at the end is a file that is cut off or damaged, or another sensor's.
+      // A fault at the end means a truncated or damaged file, or another sensor's.
       if (nothing_in_file(pipeline) || transport.reason() != 0 || transport.fault().what != nullptr ||
           pipeline.reader().counters().bytes_at_end.value() != 0)
         return status_t::STATE_FAILED;
@@ -86,7 +86,7 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
   return status_t::STATE_RUNNING;
 }
 
-// As the reader has it now, whether the filter answers or not. A repeated frame is no sample.
+// From the reader, so it does not depend on the filter's answer. A repeated frame is no sample.
 void StatusReport::look_for_samples(const ReaderCounters& reader) {
   const std::uint64_t accepted = reader.samples.value(), decoded = accepted + reader.repeated.value();
   const bool came = std::exchange(samples_.decoded, decoded) != decoded;
@@ -102,7 +102,7 @@ void StatusReport::look_for_samples(const ReaderCounters& reader) {
   samples_.frozen = long_ago && !samples_.mixed && !samples_.news && (came || samples_.frozen);
 }
 
-// A file is over, all of it is in the books, and no frame was in it.
+// True if a file has ended, is completely counted, and had no frame.
 bool StatusReport::nothing_in_file(const Pipeline& pipeline) const {
   const Transport& transport = pipeline.reader().transport();
   const TransportCounters line = transport.counters();
@@ -111,7 +111,7 @@ bool StatusReport::nothing_in_file(const Pipeline& pipeline) const {
          now_.frames_good + now_.samples_decoded == 0;
 }
 
-// What the books balance: of one moment, the filter's.
+// Balanced counters, from the moment of the filter's snapshot.
 void StatusReport::take_books(const FilterSnapshot& snapshot) {
   const ReaderBooks& read = snapshot.reader;
   now_.bytes_read = as_signed(read.bytes_read);
@@ -194,7 +194,7 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   if (now_.fault.empty()) now_.fault = fault_of(pipeline.reader());
   if (now_.fault.empty() && nothing_in_file(pipeline))
     now_.fault = pipeline.reader().transport().name() + ": ended, and no frame of the sensor was in its " +
-                 came() + " (is it this driver's, with these options?)";
+                 received_in_words() + " (is it this driver's, with these options?)";
   look_for_samples(pipeline.reader().counters());
   if (now_.fault.empty() && samples_.mixed) now_.fault = kMixed;
   if (now_.fault.empty() && samples_.frozen) now_.fault = kFrozen;
@@ -205,7 +205,8 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
                  ? in_vain_ + 1
                  : 0;
   if (now_.fault.empty() && in_vain_ >= kInVain)
-    now_.fault = came() + " received and no frame of the sensor in them: check driver, options and baud";
+    now_.fault =
+        received_in_words() + " received and no frame of the sensor in them: check driver, options and baud";
   watch_.take(snapshot.rest, pipeline.filter().counters().published.value(),
               pipeline.filter().counters().out_of_range.value());
   now_.noticed = watch_.noticed();
@@ -231,7 +232,7 @@ void StatusReport::update(Recorder& recorder) {
 
 std::string StatusReport::newly_noticed() const { return watch_.words(now_.noticed & ~before_.noticed); }
 
-std::string StatusReport::came() const {
+std::string StatusReport::received_in_words() const {
   return now_.frames_read > 0 ? std::to_string(now_.frames_read) + " CAN frames"
                               : std::to_string(now_.bytes_read) + " bytes";
 }

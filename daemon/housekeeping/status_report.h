@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 1 Hz health message of one sensor, and the counters whose movement is worth a line in the log.
+// Status message of one sensor (1 Hz), and the counters whose changes are logged.
 #pragma once
 
 #include <cstdint>
@@ -19,30 +19,30 @@ class StatusReport {
   StatusReport(std::string sensor, std::vector<std::string> channels, const std::vector<std::string>& axes,
                double sample_rate_hz);
 
-  // From the counters now and the last snapshot of the filter, with its books; interval_s since the call
-  // before.
+  // Updates from the present counters and the filter's last snapshot with its accounts; interval_s: since the
+  // last call.
   const ifog::status_t& update(Pipeline& pipeline, const FilterSnapshot& snapshot, double interval_s);
-  // Likewise of the flight recorder, before update().
+  // The same for the flight recorder, before update().
   void update(Recorder& recorder);
-  // Which fault counters moved with the last update(): "frames_crc +3, sequence_gaps +1"; "" for none.
+  // Fault counters that changed in the last update(): "frames_crc +3, sequence_gaps +1", or "".
   [[nodiscard]] std::string moved() const;
 
-  // Once, some seconds after the first sample, when an axis has had no value in any; "" else.
+  // Once, some seconds after the first sample, if an axis never had a value; else "".
   [[nodiscard]] std::string unseen_axes() const;
 
-  // Once, when a device is found to repeat itself; "" else.
+  // Once, if a device repeats itself; else "".
   [[nodiscard]] std::string newly_frozen() const;
 
-  // Once, when a device with a counter and no clock sends at another rate than configured: by how much its
-  // intervals, and the angle if it sends a rate, are wrong, in words; "" otherwise.
+  // Once, if a device with a counter and no clock has another rate than configured: the resulting error of
+  // intervals (and of the angle, if it sends a rate); else "".
   [[nodiscard]] std::string wrong_rate() const;
 
-  // What was noticed of the sensor with the last update() and was not before, in words; "" for nothing.
+  // Text on what the last update() noticed for the first time, or "".
   [[nodiscard]] std::string newly_noticed() const;
-  // Learns again what the sensor is like.
+  // Restarts learning of the sensor's usual behaviour.
   void renew_watch() { watch_.renew(); }
 
-  // A warning of the transport has been logged.
+  // Counts a logged warning of the transport.
   void count_warning() { ++now_.transport_warnings; }
   [[nodiscard]] const ifog::status_t& message() const { return now_; }
 
@@ -54,25 +54,25 @@ class StatusReport {
   void look_for_samples(const ReaderCounters& reader);
   [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
   [[nodiscard]] bool nothing_in_file(const Pipeline& pipeline) const;
-  [[nodiscard]] std::string came() const;  // in words
+  [[nodiscard]] std::string received_in_words() const;  // as text
 
   ifog::status_t before_, now_;
   SensorWatch watch_;
-  // As the last update() found them.
+  // As of the last update().
   struct Samples {
     std::uint64_t decoded = 0, accepted = 0;
     std::uint32_t axes_seen = 0;
     bool news = false;                           // there were new ones
-    int seconds = 0;                             // updates that found new ones
-    std::int64_t last_ns = 0;                    // monotonic: when the last update that found new ones was
+    int seconds = 0;                             // number of updates with new ones
+    std::int64_t last_ns = 0;                    // monotonic time of the last update with new ones
     bool mixed = false;                          // frames of two devices arrive, and none is used
-    bool frozen = false, frozen_before = false;  // samples come, and they are all those that came before
+    bool frozen = false, frozen_before = false;  // all samples repeat earlier ones
   } samples_;
   std::vector<std::string> axes_;
   double nominal_rate_hz_;
   CountedRate input_rate_, output_rate_;
   double interval_error_ = 0.0, interval_error_before_ = 0.0;
-  int in_vain_ = 0;  // updates in a row after which something had come, and never a good frame
+  int in_vain_ = 0;  // consecutive updates with received data but without any good frame
 };
 
 }  // namespace ifog

@@ -14,7 +14,7 @@
 namespace ifog {
 namespace {
 
-// A text of any length in a name of at most 107 characters: its FNV-1a hash.
+// FNV-1a hash of a text, as names are limited to 107 characters.
 std::string short_name(const std::string& text) {
   std::uint64_t hash = 0xCBF29CE484222325U;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 0x100000001B3U;
@@ -28,11 +28,11 @@ ChannelClaim::ChannelClaim(const std::string& lcm_url, const std::string& channe
   if (fd_ < 0) return;
   sockaddr_un name{};
   name.sun_family = AF_UNIX;
-  // Behind a zero: a name that is in no folder.
+  // Starts with a zero: an abstract name, in no folder.
   const std::string text = "ifogd " + short_name(lcm_url + ' ' + channel);
   std::copy(text.begin(), text.end(), name.sun_path + 1);
   const auto length = static_cast<socklen_t>(offsetof(sockaddr_un, sun_path) + 1 + text.size());
-  taken_ = ::bind(fd_, reinterpret_cast<const sockaddr*>(&name), length) != 0 && errno == EADDRINUSE;
+  in_use_ = ::bind(fd_, reinterpret_cast<const sockaddr*>(&name), length) != 0 && errno == EADDRINUSE;
 }
 
 ChannelClaim::~ChannelClaim() {
@@ -40,6 +40,6 @@ ChannelClaim::~ChannelClaim() {
 }
 
 ChannelClaim::ChannelClaim(ChannelClaim&& other) noexcept
-    : fd_(std::exchange(other.fd_, -1)), taken_(other.taken_) {}
+    : fd_(std::exchange(other.fd_, -1)), in_use_(other.in_use_) {}
 
 }  // namespace ifog

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A source may be read by many: a CAN bus, a capture. But what two daemons publish on one LCM channel, none
-// who listens can tell apart. So each holds a name for its channel that the kernel gives to one process of a
-// network namespace only, and gives back when that ends, however it does.
+// Claims an LCM channel, because listeners cannot distinguish two publishers on one channel (several daemons
+// may read one CAN bus or capture). Uses an abstract socket name, which the kernel gives to one process per
+// network namespace and releases when that ends.
 #pragma once
 
 #include <string>
@@ -17,12 +17,12 @@ class ChannelClaim {
   ChannelClaim& operator=(const ChannelClaim&) = delete;
   ChannelClaim& operator=(ChannelClaim&&) = delete;
 
-  // Another process holds it.
-  [[nodiscard]] bool taken() const { return taken_; }
+  // Another process has it.
+  [[nodiscard]] bool in_use() const { return in_use_; }
 
  private:
   int fd_ = -1;
-  bool taken_ = false;
+  bool in_use_ = false;
 };
 
 }  // namespace ifog

@@ -29,7 +29,7 @@ class Buffer {
   std::vector<std::uint8_t> bytes_;
 };
 
-// Adds three axes to what waits of them.
+// Adds three axes to unsent values.
 void add(const Axes& from, bool waits, double* to) noexcept {
   for (std::size_t i = 0; i < kMaxAxes; ++i) to[i] = waits ? to[i] + from[i] : from[i];
 }
@@ -39,7 +39,6 @@ void mean(const double* sum, const double* over_s, double* to) noexcept {
     to[i] = over_s[i] > 0.0 ? sum[i] / over_s[i] : std::numeric_limits<double>::quiet_NaN();
 }
 
-// ifog.imu_t and ifog.inertial_t.
 template <typename Message>
 class IncrementEncoder final : public InertialEncoder {
  public:
@@ -75,16 +74,16 @@ class IncrementEncoder final : public InertialEncoder {
   Message message_;
   int temperature_channel_;
   Buffer<Message> buffer_;
-  bool waits_ = false;  // message_ holds what was not sent
+  bool waits_ = false;  // message_ has unsent increments
 };
 
-// Rates and specific force of a sample that has all of them, for messages that have no place for a flag.
+// Rates and specific force of a complete sample, for messages without flags.
 struct WholeSample {
   Axes rate_radps{}, specific_force_mps2{};  // means over the sample
 };
 
-// False: one of them is not known. Specific force that comes less often than rates is that of the last frame
-// that had it.
+// False: one of them is unknown. Specific force that arrives less often than rates is that of the last frame
+// with it.
 bool whole_sample(const Increment& in, const ChainOutput& out, const SensorFacts& facts,
                   WholeSample& sample) noexcept {
   for (std::size_t i = 0; i < kMaxAxes; ++i) {
@@ -98,7 +97,7 @@ bool whole_sample(const Increment& in, const ChainOutput& out, const SensorFacts
   return true;
 }
 
-// bot_core.ins_t and microstrain.ins_t. What a gyro does not know stays 0, as with their own publishers.
+// bot_core.ins_t and microstrain.ins_t. Unknown fields are 0, as with their own publishers.
 template <typename Message>
 class InsEncoder final : public InertialEncoder {
  public:
@@ -124,15 +123,16 @@ class InsEncoder final : public InertialEncoder {
   Buffer<Message> buffer_;
 };
 
-// bot_core.kvh_raw_imu_batch_t, one a sample: a packet is in fifteen datagrams, and lost where all of them are.
+// bot_core.kvh_raw_imu_batch_t, one per sample: a packet is in fifteen datagrams, so it is lost only with all
+// of them.
 class KvhBatchEncoder final : public InertialEncoder {
  public:
   explicit KvhBatchEncoder(const SensorFacts& facts) : facts_(facts), message_(full()), buffer_(message_) {
     message_.raw_imu.clear();  // keeps its memory
   }
 
-  // Samples that were merged become as many packets again, of the same angle each: a reader divides by the
-  // period of one. More than a batch holds share its packets, so that no angle is lost.
+  // Merged samples become as many packets of equal angle, because readers divide by a single period. If there
+  // are more than a batch holds, packets get the angle of several, so no angle is lost.
   std::span<const std::uint8_t> encode(const Increment& in, const ChainOutput& out) noexcept override {
     WholeSample sample;
     if (!whole_sample(in, out, facts_, sample)) return {};
@@ -157,7 +157,7 @@ class KvhBatchEncoder final : public InertialEncoder {
   }
 
  private:
-  static constexpr std::size_t kPackets = 15;  // as the Atlas robot's driver sends
+  static constexpr std::size_t kPackets = 15;  // as the Atlas robot's driver
   static bot_core::kvh_raw_imu_batch_t full() {
     bot_core::kvh_raw_imu_batch_t out;
     out.num_packets = static_cast<std::int32_t>(kPackets);

@@ -23,8 +23,8 @@ class LcmPublisher final : public Publisher {
   LcmPublisher& operator=(const LcmPublisher&) = delete;
 
   bool publish(const char* channel, std::span<const std::uint8_t> message) noexcept override {
-    // A send that waits for room in the socket may be interrupted by the reader's alarm, and then nothing was
-    // sent. (LCM does not say why a send failed, but leaves errno as the system call set it.)
+    // Sending may be interrupted by the reader's alarm while it waits for socket space; then nothing was
+    // sent. (LCM returns no reason, but keeps errno.)
     for (;;) {
       errno = 0;
       if (lcm_publish(lcm_, channel, message.data(), static_cast<unsigned>(message.size())) == 0) return true;

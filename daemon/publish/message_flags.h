@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flags of rate_t and imu_t, from what the chain found.
+// Flags of rate_t and imu_t from the chain's flags.
 #pragma once
 
 #include <cstdint>

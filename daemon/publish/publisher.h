@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where encoded messages go. An interface, so that tests need no network.
+// Destination of encoded messages; an interface for tests without network.
 #pragma once
 
 #include <cstdint>
@@ -16,8 +16,8 @@ class Publisher {
   virtual bool publish(const char* channel, std::span<const std::uint8_t> message) noexcept = 0;
 };
 
-// Raw LCM publishing, which does not allocate (the typed one does at every send). One a thread: an lcm_t
-// locks inside. Throws std::runtime_error with one line: a URL that LCM refuses.
+// Raw LCM publisher, which does not allocate (unlike the typed one). One per thread, since an lcm_t locks.
+// Throws std::runtime_error with one line if LCM rejects the URL.
 std::unique_ptr<Publisher> make_lcm_publisher(const std::string& url);
 
 }  // namespace ifog

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the chain's output to the bytes of an ifog.rate_t, in a buffer of its own, without allocation.
+// Encodes the chain's output as ifog.rate_t in its own buffer, without allocation.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ class RateEncoder {
  public:
   explicit RateEncoder(int axes);
 
-  // Not in the hot path's steady state: allocates when the identity changes (a reload).
+  // Allocates if the identity changes (a reload).
   void use(const ChainParts& parts);
   // Valid until the next call.
   std::span<const std::uint8_t> encode(const Increment& in, const ChainOutput& out,

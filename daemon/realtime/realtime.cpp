@@ -49,19 +49,19 @@ std::string apply_to_this_thread(const ThreadPlan& plan) {
 }
 
 std::string lock_memory() {
-  // A locked stack is there in full, touched or not: the usual 8 MiB are 16 MiB a sensor. Threads that start
-  // from here on have what the deepest path of a loop takes, many times over.
+  // Locked stacks are fully resident, and the default 8 MiB would be 16 MiB per sensor. Later threads get
+  // smaller stacks, many times what their loops need.
   pthread_attr_t attributes;
   if (pthread_getattr_default_np(&attributes) == 0) {
     pthread_attr_setstacksize(&attributes, kLockedStack);
     pthread_setattr_default_np(&attributes);
     pthread_attr_destroy(&attributes);
   }
-  // What malloc has it keeps: giving pages back and taking them again would fault in the loop.
+  // malloc keeps its memory, because returning and refaulting pages would delay the loop.
   mallopt(M_TRIM_THRESHOLD, -1);
   mallopt(M_MMAP_MAX, 0);
-  // One heap for all threads: one each is 64 MiB of address space that counts as locked. The hot path, which
-  // a shared one could hold up, allocates nothing.
+  // One heap for all threads: separate ones lock 64 MiB of address space each. The hot path does not
+  // allocate.
   mallopt(M_ARENA_MAX, 1);
   if (mlockall(MCL_CURRENT | MCL_FUTURE) == 0) return "";
   return "memory not locked: " + reason(errno) + " (needs CAP_IPC_LOCK or LimitMEMLOCK)";

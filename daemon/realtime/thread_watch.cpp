@@ -15,7 +15,7 @@ constexpr int kUserTime = 14, kSystemTime = 15;  // fields, from 1; the state is
 
 }  // namespace
 
-// The name, in brackets, may have anything in it: fields are counted from the last bracket on.
+// The name, in brackets, may contain anything, so fields are counted from the last bracket.
 ThreadTime parse_thread_stat(std::string_view text) {
   ThreadTime out;
   const std::size_t name_end = text.rfind(')');

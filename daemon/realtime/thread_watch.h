@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a thread makes no progress. If it is ready to run and gets no processor, it is starved by something
-// of a higher priority, and nothing is wrong with it. One that waits, or works and does not come to an end,
-// is stuck.
+// Reason why a thread makes no progress: starved if it is ready but gets no processor (something has higher
+// priority); stuck if it waits or does not finish.
 #pragma once
 
 #include <atomic>
@@ -10,21 +9,21 @@
 
 namespace ifog {
 
-// The fields of /proc/self/task/TID/stat.
+// Fields of /proc/self/task/TID/stat.
 struct ThreadTime {
-  char state = '?';         // R: running, or ready to
-  std::uint64_t ticks = 0;  // of processor, in the kernel, too
+  char state = '?';         // R: running or ready
+  std::uint64_t ticks = 0;  // processor time, including the kernel
 };
 [[nodiscard]] ThreadTime parse_thread_stat(std::string_view text);
 
-// Ready both times, and had no processor between them.
+// Ready both times, without processor time between.
 [[nodiscard]] bool starved_between(const ThreadTime& before, const ThreadTime& now);
 
 class ThreadWatch {
  public:
-  // The thread that is watched.
+  // For the watched thread.
   void begin() noexcept;
-  // Any one other thread: whether it was starved since this was asked last.
+  // For one other thread: true if it was starved since the last call.
   [[nodiscard]] bool starved();
 
  private:

@@ -18,12 +18,12 @@
 namespace ifog {
 namespace {
 
-// Between two turns. With it what is killed misses less than a second (ArchiveLimits::flush_ns), and three
-// sensors' recorders come between their readers a dozen times a second.
+// Interval between turns. A kill then loses less than a second (ArchiveLimits::flush_ns), and the recorders
+// of three sensors interrupt readers a dozen times a second.
 constexpr auto kRest = std::chrono::milliseconds(250);
-// What a device may bring, bytes a second, however small the tape is that it must go onto between two turns.
+// Largest data rate of a device, bytes per second, for small tapes.
 constexpr std::int64_t kFastest = 5'000'000;
-// A trouble is over when nothing has been lost for so long: a disk that keeps up every other second is slow.
+// Time without losses after which a problem is over; a disk that keeps up intermittently is slow.
 constexpr std::int64_t kQuiet_ns = 10'000'000'000;
 
 std::string losses_in_words(std::uint64_t deliveries, std::int64_t within_ns) {
@@ -52,13 +52,13 @@ void Recorder::start() {
 
 void Recorder::run() {
   apply_to_this_thread({name_, 0, {}});
-  // Whoever started it: deflating and writing never stand in a reader's way, of an ordinary one's neither.
+  // Ordinary scheduling, so that compressing and writing never delay a reader.
   const sched_param none{};
   pthread_setschedparam(pthread_self(), SCHED_BATCH, &none);
   std::unique_lock lock(mutex_);
   while (!stopping_) {
     lock.unlock();
-    // A file at its own pace waits for room on it.
+    // A file at its own pace waits for space.
     const bool fills = tape_.is_half_full();
     turn(arrival_clock_ns(), realtime_ns());
     lock.lock();
@@ -76,18 +76,18 @@ void Recorder::stop() {
   thread_.join();
   const std::int64_t now_ns = arrival_clock_ns(), wall_ns = realtime_ns();
   drain(now_ns, wall_ns, true);
-  // Losses that no delivery came after.
+  // Losses without a later delivery.
   const TapeCounters& counters = tape_.counters();
-  if (const std::uint64_t untold = counters.lost_deliveries.value() - told_[0]; untold > 0) {
-    const std::array<std::uint64_t, 2> lost{untold, counters.lost_bytes.value() - told_[1]};
+  if (const std::uint64_t unreported = counters.lost_deliveries.value() - reported_[0]; unreported > 0) {
+    const std::array<std::uint64_t, 2> lost{unreported, counters.lost_bytes.value() - reported_[1]};
     archive_.add({FlightKind::lost, 0, 0, 0, now_ns},
                  {reinterpret_cast<const std::uint8_t*>(lost.data()), sizeof lost});
   }
   std::uint64_t unwritten = archive_.close(now_ns, wall_ns);
-  // What the disk left no way off the tape for.
+  // Entries that could not leave the tape because of the disk.
   FlightLoss left;
   for (FlightEntryHead head; tape_.take(head, payload_);) {
-    if (head.kind == FlightKind::settings) continue;  // no entry of the record
+    if (head.kind == FlightKind::settings) continue;  // not an entry of the record
     ++unwritten;
     const bool came = head.kind == FlightKind::bytes || head.kind == FlightKind::can;
     if (came) left += {tape_.begins_delivery() ? 1U : 0U, payload_.size()};
@@ -97,14 +97,14 @@ void Recorder::stop() {
   counters_.lost_deliveries.add(left.deliveries);
   counters_.lost_bytes.add(left.bytes);
   judge(now_ns);
-  judge_the_end(archive_.not_taken().deliveries + left.deliveries);
+  judge_the_end(archive_.lost_at_close().deliveries + left.deliveries);
 }
 
 void Recorder::publish_counters() {
   counters_.file_bytes.set(archive_.bytes_written());
   counters_.files_removed.set(archive_.files_removed());
-  FlightLoss lost = archive_.taken_away();
-  lost += archive_.not_taken();
+  FlightLoss lost = archive_.lost_with_files();
+  lost += archive_.lost_at_close();
   counters_.lost_deliveries.set(lost.deliveries);
   counters_.lost_bytes.set(lost.bytes);
 }
@@ -121,7 +121,7 @@ void Recorder::turn(std::int64_t now_ns, std::int64_t wall_ns) {
   judge(now_ns);
 }
 
-// From the tape to the archive, until one is empty, the other full, or new settings begin.
+// Moves entries from tape to archive until one is empty, the other full, or new settings start.
 void Recorder::fill() {
   FlightEntryHead head;
   while (settings_due_ == 0 && !archive_.full() && tape_.take(head, payload_)) {
@@ -133,11 +133,11 @@ void Recorder::fill() {
     if (head.kind != FlightKind::lost) continue;
     std::array<std::uint64_t, 2> lost{};
     std::memcpy(lost.data(), payload_.data(), sizeof lost);
-    for (std::size_t i = 0; i < lost.size(); ++i) told_[i] += lost[i];
+    for (std::size_t i = 0; i < lost.size(); ++i) reported_[i] += lost[i];
   }
 }
 
-// True: all before them is written, and what comes begins another file.
+// True: everything before is written, and the next data start another file.
 bool Recorder::begin_settings() {
   if (settings_due_ == 0 || archive_.entries_waiting() > 0) return false;
   const std::lock_guard lock(mutex_);
@@ -148,7 +148,7 @@ bool Recorder::begin_settings() {
   return true;
 }
 
-// Until the tape is empty or the disk takes no more.
+// Until the tape is empty or the disk accepts no more.
 void Recorder::drain(std::int64_t now_ns, std::int64_t wall_ns, bool flush) {
   for (bool more = true; more;) {
     fill();
@@ -161,12 +161,12 @@ void Recorder::drain(std::int64_t now_ns, std::int64_t wall_ns, bool flush) {
 
 void Recorder::say(std::string message, bool good) {
   const std::lock_guard lock(mutex_);
-  // Both of one turn of the housekeeping: the later stands, and says the earlier's end.
+  // Both in one turn of housekeeping: the later message is used, and mentions the earlier one's end.
   message_ = {std::move(message), good};
 }
 
 void Recorder::judge(std::int64_t now_ns) {
-  const std::uint64_t gone = archive_.taken_away().deliveries;
+  const std::uint64_t gone = archive_.lost_with_files().deliveries;
   if (const std::uint64_t before = std::exchange(trouble_.gone_seen, gone); before != gone)
     say("recorder: " + archive_.path() + ": the recording in work has been removed, " +
             std::to_string(gone - before) + " deliveries with it",
@@ -195,11 +195,11 @@ void Recorder::judge(std::int64_t now_ns) {
   }
 }
 
-// What waited for a disk that took nothing to the end.
-void Recorder::judge_the_end(std::uint64_t not_taken) {
-  if (not_taken == 0) return;
+// Reports data that the disk did not accept until the end.
+void Recorder::judge_the_end(std::uint64_t lost_deliveries) {
+  if (lost_deliveries == 0) return;
   say("recorder: " + archive_.path() + ": " + archive_.complaint() + " to the end, the last " +
-          std::to_string(not_taken) + " deliveries are not recorded",
+          std::to_string(lost_deliveries) + " deliveries are not recorded",
       false);
 }
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flight recorder of one sensor: a thread of ordinary priority that takes what the reader thread has put
-// on the tape to the disk. What the disk does, however slow or full, ends at the tape. Nobody wakes it: it
-// looks a few times a second, and takes much at once.
+// Flight recorder of one sensor: an ordinary thread that writes the reader thread's tape to disk. A slow or
+// full disk affects only the tape. It is not woken: it checks a few times a second.
 #pragma once
 
 #include <array>
@@ -20,26 +19,26 @@ namespace ifog {
 
 class Recorder {
  public:
-  // `name`: of the thread.
+  // name: of the thread.
   Recorder(std::string name, std::size_t tape_bytes, std::unique_ptr<FlightFolder> folder,
            const ArchiveLimits& limits, FlightHeader header);
   ~Recorder();  // stops
 
   [[nodiscard]] Tape& tape() noexcept { return tape_; }
-  // Throws std::system_error when the system has no thread left.
+  // Throws std::system_error if no thread is available.
   void start();
-  // After the reader thread: takes what is still on the tape to the disk and ends the file.
+  // After the reader thread's end: writes the rest of the tape and ends the file.
   void stop();
-  // Sets the header for what follows the tape's note of these settings (Tape::note_settings), which begins a file.
+  // Sets the header of the file that starts at the tape's note of these settings (Tape::note_settings).
   void set_header(FlightHeader header, std::uint32_t settings);
 
-  // What the log should say, each trouble once and its end once; "" for nothing new. good: it is over.
+  // Message for the log, once at the start and end of each problem; "" if nothing is new. good: it is over.
   [[nodiscard]] std::string take_message(bool& good);
-  // Any thread.
+  // For any thread.
   [[nodiscard]] std::uint64_t file_bytes() const noexcept { return counters_.file_bytes.value(); }
   [[nodiscard]] std::uint64_t files_removed() const noexcept { return counters_.files_removed.value(); }
   [[nodiscard]] std::uint64_t entries_unwritten() const noexcept { return counters_.unwritten.value(); }
-  // Deliveries that found no room, were overwritten while being written, or at the end found no disk.
+  // Deliveries lost: no space, removed while being written, or not accepted by the disk at the end.
   [[nodiscard]] std::uint64_t lost_deliveries() const noexcept {
     return tape_.counters().lost_deliveries.value() + counters_.lost_deliveries.value();
   }
@@ -47,7 +46,7 @@ class Recorder {
     return tape_.counters().lost_bytes.value() + counters_.lost_bytes.value();
   }
 
-  // One round of the thread's work, at these times; for tests.
+  // One turn of the thread, at these times; for tests.
   void turn(std::int64_t now_ns, std::int64_t wall_ns);
 
  private:
@@ -57,7 +56,7 @@ class Recorder {
   bool begin_settings();
   void publish_counters();
   void judge(std::int64_t now_ns);
-  void judge_the_end(std::uint64_t not_taken);
+  void judge_the_end(std::uint64_t lost_deliveries);
   void say(std::string message, bool good);
 
   std::string name_;
@@ -65,15 +64,15 @@ class Recorder {
   Tape tape_;
   FlightArchive archive_;
   std::vector<std::uint8_t> payload_;
-  // Deliveries and bytes lost, by the entries read from the tape.
-  std::array<std::uint64_t, 2> told_{};
-  // What had been lost before it, and from when to when it lost, by the turns that saw it.
+  // Deliveries and bytes lost, as read from the tape.
+  std::array<std::uint64_t, 2> reported_{};
+  // Losses before the problem, and its beginning and end by turns.
   struct Trouble {
     bool present = false;
     std::int64_t judged_ns = 0, first_loss_ns = 0, last_loss_ns = 0;
     std::uint64_t lost_before = 0, lost_seen = 0, gone_seen = 0;
   } trouble_;
-  std::uint32_t settings_due_ = 0;  // their file begins once all before them is written
+  std::uint32_t settings_due_ = 0;  // their file starts when all before is written
 
   std::mutex mutex_;  // never locked by a real-time thread
   std::condition_variable stops_;
@@ -86,7 +85,7 @@ class Recorder {
   struct Counters {
     Counter file_bytes, files_removed, unwritten, lost_deliveries, lost_bytes;
   } counters_;
-  bool stopping_ = false;  // with mutex_
+  bool stopping_ = false;  // protected by mutex_
   std::thread thread_;
 };
 

@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kHead = sizeof(FlightEntryHead);
 constexpr std::size_t kFrameHead = 6;  // u32 id, u8 flags, u8 length
-// In addition to FlightFlag, on the tape only.
+// In addition to FlightFlag, only on the tape.
 constexpr std::uint8_t kBeginsDelivery = 128;
-// A recorder that has not worked for so long is blocked by its disk.
+// Time without progress after which the recorder counts as blocked by its disk.
 constexpr std::int64_t kAtWork_ns = 1'000'000'000;
 
 std::size_t bytes_of(const Delivery& delivery) noexcept {
@@ -27,7 +27,7 @@ std::size_t bytes_of(const Delivery& delivery) noexcept {
 
 Tape::Tape(std::size_t bytes) : bytes_(std::max(bytes, kLeastBytes)), queue_(bytes_) {}
 
-// All that put() may push of it.
+// Largest size of what put() may push for it.
 std::size_t Tape::room_for(const Delivery& delivery) noexcept {
   return bytes_of(delivery) + (1 + delivery.frames.size()) * kHead +
          static_cast<std::size_t>(kMaxChannels + 2) * (kHead + 8) + kHead + (kHead + 16);
@@ -83,15 +83,15 @@ void Tape::put(const Delivery& delivery, std::int64_t read_ns, std::span<const C
   if (queue_.write_available() < room_for(delivery)) {
     counters_.lost_deliveries.add(1);
     counters_.lost_bytes.add(bytes);
-    ++untold_deliveries_;
-    untold_bytes_ += bytes;
+    ++unreported_deliveries_;
+    unreported_bytes_ += bytes;
     reopened_ = reopened_ || delivery.restarted;
     return;
   }
-  if (untold_deliveries_ > 0) {
-    const std::array<std::uint64_t, 2> lost{untold_deliveries_, untold_bytes_};
+  if (unreported_deliveries_ > 0) {
+    const std::array<std::uint64_t, 2> lost{unreported_deliveries_, unreported_bytes_};
     push({FlightKind::lost, 0, 0, 0, read_ns}, lost.data(), sizeof lost);
-    untold_deliveries_ = untold_bytes_ = 0;
+    unreported_deliveries_ = unreported_bytes_ = 0;
   }
   if (settings_due_ != 0) {
     const FlightEntryHead note{FlightKind::settings, 0, 0, std::exchange(settings_due_, 0), read_ns};

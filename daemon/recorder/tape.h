@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the reader thread to the recorder thread: entries of a flight recording in a bounded queue of bytes
-// that is allocated once. The reader only copies; where there is no room the delivery is not recorded, which
-// is counted here and stated in the recording itself.
+// Entries of a flight recording from reader to recorder thread, in a bounded queue of bytes allocated once.
+// The reader only copies; without space a delivery is not recorded, which is counted here and in the
+// recording.
 #pragma once
 
 #include <array>
@@ -21,13 +21,13 @@
 
 namespace ifog {
 
-// Deliveries and bytes (payload) received, and those of them that found no room. Any thread may read them.
+// Deliveries and payload bytes received, and those without space. Readable by any thread.
 struct TapeCounters {
   Counter deliveries, bytes, lost_deliveries, lost_bytes;
 };
 
-// Every page of it is there from the start: where memory is not locked the reader thread would otherwise wait
-// for one at every hundredth delivery, until the tape has gone round once.
+// Allocates resident pages; otherwise, without locked memory, the reader thread would have page faults until
+// the tape has been used once.
 template <typename T>
 struct TouchedMemory : std::allocator<T> {
   template <typename U>
@@ -43,31 +43,30 @@ struct TouchedMemory : std::allocator<T> {
 
 class Tape {
  public:
-  // Most that one delivery takes, however many CAN frames or channels it brings: a tape is no smaller.
+  // Largest size of one delivery, and smallest tape.
   static constexpr std::size_t kLeastBytes = 1U << 18U;
   explicit Tape(std::size_t bytes);
 
-  // Reader thread; allocates nothing, waits for nothing. `read_ns` is when it was read, for what arrived at no
-  // known time; `channels` and `wall_shift_ns` are what it was decoded with, `merged` the samples of the run
-  // that have gone into others up to and with it (IncrementQueue::merged()): recorded where they have
-  // changed.
+  // Reader thread; no allocation, no waiting. read_ns: time of the read, used if the arrival is unknown.
+  // channels, wall_shift_ns: as used for decoding; merged: samples of the run merged so far
+  // (IncrementQueue::merged()). These three are recorded when they change.
   void put(const Delivery& delivery, std::int64_t read_ns, std::span<const ChannelValue> channels,
            std::int64_t wall_shift_ns, std::uint64_t merged = 0) noexcept;
 
-  // Reader thread: what is put from now on was filtered with the settings of this number, not 0.
+  // Reader thread: later entries were filtered with the settings of this number, not 0.
   void note_settings(std::uint32_t number) noexcept { settings_due_ = number; }
-  // Reader thread, for a source that can wait: there is no room for this delivery, and the recorder is at
-  // work and will make some.
+  // Reader thread, for a source that can wait: true if there is no space, and the working recorder will make
+  // some.
   [[nodiscard]] bool worth_waiting(const Delivery& delivery) const noexcept;
 
-  // Recorder thread: the oldest entry; false: there is none, or it is still being written. A `settings` entry
-  // has no payload, its number is the head's length.
+  // Recorder thread: oldest entry; false: none, or still being written. A `settings` entry has no payload;
+  // its number is in the head's length.
   bool take(FlightEntryHead& head, std::vector<std::uint8_t>& payload);
-  // Recorder thread: the last entry read is the first of a delivery.
+  // Recorder thread: the last entry is the first of a delivery.
   [[nodiscard]] bool begins_delivery() const noexcept { return begins_delivery_; }
-  // Recorder thread.
+  // For the recorder thread.
   [[nodiscard]] bool is_half_full() const noexcept { return queue_.read_available() > bytes_ / 2; }
-  // Recorder thread: that it is at work; not when the disk takes nothing.
+  // Recorder thread: reports progress; not called if the disk accepts nothing.
   void attend(bool at_work) noexcept;
 
   [[nodiscard]] const TapeCounters& counters() const noexcept { return counters_; }
@@ -81,15 +80,15 @@ class Tape {
   std::size_t bytes_;
   boost::lockfree::spsc_queue<std::uint8_t, boost::lockfree::allocator<TouchedMemory<std::uint8_t>>> queue_;
   // Reader thread.
-  std::array<ChannelValue, kMaxChannels> recorded_{};  // of each channel, the last
+  std::array<ChannelValue, kMaxChannels> recorded_{};  // last recorded value of each channel
   std::int64_t wall_shift_ns_ = 0;
   std::uint64_t merged_ = 0;
-  std::uint64_t untold_deliveries_ = 0, untold_bytes_ = 0;  // lost since the last `lost` entry
-  bool reopened_ = false;                                   // with a delivery that was lost
+  std::uint64_t unreported_deliveries_ = 0, unreported_bytes_ = 0;  // lost since the last `lost` entry
+  bool reopened_ = false;                                           // in a lost delivery
   std::uint32_t settings_due_ = 0;
   TapeCounters counters_;
-  // Recorder thread: in lines of the cache of its own.
-  alignas(64) std::atomic<std::int64_t> attended_ns_{0};  // monotonic; 0: not
+  // Recorder thread, on its own cache lines.
+  alignas(64) std::atomic<std::int64_t> attended_ns_{0};  // monotonic; 0: never
   std::optional<FlightEntryHead> begun_;
   bool begins_delivery_ = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Distribution of durations in constant memory, for threads that must not allocate.
+// Histogram of durations in constant memory, for threads that must not allocate.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace ifog {
 
-// 2^Bits buckets an octave of nanoseconds, up to 2^Octaves.
+// 2^Bits buckets per octave of nanoseconds, up to 2^Octaves.
 template <unsigned Bits, unsigned Octaves>
 class BasicDurationHistogram {
  public:
@@ -24,7 +24,7 @@ class BasicDurationHistogram {
 
   [[nodiscard]] std::uint64_t count() const noexcept { return count_; }
   [[nodiscard]] double max_us() const noexcept { return static_cast<double>(max_ns_) * 1e-3; }
-  // Upper edge of the bucket that holds the given share (0 … 1) of all values; 0 when there are none.
+  // Upper edge of the bucket that contains this quantile (0 … 1); 0 without values.
   [[nodiscard]] double percentile_us(double share) const noexcept {
     const auto wanted = static_cast<std::uint64_t>(share * static_cast<double>(count_));
     std::uint64_t below = 0;
@@ -37,7 +37,8 @@ class BasicDurationHistogram {
   }
 
  private:
-  // Values below 2^Bits have a bucket each; above, the leading one and the bits after it pick the bucket.
+  // Values below 2^Bits have individual buckets; above, the leading one and the bits after it select the
+  // bucket.
   static std::size_t bucket(std::uint64_t value) noexcept {
     if (value < (1U << Bits)) return value;
     const auto octave = static_cast<unsigned>(std::bit_width(value)) - 1 - Bits;
@@ -53,7 +54,7 @@ class BasicDurationHistogram {
   std::uint64_t count_ = 0, max_ns_ = 0;
 };
 
-// Percentiles right within 3 %, up to an hour.
+// Percentiles within 3 %, up to an hour.
 using DurationHistogram = BasicDurationHistogram<5, 42>;
 
 }  // namespace ifog

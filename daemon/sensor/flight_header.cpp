@@ -17,7 +17,7 @@
 namespace ifog {
 namespace {
 
-// Within what all of them may have. One that is in the state folder is read as such.
+// Within the common limit. Files in the state folder are read with its rules.
 void attach(const std::string& path, bool of_state, std::size_t& room, FlightHeader& header) try {
   if (header.files.contains(path)) return;
   std::string text = of_state ? read_state_file(path, room) : InputFile(path).bytes();
@@ -31,7 +31,7 @@ void attach(const std::string& path, bool of_state, std::size_t& room, FlightHea
 } catch (const std::runtime_error&) {
 }
 
-// For a log that can be looked into before it is read: a FIFO cannot.
+// For a log that can be read in advance; a FIFO cannot.
 std::string interface_of(const TransportConfig& transport, const DriverInstance& driver) {
   std::error_code error;
   if (!transport.interface.empty() || !std::filesystem::is_regular_file(transport.path, error))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sensor's flight recordings say of it in their header, and back.
+// Header of a sensor's flight recordings, and the inverse.
 #pragma once
 
 #include <string>
@@ -10,17 +10,17 @@
 
 namespace ifog {
 
-// With the text of the model and of the files that the driver's options name, so that another computer reads the recording as
-// this one would. Files that cannot be read now or are larger than kInputLimits.carried_bytes together are missing, and who
-// reads the recording has to name them. `noise`: what the filter begins with, as the file of it; "" for none.
+// Includes the model and the files named in driver options, so that another computer can read the recording.
+// Files that cannot be read, or exceed kInputLimits.carried_bytes together, are missing, and readers must
+// name them. noise: text of the file of initial noise, or "".
 FlightHeader flight_header(const SensorConfig& sensor, const Config& config, const DriverInstance& driver,
                            const std::string& noise);
 
-// The sensor as it was configured; where the header carries no configuration, by name, driver and options.
-// Throws std::runtime_error with one line: what this version does not understand of it.
+// The sensor as configured; without a configuration in the header, from name, driver and options. Throws
+// std::runtime_error with one line for what this version does not understand.
 SensorConfig recorded_sensor(const FlightHeader& header);
 
-// "/dev/ttyUSB0", "can0", "udp port 4000", a path.
+// "/dev/ttyUSB0", "can0", "udp port 4000", or a path.
 std::string source_of(const TransportConfig& transport);
 
 }  // namespace ifog

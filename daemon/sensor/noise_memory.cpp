@@ -14,7 +14,7 @@ namespace ifog {
 namespace {
 
 constexpr std::int64_t kEvery_ns = 600'000'000'000;
-// Nominal rates that differ by less are one sensor's.
+// Nominal rates with a smaller relative difference are of the same sensor.
 constexpr double kSameRate = 0.01;
 
 std::string in_words(const KeptNoise& kept) {
@@ -63,7 +63,7 @@ std::string NoiseMemory::text(const std::optional<LearnedNoise>& learned) const 
 std::string NoiseMemory::keep(const LearnedNoise& learned, std::int64_t now_ns, bool at_once) {
   if (path_.empty() || learned.samples == written_samples_) return "";
   if (!at_once && tried_ns_ && now_ns - *tried_ns_ < kEvery_ns) return "";
-  // What was recalled and nothing learned since: the date stays.
+  // Nothing was learned since it was recalled: the date is kept.
   if (recalled_ && learned.samples == recalled_->samples) return "";
   tried_ns_ = now_ns;
   kept_.noise = learned;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise of a sensor over restarts: read before its signal chain is built, written now and then while it
-// runs, in the state folder as NAME.noise.toml. One that cannot be read or written is a remark, never a
-// reason not to run.
+// Learned noise of a sensor over restarts: NAME.noise.toml in the state folder, read before the signal chain
+// is built and written from time to time. Errors are only remarks.
 #pragma once
 
 #include <cstdint>
@@ -14,31 +13,31 @@
 
 namespace ifog {
 
-// The file's name, in the state folder as in a flight recording.
+// Name of the file, in the state folder and in flight recordings.
 [[nodiscard]] inline std::string noise_file_name(const std::string& sensor) { return sensor + ".noise.toml"; }
 
 class NoiseMemory {
  public:
   NoiseMemory() = default;
-  // folder "": nothing is read or kept.
+  // folder "": nothing is read or stored.
   NoiseMemory(const std::string& folder, const std::string& sensor, const std::string& driver,
               const SensorFacts& facts);
 
-  // What an earlier run has learned of this sensor; nothing where there is none, or of another one.
+  // Noise learned by an earlier run; nullopt if there is none, or of another sensor.
   [[nodiscard]] const std::optional<LearnedNoise>& recalled() const noexcept { return recalled_; }
-  // What is to be said of the file that was found, "" for nothing; good: it is in use.
+  // Remark about the file, or ""; good: it is in use.
   [[nodiscard]] const std::string& remark() const noexcept { return remark_; }
   [[nodiscard]] bool good() const noexcept { return recalled_.has_value(); }
 
-  // The file's text with these figures in it; "" for none.
+  // Text of the file with this noise, or "".
   [[nodiscard]] std::string text(const std::optional<LearnedNoise>& learned) const;
 
-  // Writes what is new, ten minutes after the last time or, at the end of a run, at once. now_ns: monotonic.
-  // Gives a complaint, once until it has succeeded again; "" for none.
+  // Writes new values, ten minutes after the last time or at once. now_ns: monotonic. Returns an error once
+  // until the next success; else "".
   std::string keep(const LearnedNoise& learned, std::int64_t now_ns, bool at_once);
 
  private:
-  std::string path_;  // "": nothing is kept
+  std::string path_;  // "": nothing is stored
   KeptNoise kept_;
   std::optional<LearnedNoise> recalled_;
   std::string remark_;

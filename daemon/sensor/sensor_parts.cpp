@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kFrameChannelMaxAge_s = 10.0;
 
-// All of it: a member more does not compile.
+// All members: an additional one does not compile.
 auto tied(const FilterChoice& choice) {
   const auto& [rule, state, weights, wideband, process_noise, measurement_noise, floor, state_parameters,
                window, draws, follow_manoeuvres, conserve_angle, steady_gain, guard, plain, seed] = choice;
@@ -46,7 +46,7 @@ void require(bool fits, const SensorConfig& sensor, const char* type, const char
                                          "\": it takes " + needs);
 }
 
-// Whether the text has it as a word of its own.
+// True if the text contains it as a whole word.
 bool has_word(std::string_view text, std::string_view word) {
   const auto of_word = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
   for (std::size_t at = text.find(word); at != std::string_view::npos; at = text.find(word, at + 1)) {
@@ -58,7 +58,7 @@ bool has_word(std::string_view text, std::string_view word) {
   return false;
 }
 
-// The sensor's key of that table which a complaint names before any other; "" for none.
+// The sensor's key of that table which an error names first; else "".
 std::string key_in(const SensorConfig& sensor, const std::string& table, const std::string& complaint) {
   std::string found;
   std::size_t first = std::string::npos;
@@ -219,7 +219,7 @@ std::string boot_id() {
     out = given;
   else
     std::getline(std::ifstream("/proc/sys/kernel/random/boot_id"), out);
-  // As one has it with dashes, the other without.
+  // One notation has dashes, the other none.
   std::erase(out, '-');
   return out;
 }
@@ -241,7 +241,7 @@ std::unique_ptr<ChainParts> make_chain_parts(const SensorConfig& sensor, const C
     const std::string line = misfit.line > 0 ? ":" + std::to_string(misfit.line) : "";
     throw KeyError("model", sensor.model + line + ": " + misfit.what());
   } catch (const std::exception& error) {
-    // A setting that nobody chose here is the model's.
+    // A setting that was not chosen here is the model's.
     const std::string key = key_in(sensor, "filter.", error.what());
     if (key.empty() && settings.model && settings.model->filter)
       throw KeyError("model", sensor.model + ": " + error.what());

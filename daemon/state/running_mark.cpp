@@ -38,14 +38,14 @@ struct flock whole_file(short type) {
 
 bool is_plain(int fd) {
   struct stat what {};
-  // With a second name it is somebody else's file, whose rights are not ours to change.
+  // A second name means it is another's file, whose permissions must not be changed.
   return ::fstat(fd, &what) == 0 && S_ISREG(what.st_mode) && what.st_nlink == 1;
 }
 
 constexpr const char* kSocketName = "ifogd.socket";
 constexpr std::size_t kMostClients = 16;
 
-// In the open folder, whose path may be longer than such an address holds.
+// Relative to the open folder, whose path may be too long for an address.
 sockaddr_un address_in(int folder) {
   sockaddr_un out{};
   out.sun_family = AF_UNIX;
@@ -60,7 +60,7 @@ ucred peer_of(int fd) {
   return out;
 }
 
-// Root, this user, and the group of the folder, which may put models into it.
+// Root, this user, and the folder's group, which may store models there.
 bool may_ask(int fd, gid_t group) {
   const ucred peer = peer_of(fd);
   if (peer.uid == 0 || peer.uid == ::geteuid() || peer.gid == group) return true;
@@ -71,9 +71,9 @@ bool may_ask(int fd, gid_t group) {
   return std::find(static_cast<const gid_t*>(groups.data()), end, group) != end;
 }
 
-// What does not fit into the socket is lost, and the other end sees that it is cut off.
+// What does not fit into the socket is lost; the other end detects the truncation.
 void reply(int fd, const std::string& text) {
-  const int room = 1 << 20;  // bytes; less where net.core.wmem_max is
+  const int room = 1 << 20;  // bytes; less by net.core.wmem_max
   (void)::setsockopt(fd, SOL_SOCKET, SO_SNDBUF, &room, sizeof room);
   (void)::send(fd, text.data(), text.size(), MSG_DONTWAIT | MSG_NOSIGNAL);
   ::close(fd);
@@ -88,18 +88,18 @@ RunningMark::~RunningMark() {
 }
 
 std::string RunningMark::set(const std::string& folder) {
-  taken_ = false;
+  in_use_ = false;
   if (folder.empty()) return "";
   const std::string path = mark_path(folder);
   const auto cannot = [&](const std::string& why) {
     if (fd_ >= 0) ::close(std::exchange(fd_, -1));
     return path + ": cannot mark that a daemon runs: " + why;
   };
-  // Never through a link, and no FIFO: who may write into the folder may have put one there.
+  // No link and no FIFO, which others with write access may have created.
   fd_ = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK, 0644);
   if (fd_ < 0) return cannot(reason(errno));
   if (!is_plain(fd_)) return cannot("no regular file");
-  // Others may look, whatever the umask.
+  // Readable by others, regardless of the umask.
   (void)!::fchmod(fd_, 0644);
   struct flock lock = whole_file(F_WRLCK);
   if (::fcntl(fd_, F_SETLK, &lock) == 0) return listen_in(folder);
@@ -107,7 +107,7 @@ std::string RunningMark::set(const std::string& folder) {
   lock = whole_file(F_WRLCK);
   const bool known = ::fcntl(fd_, F_GETLK, &lock) == 0 && lock.l_type == F_WRLCK && lock.l_pid > 0;
   ::close(std::exchange(fd_, -1));
-  taken_ = true;
+  in_use_ = true;
   return path + ": another daemon" + (known ? ", process " + std::to_string(lock.l_pid) + "," : "") +
          " works with this state folder; expected one of its own for each";
 }
@@ -117,13 +117,13 @@ std::string RunningMark::listen_in(const std::string& folder) {
   struct stat there {};
   if (::fstat(holder, &there) == 0) group_ = there.st_gid;
   socket_ = ::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0);
-  // That of a daemon that was killed, or what somebody put there: a name, which is never followed.
+  // Removes the socket of a killed daemon, or anything of this name, without following it.
   (void)::unlinkat(holder, kSocketName, 0);
   const sockaddr_un address = address_in(holder);
-  // Whatever the umask of the service: the group asks, too. Nobody else is at work yet.
+  // Regardless of the service's umask, so that the group can connect. No other threads run yet.
   const mode_t before = ::umask(S_IXUSR | S_IXGRP | S_IRWXO);
   const bool bound = ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  ::umask(before);  // which leaves errno as it is
+  ::umask(before);  // does not change errno
   if (bound && ::listen(socket_, static_cast<int>(kMostClients)) == 0) return "";
   return folder + "/" + kSocketName + ": ifog status and adopt cannot ask this daemon: " + reason(errno);
 }
@@ -174,7 +174,7 @@ std::optional<pid_t> running_daemon(const std::string& folder) {
   const std::string path = mark_path(folder);
   const Fd fd(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
   if (fd < 0 && errno == ENOENT) return std::nullopt;
-  // Whether a lock for writing could be had may be asked by who can only read.
+  // Testing for a write lock needs only read access.
   struct flock lock = whole_file(F_WRLCK);
   if (fd < 0 || !is_plain(fd) || ::fcntl(fd, F_GETLK, &lock) != 0)
     throw std::runtime_error(path + ": cannot see whether the daemon runs: " +
@@ -203,7 +203,7 @@ std::string ask_daemon(const std::string& folder, pid_t daemon, DaemonQuestion q
   const Fd fd(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
   const auto us = std::chrono::duration_cast<std::chrono::microseconds>(most).count();
   const timeval patience{us / 1'000'000, us % 1'000'000};
-  for (const int option : {SO_SNDTIMEO, SO_RCVTIMEO})  // its backlog may be full, too
+  for (const int option : {SO_SNDTIMEO, SO_RCVTIMEO})  // the backlog may be full, too
     (void)::setsockopt(fd, SOL_SOCKET, option, &patience, sizeof patience);
   const sockaddr_un address = address_in(holder);
   if (::connect(fd, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How others find the daemon that works with a state folder, whoever started it, and ask it. It holds a lock on a file there
-// for as long as it lives: a lock, unlike a number in a file, ends with its process however that ends. And it answers
-// `ifog status`, `adopt` and `revert` at a socket there: LCM knows no sender, here the kernel says at each end who is at the
-// other. Who connects sends one letter, and reads to the end.
+// Mark of a running daemon in its state folder, and a socket for questions. The mark is a lock on a file,
+// which ends with the process. The socket answers `ifog status`, `adopt` and `revert`; unlike LCM it
+// identifies both ends. A client sends one letter and reads to the end.
 #pragma once
 
 #include <sys/types.h>
@@ -16,8 +15,8 @@
 namespace ifog {
 
 enum class DaemonQuestion : char {
-  status = 'S',  // answered by the statuses of all sensors, encoded, each behind its length in four bytes
-  reload = 'R'   // answered by its complaints, nothing where it was done
+  status = 'S',  // answer: the encoded statuses of all sensors, each after its length in four bytes
+  reload = 'R'   // answer: the errors, empty on success
 };
 
 class RunningMark {
@@ -28,34 +27,33 @@ class RunningMark {
   RunningMark& operator=(const RunningMark&) = delete;
 
   [[nodiscard]] bool is_set() const { return fd_ >= 0; }
-  // Marks this process as the running one. folder "": does nothing. Gives a complaint, "" for none: no right to the
-  // folder, or another daemon works with it, which is_taken() then says.
+  // Marks this process as the running one. folder "": does nothing. Returns "" or an error: no permission for
+  // the folder, or another daemon uses it (then in_use() is true).
   [[nodiscard]] std::string set(const std::string& folder);
-  [[nodiscard]] bool is_taken() const { return taken_; }
+  [[nodiscard]] bool in_use() const { return in_use_; }
 
-  // The statuses that are answered from now on.
+  // Statuses for later answers.
   void tell(const std::vector<std::string>& statuses);
-  // Answers what can be answered, and never waits. True: somebody wants a reload.
+  // Answers without waiting. True: a reload is requested.
   [[nodiscard]] bool serve();
-  // To those who wanted it: what was refused, "" where all was done.
+  // Answers those who requested it: the errors, or "".
   void answer(const std::string& complaint);
 
  private:
   std::string listen_in(const std::string& folder);
 
   int fd_ = -1, socket_ = -1;
-  bool taken_ = false;
+  bool in_use_ = false;
   gid_t group_ = 0;                            // of the folder
-  std::vector<std::pair<int, char>> clients_;  // and what each asks, 0 so far
+  std::vector<std::pair<int, char>> clients_;  // with their question, 0 if not yet received
   std::string statuses_;
 };
 
-// The process that holds the mark; nothing: none does, or no daemon ever did. Throws std::runtime_error with
-// one line when that cannot be seen.
+// Process with the mark; nullopt if none. Throws std::runtime_error with one line if it cannot be determined.
 [[nodiscard]] std::optional<pid_t> running_daemon(const std::string& folder);
 
-// What the process that holds the mark answers. Throws std::runtime_error with one line: no such socket, no right to it,
-// another process at its other end, no answer within `most`.
+// Answer of the process with the mark. Throws std::runtime_error with one line: no socket, no permission,
+// another process at its end, no answer within `most`.
 [[nodiscard]] std::string ask_daemon(const std::string& folder, pid_t daemon, DaemonQuestion question,
                                      std::chrono::milliseconds most);
 

@@ -57,7 +57,7 @@ std::string make_state_folder(const std::string& folder) {
   std::error_code error;
   const bool made = std::filesystem::create_directories(folder, error);
   if (error) return cannot(folder, "cannot be made", error.message());
-  // Whatever the umask. As systemd/ifogd.service.in has it: the group puts models there.
+  // Regardless of the umask, as in systemd/ifogd.service.in: the group stores models there.
   if (made) ::chmod(folder.c_str(), 02775);
   return "";
 }
@@ -77,8 +77,8 @@ namespace {
 }
 std::string reason() { return std::generic_category().message(errno); }
 
-// Where a file is, its folder opened. The name has no slash, so that O_NOFOLLOW at it forbids all that RESOLVE_BENEATH
-// and RESOLVE_NO_SYMLINKS of openat2 would.
+// An open folder and a name in it without slashes, so that O_NOFOLLOW is equivalent to RESOLVE_BENEATH and
+// RESOLVE_NO_SYMLINKS of openat2.
 struct Place {
   explicit Place(const std::filesystem::path& path)
       : folder(::open(path.has_parent_path() ? path.parent_path().c_str() : ".",
@@ -88,8 +88,8 @@ struct Place {
   const std::string name;
 };
 
-// What nobody can have put there before.
-std::string unforeseen_name(const std::string& name) {
+// A name that others cannot have prepared.
+std::string random_name(const std::string& name) {
   std::uint64_t number = 0;
   if (::getrandom(&number, sizeof number, 0) != static_cast<ssize_t>(sizeof number))
     throw std::runtime_error("no random numbers: " + reason());
@@ -114,7 +114,7 @@ void write_state_file(const std::string& path, std::string_view bytes) {
   struct stat there {};
   if (::fstatat(folder, place.name.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0 && !S_ISREG(there.st_mode))
     fail(path, "is no regular file, which is not written in a state folder");
-  const std::string beside = unforeseen_name(place.name);
+  const std::string beside = random_name(place.name);
   const Fd file(::openat(folder, beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0664));
   if (file < 0) fail(path, "cannot be written: " + reason());
   try {

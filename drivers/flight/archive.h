@@ -64,8 +64,8 @@ class FlightArchive {
   [[nodiscard]] int error() const { return error_; }
   [[nodiscard]] std::string complaint() const;
   // Losses: with files that were removed while being written, and data that were waiting at close().
-  [[nodiscard]] const FlightLoss& taken_away() const { return lost_.with_files; }
-  [[nodiscard]] const FlightLoss& not_taken() const { return lost_.waiting; }
+  [[nodiscard]] const FlightLoss& lost_with_files() const { return lost_.with_files; }
+  [[nodiscard]] const FlightLoss& lost_at_close() const { return lost_.waiting; }
   [[nodiscard]] std::uint64_t bytes_written() const { return bytes_written_; }
   [[nodiscard]] std::uint64_t files_removed() const { return kept_.removed; }
   [[nodiscard]] std::uint64_t entries_waiting() const { return waiting_.entries; }

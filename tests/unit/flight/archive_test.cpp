@@ -156,7 +156,7 @@ TEST(FlightArchive, AFileThatIsTakenAwayIsCountedAndTheNextGoesOn) {
   ASSERT_LT(left, before);
   seconds(20);
   EXPECT_EQ(bench.archive.error(), 0);
-  EXPECT_EQ(bench.archive.taken_away().deliveries, before - left);
+  EXPECT_EQ(bench.archive.lost_with_files().deliveries, before - left);
   EXPECT_EQ(bench.archive.close(bench.now_ns, kWall + bench.now_ns), 0U);
   const ReadBack read = read_back(all_of(bench.disk));
   EXPECT_EQ(read.payloads.size(), 170 - (before - left));
@@ -172,16 +172,16 @@ TEST(FlightArchive, WhatTheDiskDidNotTakeAtTheEndIsLost) {
     bench.add(n);
     bench.turn();
   }
-  EXPECT_EQ(bench.archive.not_taken().deliveries, 0U);  // it waits
+  EXPECT_EQ(bench.archive.lost_at_close().deliveries, 0U);  // it waits
   EXPECT_EQ(bench.archive.complaint(), "Not a directory (expected a folder that can be written)");
   EXPECT_EQ(bench.archive.close(bench.now_ns, kWall), 12U);
-  EXPECT_EQ(bench.archive.not_taken().deliveries, 12U);
-  EXPECT_EQ(bench.archive.not_taken().bytes, [] {
+  EXPECT_EQ(bench.archive.lost_at_close().deliveries, 12U);
+  EXPECT_EQ(bench.archive.lost_at_close().bytes, [] {
     std::uint64_t sum = 0;
     for (std::uint64_t n = 0; n < 12; ++n) sum += numbered(n).size();
     return sum;
   }());
-  EXPECT_EQ(bench.archive.taken_away().deliveries, 0U);
+  EXPECT_EQ(bench.archive.lost_with_files().deliveries, 0U);
 }
 
 // On a real disk: who comes second is refused, and has the folder once the first is gone.
@@ -210,7 +210,7 @@ TEST(FlightArchive, OneRecorderAFolder) {
   second.add({FlightKind::bytes, 0, 0, 0, 1}, numbered(2));
   second.turn(7 * kSecond, kWall, true);
   EXPECT_EQ(second.error(), 0);
-  EXPECT_EQ(second.taken_away().deliveries, 1U);
+  EXPECT_EQ(second.lost_with_files().deliveries, 1U);
   EXPECT_EQ(second.close(8 * kSecond, kWall), 0U);
 }
 

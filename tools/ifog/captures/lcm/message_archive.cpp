@@ -53,7 +53,7 @@ void MessageArchive::close(std::int64_t now_ns, std::int64_t wall_ns) {
   for (const auto& [channel, way] : ways_) untold_ += static_cast<std::uint64_t>(way.awaited());
   if (!archive_.full()) tell_lost(wall_ns);
   archive_.close(now_ns, wall_ns);
-  books_.lost_here += archive_.not_taken().deliveries;
+  books_.lost_here += archive_.lost_at_close().deliveries;
 }
 
 MessageArchive::Books MessageArchive::books() const {
