@@ -196,10 +196,10 @@ void Recorder::judge(std::int64_t now_ns) {
 }
 
 // Reports data that the disk did not accept until the end.
-void Recorder::judge_the_end(std::uint64_t lost_deliveries) {
-  if (lost_deliveries == 0) return;
+void Recorder::judge_the_end(std::uint64_t deliveries) {
+  if (deliveries == 0) return;
   say("recorder: " + archive_.path() + ": " + archive_.complaint() + " to the end, the last " +
-          std::to_string(lost_deliveries) + " deliveries are not recorded",
+          std::to_string(deliveries) + " deliveries are not recorded",
       false);
 }
 

@@ -56,7 +56,7 @@ class Recorder {
   bool begin_settings();
   void publish_counters();
   void judge(std::int64_t now_ns);
-  void judge_the_end(std::uint64_t lost_deliveries);
+  void judge_the_end(std::uint64_t deliveries);
   void say(std::string message, bool good);
 
   std::string name_;
