@@ -222,7 +222,7 @@ class Run {
         describe_rest(errors_, found_.noise, data_.grid, options_.significance, result_.noise_changes);
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
-    say(unexplained_beside_claims(result_, records_.size()));
+    say(unexplained_despite_claims(result_, records_.size()));
     // With a held-out part, judge() checks it.
     if (TimeShare{options_.fit_from, options_.fit_to}.whole())
       say(grown_in_words(result_, samples_of(errors_)));

@@ -81,7 +81,7 @@ class Measuring {
       : data_(data), wanted_(wanted), axis_(axis) {
     result_.together.resize(wanted.together.size());
     for (std::size_t i = 0; i < wanted.together.size(); ++i) take(i);
-    for (const Effect& effect : wanted.beside) take_beside(effect);
+    for (const Effect& effect : wanted.others) take_other(effect);
   }
 
   MeasuredEffects run() {
@@ -104,7 +104,7 @@ class Measuring {
     model_.push_back(named.candidate);
   }
 
-  void take_beside(const Effect& effect) {
+  void take_other(const Effect& effect) {
     if (effect.form == name_of(Form::kStep)) {
       for (const Candidate& step : steps_named(data_, effect)) steps_.push_back(step);
       return;
@@ -154,7 +154,7 @@ class Measuring {
       if (static_cast<std::size_t>(i) < place_.size())
         result_.together[place_[static_cast<std::size_t>(i)]].effect = effect;
       else
-        result_.beside.push_back(effect);
+        result_.others.push_back(effect);
       found.push_back({effect, 1.0, 0.0, 0.0});
       for (Eigen::Index j = 0; j < count; ++j)
         result_.covariance.push_back(joint.covariance(first + i, first + j));

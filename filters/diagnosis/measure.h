@@ -21,7 +21,7 @@ struct EffectsToMeasure {
   // For each effect of `together`, alternatives that are tried in its place. One entry per effect, or none.
   std::vector<std::vector<Effect>> instead;
   // The sensor's other effects, fitted too: a step only in captures that can contain it, a line in none.
-  std::vector<Effect> beside;
+  std::vector<Effect> others;
   // From the sensor's model. They give how early its channels are; the daemon waits for those.
   std::vector<ChannelRange> ranges = {};
 };
@@ -35,8 +35,8 @@ struct MeasuredEffect {
 
 struct MeasuredEffects {
   std::vector<MeasuredEffect> together;
-  std::vector<Effect> beside;      // those with one coefficient that were fitted too
-  std::vector<double> covariance;  // of the coefficients of all measured effects, then of `beside`; row-major
+  std::vector<Effect> others;      // those with one coefficient that were fitted too
+  std::vector<double> covariance;  // of the coefficients of `together`, then of `others`; row-major
   std::vector<ChannelRange> ranges;
 };
 

@@ -26,7 +26,7 @@ struct RecordOrigin {
 
   // Converts between the record's time and the time in the capture.
   [[nodiscard]] double in_s(double time_s) const { return whole_s + (beyond_s + time_s); }
-  [[nodiscard]] double since(double told_s) const { return told_s - whole_s - beyond_s; }
+  [[nodiscard]] double since(double shown_s) const { return shown_s - whole_s - beyond_s; }
 };
 
 struct Record {

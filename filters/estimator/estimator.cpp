@@ -32,9 +32,8 @@ void check(const FilterSettings& settings, int axes, double nominal_period_s) {
   require_in_range(settings);
 }
 
-// Window in innovations: the random weights make the gain scatter by 3 % and the error by 0.1 %. Noise of
-// skewness g biases the rate by g / N standard deviations; for g = 2 and N = 20 / (q dt / R)^(1/4) that is a
-// tenth of the filter's noise.
+// Window in innovations: random weights scatter the gain by 3 %. Noise of skewness g biases the rate by g / N
+// standard deviations; for g = 2, N = 20 / (q dt / R)^(1/4) that is 10 % of the filter's noise.
 constexpr double kSteadyWindow = 1000.0, kSkewed = 20.0, kLongestWindow = 5 * kSteadyWindow;  // 120 kB
 
 FilterSettings in_force(FilterSettings settings, double period_s) {
@@ -52,9 +51,10 @@ FilterSettings in_force(FilterSettings settings, double period_s) {
 
 }  // namespace
 
-Estimator::Estimator(const FilterSettings& told, int axes, double nominal_period_s, const KnownNoise& known) {
-  check(told, axes, nominal_period_s);
-  const FilterSettings settings = in_force(told, nominal_period_s);
+Estimator::Estimator(const FilterSettings& given, int axes, double nominal_period_s,
+                     const KnownNoise& known) {
+  check(given, axes, nominal_period_s);
+  const FilterSettings settings = in_force(given, nominal_period_s);
   auto rest = std::make_unique<RestFilter>(
       make_state_model(settings.state, settings.state_parameters, nominal_period_s), make_rule(settings),
       settings.process_noise, settings.measurement_noise);

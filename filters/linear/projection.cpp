@@ -16,7 +16,7 @@ void Projection::take_out_of(Columns& values) const {
   values.noalias() -= basis_ * shadow;
 }
 
-Eigen::MatrixXd Projection::beside(const Eigen::VectorXd& column) {
+Eigen::MatrixXd Projection::complement(const Eigen::VectorXd& column) {
   const Eigen::MatrixXd whole = Eigen::HouseholderQR<Eigen::MatrixXd>(column).householderQ();
   return whole.rightCols(column.size() - 1);
 }

@@ -16,7 +16,7 @@ class Projection {
   void take_out_of(Columns& values) const;
 
   // Orthonormal complement of one column of n rows: n × (n - 1).
-  static Eigen::MatrixXd beside(const Eigen::VectorXd& column);
+  static Eigen::MatrixXd complement(const Eigen::VectorXd& column);
 
  private:
   Eigen::MatrixXd basis_;  // orthonormal

@@ -50,8 +50,8 @@ void find_clipped(std::vector<double> sorted, std::vector<ValueFault>& found) {
     const auto next = std::find_if(begin, end, [&](double v) { return v != extreme; });
     if (next == end) return;
     const auto after = std::find_if(next, end, [&, second = *next](double v) { return v != second; });
-    const auto here = static_cast<double>(next - begin), beside = static_cast<double>(after - next);
-    if (100.0 * here < static_cast<double>(sorted.size()) || here < 3.0 * beside) return;
+    const auto here = static_cast<double>(next - begin), there = static_cast<double>(after - next);
+    if (100.0 * here < static_cast<double>(sorted.size()) || here < 3.0 * there) return;
     found.push_back({"clipped", six(100.0 * here / static_cast<double>(sorted.size())) +
                                     " % of the samples are at the " + which + " value, " +
                                     six(extreme / kDegree) +

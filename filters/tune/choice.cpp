@@ -15,16 +15,15 @@ namespace {
 
 // Dickey and Fuller's 1 % point of n (1 - rho) with unknown mean: an autoregression of a random walk is below
 // it in 99 of 100 records (W. Fuller, "Introduction to Statistical Time Series", 1976, table 8.5.1).
-constexpr double kToldFromAWalk = 20.7;
+constexpr double kDistinctFromWalk = 20.7;
 // Small, since both filters' mean squares contain the same noise.
 constexpr double kWorse = 1.01;
 
 // Reason against the model, or empty.
 std::string reason_against(const TunedModel& model, const TunedModel& walk, double period_s, double samples) {
-  if (const double told = memories_in_record(model.settings, period_s, samples); told < kToldFromAWalk)
+  if (const double n = memories_in_record(model.settings, period_s, samples); n < kDistinctFromWalk)
     return formatted(
-        "its colour lasts %.2g of the record, too long to be distinguished from a walk or a line",
-        1.0 / told);
+        "its colour lasts %.2g of the record, too long to be distinguished from a walk or a line", 1.0 / n);
   if (!model.held_out || !walk.held_out) return "";
   const double worse = prediction_against(*model.held_out, *walk.held_out);
   if (worse <= kWorse) return "";

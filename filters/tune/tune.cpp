@@ -137,14 +137,14 @@ std::vector<TunedFigure> figures_with_errors(const ModelCandidate& candidate,
   std::vector<TunedFigure> out;
   for (std::size_t f = 0; f < base.size(); ++f) {
     Eigen::VectorXd gradient(static_cast<Eigen::Index>(theta.size()));
-    bool told = true;
+    bool all_known = true;
     for (std::size_t i = 0; i < theta.size(); ++i) {
       const double slope = (moved[i][f].value - base[f].value) / kStep;
       gradient(static_cast<Eigen::Index>(i)) = slope;
-      if (slope != 0.0 && !known[i]) told = false;
+      if (slope != 0.0 && !known[i]) all_known = false;
     }
     TunedFigure figure{base[f].name, base[f].unit, base[f].value, std::nullopt};
-    if (told) figure.std_error = std::sqrt(std::max(0.0, gradient.dot(covariance * gradient)));
+    if (all_known) figure.std_error = std::sqrt(std::max(0.0, gradient.dot(covariance * gradient)));
     out.push_back(std::move(figure));
   }
   return out;

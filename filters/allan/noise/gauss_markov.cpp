@@ -59,9 +59,9 @@ Eigen::MatrixXd covariance_of(const SlowPart& part, double correlation) {
   Eigen::MatrixXd before = w, behind = Eigen::MatrixXd::Zero(n, w.cols());
   for (Eigen::Index i = 1; i < n; ++i) before.row(i) += level.decay * before.row(i - 1);
   for (Eigen::Index i = n - 1; i-- > 0;) behind.row(i) = level.decay * (behind.row(i + 1) + w.row(i + 1));
-  const Eigen::MatrixXd beside = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
+  const Eigen::MatrixXd adjacent = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
   return level.far * w.transpose() * (before + behind) + (level.zero - level.far) * w.transpose() * w +
-         (level.next - level.far * level.decay) * (beside + beside.transpose());
+         (level.next - level.far * level.decay) * (adjacent + adjacent.transpose());
 }
 
 // One correlation time and the most likely variances there.

@@ -62,9 +62,9 @@ NoiseLikelihood::NoiseLikelihood(const NoiseSpectrum& spectrum, Ramp ramp) : ram
     Part part{slow.value, slow.ramp, slow.covariance};
     if (ramp == Ramp::kProjected && !slow.ramp.isZero()) {
       // Orthonormal basis of the space orthogonal to the ramp.
-      const Eigen::MatrixXd beside = Projection::beside(slow.ramp);
-      part.value = beside.transpose() * slow.value;
-      for (Eigen::MatrixXd& c : part.covariance) c = (beside.transpose() * c * beside).eval();
+      const Eigen::MatrixXd complement = Projection::complement(slow.ramp);
+      part.value = complement.transpose() * slow.value;
+      for (Eigen::MatrixXd& c : part.covariance) c = (complement.transpose() * c * complement).eval();
     }
     parts_.push_back(std::move(part));
   }

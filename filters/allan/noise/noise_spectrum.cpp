@@ -168,8 +168,8 @@ Eigen::MatrixXd projected(const Eigen::MatrixXd& w, std::span<const TermVariance
   // Covariances of quantisation and white noise are zero beyond lag 1. That of a random walk is −|lag|/2 from
   // lag 2 on, plus a constant that zero-mean columns cancel.
   const double walk = term == kK ? 1.0 : 0.0;
-  const Eigen::MatrixXd beside = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
-  Eigen::MatrixXd out = at(0) * w.transpose() * w + (at(1) + 0.5 * walk) * (beside + beside.transpose());
+  const Eigen::MatrixXd adjacent = w.topRows(n - 1).transpose() * w.bottomRows(n - 1);
+  Eigen::MatrixXd out = at(0) * w.transpose() * w + (at(1) + 0.5 * walk) * (adjacent + adjacent.transpose());
   if (term == kK) {
     Eigen::MatrixXd sums = w;
     for (Eigen::Index i = 1; i < n; ++i) sums.row(i) += sums.row(i - 1);

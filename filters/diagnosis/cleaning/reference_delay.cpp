@@ -35,7 +35,7 @@ constexpr double kCertainDelay = 25.0;  // required gain of twice the log-likeli
 constexpr std::size_t kPowers = 4;      // powers of the reference: constant to cubic
 using Series = std::vector<double>;
 
-constexpr double kTold = 0.1;  // in steps; sufficient accuracy of the delay
+constexpr double kAccuracy = 0.1;  // in steps; sufficient accuracy of the delay
 
 struct Pair {
   Series rate, reference;
@@ -146,7 +146,7 @@ std::vector<Series> whitened(const std::vector<Series>& columns, const Autoregre
 }
 
 // Autoregression of the noise that remains with the reference in `columns`, whose last is the slope.
-Autoregression noise_beside(const std::vector<Series>& columns) {
+Autoregression noise_about(const std::vector<Series>& columns) {
   const std::vector<Series> without(columns.begin(), columns.end() - 1);
   const SeriesFit plain = least_squares(without, complete_rows(without));
   Series left = columns.front();
@@ -181,7 +181,7 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<Series> columns = columns_of(pair, scale, delay.steps, true);
     if (columns.front().size() < kLeast) return std::nullopt;
-    const Autoregression noise = noise_beside(columns);
+    const Autoregression noise = noise_about(columns);
     const std::vector<Series> white = whitened(columns, noise);
     std::vector<std::uint8_t> rows = complete_rows(white);
     const SeriesFit fit = least_squares(white, rows);
@@ -220,7 +220,7 @@ void settle_without_jumps(Pair& pair, Delay& delay) {
   Pair smooth = pair;
   smooth.reference = pair.without_jumps;
   const std::optional<Delay> between = refined(smooth, delay.steps);
-  if (!between || !(between->error < kTold) || std::abs(between->steps - delay.steps) > 2.0) return;
+  if (!between || !(between->error < kAccuracy) || std::abs(between->steps - delay.steps) > 2.0) return;
   delay.steps = between->steps;
   delay.error = between->error;
   pair.reference = pair.without_jumps;
@@ -277,7 +277,7 @@ constexpr double kRoughness = 1.0;
 constexpr std::size_t kEnough = 50000;  // steps for the noise estimate
 
 // Noise of one sample, from the median difference of neighbours.
-double noise_beside_reference(const Samples& reference, std::span<const double> rate) {
+double noise_about_reference(const Samples& reference, std::span<const double> rate) {
   std::vector<double> steps;
   const std::size_t stride = std::max<std::size_t>(1, rate.size() / kEnough);
   for (std::size_t i = 1; i < rate.size(); i += stride) {
@@ -292,7 +292,7 @@ double noise_beside_reference(const Samples& reference, std::span<const double> 
 
 std::size_t leave_out_jumps(Samples& reference, std::span<const double> rate) {
   const std::size_t n = reference.size();
-  const double noise = noise_beside_reference(reference, rate);
+  const double noise = noise_about_reference(reference, rate);
   if (n < 5 || !(noise > 0.0)) return 0;
   std::vector<std::uint8_t> out(n, 0);
   const Samples& x = reference;

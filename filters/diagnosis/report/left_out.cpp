@@ -38,7 +38,7 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
   return words + ", so that is no effect of this channel but of something that ran with it, dropped";
 }
 
-std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t captures) {
+std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t captures) {
   const auto traced = [](const FoundEffect& found) { return !found.effect.channel.empty(); };
   if (diagnosis.unexplained.fraction <= kMuch ||
       std::none_of(diagnosis.effects.begin(), diagnosis.effects.end(), traced))

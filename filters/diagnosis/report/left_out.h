@@ -21,7 +21,7 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
 
 // Warns that a channel may only be correlated with the cause, if much stays unexplained. Empty if little does
 // or no effect uses a channel. captures: number diagnosed together.
-std::string unexplained_beside_claims(const Diagnosis& diagnosis, std::size_t captures);
+std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t captures);
 
 // Sentence on the channels that cannot be used: not in every record, without a value, or constant; empty if
 // there is none. ramps: channels already used by a ramp.

@@ -22,10 +22,10 @@ bool may_have_a_loop(const BlockData& data, std::size_t channel) {
 }
 
 // Most likely loop in place of the channel's effects; the noise fit starts at the model's.
-std::pair<Hysteresis, NoiseFit> likeliest_loop(const BlockData& data, const std::vector<Candidate>& beside,
+std::pair<Hysteresis, NoiseFit> likeliest_loop(const BlockData& data, const std::vector<Candidate>& others,
                                                std::size_t channel, const NoiseShape& shape) {
   const FineChannel& source = data.channels[channel];
-  const Columns base = design(data, beside);
+  const Columns base = design(data, others);
   Columns columns(base.rows(), base.cols() + 1);
   columns.leftCols(base.cols()) = base;
   Hysteresis loop;
@@ -81,12 +81,12 @@ std::optional<Hysteresis> find_hysteresis(const BlockData& data, const std::vect
   const double tries = kProfiled * static_cast<double>(kShares.size() * data.channels.size());
   for (std::size_t c = 0; c < data.channels.size() && !data.grid.dwells; ++c) {
     if (!may_have_a_loop(data, c)) continue;
-    std::vector<Candidate> beside;
+    std::vector<Candidate> others;
     double saved = -kLoopParameters;
     bool bends = false;
     for (const Candidate& each : model) {
       if (each.channel != c || each.form == Form::kProduct) {
-        beside.push_back(each);
+        others.push_back(each);
         continue;
       }
       saved += each.searched() ? 2.0 : 1.0;
@@ -94,8 +94,8 @@ std::optional<Hysteresis> find_hysteresis(const BlockData& data, const std::vect
     }
     Candidate linear;
     linear.channel = c;
-    beside.push_back(linear);
-    auto [loop, with] = likeliest_loop(data, beside, c, noise.shape);
+    others.push_back(linear);
+    auto [loop, with] = likeliest_loop(data, others, c, noise.shape);
     loop.likelihood_ratio = 2.0 * (with.log_likelihood - noise.log_likelihood);
     const bool certain = tail(loop.likelihood_ratio, 2) * tries <= kCertainLoop * significance;
     if (!certain && !(bends && loop.likelihood_ratio + each_parameter * saved > 0.0)) continue;

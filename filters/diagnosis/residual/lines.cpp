@@ -19,7 +19,7 @@ using Complex = std::complex<double>;
 
 // Noise power next to a peak. On a resonance it is far above that of the wider band, so ripples of the
 // resonance are not mistaken for lines.
-double noise_beside(std::span<const double> power, std::size_t k) {
+double noise_near(std::span<const double> power, std::size_t k) {
   constexpr std::size_t kNear = 4;
   constexpr std::size_t kFar = 40;
   std::vector<double> window;
@@ -120,14 +120,14 @@ SpectralLine refine(const Search& in, std::size_t bin, double floor) {
 }
 
 // Fewest bins between two peaks.
-std::size_t beside(std::size_t k) { return std::max<std::size_t>(6, k / 100); }
+std::size_t least_distance(std::size_t k) { return std::max<std::size_t>(6, k / 100); }
 
 // peaks: strongest first.
-std::vector<std::size_t> not_beside(const std::vector<std::size_t>& peaks) {
+std::vector<std::size_t> not_near(const std::vector<std::size_t>& peaks) {
   std::vector<std::size_t> taken;
   for (const std::size_t k : peaks)
     if (std::none_of(taken.begin(), taken.end(),
-                     [&](std::size_t t) { return (t > k ? t - k : k - t) < beside(k); }))
+                     [&](std::size_t t) { return (t > k ? t - k : k - t) < least_distance(k); }))
       taken.push_back(k);
   return taken;
 }
@@ -143,13 +143,13 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
   const std::vector<double>& power = spectrum.power;
   const NoiseFloor floor(power);
   const Search in{error, start_s, period_s, significance, spectrum};
-  for (const std::size_t k : not_beside(peaks_of(spectrum, floor, significance))) {
+  for (const std::size_t k : not_near(peaks_of(spectrum, floor, significance))) {
     if (lines.size() >= most) break;
-    SpectralLine line = refine(in, k, std::max(floor[k], noise_beside(power, k)));
+    SpectralLine line = refine(in, k, std::max(floor[k], noise_near(power, k)));
     if (line.p_value > significance) continue;
     std::size_t first = k;
     std::size_t last = k;
-    const std::size_t close = beside(k);
+    const std::size_t close = least_distance(k);
     while (first > 1 && k - first < close && power[first - 1] > 0.1 * power[k]) --first;
     while (last + 1 < power.size() && last - k < close && power[last + 1] > 0.1 * power[k]) ++last;
     line.width_hz = static_cast<double>(last - first + 1) / (static_cast<double>(spectrum.length) * period_s);

@@ -78,17 +78,17 @@ class EffectSearch {
     return ratio;
   }
 
-  // True if `candidate` forms one law with an effect in `beside`. Then it needs no separate proof, only the
+  // True if `candidate` forms one law with an effect in `others`. Then it needs no separate proof, only the
   // gain that the Bayesian information criterion requires of one coefficient.
-  [[nodiscard]] bool completes_a_law(const Candidate& candidate, std::span<const Candidate> beside) const {
-    if (std::any_of(beside.begin(), beside.end(),
+  [[nodiscard]] bool completes_a_law(const Candidate& candidate, std::span<const Candidate> others) const {
+    if (std::any_of(others.begin(), others.end(),
                     [&](const Candidate& each) { return each.swings_with(candidate); }))
       return true;
     return std::any_of(laws_.begin(), laws_.end(), [&](const NaturalPair& law) {
       const auto other = candidate.same_shape(law.second)  ? &law.first
                          : candidate.same_shape(law.first) ? &law.second
                                                            : nullptr;
-      return other && has_shape(beside, *other);
+      return other && has_shape(others, *other);
     });
   }
 

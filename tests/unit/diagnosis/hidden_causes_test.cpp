@@ -123,13 +123,13 @@ TEST(HiddenCauses, AClaimBesideMuchThatIsUnexplainedAsksForASecondCapture) {
   Diagnosis diagnosis;
   diagnosis.effects.resize(1);
   diagnosis.unexplained.fraction = 0.51;
-  EXPECT_EQ(unexplained_beside_claims(diagnosis, 1), "") << "a line is no channel's";
+  EXPECT_EQ(unexplained_despite_claims(diagnosis, 1), "") << "a line is no channel's";
   diagnosis.effects[0].effect.channel = "temperature_degC";
-  EXPECT_NE(unexplained_beside_claims(diagnosis, 1).find("51 %"), std::string::npos);
-  EXPECT_NE(unexplained_beside_claims(diagnosis, 1).find("second capture"), std::string::npos);
-  EXPECT_EQ(unexplained_beside_claims(diagnosis, 2).find("second capture"), std::string::npos);
+  EXPECT_NE(unexplained_despite_claims(diagnosis, 1).find("51 %"), std::string::npos);
+  EXPECT_NE(unexplained_despite_claims(diagnosis, 1).find("second capture"), std::string::npos);
+  EXPECT_EQ(unexplained_despite_claims(diagnosis, 2).find("second capture"), std::string::npos);
   diagnosis.unexplained.fraction = 0.12;
-  EXPECT_EQ(unexplained_beside_claims(diagnosis, 1), "");
+  EXPECT_EQ(unexplained_despite_claims(diagnosis, 1), "");
 }
 
 }  // namespace

@@ -105,12 +105,12 @@ TEST(Measure, InWhiteNoiseItIsLeastSquares) {
     const Sensor sensor(seed);
     EffectsToMeasure wanted;
     wanted.together = {linear_in("temperature_degC")};
-    wanted.beside = {linear_in("supply_V")};
+    wanted.others = {linear_in("supply_V")};
     const MeasuredEffects found = measure_effects({sensor.record()}, wanted, "");
     const LeastSquares both = least_squares(sensor, {&sensor.temperature, &sensor.supply});
     const LeastSquares without = least_squares(sensor, {&sensor.supply});
     ASSERT_EQ(found.together.size(), 1U);
-    ASSERT_EQ(found.beside.size(), 1U);
+    ASSERT_EQ(found.others.size(), 1U);
     ASSERT_TRUE(found.together[0].not_measured.empty());
     const ModelParameter& coefficient = found.together[0].effect.parameters.front();
     const double error = std::sqrt(both.covariance(1, 1));
@@ -118,7 +118,7 @@ TEST(Measure, InWhiteNoiseItIsLeastSquares) {
     // The noise's slow part is not known to be zero, so the error is a little more.
     EXPECT_GT(coefficient.std_error, 0.98 * error);
     EXPECT_LT(coefficient.std_error, 1.3 * error);
-    EXPECT_NEAR(found.beside[0].parameters.front().value, both.values[2],
+    EXPECT_NEAR(found.others[0].parameters.front().value, both.values[2],
                 0.15 * std::sqrt(both.covariance(2, 2)));
     const double ratio = static_cast<double>(kSamples) * std::log(without.square / both.square);
     EXPECT_LT(found.together[0].likelihood_ratio, 1.02 * ratio);
@@ -151,7 +151,7 @@ TEST(Measure, AProductIsMeasuredWithItsOwnLag) {
   effect.parameters.push_back({std::string(time_constant_name(effect)), kLag_s, 0.0, "s"});
   EffectsToMeasure wanted;
   wanted.together = {effect};
-  wanted.beside = {linear_in("temperature_degC"), linear_in("supply_V"), linear_in("reference_rate_radps")};
+  wanted.others = {linear_in("temperature_degC"), linear_in("supply_V"), linear_in("reference_rate_radps")};
   const MeasuredEffects found = measure_effects({record}, wanted, "");
   ASSERT_TRUE(found.together[0].not_measured.empty()) << found.together[0].not_measured;
   const ModelParameter& coefficient = found.together[0].effect.parameters.front();
@@ -166,7 +166,7 @@ TEST(Measure, AnEffectThatIsNotThereIsMeasuredAsNone) {
     for (std::size_t i = 0; i < kSamples; ++i) sensor.rate[i] -= kPerDegree * (sensor.temperature[i] - 25.0);
     EffectsToMeasure wanted;
     wanted.together = {linear_in("temperature_degC")};
-    wanted.beside = {linear_in("supply_V")};
+    wanted.others = {linear_in("supply_V")};
     const MeasuredEffects found = measure_effects({sensor.record()}, wanted, "");
     const ModelParameter& coefficient = found.together[0].effect.parameters.front();
     far += std::abs(coefficient.value) > 2.5758 * coefficient.std_error ? 1 : 0;
@@ -178,12 +178,12 @@ TEST(Measure, WhatIsFittedAlongKeepsItsName) {
   const Sensor sensor(6);
   EffectsToMeasure wanted;
   wanted.together = {linear_in("temperature_degC")};
-  wanted.beside = {linear_in("supply_V")};
-  wanted.beside[0].form = "earth_rate";
+  wanted.others = {linear_in("supply_V")};
+  wanted.others[0].form = "earth_rate";
   const MeasuredEffects found = measure_effects({sensor.record()}, wanted, "");
-  ASSERT_EQ(found.beside.size(), 1U);
-  EXPECT_EQ(found.beside[0].form, "earth_rate");
-  EXPECT_FALSE(found.beside[0].shown_only);
+  ASSERT_EQ(found.others.size(), 1U);
+  EXPECT_EQ(found.others[0].form, "earth_rate");
+  EXPECT_FALSE(found.others[0].shown_only);
 }
 
 // Online the measured rate stands for the true one, and it is the true one plus the bias.
@@ -199,14 +199,14 @@ TEST(Measure, WhatDependsOnTheRateCountsFromTheBias) {
   record.reference_radps = truth;
   EffectsToMeasure wanted;
   wanted.together = {linear_in("reference_rate_radps")};
-  wanted.beside = {linear_in("temperature_degC"), linear_in("supply_V")};
+  wanted.others = {linear_in("temperature_degC"), linear_in("supply_V")};
   const MeasuredEffects found = measure_effects({record}, wanted, "");
   ASSERT_TRUE(found.together[0].not_measured.empty());
   const Effect& effect = found.together[0].effect;
   EXPECT_NEAR(effect.parameters.front().value, kScale, 1e-4 * kScale);
   EXPECT_NEAR(effect.reference, kBias, 1e-3 * kBias);  // its error: some 1e-6 / sqrt(3000)
-  ASSERT_EQ(found.beside.size(), 2U);
-  EXPECT_EQ(found.beside[0].reference, 25.0);
+  ASSERT_EQ(found.others.size(), 2U);
+  EXPECT_EQ(found.others[0].reference, 25.0);
 }
 
 TEST(Measure, TheRightOneOfTwoExplainsMore) {

@@ -43,10 +43,10 @@ TEST(Projection, TakesOutAMeanAndALine) {
 
 TEST(Projection, WhatIsBesideAColumnIsOrthonormalAndWhole) {
   const Eigen::Vector4d column(1.0, -2.0, 0.0, 5.0);
-  const Eigen::MatrixXd beside = Projection::beside(column);
-  ASSERT_EQ(beside.cols(), 3);
-  EXPECT_LT((beside.transpose() * beside - Eigen::Matrix3d::Identity()).norm(), 1e-14);
-  EXPECT_LT((beside.transpose() * column).norm(), 1e-14);
+  const Eigen::MatrixXd complement = Projection::complement(column);
+  ASSERT_EQ(complement.cols(), 3);
+  EXPECT_LT((complement.transpose() * complement - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+  EXPECT_LT((complement.transpose() * column).norm(), 1e-14);
 }
 
 }  // namespace

@@ -152,16 +152,16 @@ class FleetRun {
     const auto ended = run_missing(
         "diagnosing", [&] { return undiagnosed(); }, said_why);
     diagnosed_ = gather_diagnosed(results_, manifest_, options_, population_.failed);
-    std::set<std::size_t> told(diagnosed_.gyros.begin(), diagnosed_.gyros.end());
-    for (const Population::Failure& each : population_.failed) told.insert(each.gyro);
+    std::set<std::size_t> known(diagnosed_.gyros.begin(), diagnosed_.gyros.end());
+    for (const Population::Failure& each : population_.failed) known.insert(each.gyro);
     for (std::size_t gyro = 0; gyro < manifest_.gyros.size(); ++gyro) {
-      if (told.count(gyro) > 0) continue;
+      if (known.count(gyro) > 0) continue;
       const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
       const auto how = ended.find(gyro);
       const auto gone = absent_.find(gyro);
       std::string why = gone != absent_.end()  ? gone->second
                         : done && done->failed ? *done->failed
-                        : how != ended.end()   ? how->second + results_.told_in_log(gyro)
+                        : how != ended.end()   ? how->second + results_.see_log(gyro)
                                                : "its captures change while they are read";
       population_.failed.push_back({gyro, std::move(why)});
     }
@@ -214,7 +214,7 @@ class FleetRun {
     auto measured = gather_measured(results_, manifest_, options_, diagnosed_, type_, failed);
     for (Population::Failure& each : failed)
       if (const auto how = ended.find(each.gyro); how != ended.end())
-        each.why += ": " + how->second + results_.told_in_log(each.gyro);
+        each.why += ": " + how->second + results_.see_log(each.gyro);
     return measured;
   }
 

@@ -66,7 +66,7 @@ EffectsToMeasure effects_of_axis(const TypeToMeasure& type, const Model& model, 
   for (const Effect& effect : model.effects) {
     const bool of_the_type = std::any_of(type.effects.begin(), type.effects.end(),
                                          [&](const TypeCandidate& each) { return is_of(each, effect); });
-    if (effect.axis == axis && !of_the_type) wanted.beside.push_back(effect);
+    if (effect.axis == axis && !of_the_type) wanted.others.push_back(effect);
   }
   return wanted;
 }
@@ -100,7 +100,7 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
     });
     for (std::size_t i = 0; i < numbers.size(); ++i)
       axis.together.push_back({std::move(found.together[i]), numbers[i]});
-    axis.beside = std::move(found.beside);
+    axis.others = std::move(found.others);
     axis.covariance = std::move(found.covariance);
     axis.ranges = std::move(found.ranges);
     refuse_without_error(axis);

@@ -130,7 +130,7 @@ template <typename Io, Is<AxisMeasured> T>
 void fields(Io& io, T& of) {
   io("axis", of.axis);
   io("together", of.together);
-  io("beside", of.beside);
+  io("beside", of.others);
   io("covariance", of.covariance);
   io("ranges", of.ranges);
 }
@@ -141,7 +141,7 @@ std::string Results::path(const std::string& file) const { return (fs::path(fold
 
 std::string Results::log(std::size_t gyro) const { return path("log/" + std::to_string(gyro) + ".txt"); }
 
-std::string Results::told_in_log(std::size_t gyro) const {
+std::string Results::see_log(std::size_t gyro) const {
   const std::string file = log(gyro);
   std::error_code none;
   if (const auto bytes = fs::file_size(file, none); !none && bytes > 0) return ", see " + file;

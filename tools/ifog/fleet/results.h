@@ -44,7 +44,7 @@ struct EffectOfType : MeasuredEffect {
 struct AxisMeasured {
   std::string axis;
   std::vector<EffectOfType> together;  // those of this axis
-  std::vector<Effect> beside;
+  std::vector<Effect> others;
   std::vector<double> covariance;
   std::vector<ChannelRange> ranges;
 };
@@ -64,7 +64,7 @@ class Results {
   [[nodiscard]] std::string path(const std::string& file) const;
   [[nodiscard]] std::string log(std::size_t gyro) const;
   // Where it is to be read why a process of the gyro failed: `, see LOG`, or why nothing could be said there.
-  [[nodiscard]] std::string told_in_log(std::size_t gyro) const;
+  [[nodiscard]] std::string see_log(std::size_t gyro) const;
   // In the gyro's folder.
   [[nodiscard]] std::string path(const FleetGyro& gyro, const std::string& file) const;
   // Before anything of it is written.

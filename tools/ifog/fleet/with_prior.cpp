@@ -37,7 +37,7 @@ Fitted fit_with_prior(const AxisMeasured& axis, std::size_t gyro, std::vector<Ty
     of_type.push_back(found ? here : nullptr);
     all.push_back(axis.together[i].effect);
   }
-  all.insert(all.end(), axis.beside.begin(), axis.beside.end());
+  all.insert(all.end(), axis.others.begin(), axis.others.end());
   const auto size = static_cast<Eigen::Index>(all.size());
   JointEstimate own{Eigen::VectorXd(size), Eigen::MatrixXd(size, size)};
   for (Eigen::Index i = 0; i < size; ++i) {
@@ -66,7 +66,7 @@ bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effec
            other.with_form == effect.with_form && other.with_channel == effect.with_channel &&
            other.period == effect.period;
   };
-  if (std::any_of(axis.beside.begin(), axis.beside.end(), alike)) return true;
+  if (std::any_of(axis.others.begin(), axis.others.end(), alike)) return true;
   for (std::size_t i = 0; i < axis.together.size(); ++i)
     if (axis.together[i].not_measured.empty() && is_of(type.effects[axis.together[i].of_type], effect))
       return true;
