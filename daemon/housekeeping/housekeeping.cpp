@@ -76,15 +76,15 @@ Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
       for (const std::string& warning : sensors_.back()->parts.pipeline->reader().driver().warnings())
         sensors_.back()->log->warn("{}", warning);
     } catch (const std::exception& error) {
-      errors += (errors.empty() ? "" : "\n") + told_at(config_, sensor, error);
+      errors += (errors.empty() ? "" : "\n") + error_at(config_, sensor, error);
     }
   }
   if (!errors.empty()) throw ConfigError(errors);
   sources_ = std::make_unique<ChannelSources>(std::move(wanted), config_.lcm_url);
 }
 
-std::string Housekeeping::told_at(const Config& config, const SensorConfig& sensor,
-                                  const std::exception& error) {
+std::string Housekeeping::error_at(const Config& config, const SensorConfig& sensor,
+                                   const std::exception& error) {
   const auto* const keyed = dynamic_cast<const KeyError*>(&error);
   return config.file + ":" + std::to_string(keyed == nullptr ? sensor.line : sensor.line_of(keyed->key)) +
          ": sensor \"" + printable(sensor.name) + "\": " + error.what();

@@ -100,7 +100,7 @@ std::string Housekeeping::reload() {
     try {
       renewed.push_back(renew(*sensor, *found));
     } catch (const std::exception& error) {
-      errors.push_back(told_at(fresh, *found, error));
+      errors.push_back(error_at(fresh, *found, error));
     }
   }
   std::string refused;

@@ -114,16 +114,16 @@ void write_state_file(const std::string& path, std::string_view bytes) {
   struct stat there {};
   if (::fstatat(folder, place.name.c_str(), &there, AT_SYMLINK_NOFOLLOW) == 0 && !S_ISREG(there.st_mode))
     fail(path, "is no regular file, which is not written in a state folder");
-  const std::string beside = random_name(place.name);
-  const Fd file(::openat(folder, beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0664));
+  const std::string fresh = random_name(place.name);
+  const Fd file(::openat(folder, fresh.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, 0664));
   if (file < 0) fail(path, "cannot be written: " + reason());
   try {
     write_all(file, path, bytes);
     if (::fsync(file) != 0) fail(path, "cannot be written: " + reason());
-    if (::renameat(folder, beside.c_str(), folder, place.name.c_str()) != 0)
+    if (::renameat(folder, fresh.c_str(), folder, place.name.c_str()) != 0)
       fail(path, "cannot be put in place: " + reason());
   } catch (...) {
-    ::unlinkat(folder, beside.c_str(), 0);
+    ::unlinkat(folder, fresh.c_str(), 0);
     throw;
   }
   (void)::fsync(folder);

@@ -121,7 +121,7 @@ ifog_sample CaptureEncoder::next_sample() {
     elapsed_s_ += elapsed;
     const std::uint64_t modulus = d.sequence_modulus;
     const std::uint64_t shown = modulus == 0 ? 1 : (steps - 1) % modulus + 1;
-    told_s_ += static_cast<double>(shown) / rate_hz_;
+    encoded_s_ += static_cast<double>(shown) / rate_hz_;
   }
 
   sample_.arrival_ns =

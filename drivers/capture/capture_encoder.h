@@ -51,7 +51,7 @@ class CaptureEncoder {
   // Time in s that a reader of the frames cannot recover: without a clock, time is the counter / nominal
   // rate, and complete rollovers are invisible. Positive: the reader's time is too short. 0 if the format, or
   // a log of its frames, carries times.
-  [[nodiscard]] double time_lost_s() const { return timed_ ? 0.0 : elapsed_s_ - told_s_; }
+  [[nodiscard]] double time_lost_s() const { return timed_ ? 0.0 : elapsed_s_ - encoded_s_; }
   [[nodiscard]] double elapsed_s() const { return elapsed_s_; }  // from the first row to the last
   [[nodiscard]] double rate_hz() const { return rate_hz_; }      // rate assumed by a reader
   // Rows whose rate reaches the driver's full scale. They are sent, but a reader treats them as missing.
@@ -75,8 +75,8 @@ class CaptureEncoder {
     std::size_t at = 0, before = 0;  // index in this piece; rows in earlier pieces
     std::size_t dropped = 0, at_full_scale = 0;
   } rows_;
-  double before_s_ = 0.0;                  // time of the previous row
-  double elapsed_s_ = 0.0, told_s_ = 0.0;  // since the first row, by the capture and by the format
+  double before_s_ = 0.0;                     // time of the previous row
+  double elapsed_s_ = 0.0, encoded_s_ = 0.0;  // since the first row, by the capture and by the format
   bool timed_ = false;
   std::uint64_t count_ = 0;
   double rate_hz_ = 0.0;

@@ -275,7 +275,7 @@ std::optional<UnitConversion> convert_unit(std::string_view from, std::string_vi
   return std::nullopt;
 }
 
-std::string units_beside(std::string_view wanted) {
+std::string other_units(std::string_view wanted) {
   const std::string name = plain(wanted);
   for (const Quantity& quantity : kQuantities)
     if (find_in(quantity, name) != nullptr) return std::string(quantity.shown);

@@ -29,6 +29,6 @@ struct UnitConversion {
 // unknown units.
 std::optional<UnitConversion> convert_unit(std::string_view from, std::string_view wanted);
 // Units of the quantity of `wanted`, for messages: "degC, degF, K"; "" if unknown.
-std::string units_beside(std::string_view wanted);
+std::string other_units(std::string_view wanted);
 
 }  // namespace ifog

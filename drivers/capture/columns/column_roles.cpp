@@ -159,7 +159,7 @@ std::string capture_name(const RateCandidate& column) {
 
 // temperature_degC for "Temp (degF)": first unit of the quantity; "" for an unknown unit.
 std::string channel_name(const Words& words, const std::string& unit) {
-  const std::string known = units_beside(unit);
+  const std::string known = other_units(unit);
   if (known.empty() || words.text.empty() || time_unit(unit) || angle_unit(unit, true, false)) return "";
   return words.text + "_" + known.substr(0, known.find(','));
 }

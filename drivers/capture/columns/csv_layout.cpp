@@ -82,7 +82,7 @@ CsvColumn CsvColumn::parse(const std::string& text) {
   if (out.name == "time_s") refuse(text, "another name; --time says which column is the time");
   if (wanted.empty() || out.header.empty()) refuse(text, form);
   if (out.unit.empty() || out.angle_rad() || convert_unit(out.unit, wanted)) return out;
-  const std::string known = units_beside(wanted);
+  const std::string known = other_units(wanted);
   refuse(
       text,
       known.empty()
@@ -147,7 +147,7 @@ std::string unit_in_name(const std::string& name) {
                        })
                ? last
                : "";
-  return angle_unit(last, true, false) || time_unit(last) || !units_beside(last).empty() ? last : "";
+  return angle_unit(last, true, false) || time_unit(last) || !other_units(last).empty() ? last : "";
 }
 
 std::string other_unit(const CsvColumn& column) {
@@ -222,7 +222,7 @@ std::string option_for(const CsvTime& time) {
 
 bool is_unit(const std::string& text) {
   return angle_unit(text, true, false) || angle_unit(text, false, false) || time_unit(text) ||
-         !units_beside(text).empty();
+         !other_units(text).empty();
 }
 
 std::string without_brackets(const std::string& unit) {

@@ -184,7 +184,7 @@ std::size_t InputFile::read_what_is_there(char* to, std::size_t most) {
   std::memcpy(to, held_.data() + taken_, ready);
   taken_ += ready;
   const std::size_t n = ready + unpack(to + ready, most - ready);
-  if (heard_) heard_({to, n});
+  if (observer_) observer_({to, n});
   return n;
 }
 

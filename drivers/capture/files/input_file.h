@@ -47,7 +47,7 @@ class InputFile {
   // Excludes bytes that were rows of numbers from that limit: their text is not kept, and constant columns
   // pack well.
   void were_rows(std::size_t bytes) { rows_ += bytes; }
-  // Reads to the end for hear()'s function, after a library has read the file by its name.
+  // Reads to the end for the observer, after a library has read the file by its name.
   void read_to_the_end();
   // The rest of the file.
   std::string bytes();
@@ -60,9 +60,9 @@ class InputFile {
     if (report_) report_(done, total);
   }
 
-  // From now on calls `heard` with all bytes that read() and bytes() return.
-  using Heard = std::function<void(std::string_view bytes)>;
-  void hear(Heard heard) { heard_ = std::move(heard); }
+  // From now on calls `observer` with all bytes that read() and bytes() return.
+  using Observer = std::function<void(std::string_view bytes)>;
+  void observe(Observer observer) { observer_ = std::move(observer); }
 
   // True if path() can be opened again for the same bytes: a regular file that is not packed. For libraries
   // that open files by name.
@@ -84,7 +84,7 @@ class InputFile {
   std::size_t taken_ = 0;
   bool reopens_ = false, ends_early_ = false;
   Report report_;
-  Heard heard_;
+  Observer observer_;
   std::size_t total_ = 0, behind_ = 0;              // bytes of all files, and of those read completely
   std::size_t unpacked_ = 0, rows_ = 0, most_ = 0;  // most_ 0: no limit
 };

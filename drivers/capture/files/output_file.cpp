@@ -141,13 +141,13 @@ void OutputFile::open() {
   // Renaming over a file does not need write permission for it.
   if (there && ::access(to.file.c_str(), W_OK) != 0) fail("cannot write");
   target_ = to.file;
-  open_beside();
+  open_temporary();
   if (!there) return;
   if (info.st_uid != geteuid() || info.st_gid != getegid()) (void)!fchown(fd_, info.st_uid, info.st_gid);
   if (fchmod(fd_, info.st_mode & 0777U) != 0) fail("cannot keep the mode of");
 }
 
-void OutputFile::open_beside() {
+void OutputFile::open_temporary() {
   const fs::path folder = fs::path(target_).parent_path();
   // An unnamed file disappears if the program is killed or power fails.
   const bool can_name = ::access("/proc/self/fd", X_OK) == 0;
@@ -156,10 +156,10 @@ void OutputFile::open_beside() {
   const bool unknown =
       !can_name || errno == EOPNOTSUPP || errno == EISDIR || errno == ENOENT || errno == EINVAL;
   if (!unknown) fail("cannot create");
-  beside_ = folder / passing_name();
-  fd_ = ::open(beside_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+  temporary_ = folder / passing_name();
+  fd_ = ::open(temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (fd_ < 0) {
-    beside_.clear();
+    temporary_.clear();
     fail("cannot create");
   }
 }
@@ -167,7 +167,7 @@ void OutputFile::open_beside() {
 OutputFile::~OutputFile() {
   if (packed_ != nullptr) gzclose(packed_);
   if (fd_ >= 0) ::close(fd_);
-  if (!beside_.empty()) ::unlink(beside_.c_str());
+  if (!temporary_.empty()) ::unlink(temporary_.c_str());
 }
 
 void OutputFile::fail(const char* what) const {
@@ -200,18 +200,18 @@ void OutputFile::take_the_name() {
   sigfillset(&all);
   pthread_sigmask(SIG_SETMASK, &all, &before);
   bool done = true;
-  if (beside_.empty()) {
+  if (temporary_.empty()) {
     const fs::path passing = fs::path(target_).parent_path() / passing_name();
     const std::string own = "/proc/self/fd/" + std::to_string(fd_);
     done = ::linkat(AT_FDCWD, own.c_str(), AT_FDCWD, passing.c_str(), AT_SYMLINK_FOLLOW) == 0;
-    if (done) beside_ = passing;
+    if (done) temporary_ = passing;
   }
-  done = done && ::rename(beside_.c_str(), target_.c_str()) == 0;
+  done = done && ::rename(temporary_.c_str(), target_.c_str()) == 0;
   const int error = errno;
   pthread_sigmask(SIG_SETMASK, &before, nullptr);
   errno = error;
   if (!done) fail("cannot rename into place");
-  beside_.clear();
+  temporary_.clear();
 }
 
 void OutputFile::finish() {

@@ -36,12 +36,12 @@ class OutputFile {
  private:
   [[noreturn]] void fail(const char* what) const;
   void open();
-  void open_beside();
+  void open_temporary();
   void take_the_name();
 
-  std::string path_;    // as given, for messages
-  std::string target_;  // regular file; empty: written in place
-  std::string beside_;  // temporary name until finish(), if unnamed files are not supported
+  std::string path_;       // as given, for messages
+  std::string target_;     // regular file; empty: written in place
+  std::string temporary_;  // temporary name until finish(), if unnamed files are not supported
   int fd_ = -1;
   gzFile_s* packed_ = nullptr;  // null: not packed
 };

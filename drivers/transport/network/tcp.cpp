@@ -56,7 +56,7 @@ class TcpTransport final : public Transport {
   std::int64_t limit_ns_ = 0;  // deadline of the present attempt
   ServerWords words_;
   bool turned_away_ = false;  // the last connection sent a message and was closed
-  bool telnet_told_ = false;
+  bool telnet_reported_ = false;
   KernelStamps stamps_;
   ControlRoom control_{};
   std::array<std::uint8_t, 16384> buffer_{};
@@ -180,7 +180,7 @@ Delivery TcpTransport::receive(std::int64_t until_ns) noexcept {
       delivery.arrival_ns = stamps_.on_arrival_clock(said.arrival_ns);
     delivery.bytes = std::span<const std::uint8_t>(buffer_).first(static_cast<std::size_t>(got.n));
     words_.came(delivery.bytes);
-    if (words_.telnet() && !std::exchange(telnet_told_, true))
+    if (words_.telnet() && !std::exchange(telnet_reported_, true))
       report("the server speaks telnet, which doubles every byte FF: set its port to raw", 0);
     return delivery;
   }

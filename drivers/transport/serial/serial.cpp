@@ -56,7 +56,7 @@ class SerialTransport final : public Transport {
   std::unique_ptr<SerialPort> port_;
   std::optional<SetUpDialogue> dialogue_;  // while it runs
   std::int64_t answer_by_ns_ = 0;          // CLOCK_MONOTONIC; 0: the line is not sent yet
-  std::int64_t heard_ns_ = 0;              // last byte, CLOCK_MONOTONIC
+  std::int64_t received_ns_ = 0;           // last byte, CLOCK_MONOTONIC
   bool tried_ = false;
   LineErrors errors_;
   bool errors_known_ = false, blocks_ = false;
@@ -77,7 +77,7 @@ bool SerialTransport::connect(std::string& warning, std::int64_t until_ns) {
   }
   dialogue_.reset();
   send(opening());
-  heard_ns_ = monotonic_ns();
+  received_ns_ = monotonic_ns();
   blocks_ = wait_for_bytes(port_->fd()) && StoppableWait::let_block(port_->fd());
   errors_known_ = port_->errors(errors_);
   next_errors_ns_ = arrival_clock_ns() + kErrorPeriod_ns;
@@ -158,8 +158,8 @@ Delivery SerialTransport::receive(std::int64_t until_ns) noexcept {
   }
   if (!settings_.set_up.empty()) {
     const std::int64_t now_ns = monotonic_ns();
-    if (got.n > 0) heard_ns_ = now_ns;
-    if (now_ns - heard_ns_ > kSilentLimit_ns) {
+    if (got.n > 0) received_ns_ = now_ns;
+    if (now_ns - received_ns_ > kSilentLimit_ns) {
       port_.reset();
       lost(ETIMEDOUT);
       return {};
