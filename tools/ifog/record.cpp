@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog record: what the daemon publishes, from LCM into flight recordings on this computer, which every
-// command reads.
+// ifog record: writes the daemon's LCM messages into flight recordings, which every command reads.
 #include <poll.h>
 
 #include <cstdint>
@@ -26,7 +25,7 @@ namespace {
 
 struct RecordOptions {
   std::string folder, sensor, url = "udpm://239.255.76.67:7667?ttl=0";
-  std::vector<std::string> channels;  // others
+  std::vector<std::string> channels;  // further ones
   double seconds = 0.0;               // 0: until interrupted
   double bytes = 1e9, days = 30.0, file_bytes = 16e6;
 };
@@ -40,7 +39,7 @@ class LcmRecorder {
         listener_(options.url, [this](const lcm_recv_buf_t& message,
                                       const std::string& channel) { take(message, channel); }),
         messages_(make_flight_folder(options.folder), limits(options), header(options)) {
-    // Before listening: messages that arrive until then would be another recorder's.
+    // Before listening, because until then another recorder may own the folder.
     messages_.open(arrival_clock_ns(), realtime_ns());
     listener_.listen_to_sensor(options.sensor);
     for (const std::string& channel : options.channels) listener_.listen_to(channel);
@@ -77,7 +76,7 @@ class LcmRecorder {
   bool troubled_ = false;
 };
 
-// Once when it begins, once when it is over.
+// Reports a disk error once, and its end once.
 void LcmRecorder::tell_trouble() {
   const int error = messages_.archive().error();
   if ((error != 0) == troubled_) return;
@@ -93,7 +92,7 @@ void LcmRecorder::tell_trouble() {
 void LcmRecorder::tell_books() const {
   const MessageArchive::Books books = messages_.books();
   say("%s: %llu messages, %llu bytes written, %llu lost here, %llu lost on LCM\n", options_.folder.c_str(),
-      static_cast<unsigned long long>(books.heard),
+      static_cast<unsigned long long>(books.received),
       static_cast<unsigned long long>(messages_.archive().bytes_written()),
       static_cast<unsigned long long>(books.lost_here), static_cast<unsigned long long>(books.lost_on_way));
   if (!books.two_publishers.empty())
@@ -101,11 +100,11 @@ void LcmRecorder::tell_books() const {
         "%s: two publishers sent on %s (two daemons, or a log played at the same time): their messages "
         "are mixed\n",
         options_.folder.c_str(), books.two_publishers.c_str());
-  if (books.began_anew > 0)
+  if (books.restarts > 0)
     warn(
         "%s: %llu times a message's seq was beyond what its sensor can have counted: treated as a new "
         "count\n",
-        options_.folder.c_str(), static_cast<unsigned long long>(books.began_anew));
+        options_.folder.c_str(), static_cast<unsigned long long>(books.restarts));
 }
 
 void LcmRecorder::run() {
@@ -120,7 +119,7 @@ void LcmRecorder::run() {
   }
   messages_.close(arrival_clock_ns(), realtime_ns());
   tell_books();
-  if (messages_.books().heard == 0) {
+  if (messages_.books().received == 0) {
     warn("ifog record: nothing heard on %s\n", printable(options_.url).c_str());
     throw Failed("nothing heard");
   }

@@ -58,8 +58,8 @@ TEST(EpochTimes, ArePartedByWhatTheySay) {
   set(part.to, "1700000001.5");
   const CaptureView inside = capture.part(part, "a.csv");
   ASSERT_EQ(inside.size(), 2U);
-  EXPECT_EQ(inside.told_time_s(0), 1700000000.2);
-  EXPECT_EQ(inside.told_time_s(1), 1700000001.0);
+  EXPECT_EQ(inside.shown_time_s(0), 1700000000.2);
+  EXPECT_EQ(inside.shown_time_s(1), 1700000001.0);
   // By digits that a double of that size does not have.
   set(part.from, "1700000000.133456788");
   EXPECT_EQ(capture.part(part, "a.csv").size(), 3U);

@@ -47,7 +47,7 @@ TEST(MessageArchive, WhatIsLostHereIsNotLostOnTheWayAsWell) {
   }
   archive.close(now_ns, kWall + now_ns);
   const MessageArchive::Books books = archive.books();
-  EXPECT_EQ(books.heard, heard);
+  EXPECT_EQ(books.received, heard);
   EXPECT_EQ(books.lost_on_way, 107U);
   EXPECT_GT(books.lost_here, 1000U);
   // What the recording holds and what it says is lost is all there was.

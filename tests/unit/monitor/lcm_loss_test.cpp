@@ -37,7 +37,7 @@ TEST(LcmLoss, WhatIsPassedOverWithoutAWordIsLost) {
   way.take(sample(400 + 8'640'000));
   way.take(sample(5));  // the daemon has begun again
   EXPECT_EQ(way.lost(), 3 + 8'639'999);
-  EXPECT_EQ(way.began_anew(), 0);
+  EXPECT_EQ(way.restarts(), 0);
 }
 
 // One message of somebody else's among those of a sensor, with any number.
@@ -51,7 +51,7 @@ TEST(LcmLoss, ANumberThatNoSampleCanHaveIsNoLoss) {
       EXPECT_EQ(way.take(message), 0) << forged << " at " << n;
     }
     EXPECT_EQ(way.lost(), 0);
-    EXPECT_EQ(way.began_anew(), forged > 0 ? 1 : 0);
+    EXPECT_EQ(way.restarts(), forged > 0 ? 1 : 0);
   }
 }
 

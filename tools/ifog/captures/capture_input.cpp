@@ -28,7 +28,7 @@ namespace ifog::tools {
 
 namespace {
 
-// A wrong option is a matter of usage.
+// Converts an error in an option to a usage error.
 template <typename Parse>
 auto parsed(const char* option, const std::string& text, Parse&& parse) {
   try {
@@ -227,12 +227,12 @@ LongTable CaptureInput::read_long_columns(InputFile& file, const LongTableSink::
 }
 
 void CaptureInput::keep_rates(LongTable& table, const std::string& path) {
-  const std::size_t told = table.notices.size();
+  const std::size_t before = table.notices.size();
   table.keep_rate_rows(path);
-  tell({table.notices.begin() + static_cast<std::ptrdiff_t>(told), table.notices.end()}, {});
+  tell({table.notices.begin() + static_cast<std::ptrdiff_t>(before), table.notices.end()}, {});
 }
 
-// As messages: with a driver a log holds bytes of a device instead.
+// A log has rates as messages; with a driver it has a device's bytes instead.
 bool CaptureInput::holds_rates(const InputFile& file, FileKind found) const {
   return found == FileKind::lcm_log ? !has_driver() : found == FileKind::flight && recorded_messages(file);
 }
@@ -266,7 +266,7 @@ LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& 
   table.outlined = outlined;
   LongTableSink sink(table, wanted);
   static_cast<RowNotes&>(table) = read_rows(file, sink);
-  // A driver says what its device may send, not what it sent.
+  // A driver declares what its device can send, so columns without values are dropped.
   if (!whole) table.drop_unknown(file.path());
   if (found == FileKind::capture) keep_rates(table, file.path());
   return table;
@@ -276,7 +276,7 @@ LongCapture CaptureInput::read_long_capture(const std::string& path, std::string
                                             const LongTableSink::Wanted& wanted) const {
   InputFile file(path);
   Sha256 hash;
-  if (sha256) file.hear([&hash](std::string_view bytes) { hash.add(bytes); });
+  if (sha256) file.observe([&hash](std::string_view bytes) { hash.add(bytes); });
   LongTable table = read_long(file, wanted);
   if (sha256) {
     file.read_to_the_end();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture of any kind as the commands take it: CSV and HDF5 as they are; raw bytes and candump logs through
-// a driver; flight recordings through the driver that they name, or another; LCM logs.
+// Reads a capture of any kind: CSV and HDF5 directly; raw bytes and candump logs with a driver; flight
+// recordings with the driver that they name, or another; LCM logs.
 #pragma once
 
 #include <functional>
@@ -22,12 +22,12 @@ class CaptureBuilder;
 namespace ifog::tools {
 
 struct CaptureInput {
-  std::string driver;                // --driver NAME; "dbc" when only --dbc is given
+  std::string driver;                // --driver NAME; "dbc" if only --dbc is given
   std::vector<std::string> options;  // --option KEY=VALUE
   std::string dbc;                   // --dbc F: the driver option `dbc`
-  std::string channel;  // --channel C: of a candump log the CAN interface, of an LCM log the channel
+  std::string channel;               // --channel C: CAN interface of a candump log, or channel of an LCM log
 
-  // Options for a CSV or HDF5 file that is no capture by its header, see csv_layout.h.
+  // Options for a CSV or HDF5 file whose header is not that of a capture; see csv_layout.h.
   std::vector<std::string> columns;  // --column NAME=HEADER:UNIT
   std::string time;                  // --time HEADER:UNIT
   double sample_rate_hz = 0.0;       // --sample-rate HZ; 0: not given
@@ -35,58 +35,56 @@ struct CaptureInput {
   std::string repeats = "drop";      // --repeats keep|drop
   std::string separator;             // --separator C, of CSV
   std::string group;                 // --group PATH, of HDF5
-  bool other_rates = false;          // for a command that judges rest; see csv_layout.h
-  bool outlined = false;             // for one that looks at channels it does not want; see long_table.h
+  bool other_rates = false;          // set by commands that detect rest; see csv_layout.h
+  bool outlined = false;             // set by commands that outline unwanted channels; see long_table.h
 
-  // Adds the options to a command that reads.
+  // Adds the options to a command that reads captures.
   void add_to(const Command& command);
-  // Only those of a driver, to a command that writes its frames.
+  // Adds only the driver's options, to a command that writes its frames.
   void add_driver_to(const Command& command);
-  // What of it was given, as a shell takes it again: " --driver kvh1750 --option format=b".
+  // The given options in shell syntax: " --driver kvh1750 --option format=b".
   [[nodiscard]] std::string as_typed() const;
 
   [[nodiscard]] bool has_driver() const { return !driver.empty() || !dbc.empty(); }
 
-  // The driver's name and settings of the options above. Throws WrongUsage (usage) on an option
-  // that is no KEY=VALUE.
+  // The driver's name and settings. Throws WrongUsage if an option is not KEY=VALUE.
   [[nodiscard]] std::string driver_name() const;
   [[nodiscard]] DriverSettings settings() const;
 
-  // Likewise of the options of a file of columns.
+  // The layout of a file of columns, from its options.
   [[nodiscard]] CsvLayout layout() const;
   [[nodiscard]] bool has_layout() const {
     return !columns.empty() || !time.empty() || !separator.empty() || !group.empty() || !only.empty() ||
            sample_rate_hz > 0.0;
   }
-  // A file of columns (FileKind::capture) by them, CSV or HDF5, also beside a driver that is there to write
-  // with; what may be meant otherwise is printed on standard error.
+  // Reads a file of columns with these options, CSV or HDF5; a given driver is ignored because it is for
+  // writing. Prints alternative readings on standard error.
   [[nodiscard]] Capture read_columns(InputFile& file) const;
 
-  // This capture and what is read to understand it, into the table of the run's files (command_files.h).
+  // Registers this capture and the files that reading needs as inputs of the run (command_files.h).
   void will_read(const std::string& argument, const std::string& path) const;
 
-  // Throws std::runtime_error with one line.
-  // folders: that plugins are looked for in; empty: the standard places.
+  // Throws std::runtime_error with one line. folders: search path of plugins; empty: the standard folders.
   [[nodiscard]] DriverInstance make_driver(const std::vector<std::string>& folders = {}) const;
 
-  // As it will be read: CSV where its columns are given; where neither name nor first bytes tell, CSV without
-  // a driver and bytes with one.
+  // Kind as it will be read: CSV if its columns are given; an unknown file is CSV without a driver and bytes
+  // with one.
   [[nodiscard]] FileKind kind(const InputFile& file) const;
 
-  // The recorded samples as the driver delivers them, bit for bit those that the daemon gets.
-  // Throws std::runtime_error with one line, also when the driver finds nothing in the file.
+  // Samples as the driver delivers them, bit for bit as the daemon gets them. Throws std::runtime_error with
+  // one line, also if the driver finds nothing in the file.
   RecordingCounts for_each_sample(InputFile& file, DriverInstance& instance,
                                   const std::function<void(const ifog_sample&)>& sink) const;
 
-  // Any kind in pieces; the one place that tells formats apart. What the driver could not use is told on
-  // standard error, one line a counter that moved. Throws std::runtime_error with one line.
+  // Reads any kind in blocks; the only place that distinguishes formats. Prints what the driver rejected on
+  // standard error, one line per counter. Throws std::runtime_error with one line.
   RowNotes read_rows(InputFile& file, RowSink& sink) const;
-  // As a table of the columns wanted (all, where that is empty), whatever its length.
+  // Reads a table of any length with the wanted columns; empty: all.
   [[nodiscard]] LongTable read_long(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
-  // As a capture. `sha256`, where it is wanted: of the file as it was unpacked.
+  // Reads a capture. `sha256` receives the hash of the unpacked file unless it is null.
   [[nodiscard]] LongCapture read_long_capture(const std::string& path, std::string* sha256 = nullptr,
                                               const LongTableSink::Wanted& wanted = {}) const;
-  // Reads a file of columns, also where a driver is given that is there to write with.
+  // Reads a file of columns even if a driver is given, which is then for writing.
   [[nodiscard]] LongTable read_long_columns(InputFile& file, const LongTableSink::Wanted& wanted = {}) const;
 
  private:

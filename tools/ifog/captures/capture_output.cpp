@@ -23,7 +23,7 @@
 namespace ifog::tools {
 namespace {
 
-// Rows of a long table as one capture after the other, in the same place.
+// Blocks of rows of a long table as captures; each replaces the previous one.
 class Pieces {
  public:
   Pieces(const LongTable& table, const CaptureShape& shape) : rows_(table, shape) { next(); }

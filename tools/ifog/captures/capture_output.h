@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture as a file: its columns, or the recording that a device would have left, by its driver's encoder.
+// Writes a capture as columns, or as a recording of a device with its driver's encoder.
 #pragma once
 
 #include <string>
@@ -10,18 +10,17 @@ namespace ifog::tools {
 
 inline constexpr const char* kColumnEndings = ".csv, .csv.gz or .h5";
 
-// That `path`, the value of `option`, takes columns, or, where there is an `encoding`, what a device would
-// have sent: with a driver under any name that is no other format's. Throws WrongUsage (usage);
-// before anything is read or written.
+// Throws WrongUsage unless `path`, the value of `option`, is a name for columns. With `encoding` it may also
+// be one for a device's recording. Call it before reading or writing.
 void expect_capture_name(const std::string& option, const std::string& path, const CaptureInput* encoding);
 
-// As a capture in columns: HDF5 where `to` ends so, else CSV. `name` is what messages call the table. Throws
+// Writes columns: HDF5 if `to` ends so, otherwise CSV. `name` is the table's name in messages. Throws
 // std::runtime_error with one line.
 void write_columns(const LongTable& table, const std::string& name, const std::string& to);
 
-// `to` ends in .log for a CAN driver, in .bin or .kvh for one that speaks bytes. What the format has no place
-// for is printed on standard error. Throws likewise, or WrongUsage (usage) when driver and ending do
-// not fit.
+// Writes a recording: `to` ends in .log for a CAN driver, in .bin or .kvh for a driver of bytes. Prints what
+// the format cannot store on standard error. Throws as write_columns(), and WrongUsage if driver and ending
+// do not match.
 void write_recording(const LongTable& table, const std::string& name, const std::string& to,
                      const CaptureInput& encoding, const std::string& axis);
 

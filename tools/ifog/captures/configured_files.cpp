@@ -11,7 +11,7 @@
 namespace ifog::tools {
 namespace {
 
-// A driver that is not here reads nothing here.
+// If the driver is not installed here, it reads no file.
 void will_read_options_of(const SensorConfig& sensor, const std::vector<std::string>& folders) {
   std::shared_ptr<const Plugin> plugin;
   try {

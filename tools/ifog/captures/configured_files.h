@@ -6,8 +6,8 @@
 
 namespace ifog::tools {
 
-// Into the table of the run's files as what is read (command_files.h): models, what the drivers' options
-// name, files that are a device or a channel. Throws WrongUsage as will_read() does.
+// Registers them as inputs of the run (command_files.h): models, files named by drivers' options, and devices
+// or channels that are files. Throws WrongUsage as will_read() does.
 void will_read_files_of(const Config& config);
 
 }  // namespace ifog::tools

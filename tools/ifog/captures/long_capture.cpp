@@ -34,7 +34,7 @@ LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std:
   using Kind = CaptureShape::Place::Kind;
   for (std::size_t h = 0, c = 0; h < table_.header.size() && c < table_.columns.size(); ++h) {
     LongColumn& column = table_.columns[c];
-    if (column.name != table_.header[h]) continue;  // that nobody wanted
+    if (column.name != table_.header[h]) continue;  // not read
     ++c;
     const CaptureShape::Place& place = shape.places[h];
     if (place.kind == Kind::rate)

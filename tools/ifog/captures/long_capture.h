@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture of any length as commands that search take it: read once and in pieces, its columns as memory
-// that is a file's where they are long.
+// A capture of any length, read once in blocks. Long columns are mapped from files.
 #pragma once
 
 #include <string>
@@ -15,22 +14,22 @@ namespace ifog::tools {
 
 class LongCapture {
  public:
-  // path: for messages. Throws std::runtime_error with one line: no rate, a reference without its rate.
+  // path: for messages. Throws std::runtime_error with one line: no rate, or a reference without its rate.
   LongCapture(LongTable table, const std::string& path);
 
   [[nodiscard]] const CaptureView& view() const { return view_; }
   void set_since_power_up(double seconds) { view_.since_power_up_s = seconds; }
-  // The rows inside.
+  // The rows inside; `name` is for messages.
   [[nodiscard]] CaptureView part(const TimePart& part, const std::string& name) const;
-  // Rows outside are gone. name: for messages. Throws as TimePart::rows().
+  // Drops the rows outside. name: for messages. Throws as TimePart::rows().
   void cut(const TimePart& part, const std::string& name);
-  // The rates less the model's effects. Throws as compensated_rates().
+  // Subtracts the model's effects from the rates. Throws as compensated_rates().
   void correct(const Model& model);
 
  private:
   LongTable table_;
   std::vector<Samples> corrected_;
-  CaptureView view_;  // of those
+  CaptureView view_;  // of table_
 };
 
 }  // namespace ifog::tools

@@ -16,7 +16,7 @@
 namespace ifog::tools {
 namespace {
 
-// The line of the first effect on it, where the model is a file's.
+// Line of the first effect of this channel, if the model was read from a file.
 std::string place_of(const Model& model, const std::string& channel) {
   for (const Effect& effect : model.effects)
     for (const std::string& used : {effect.channel, effect.with_channel})
@@ -39,7 +39,7 @@ Model without_axes(Model model, const std::vector<std::string>& axes) {
     return !axis.empty() && std::find(axes.begin(), axes.end(), axis) != axes.end();
   };
   std::vector<Effect> effects;
-  std::vector<std::size_t> rows;  // of the covariance, that stay
+  std::vector<std::size_t> rows;  // rows of the covariance that remain
   std::size_t all = 0;
   for (Effect& effect : model.effects) {
     const std::size_t first = all;

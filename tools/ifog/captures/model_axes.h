@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model next to the axes of a capture that it is to correct, and what it leaves of their rates.
+// Applies a model to the axes of a capture.
 #pragma once
 
 #include <string>
@@ -12,18 +12,18 @@
 
 namespace ifog::tools {
 
-// Prints on standard error where effects that name no axis, those of a sensor that has one, are subtracted
-// from each of several. path: of the model.
+// Warns on standard error if effects without an axis, from a sensor with one axis, apply to each of several.
+// path: of the model.
 void tell_model_of_one_axis(const Model& model, const std::string& path,
                             const std::vector<std::string>& axes);
 
-// The model for a capture from which these axes of its sensor were dropped: less the effects that are of
-// them or depend on their rates. What of the others is lost by that is printed; the rest of it stays as it was.
+// The model without the effects of dropped axes and those that depend on their rates; prints the latter. The
+// rest is unchanged.
 [[nodiscard]] Model without_axes(Model model, const std::vector<std::string>& axes);
 
-// The rates less the model's effects, by axis, by the code that subtracts them online. Throws
-// std::runtime_error with one line: a channel that the capture does not have. Without
-// CaptureView::since_power_up_s a warm-up stays.
+// Rates minus the model's effects, by axis, with the code that the daemon uses. Throws std::runtime_error
+// with one line if the capture lacks a channel. Without CaptureView::since_power_up_s a warm-up is not
+// corrected.
 [[nodiscard]] std::vector<Samples> compensated_rates(const CaptureView& capture, const Model& model);
 
 }  // namespace ifog::tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The progress of whatever reads a file, by the bytes that have been read.
+// Shows the progress of reading a file, in bytes.
 #pragma once
 
 #include <filesystem>

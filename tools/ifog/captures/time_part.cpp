@@ -18,7 +18,7 @@ void keep(const TimePart::Rows& rows, Samples& values) {
   values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rows.begin));
 }
 
-// The first of the rows from `begin` on that is not before `wanted`.
+// Index of the first row from `begin` on that is not before `wanted`.
 std::size_t first_from(const SeriesView& time_s, const TimeOrigin& origin, std::size_t begin,
                        const SaidTime& wanted) {
   std::size_t end = time_s.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --from and --to: a part of a capture, by its own time.
+// --from and --to: a part of a capture by its own time.
 #pragma once
 
 #include <cstddef>
@@ -16,26 +16,26 @@ namespace ifog::tools {
 
 struct TimePart {
   struct Bound : SaidTime {
-    std::string text;  // as it was given; "": it was not
+    std::string text;  // as given; "" if not given
   };
   Bound from{{-std::numeric_limits<double>::infinity(), 0.0}, ""};
-  Bound to{{std::numeric_limits<double>::infinity(), 0.0}, ""};  // from this time on dropped
+  Bound to{{std::numeric_limits<double>::infinity(), 0.0}, ""};  // exclusive
 
-  // Adds the two options to a command, which this must outlive.
+  // Adds the two options to a command; this must outlive it.
   void add_to(const Command& command, const std::string& of_from = "Drop what is before this time, s",
               const std::string& of_to = "Drop what is from this time on, s");
 
   struct Rows {
     std::size_t begin, end;
   };
-  // Those inside. origin: that the times are counted from; name: for messages. Throws std::runtime_error
-  // with one line when there is none.
+  // The rows inside. origin: of the times; name: for messages. Throws std::runtime_error with one line if
+  // there are none.
   [[nodiscard]] Rows rows(const SeriesView& time_s, const TimeOrigin& origin, const std::string& name) const;
-  // The same refusal, of times that nobody kept.
+  // Throws the same error for times that were not kept.
   [[noreturn]] void refuse_empty(double first_s, double last_s, const std::string& name) const;
 
-  // Rows outside are gone. Returns how many were before. name: for messages; columns: as long as the times, or
-  // empty. Throws std::runtime_error with one line when no row is inside.
+  // Drops the rows outside; returns the previous number. name: for messages; columns: as long as the times,
+  // or empty. Throws std::runtime_error with one line if no row is inside.
   std::size_t cut(Samples& time_s, const TimeOrigin& origin, std::span<Samples* const> columns,
                   const std::string& name) const;
 };

@@ -28,14 +28,14 @@ void tell_missing(const std::string& name, const std::string& axis, const Captur
   if (missing == 0) return;
   const auto first = static_cast<std::size_t>(std::find_if(rate.begin(), rate.end(), none) - rate.begin());
   warn("%s: %s\n", name.c_str(),
-       missing_in_words(rate_of(axis), missing, rate.size(), capture.told_time_s(first)).c_str());
+       missing_in_words(rate_of(axis), missing, rate.size(), capture.shown_time_s(first)).c_str());
 }
 
 bool has_value(std::span<const double> values) {
   return std::any_of(values.begin(), values.end(), [](double value) { return !std::isnan(value); });
 }
 
-// As many as the daemon wants to see (filters/estimator/sensor_check.h): what is coarse repeats itself, too.
+// As many as in filters/chain/sensor_check.h: coarse values also repeat.
 bool repeats_one_value(std::span<const double> values) {
   constexpr std::ptrdiff_t kFewest = 100;
   const auto is_value = [](double value) { return !std::isnan(value); };
@@ -51,7 +51,7 @@ void tell_stuck(const std::string& name, const std::string& axis, std::span<cons
        rate_of(axis).c_str(), value, rate.size());
 }
 
-// What is unusable in one capture.
+// Unusable axes of one capture.
 std::vector<std::string> unusable(const CaptureView& capture, const std::string& name) {
   std::vector<std::string> missing, stuck;
   for (std::size_t a = 0; a < capture.axes.size(); ++a)
@@ -60,7 +60,7 @@ std::vector<std::string> unusable(const CaptureView& capture, const std::string&
     else if (repeats_one_value(capture.rate_radps[a]))
       stuck.push_back(capture.axes[a]);
   if (missing.size() == capture.axes.size()) refuse_without_rates(name, capture.size());
-  // Where no other is left, what the command says of such rates is said.
+  // If no other axis is left, the command reports the stuck ones itself.
   if (missing.size() + stuck.size() == capture.axes.size()) stuck.clear();
   const auto is_in = [](const std::vector<std::string>& axes, const std::string& axis) {
     return std::find(axes.begin(), axes.end(), axis) != axes.end();

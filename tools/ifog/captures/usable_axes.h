@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a capture's rates cannot be used, in the same words for every command.
+// Finds and reports unusable rates of captures, with the same words in every command.
 #pragma once
 
 #include <cstddef>
@@ -11,28 +11,28 @@
 
 namespace ifog::tools {
 
-// "rate_x is missing in 300 of 3000 rows, first at 2.5 s"; "" where none is missing.
+// "rate_x is missing in 300 of 3000 rows, first at 2.5 s"; "" if none is missing.
 std::string missing_in_words(const std::string& column, std::size_t missing, std::size_t rows,
                              double first_s);
 
-// Tells that a column never has a value.
+// Reports a column without values.
 void tell_left_out(const std::string& name, const std::string& column, std::size_t rows);
 
-// "one of 'x', 'y'"; where the only axis has no name, "none, the capture has one axis".
+// "one of 'x', 'y'"; "none, the capture has one axis" if the only axis has no name.
 std::string expected_axes(const std::vector<std::string>& axes);
 
-// The one refusal of a capture in which no axis has a value.
+// Throws if no axis has a value.
 [[noreturn]] void refuse_without_rates(const std::string& name, std::size_t rows);
 
-// The axes that never have a value, or repeat one while another axis does not: in one of several captures, as
-// all are fitted together. Of the rates as the sensor sent them, as a correction that is alive would hide it.
-// Prints on standard error, in these words, of each of them and what is missing of the others. Throws
-// std::runtime_error with one line where no axis is left.
+// Axes without values, or that repeat one value while another axis does not, in any of the captures, because
+// all are fitted together. Uses the rates as sent: a correction would hide a stuck axis. Prints each of them
+// and missing values of the others on standard error. Throws std::runtime_error with one line if no axis is
+// left.
 std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
                                        const std::vector<std::string>& names);
 void leave_out(const std::vector<std::string>& axes, CaptureView& capture);
 
-// Both in one. Of a table only those that never have a value: `denoise` gives what the daemon would.
+// Drops the unusable axes. Of a table only those without values: `denoise` behaves as the daemon.
 void keep_usable_axes(std::vector<CaptureView>& captures, const std::vector<std::string>& names);
 void keep_usable_axes(CaptureView& capture, const std::string& name);
 void keep_usable_axes(LongTable& table, const std::string& name);

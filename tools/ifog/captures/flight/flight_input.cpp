@@ -23,7 +23,7 @@
 namespace ifog::tools {
 namespace {
 
-// A text under a name that only this process knows, for what wants to open a file.
+// A text as an unnamed file, for code that opens files by path.
 class NamedText {
  public:
   explicit NamedText(std::string_view text) : fd_(memfd_create("of the recording", MFD_CLOEXEC)) {
@@ -41,7 +41,7 @@ class NamedText {
   int fd_;
 };
 
-// What a driver is made of: its options, and what the files hold that they name.
+// A driver's options with their values and the content of the files that they name.
 std::map<std::string, std::pair<std::string, std::string>> options_in(const FlightHeader& header) {
   std::map<std::string, std::pair<std::string, std::string>> out;
   for (const auto& [key, value] : header.options) {
@@ -78,7 +78,7 @@ FlightInput::FlightInput(InputFile& file)
   naming(file_.path(), [this] { reader_.next(); });
 }
 
-// The recording's own, not another in its place.
+// True if the recording's own driver is used.
 bool FlightInput::names_the_driver() const { return driver_.empty() || driver_ == header().driver; }
 
 DriverInstance FlightInput::make_driver(const std::string& driver, const DriverSettings& options,
@@ -91,7 +91,7 @@ DriverInstance FlightInput::make_driver(const std::string& driver, const DriverS
   return made();
 }
 
-// A header is foreign: what it names is opened nowhere but in the recording itself.
+// A header is not trusted: files that it names are read only from the recording itself.
 DriverInstance FlightInput::made() const {
   const bool other = !names_the_driver();
   return naming(file_.path(), [&] {
@@ -151,7 +151,7 @@ RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const Recor
   return naming(file_.path(), [&] {
     RecordingCounts counts;
     auto options = options_in(header());
-    // What was recorded with other options would be read as what it is not.
+    // Data recorded with other options needs a driver with those options.
     const auto file = [&](const FlightHeader& header) {
       if (auto now = options_in(header); names_the_driver() && now != options) {
         options = std::move(now);
@@ -200,7 +200,7 @@ std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder&
                                [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
   for (const auto& lines : {losses(counts), builder.remarks()})
     for (const std::string& line : lines) warn("%s: %s\n", file_.path().c_str(), line.c_str());
-  // By the first file's header; files of several power-ups behind one another show in the times.
+  // From the first file's header; later power-ups are visible in the times.
   const auto powered_ns = header().powered_ns;
   if (!powered_ns || first_ns < *powered_ns) return std::nullopt;
   return static_cast<double>(first_ns - *powered_ns) * 1e-9;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A flight recording as the commands read it: what its header says becomes the driver and the sensor.
+// Reads a flight recording with the driver and sensor of its header.
 #pragma once
 
 #include <functional>
@@ -20,9 +20,9 @@
 
 namespace ifog::tools {
 
-// A driver as the commands make it: its warnings are printed, and the files that its settings name are
-// read: no output of the run is one of them (command_files.h). folders: that plugins are looked for in;
-// empty: the standard places. Throws as DriverInstance does.
+// Makes a driver, prints its warnings and registers the files in its settings as inputs of the run
+// (command_files.h). folders: search path of plugins; empty: the standard folders. Throws as DriverInstance
+// does.
 [[nodiscard]] DriverInstance driver_of_run(const std::string& name, const DriverSettings& settings,
                                            const std::vector<std::string>& folders = {});
 
@@ -32,36 +32,35 @@ class FlightInput {
   explicit FlightInput(InputFile& file);
 
   [[nodiscard]] const FlightHeader& header() const { return reader_.header(); }
-  // Counts of what has been read of it.
+  // Counts of what has been read so far.
   [[nodiscard]] const FlightCounts& counts() const { return reader_.counts(); }
   [[nodiscard]] const std::string& path() const { return file_.path(); }
 
-  // The driver of the recording with its options, those of `options` over them; another one, which then has
-  // only `options`, where `driver` names it.
-  // folders: that plugins are looked for in; empty: the standard places. configured: whose files serve where the
-  // recording does not carry them; it outlives this. Where a later file of the recording names other options, it is
-  // made from them.
+  // Makes the recording's driver with its options, overridden by `options`; if `driver` names another one,
+  // that with `options` only. folders: search path of plugins; empty: the standard folders. configured:
+  // supplies files that the recording lacks; must outlive this. A later file with other options gets a driver
+  // of its own.
   [[nodiscard]] DriverInstance make_driver(const std::string& driver, const DriverSettings& options,
                                            const std::vector<std::string>& folders = {},
                                            const SensorConfig* configured = nullptr);
-  // As the daemon had it configured, and the model it used, which the recording carries. Null: none. Throws as above
-  // where it carries none of that name.
+  // The sensor's configuration, with the model that the recording carries. Throws as above if it carries no
+  // model of that name.
   [[nodiscard]] SensorConfig sensor() const;
   [[nodiscard]] std::shared_ptr<const Model> model(const SensorConfig& sensor) const;
-  // The noise that the daemon's filter began with; nothing where it learned it in this recording.
+  // Noise that the daemon's filter started with; nullopt if it learned the noise in this recording.
   [[nodiscard]] std::optional<LearnedNoise> noise(const SensorConfig& sensor) const;
 
-  // All samples; what is missing is printed on standard error. Throws as above, also when there is no sample.
+  // Delivers all samples and prints losses on standard error. Throws as above, also if there is no sample.
   RecordingCounts for_each_sample(DriverInstance& driver, const RecordedSamples& sink);
-  // As columns, channels from elsewhere, too.
+  // All samples as columns, with the channels of other sources.
   Capture capture(DriverInstance& driver);
-  // The same in pieces, with every axis and channel that there may be.
+  // The same in blocks, with every axis and channel that is possible.
   RowNotes rows(DriverInstance& driver, RowSink& sink);
-  // What came as it came, for `ifog replay`: `bytes`, `can` and `message` entries.
+  // `bytes`, `can` and `message` entries as recorded, for `ifog replay`.
   void for_each_entry(const std::function<void(const FlightEntry&)>& sink);
 
  private:
-  // Returns the time since power-up of the first sample, where the header tells it.
+  // Returns the time since power-up of the first sample if the header has it.
   std::optional<double> build(DriverInstance& driver, CaptureBuilder& builder,
                               const std::function<void()>& added);
   void tell_losses() const;
@@ -70,7 +69,7 @@ class FlightInput {
 
   InputFile& file_;
   FlightReader reader_;
-  // By make_driver().
+  // set by make_driver()
   std::string driver_;
   DriverSettings options_;
   std::vector<std::string> folders_;

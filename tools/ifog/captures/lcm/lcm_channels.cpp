@@ -14,11 +14,11 @@
 namespace ifog::tools {
 namespace {
 
-// A status says the same measurement again, older, until a new one comes; its age is known to some tens of
-// ms.
+// A status repeats a measurement, with a growing age, until there is a new one. Its age is uncertain by some
+// 10 ms.
 constexpr double kAnother_s = 0.5;
 
-// Names come from the network: one that is a rate's or no word would make another file of it.
+// Names come from the network; a rate's name or one with other characters would corrupt the file.
 bool good_name(const std::string& name) {
   std::string axis;
   return !name.empty() && name != "time_s" && !axis_of(name, "rate", axis) &&

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Environment channels out of LCM messages, as columns beside a sensor's rates: what the sensor's own status
-// says of its channels once a second, and ifog.channel_t of other names. Which there are only the whole log
-// tells, so it is looked through first; then its rows are read, and nothing of them is kept.
+// Environment channels in LCM messages as columns: the channels in the sensor's status, once per second, and
+// ifog.channel_t. The first pass over the log finds their names, the second reads the rows.
 #pragma once
 
 #include <cstddef>
@@ -17,18 +16,17 @@ namespace ifog::tools {
 
 class LcmChannels {
  public:
-  // rates: the LCM channel that carries the sensor's rates; its status is on that with _STATUS behind it.
+  // rates: LCM channel of the sensor's rates; its status is on the same name with _STATUS appended.
   explicit LcmChannels(const std::string& rates) : status_(rates + "_STATUS") {}
 
-  // The first look: any message of the log but the rates, and that a row of rates came. The status's view of a channel
-  // is scaled and held to its limits, so it stands over a message of that name. Names that no capture's column may have
-  // are dropped.
+  // First pass: any message except rates. A status is preferred to an ifog.channel_t of the same name,
+  // because its values are scaled and limited. Names that a capture cannot have are dropped.
   void look_at(const std::string& channel, std::span<const std::uint8_t> message);
   void saw_row() { ++rows_; }
-  // The columns that have a value in some row, without those that come by another way.
+  // Columns with a value in some row, except those in `without`.
   std::vector<std::string> settle(const std::vector<std::string>& without);
 
-  // The second: what has come since the row before, by name, is appended: NaN where nothing new had.
+  // Second pass: values since the previous row, in the order of the names; NaN if there is none.
   void take(const std::string& channel, std::span<const std::uint8_t> message);
   void end_row(std::vector<double>& values);
 
@@ -36,7 +34,7 @@ class LcmChannels {
   struct Said {
     const std::string& name;
     double value;
-    double measured_s;  // infinite where the message does not tell
+    double measured_s;  // infinite if the message does not contain it
     bool of_status;
   };
   struct Channel {
@@ -45,7 +43,7 @@ class LcmChannels {
     double last = 0.0, measured_s = 0.0;
     std::optional<double> now;
   };
-  // Each channel of a message, one value at a time.
+  // Calls `sink` for each value in the message.
   void unpack(const std::string& channel, std::span<const std::uint8_t> message,
               const std::function<void(const Said&)>& sink) const;
 

@@ -19,8 +19,7 @@ namespace {
 
 constexpr std::array<std::uint8_t, 4> kMagic{0xED, 0xA1, 0xDA, 0x01};
 constexpr std::size_t kHead = 28;
-// LCM_MAX_CHANNEL_NAME_LENGTH is 63; a message goes into at most 2^16 fragments of a datagram, 4 GB that
-// nobody sends.
+// LCM_MAX_CHANNEL_NAME_LENGTH is 63. LCM's limit of 2^16 fragments would allow messages of 4 GB.
 constexpr std::int32_t kLongestName = 255, kLongestData = 1 << 28;
 constexpr std::size_t kBlock = std::size_t{1} << 16U;
 
@@ -39,7 +38,7 @@ LcmEvents::LcmEvents(const std::string& path) : path_(path), file_(std::fopen(pa
 
 const LcmEvents::Event* LcmEvents::next() {
   const std::size_t before = at_;
-  // As a rule an event stands behind the other.
+  // Normally the next event begins here.
   for (std::optional<std::size_t> begin = before; begin; begin = magic_in(*begin + 1, size_)) {
     if (!read_event(*begin)) continue;
     if (*begin > before) {
@@ -61,7 +60,7 @@ bool LcmEvents::read_event(std::size_t from) {
   const std::size_t whole = kHead + name_bytes + static_cast<std::size_t>(data), end = from + whole;
   if (end > size_) return false;
   bytes = window(from, whole + kMagic.size());
-  // Where something else follows, this is what is damaged, or its lengths are: they cannot be told apart.
+  // If no event follows, this one or its lengths are damaged.
   if (bytes.size() < whole ||
       !std::equal(bytes.begin() + static_cast<std::ptrdiff_t>(whole), bytes.end(), kMagic.begin()))
     return false;
@@ -81,7 +80,7 @@ std::optional<std::size_t> LcmEvents::magic_in(std::size_t from, std::size_t to)
     const auto found = std::search(bytes.begin(), bytes.end(), kMagic.begin(), kMagic.end());
     if (found != bytes.end()) return from + static_cast<std::size_t>(found - bytes.begin());
     if (bytes.size() < kMagic.size()) break;
-    from += bytes.size() - (kMagic.size() - 1);  // they may lie across
+    from += bytes.size() - (kMagic.size() - 1);  // the magic may cross the border of two blocks
   }
   return std::nullopt;
 }
@@ -125,7 +124,7 @@ NamedLog::NamedLog(InputFile& file) : name_(file.path()) {
 }
 
 void NamedLog::unpack(InputFile& file) {
-  constexpr std::size_t kBlock = std::size_t{1} << 20U;  // bytes
+  constexpr std::size_t kBlock = std::size_t{1} << 20U;
   std::vector<char> block(kBlock);
   std::size_t at = 0;
   while (const std::size_t n = file.read(block.data(), block.size())) {
@@ -150,7 +149,7 @@ void NamedLog::unpack_messages(InputFile& file) const {
 }
 
 bool recorded_messages(const InputFile& file) {
-  // The header's keys come in the order of drivers/flight/format.md, and no value has a line's end in it.
+  // The header's keys have the order in drivers/flight/format.md, and no value contains a line break.
   return file_kind(file) == FileKind::flight &&
          file.head().find("\ncarries=messages\n") != std::string_view::npos;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The events of a log made by lcm-logger, also of one that is damaged: what stands behind the damage is read
-// again from the next event on, and what lies between is counted. An event that neither another follows nor
-// the end is none. LCM's own reader (1.3) ends at the damage, and believes every length that it finds there.
+// Events of a log written by lcm-logger. A damaged part is skipped and counted, and reading continues with
+// the next event. An event must be followed by another one or by the end. LCM's own reader (1.3) stops at
+// damage and trusts every length in the file.
 #pragma once
 
 #include <cstddef>
@@ -18,11 +18,11 @@
 
 namespace ifog::tools {
 
-// The hash of its type that a message begins with, 0 for one that is too short.
+// The type hash at the beginning of a message; 0 if it is too short.
 std::int64_t type_hash(std::span<const std::uint8_t> message);
 
-// lcm-logger(1), lcm/eventlog.h: big-endian 0xEDA1DA01, number and time (64 bits each), lengths of channel
-// and data (32 bits each), channel, data.
+// Format, lcm-logger(1) and lcm/eventlog.h: big-endian 0xEDA1DA01, number and time (64 bits each), lengths of
+// channel and data (32 bits each), channel, data.
 class LcmEvents {
  public:
   struct Event {
@@ -31,27 +31,27 @@ class LcmEvents {
     std::span<const std::uint8_t> data;
   };
 
-  // Throws std::runtime_error with one line: cannot be opened.
+  // Throws std::runtime_error with one line if it cannot open the file.
   explicit LcmEvents(const std::string& path);
 
-  // Until the next call; null at the end. Throws std::runtime_error with one line: the device fails.
+  // Valid until the next call; null at the end. Throws std::runtime_error with one line if reading fails.
   const Event* next();
 
   [[nodiscard]] std::size_t size() const { return size_; }  // bytes
-  [[nodiscard]] std::size_t at() const { return at_; }      // byte behind the last event
-  // Bytes that belong to no event, with events behind them, in so many places, the first from this byte on.
+  [[nodiscard]] std::size_t at() const { return at_; }      // first byte after the last event
+  // Bytes between events that belong to none; also the number of such places and the first one.
   [[nodiscard]] std::size_t damaged() const { return damaged_; }
   [[nodiscard]] std::size_t places() const { return places_; }
   [[nodiscard]] std::size_t first_place() const { return first_place_; }
-  // What of a log that was read to its end is in no event, to standard error; nothing where all is.
+  // After reading to the end: reports bytes that belong to no event on standard error.
   void say_damage(const std::string& path) const;
 
  private:
-  // At most so many bytes from there on, fewer only at the end; until the next call.
+  // Up to `bytes` bytes from there, fewer only at the end; valid until the next call.
   std::span<const std::uint8_t> window(std::size_t from, std::size_t bytes);
   bool read_event(std::size_t from);
   [[noreturn]] void fail() const;
-  // Where the four bytes stand that every event begins with, in [from, to).
+  // Position of the magic number at the beginning of an event, in [from, to).
   std::optional<std::size_t> magic_in(std::size_t from, std::size_t to);
 
   struct Close {
@@ -62,15 +62,15 @@ class LcmEvents {
   std::size_t size_ = 0, at_ = 0;
   std::size_t damaged_ = 0, places_ = 0, first_place_ = 0;
   Event event_;
-  std::vector<std::uint8_t> read_;  // of the file, up to where the next read goes on
+  std::vector<std::uint8_t> read_;  // part of the file, up to the next read
   std::size_t read_from_ = 0;
 };
 
-// A log of LCM messages under a name, because it is read several times. One that comes packed, through a pipe or as a
-// flight recording is kept in a file without a name of its own, which only this process knows.
+// Path of a log, which is read several times. A packed log, a pipe or a flight recording is copied to an
+// unnamed temporary file.
 class NamedLog {
  public:
-  // Throws std::runtime_error with one line: no room for it, or it cannot be read.
+  // Throws std::runtime_error with one line: no space, or the file cannot be read.
   explicit NamedLog(InputFile& file);
   [[nodiscard]] const std::string& name() const { return name_; }
 
@@ -82,7 +82,7 @@ class NamedLog {
   std::optional<UnnamedFile> unpacked_;
 };
 
-// Whether a file is a flight recording that holds LCM messages. It looks at the file's head and reads nothing.
+// True if the file is a flight recording of LCM messages; reads only its head.
 bool recorded_messages(const InputFile& file);
 
 }  // namespace ifog::tools

@@ -14,7 +14,7 @@ namespace ifog::tools {
 
 namespace {
 
-// LCM would print the text as it is.
+// LCM would print a text from the network unchanged.
 const std::string& usable(const std::string& url) {
   const std::string expected =
       printable(url, kLongestMessage) == url ? lcm_url_complaint(url) : "no control characters";
@@ -35,7 +35,7 @@ void LcmListener::listen_to(const std::string& pattern) {
   lcm_subscription_t* const subscription = lcm_subscribe(lcm_, pattern.c_str(), &LcmListener::received, this);
   if (subscription == nullptr)
     throw std::runtime_error("\"" + printable(pattern) + "\": no name LCM can listen to");
-  // A terminal or a disk that is slow for a moment must not look like lost messages.
+  // Long enough that a slow terminal or disk loses no messages.
   lcm_subscription_set_queue_capacity(subscription, 100'000);
 }
 
@@ -53,7 +53,7 @@ void LcmListener::take() {
   if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
 }
 
-// Called from C, through which nothing may be thrown.
+// Called from C code: must not throw.
 void LcmListener::received(const lcm_recv_buf_t* message, const char* channel, void* user) noexcept {
   auto* const self = static_cast<LcmListener*>(user);
   try {

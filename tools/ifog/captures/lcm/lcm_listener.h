@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of LCM as they come, for commands that show or keep what the daemon publishes.
+// Receives LCM messages, for commands that show or record what the daemon publishes.
 #pragma once
 
 #include <lcm/lcm.h>
@@ -14,21 +14,22 @@ class LcmListener {
  public:
   using Handler = std::function<void(const lcm_recv_buf_t& message, const std::string& channel)>;
 
-  // Throws std::runtime_error where LCM cannot use the URL.
+  // Throws std::runtime_error if LCM cannot use the URL.
   LcmListener(const std::string& url, Handler handler);
   ~LcmListener();
   LcmListener(const LcmListener&) = delete;
   LcmListener& operator=(const LcmListener&) = delete;
 
-  // Channels that match a regular expression, whole. Throws std::runtime_error for what is none.
+  // Subscribes to channels whose whole name matches the regular expression. Throws std::runtime_error if it
+  // is not valid.
   void listen_to(const std::string& pattern);
-  // Rates and status of a sensor of the daemon, by its name in the configuration; empty: of every one.
+  // Subscribes to rates and status of a sensor by its configured name; empty: of every sensor.
   void listen_to_sensor(const std::string& name);
 
-  // To be polled for reading.
+  // For poll().
   [[nodiscard]] int descriptor() const;
-  // Waits for one message and hands it over; to be called when there is something to be read. Throws what
-  // the handler threw.
+  // Waits for one message and passes it on; call it when the descriptor is readable. Throws what the handler
+  // throws.
   void take();
 
  private:

@@ -35,7 +35,7 @@ bool carries_rates(const std::string& channel) {
   return channel_name(channel).content == ChannelContent::rate;
 }
 
-// The first with rates of ours, or else with those of another program's type.
+// The first channel with our rates, or else with a supported type of another program.
 std::string first_channel(const NamedLog& source, const std::string& path) {
   LcmEvents log(source.name());
   std::string peer, bytes;
@@ -51,8 +51,8 @@ std::string first_channel(const NamedLog& source, const std::string& path) {
                                   ", expected --driver NAME to decode them with"));
 }
 
-// A log, and the channel of it that carries the rates: the one that was asked for, or else the first, which
-// has to be the only one (look_through).
+// A log and its channel of rates: the requested one, or else the first, which must then be the only one
+// (look_through).
 struct ChosenLog {
   ChosenLog(InputFile& file, const std::string& channel)
       : path(file.path()), source(file), asked_for(!channel.empty()) {
@@ -68,15 +68,15 @@ struct ChosenLog {
   NamedLog source;
   bool asked_for;
   std::string rates;
-  std::optional<PeerReader> peer;  // its messages are no ifog.rate_t
+  std::optional<PeerReader> peer;  // set if the messages are not ifog.rate_t
 };
 
-// The sensor's own clock where it has one, from the first message on. If it jumps back while the fitted time
-// advances, it has restarted or was set, and continues by the fitted time. Where that was set or stands still,
-// too, the message's own step counts.
+// Time from the sensor's clock if it has one, from the first message. If that clock jumps back while the
+// fitted time advances, it restarted or was set, and the fitted time continues it. If the fitted time stops
+// or was set too, the message's own step is used.
 class SensorSeconds {
  public:
-  // Later than the one before, or -1: neither clock goes on.
+  // Later than the previous one; -1 if neither clock advances.
   double of(const rate_t& message) {
     const std::int64_t fitted_ns = message.utime * 1000;
     std::int64_t now_ns = (message.sensor_time_ns != -1 ? message.sensor_time_ns : fitted_ns) + shift_ns_;
@@ -100,7 +100,7 @@ class SensorSeconds {
   }
 
  private:
-  // 0: it has none.
+  // 0: unknown.
   [[nodiscard]] std::int64_t step_of(const rate_t& message) const {
     const bool known = message.seq > last_seq_ && message.dt > 0.0 && message.dt < 1e9;
     return known ? std::llround(message.dt * 1e9) : 0;
@@ -109,7 +109,7 @@ class SensorSeconds {
   std::int64_t start_ns_ = 0, last_ns_ = 0, last_fitted_ns_ = 0, last_seq_ = 0, shift_ns_ = 0;
 };
 
-// What the names of the axes end with: the message carries none; three axes are x, y, z.
+// Suffixes of the axes' names; three axes are x, y, z, because messages do not name them.
 std::vector<std::string> axis_ends(std::size_t axes) {
   std::vector<std::string> ends{"_x", "_y", "_z"};
   ends.resize(std::min(ends.size(), axes));
@@ -119,8 +119,8 @@ std::vector<std::string> axis_ends(std::size_t axes) {
 using RateSink = std::function<void(const MeasuredRate&, double)>;
 using OtherSink = std::function<void(const std::string&, std::span<const std::uint8_t>)>;
 
-// Hands each message of the channel to `sink` with its time in s from the first, later than the one before,
-// and those of all others to `others`, which may be empty. What is not later is dropped, and said.
+// Passes each message of the channel to `sink` with its time in s since the first, and all others to `others`
+// unless that is empty. Times increase; messages that are not later are dropped and reported.
 void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& others) {
   const std::string &path = chosen.path, &wanted = chosen.rates;
   LcmEvents log(chosen.source.name());
@@ -178,8 +178,8 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   log.say_damage(path);
 }
 
-// The first look at a log, for the channels beside its rates. Throws std::runtime_error with one line where
-// nobody said which of several channels with rates it is.
+// First pass over a log, for the channels besides the rates. Throws std::runtime_error with one line if
+// several channels have rates and none was requested.
 void look_through(ChosenLog& chosen, LcmChannels& channels) {
   std::set<std::string> with_rates;
   LcmEvents log(chosen.source.name());
@@ -202,7 +202,7 @@ void look_through(ChosenLog& chosen, LcmChannels& channels) {
   throw std::runtime_error(chosen.path + ": has several channels, expected --channel with one of " + list);
 }
 
-// Rows on their way to a sink, some thousand at a time.
+// Passes rows to a sink in blocks.
 class BatchedRows {
  public:
   explicit BatchedRows(RowSink& sink) : sink_(sink) {}
@@ -230,7 +230,7 @@ class BatchedRows {
   RowBlock rows_;
 };
 
-// Times count from 0, by the sensor's own clock where it has one: which moment that was would be lost.
+// Prints the date of t = 0, which the times do not contain.
 void tell_start(const std::string& path, const rate_t& first) {
   const TimeOrigin origin = TimeOrigin::of(first.utime * 1000);
   if (origin == TimeOrigin{}) return;
@@ -244,9 +244,9 @@ void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
   ChosenLog chosen(file, channel);
   LcmChannels channels(chosen.rates);
   look_through(chosen, channels);
-  std::vector<std::string> beside = chosen.peer ? chosen.peer->beside() : std::vector<std::string>();
-  const std::vector<std::string> others = channels.settle(beside);
-  beside.insert(beside.end(), others.begin(), others.end());
+  std::vector<std::string> extra = chosen.peer ? chosen.peer->extra_columns() : std::vector<std::string>();
+  const std::vector<std::string> others = channels.settle(extra);
+  extra.insert(extra.end(), others.begin(), others.end());
   BatchedRows rows(sink);
   std::vector<double> values;
   for_each_rate(
@@ -257,11 +257,11 @@ void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
           std::vector<std::string> names;
           for (const std::string& end : axis_ends(message.raw.size()))
             names.push_back("rate" + end + "_radps");
-          names.insert(names.end(), beside.begin(), beside.end());
+          names.insert(names.end(), extra.begin(), extra.end());
           rows.begin(names);
         }
         values = message.raw;
-        values.insert(values.end(), message.beside.begin(), message.beside.end());
+        values.insert(values.end(), message.extra.begin(), message.extra.end());
         channels.end_row(values);
         rows.add(time_s, values);
       },
@@ -288,7 +288,7 @@ void read_published(InputFile& file, const std::string& channel, RowSink& sink) 
           names.push_back(what + end + (what == "variance" ? "_rad2ps2" : "_radps"));
       rows.begin(names);
     } else {
-      time_s += message.dt;  // so that it is the sensor's own time also when a recording was played faster
+      time_s += message.dt;  // the sensor's time even if a recording was played faster
     }
     values.clear();
     for (std::size_t i = 0; i < message.raw.size(); ++i)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What LCM, which promises nothing, lost on the way from the daemon to here, by the numbers of the messages.
+// Counts messages that LCM lost between the daemon and this process, by the messages' numbers.
 #pragma once
 
 #include <algorithm>
@@ -15,9 +15,8 @@ namespace ifog::tools {
 
 class LcmLoss {
  public:
-  // The messages of one sensor. Returns how many are known to be missing with this one: a message that comes
-  // out of order, within kWindow of its place, was not lost. While two publishers send on the channel nothing
-  // is known to be.
+  // Takes a message of one sensor. Returns how many are now known to be lost; a message that arrives within
+  // kWindow of its place is not. With two publishers on the channel no loss is known.
   std::int64_t take(const rate_t& message) {
     const bool late = comes_late(message.seq);
     publishers_.saw(static_cast<std::uint32_t>(message.seq), std::uint64_t{1} << 32U, late);
@@ -25,24 +24,26 @@ class LcmLoss {
       two_publishers_ = true;
       suspect_ = 0;
       last_.reset();
-      came_ = ~std::uint64_t{0};
+      received_ = ~std::uint64_t{0};
       return 0;
     }
     if (late) {
       const std::uint64_t place = std::uint64_t{1} << static_cast<unsigned>(last_->seq - message.seq);
-      if ((came_ & place) == 0) --(suspect_ > 0 ? suspect_ : lost_);
-      came_ |= place;
+      if ((received_ & place) == 0) --(suspect_ > 0 ? suspect_ : lost_);
+      received_ |= place;
       return 0;
     }
-    // A number passed over without the daemon's own gap flag or a merge was lost on the way.
-    const bool told = (message.flags & rate_t::FLAG_GAP) != 0 || (message.flags & rate_t::FLAG_MERGED) != 0;
+    // A gap in the numbers without the daemon's gap or merge flag is a loss on the way.
+    const bool announced =
+        (message.flags & rate_t::FLAG_GAP) != 0 || (message.flags & rate_t::FLAG_MERGED) != 0;
     std::int64_t lost = 0;
-    if (last_ && !told && last_->seq >= 0 && message.seq > last_->seq) lost = message.seq - last_->seq - 1;
+    if (last_ && !announced && last_->seq >= 0 && message.seq > last_->seq)
+      lost = message.seq - last_->seq - 1;
     if (static_cast<double>(lost) > most_since_last(message)) {
-      ++began_anew_;
+      ++restarts_;
       lost = 0;
     }
-    if (!told && message.dt > 0.0 && message.dt < kLongestStep_s) {
+    if (!announced && message.dt > 0.0 && message.dt < kLongestStep_s) {
       steps_s_ += message.dt;
       ++steps_;
     }
@@ -53,14 +54,13 @@ class LcmLoss {
     return pass(by == 0 ? kWindow : by, lost);
   }
   [[nodiscard]] std::int64_t lost() const { return lost_ + suspect_; }
-  // Numbers that may yet come, and are lost where nothing more does.
+  // Missing numbers that may still arrive; lost if nothing more arrives.
   [[nodiscard]] std::int64_t awaited() const {
-    return std::popcount(~came_ & ((std::uint64_t{1} << kWindow) - 1));
+    return std::popcount(~received_ & ((std::uint64_t{1} << kWindow) - 1));
   }
-  // How often the number was one that no sample of this sensor can have had by then: nothing is known to be
-  // lost.
-  [[nodiscard]] std::int64_t began_anew() const { return began_anew_; }
-  // Two sequences run on this channel: of two daemons, or of a daemon and a log that is played.
+  // How often a number was too high for the elapsed time: the sequence restarted, and no loss is known.
+  [[nodiscard]] std::int64_t restarts() const { return restarts_; }
+  // True if two sequences are on this channel: from two daemons, or from a daemon and a log that is played.
   [[nodiscard]] bool two_publishers() const { return publishers_.found(); }
   [[nodiscard]] bool had_two_publishers() const { return two_publishers_; }
 
@@ -69,26 +69,25 @@ class LcmLoss {
     std::int64_t seq, utime, sensor_time_ns;
   };
   static constexpr double kShortestStep_s = 1e-5, kLongestStep_s = 100.0;
-  // Steps are a mean and times of samples are fitted ones.
+  // Margins, because steps are a mean and times of samples are fitted.
   static constexpr double kTimes = 2.0, kSlack_s = 1.0;
 
   [[nodiscard]] bool comes_late(std::int64_t seq) const {
     return last_ && seq < last_->seq && seq >= 0 && last_->seq - seq < kWindow;
   }
-  // The window goes on by so many numbers, of which so many have not come. Returns those that leave it
-  // missing.
+  // Advances the window by `by` numbers, `lost` of which are missing. Returns how many leave it missing.
   std::int64_t pass(std::int64_t by, std::int64_t lost) {
     std::int64_t gone = std::max<std::int64_t>(0, lost - (kWindow - 1));
     for (std::int64_t place = std::max<std::int64_t>(0, kWindow - by); place < kWindow; ++place)
-      gone += (came_ >> static_cast<unsigned>(place) & 1U) == 0 ? 1 : 0;
-    came_ = by < kWindow ? came_ << static_cast<unsigned>(by) : 0;
+      gone += (received_ >> static_cast<unsigned>(place) & 1U) == 0 ? 1 : 0;
+    received_ = by < kWindow ? received_ << static_cast<unsigned>(by) : 0;
     const std::uint64_t holes =
         by < kWindow ? (std::uint64_t{1} << static_cast<unsigned>(by)) - 1 : ~std::uint64_t{0};
-    came_ |= lost > 0 ? std::uint64_t{1} : holes | 1U;
+    received_ |= lost > 0 ? std::uint64_t{1} : holes | 1U;
     return gone;
   }
-  // Samples that fit in between at the sensor's rate, by the clock that tells of more; both go back where one
-  // of them is set.
+  // Most samples since the last message at the sensor's rate; uses the clock that advanced more, because
+  // either may be set back.
   [[nodiscard]] double most_since_last(const rate_t& message) const {
     if (!last_) return 0.0;
     const auto since = [](std::int64_t now, std::int64_t before) {
@@ -102,13 +101,13 @@ class LcmLoss {
   }
 
   std::optional<Place> last_;
-  static constexpr std::int64_t kWindow = 16;  // messages: more than a network exchanges
-  std::uint64_t came_ =
-      ~std::uint64_t{0};  // bit n: the message n before the last has come, or was never sent
+  static constexpr std::int64_t kWindow = 16;  // messages; larger than any reordering of a network
+  std::uint64_t received_ =
+      ~std::uint64_t{0};  // bit n: the n-th message before the last one was received or never sent
   bool two_publishers_ = false;
   TwoDevices publishers_;
-  std::int64_t suspect_ = 0;  // lost, unless two sequences turn out to cross
-  std::int64_t lost_ = 0, began_anew_ = 0, steps_ = 0;
+  std::int64_t suspect_ = 0;  // lost, unless two interleaved sequences are found
+  std::int64_t lost_ = 0, restarts_ = 0, steps_ = 0;
   double steps_s_ = 0.0;
 };
 

@@ -17,18 +17,18 @@ using Bytes = std::span<const std::uint8_t>;
 
 struct Piece {
   std::int64_t utime = 0;  // µs since the epoch
-  Bytes bytes;             // until the next call
+  Bytes bytes;             // valid until the next call
 };
 
 class PieceReader {
  public:
-  // nullopt: the message is of neither type, or damaged.
+  // nullopt: another type, or damaged.
   std::optional<Piece> read(Bytes message) {
     if (type_hash(message) == senlcm::raw_t::getHash() && decode_message(message, raw_))
       return Piece{raw_.utime, raw_.data};
     if (type_hash(message) != senlcm::raw_ascii_t::getHash() || !decode_message(message, line_))
       return std::nullopt;
-    // Some publishers keep the end of the line and some do not.
+    // Some publishers omit the end of the line.
     if (!line_.msg.ends_with('\n') && !line_.msg.ends_with('\r')) line_.msg += '\n';
     return Piece{line_.utime, {reinterpret_cast<const std::uint8_t*>(line_.msg.data()), line_.msg.size()}};
   }
@@ -38,7 +38,7 @@ class PieceReader {
   senlcm::raw_ascii_t line_;
 };
 
-// Throws std::runtime_error with one line unless exactly one channel carries bytes.
+// Throws std::runtime_error with one line unless exactly one channel has bytes.
 std::string only_channel(const NamedLog& source, const std::string& path) {
   std::set<std::string> found;
   LcmEvents log(source.name());
@@ -66,7 +66,7 @@ RecordingCounts decode_logged_bytes(InputFile& file, DriverInstance& driver, con
   const std::string path = file.path();
   if (!driver.takes_bytes())
     throw std::runtime_error(path + ": is an LCM log, and this driver takes CAN frames, not bytes");
-  constexpr std::int64_t kMost_us = std::int64_t{1} << 53U;  // far beyond any date, and in range as ns
+  constexpr std::int64_t kMost_us = std::int64_t{1} << 53U;  // beyond any date, and representable in ns
   const NamedLog source(file);
   const std::string wanted = channel.empty() ? only_channel(source, path) : channel;
   RecordingCounts counts;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// LCM messages on their way into flight recordings, and the books of those that are in none: each is lost in
-// one place, here or on the way from the daemon to here.
+// Writes LCM messages into flight recordings and counts the lost ones, each once: lost here, or on the way
+// from the daemon.
 #pragma once
 
 #include <cstdint>
@@ -18,19 +18,18 @@ namespace ifog::tools {
 class MessageArchive {
  public:
   struct Books {
-    std::uint64_t heard = 0;        // messages
-    std::uint64_t lost_here = 0;    // heard, and in no recording: the disk was slow or full
-    std::uint64_t lost_on_way = 0;  // rates that were not heard, by their numbers
-    std::uint64_t began_anew = 0;   // LcmLoss::began_anew()
-    std::string two_publishers;     // channels that had two at a time, with commas; "" for none
+    std::uint64_t received = 0;     // messages
+    std::uint64_t lost_here = 0;    // received but not stored: the disk was slow or full
+    std::uint64_t lost_on_way = 0;  // rates that were not received, by their numbers
+    std::uint64_t restarts = 0;     // LcmLoss::restarts()
+    std::string two_publishers;     // channels that had two publishers, separated by commas
   };
 
   MessageArchive(std::unique_ptr<FlightFolder> folder, const ArchiveLimits& limits,
                  const FlightHeader& header)
       : archive_(std::move(folder), limits, header) {}
 
-  // Makes the folder and has it alone. Throws std::runtime_error with one line where it cannot, and has then
-  // written nothing.
+  // Creates and locks the folder. Throws std::runtime_error with one line and writes nothing if that fails.
   void open(std::int64_t now_ns, std::int64_t wall_ns);
   void take(const std::string& channel, std::span<const std::uint8_t> message, std::int64_t came_utime,
             std::int64_t now_ns, std::int64_t wall_ns);
@@ -39,7 +38,7 @@ class MessageArchive {
   void close(std::int64_t now_ns, std::int64_t wall_ns);
 
   [[nodiscard]] Books books() const;
-  // Its disk and what it has written.
+  // State of its disk and of its files.
   [[nodiscard]] const FlightArchive& archive() const { return archive_; }
 
  private:
@@ -50,7 +49,7 @@ class MessageArchive {
   std::map<std::string, LcmLoss> ways_;
   std::vector<std::uint8_t> payload_;
   Books books_;
-  std::uint64_t untold_ = 0, untold_bytes_ = 0;  // lost, and not yet said in the recording
+  std::uint64_t unreported_ = 0, unreported_bytes_ = 0;  // lost, and not yet noted in the recording
 };
 
 }  // namespace ifog::tools

@@ -9,29 +9,28 @@
 namespace ifog::tools {
 namespace {
 
-constexpr std::size_t kMostSteps = 1'000'000;  // enough for a mean to 1e-6
-// A count that goes back by so many is of a sensor that was switched on again, and no packet of a batch that
-// is late.
+constexpr std::size_t kMostSteps = 1'000'000;  // sufficient for a mean accurate to 1e-6
+// A count that falls by this much is a restart of the sensor, not a delayed packet of a batch.
 constexpr std::int64_t kRestart = 64;
-// What differences of numbers from outside have room for, as ns, too.
+// Limit of received numbers, so that differences do not overflow, also in ns.
 constexpr std::int64_t kMostNumber = std::numeric_limits<std::int64_t>::max() / 2;
 
 bool can_be(std::int64_t number, std::int64_t most) { return number < most && number > -most; }
 
 }  // namespace
 
-std::vector<std::string> PeerReader::beside() const {
+std::vector<std::string> PeerReader::extra_columns() const {
   std::vector<std::string> out;
   if (type_->specific_force) out = {"accel_x_mps2", "accel_y_mps2", "accel_z_mps2"};
   if (type_->temperature) out.emplace_back("temperature_degC");
   return out;
 }
 
-// Whole rollovers that nothing came of are in the time.
+// Adds whole rollovers that were lost, by the elapsed time.
 std::int64_t PeerReader::unwrapped(const PeerSample& sample) const {
   if (type_->count == PeerType::Count::none) return last_ ? last_->count + 1 : 0;
   if (type_->modulus == 0 || !last_) return sample.count;
-  const std::int64_t modulus = type_->modulus, late = 16;  // messages that a network exchanges
+  const std::int64_t modulus = type_->modulus, late = 16;  // messages; a network may reorder that many
   std::int64_t ahead = ((sample.count - last_->count) % modulus + modulus) % modulus;
   if (ahead > modulus - late) return last_->count + ahead - modulus;
   if (period_s_ && *period_s_ > 0.0) {
@@ -74,8 +73,8 @@ void PeerReader::look_at(std::span<const std::uint8_t> message) {
   }
 }
 
-// All the time over the periods in it, by the median step: stamps that jitter take nothing from the mean, and
-// a message that was lost is a period.
+// Elapsed time divided by the number of periods, from the median step; lost messages and jitter of the stamps
+// do not bias it.
 double PeerReader::period_s() {
   if (period_s_) return *period_s_;
   period_s_ = 0.0;
@@ -100,7 +99,7 @@ bool PeerReader::take(std::span<const std::uint8_t> message,
     last_.reset();
   }
   if (!unpack(message)) return false;
-  constexpr double kSameClock = 0.01;  // part by which a sensor's clock may be off
+  constexpr double kSameClock = 0.01;  // relative rate error of a sensor's clock
   const bool clock = std::abs(device_advance_us_ - advance_us_) < kSameClock * advance_us_;
   for (const PeerSample& sample : samples_) {
     if (again(sample)) continue;
@@ -120,8 +119,8 @@ bool PeerReader::take(std::span<const std::uint8_t> message,
     if (sample.kind != PeerSample::Kind::rate)
       for (double& value : out.raw) value = period_s() > 0.0 ? value / period_s() : PeerSample::kUnknown;
     if (type_->specific_force)
-      out.beside.assign(sample.specific_force_mps2.begin(), sample.specific_force_mps2.end());
-    if (type_->temperature) out.beside.push_back(sample.temperature_degC);
+      out.extra.assign(sample.specific_force_mps2.begin(), sample.specific_force_mps2.end());
+    if (type_->temperature) out.extra.push_back(sample.temperature_degC);
     sink(std::move(out));
   }
   return true;

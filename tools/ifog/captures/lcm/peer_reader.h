@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages that carry rates and are no ifog.rate_t: of other programs on LCM, see msgs/peers, and ours with
-// specific force. A type is known by its hash.
-// One channel of such a type is read as the messages that our readers of logs work on.
+// Reads one channel of messages with rates that are not ifog.rate_t, as rate_t: types of other programs, see
+// msgs/peers, and ours with specific force. The hash identifies the type.
 #pragma once
 
 #include <array>
@@ -23,11 +22,12 @@ struct PeerSample {
   static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
   Kind kind = Kind::rate;
-  std::int64_t utime = 0;                                     // µs since the epoch
-  std::int64_t count = 0;                                     // the sensor's own, where the type has one
-  std::int64_t device_ns = -1;                                // the device's clock; −1: none
-  std::int32_t flags = 0, merged = 1;                         // as in rate_t
-  std::array<double, 3> value{kUnknown, kUnknown, kUnknown};  // rad/s, or rad since the sample before, or rad
+  std::int64_t utime = 0;              // µs since the epoch
+  std::int64_t count = 0;              // the sensor's own, if the type has one
+  std::int64_t device_ns = -1;         // the device's clock; −1: none
+  std::int32_t flags = 0, merged = 1;  // as in rate_t
+  // Rad/s, or rad since the previous sample, or accumulated rad
+  std::array<double, 3> value{kUnknown, kUnknown, kUnknown};
   std::array<double, 3> specific_force_mps2{kUnknown, kUnknown, kUnknown};
   double temperature_degC = kUnknown;
 };
@@ -37,18 +37,18 @@ struct PeerType {
   std::int64_t hash;
   std::size_t axes;  // 1 or 3
   bool specific_force, temperature;
-  enum class Count { none, whole, repeats } count;  // repeats: messages bring samples again
-  std::int64_t modulus;                             // the count rolls over after so many; 0: it does not
-  // The samples of a message, the oldest first. False: it is none of the type.
+  enum class Count { none, whole, repeats } count;  // repeats: messages contain earlier samples again
+  std::int64_t modulus;                             // of the count; 0: no rollover
+  // Appends a message's samples, oldest first. False: not of this type.
   bool (*unpack)(std::span<const std::uint8_t> message, std::vector<PeerSample>& out);
 };
 
-// That of the message; null: none of these.
+// Type of the message; null: none of these.
 const PeerType* peer_type(std::span<const std::uint8_t> message);
 
-// A rate and what was measured with it, by PeerReader::beside().
+// A rate with the values of PeerReader::extra_columns().
 struct MeasuredRate : rate_t {
-  std::vector<double> beside;
+  std::vector<double> extra;
 };
 
 class PeerReader {
@@ -56,14 +56,13 @@ class PeerReader {
   explicit PeerReader(const PeerType& type) : type_(&type) {}
 
   [[nodiscard]] const PeerType& type() const { return *type_; }
-  // Columns of specific force and temperature, where the type has them.
-  [[nodiscard]] std::vector<std::string> beside() const;
+  // Columns of specific force and temperature, if the type has them.
+  [[nodiscard]] std::vector<std::string> extra_columns() const;
 
-  // The first look at every message of the channel: the sensor's period, and whether its clock is one.
+  // First pass over the channel: the sensor's period, and if the device's clock is usable.
   void look_at(std::span<const std::uint8_t> message);
-  // The second: the samples that were in no message before, in the order of their counts. An angle that a
-  // packet turned is divided by the period, so that the jitter of stamps is no noise of the rate. False: the
-  // message is none of the type.
+  // Second pass: new samples in the order of their counts. A packet's angle is divided by the period, so that
+  // jitter of the stamps adds no noise. False: not of this type.
   bool take(std::span<const std::uint8_t> message, const std::function<void(MeasuredRate&&)>& sink);
 
  private:
@@ -78,7 +77,7 @@ class PeerReader {
   const PeerType* type_;
   std::vector<PeerSample> samples_;
   std::optional<Place> first_, last_;
-  std::vector<double> steps_us_;  // between samples that follow one another
+  std::vector<double> steps_us_;  // between successive samples
   double advance_us_ = 0.0, device_advance_us_ = 0.0;
   std::optional<double> period_s_;
   bool second_look_ = false;

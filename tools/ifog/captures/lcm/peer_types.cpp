@@ -15,7 +15,7 @@ namespace {
 using Bytes = std::span<const std::uint8_t>;
 
 constexpr double kStandardGravity = 9.80665;  // m/s² per g
-// Some publishers leave the device's clock as it happens to be: what is beyond is none.
+// Some publishers leave the device's clock uninitialised; larger values are unknown.
 constexpr std::int64_t kMostTime_us = 4'000'000'000'000'000;
 constexpr std::int64_t kKvhModulus = 128;  // KVH 1750 technical manual: the sequence number is 0 to 127
 

@@ -87,7 +87,7 @@ bool LongTableSink::wants(std::size_t column) const {
 
 void LongTableSink::take(RowBlock& rows) {
   table_.origin = rows.origin;
-  // To make the pages of a file takes longer than to read its rows: where all columns write, two share that.
+  // Creating a file's pages takes longer than reading its rows: two threads share it.
   const unsigned threads = table_.time_s.will_write(rows.time_s.size()) ? 2 : 1;
   for (std::size_t i = 0; i < outlined_.size(); ++i) table_.outlines[i].add(rows.columns[outlined_[i]]);
   share_out(from_.size() + 1, threads, [&](std::size_t i) {

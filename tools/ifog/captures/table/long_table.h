@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A capture of any length: its columns in memory while they are short, and beyond in files without a name.
+// A capture of any length; long columns are in unnamed files.
 #pragma once
 
 #include <functional>
@@ -19,42 +19,40 @@ namespace ifog::tools {
 struct LongColumn {
   std::string name;
   LongSeries values;
-  bool known = false;                    // ever a value
-  std::vector<ValueFault> repeats = {};  // of a rate; see clean()
+  bool known = false;                    // has had a value
+  std::vector<ValueFault> repeats = {};  // in a rate; see clean()
 };
 
 struct LongTable : RowNotes {
-  TimeOrigin origin;  // that time_s is counted from
+  TimeOrigin origin;  // of time_s
   LongSeries time_s;
-  std::vector<std::string> header;     // all that the file has but time_s, but for dead_axes
-  std::vector<LongColumn> columns;     // of those that are wanted, in the same order
-  std::vector<std::string> dead_axes;  // of the sensor, whose columns were dropped: they never have a value
-  bool outlined = false;               // set before reading: unwanted columns are kept as outlines
+  std::vector<std::string> header;     // all columns of the file except time_s and dead_axes
+  std::vector<LongColumn> columns;     // the wanted ones, in the same order
+  std::vector<std::string> dead_axes;  // axes that never have a value; their columns are dropped
+  bool outlined = false;               // set before reading: keep outlines of unwanted columns
   std::vector<ChannelOutline> outlines;
 
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
   [[nodiscard]] std::vector<std::string> names() const;
-  // Drops axes and channels of a recording that never had a value. Throws std::runtime_error where nothing is
-  // left.
+  // Drops axes and channels of a recording that never had a value. Throws std::runtime_error if none is left.
   void drop_unknown(const std::string& path);
-  // What the rule (filters/rest/cleaned_rate.h) finds in the rates is missing from here on.
+  // Removes the values that the rule (filters/rest/cleaned_rate.h) finds in the rates.
   using Rule = void(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
   void clean(Rule rule);
-  // The same, printed on standard error; path: of the capture.
+  // The same, and prints them on standard error; path: of the capture.
   void clean_and_tell(Rule rule, const std::string& path);
-  // Of a table that was merged from sensors of different rates (a gyro in every fourth row, empty cells between) only
-  // the rows with a rate are kept, each with the channels' latest values since the one before: a rate's clock is of
-  // its own samples. Nothing where rates stand in neighbouring rows, be there holes. Adds a notice. path: of the
-  // capture.
+  // For a table merged from sensors of different rates, e.g. a gyro in every fourth row: keeps only rows with
+  // a rate, with the channels' latest values. Then the clock is that of the rates. Adds a notice. Does
+  // nothing if rates are in adjacent rows. path: of the capture.
   void keep_rate_rows(const std::string& path);
-  // The axes of rates that never had one, whose columns are gone from here on, with their references.
+  // Drops the axes that never have a rate, with their references; returns them.
   std::vector<std::string> drop_dead_axes();
 };
 
-// A capture that is there as a whole.
+// Converts a complete capture.
 LongTable long_table(Capture capture);
 
-// Puts rows into a table: the columns that `wanted` says yes to, all where it is empty.
+// Writes rows into a table: the columns for which `wanted` is true; empty: all.
 class LongTableSink final : public RowSink {
  public:
   using Wanted = std::function<bool(const std::string& name)>;
@@ -67,14 +65,13 @@ class LongTableSink final : public RowSink {
  private:
   LongTable& table_;
   Wanted wanted_;
-  std::vector<std::size_t> from_, outlined_;  // by column and by outline of the table: that of the rows
+  std::vector<std::size_t> from_, outlined_;  // column of the rows, by column and by outline of the table
 };
 
-// Some rows of a table's columns at a time, in the order in which a capture is written: rates, references,
-// channels.
+// Blocks of a table's rows in the order of a capture: rates, references, channels.
 class LongRows {
  public:
-  // Both have to outlive this.
+  // Both must outlive this.
   LongRows(const LongTable& table, const CaptureShape& shape);
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // time_s first
@@ -82,7 +79,7 @@ class LongRows {
   bool next();
   [[nodiscard]] std::span<const std::span<const double>> rows() const { return rows_; }
   [[nodiscard]] const TimeOrigin& origin() const { return table_.origin; }
-  // The same as a capture of so many rows, whose columns keep their places.
+  // The same as a capture, which is reused.
   void as_capture(Capture& piece) const;
 
  private:
@@ -90,7 +87,7 @@ class LongRows {
   const CaptureShape& shape_;
   std::vector<std::string> names_;
   std::vector<SeriesView> views_;
-  std::vector<std::size_t> from_;  // by name but the first: the table's column
+  std::vector<std::size_t> from_;  // by name except time_s: the table's column
   std::vector<std::vector<double>> room_;
   std::vector<std::span<const double>> rows_;
   std::size_t at_ = 0;

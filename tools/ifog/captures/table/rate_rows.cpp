@@ -16,7 +16,7 @@ bool is_rate(const std::string& column) {
   return axis_of(column, "rate", axis);
 }
 
-// By row: whether any rate has a value there.
+// By row: true if any rate has a value.
 std::vector<bool> rows_with_rate(const LongTable& table) {
   std::vector<bool> with(table.size());
   for (const LongColumn& column : table.columns) {
@@ -29,7 +29,7 @@ std::vector<bool> rows_with_rate(const LongTable& table) {
   return with;
 }
 
-// Half of the rows with a rate stand beside none with one.
+// True if at least half of the rows with a rate have no neighbour with one.
 bool stand_apart(const std::vector<bool>& with) {
   std::size_t rows = 0, apart = 0;
   for (std::size_t i = 0; i < with.size(); ++i) {
@@ -40,7 +40,7 @@ bool stand_apart(const std::vector<bool>& with) {
   return rows > 2 && rows < with.size() && 2 * apart >= rows;
 }
 
-// latest: a row without a value takes the last one since the row kept before.
+// latest: a row without a value gets the last one since the previous kept row.
 LongSeries kept_of(const SeriesView& values, const std::vector<bool>& with, bool latest) {
   LongSeries kept;
   double last = kMissing;
@@ -66,8 +66,8 @@ void LongTable::keep_rate_rows(const std::string& path) {
   const std::size_t before = size();
   for (LongColumn& column : columns) column.values = kept_of(column.values, with, !is_rate(column.name));
   time_s = kept_of(time_s, with, false);
-  outlines.clear();  // of the rows as they came
-  // Lines are known by the row as it came.
+  outlines.clear();  // outlines of all rows are not valid for the rest
+  // Line numbers apply to the rows of the file.
   header_line = 0;
   lines.clear();
   notices.push_back(path + ": " + std::to_string(size()) + " of " + std::to_string(before) +
