@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of `ifog`. Each lives in a file of its own and adds itself to the command line.
+// The commands of `ifog`. Each has its own file and adds itself to the command line.
 #pragma once
 
 #include <stdexcept>
@@ -11,7 +11,7 @@ namespace ifog::tools {
 void add_allan(const Command& program);
 void add_simulate(const Command& program);
 
-// What a command throws after it has said why: exit code 1, no further message.
+// Thrown by a command that has printed its error: exit code 1, no further message.
 struct Failed : std::runtime_error {
   using std::runtime_error::runtime_error;
 };

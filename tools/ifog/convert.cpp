@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog convert: a capture to what a device would have sent, and back.
+// ifog convert: a capture to a recording of a device, and back.
 #include <memory>
 #include <string>
 
@@ -30,7 +30,7 @@ void Convert::run() const {
   expect_capture_name("TO", to, &input);
   InputFile file(from);
   const bool from_columns = input.has_layout() || file_kind(file) == FileKind::capture;
-  // Standard output has no ending: it takes what the capture is not.
+  // Standard output has no file ending: the format is the one that the input does not have.
   const bool to_columns =
       file_kind(to) == FileKind::capture || (is_standard_output(to) && !(from_columns && input.has_driver()));
   if (from_columns && !to_columns) {

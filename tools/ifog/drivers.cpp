@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog drivers: which protocol plugins are found, where, with which options; which were refused and why.
+// ifog drivers: the protocol plugins with folder and options, and the rejected ones with the reason.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -52,7 +52,7 @@ nlohmann::ordered_json driver_json(const FoundPlugin& found) {
   const ifog_driver& table = found.plugin->table();
   auto options = nlohmann::ordered_json::array();
   for (const ifog_option* option = table.options; option->key != nullptr; ++option) {
-    nlohmann::ordered_json standard;  // null: must be given
+    nlohmann::ordered_json standard;  // null: required
     if (option->default_value != nullptr) standard = option->default_value;
     options.push_back(
         {{"key", option->key}, {"help", option->help}, {"values", option->values}, {"default", standard}});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The commands of `ifog` that need no analysis of records.
+// The commands of `ifog` that do not analyse records.
 #include <array>
 
 #include "tools/ifog/commands.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog: the command line. Exit 0 good, 1 failed, 2 usage.
+// ifog: the command line. Exit codes: 0 success, 1 failure, 2 usage.
 #include <array>
 
 #include "tools/ifog/commands.h"
@@ -7,7 +7,7 @@
 
 int main(int argc, char** argv) {
   using namespace ifog::tools;
-  // In the order that the help lists them.
+  // In the order of the help.
   constexpr std::array<AddCommand, 18> kCommands{
       add_allan,    add_compare, add_convert,   add_denoise, add_drivers,  add_monitor,
       add_picture,  add_record,  add_replay,    add_tune,    add_diagnose, add_fleet,

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog picture: what the daemon published, raw against denoised, as one picture: the rate over time and both
-// Allan curves.
+// ifog picture: raw and denoised rate of a log as one picture: over time, and as Allan curves.
 #include <cstdio>
 #include <memory>
 #include <stdexcept>
@@ -67,11 +66,11 @@ void run_picture(const PictureArguments& a) {
   AllanOptions options;
   options.axis = a.axis;
   options.part = a.part;
-  options.keep_motion = true;  // what was denoised is shown, moving or not
+  options.keep_motion = true;  // the denoised rate is shown, at rest or not
   std::vector<AllanRecord> records;
   for (AllanRecord& record : allan_records(a.log, table, options))
     if (record.signal == "raw" || record.signal == "denoised") records.push_back(std::move(record));
-  // The noise terms are the sensor's; what a filter has been over has none.
+  // The noise terms describe the sensor, not a filter's output.
   for (AllanRecord& record : records)
     if (record.signal == "denoised") record.fit.reset();
   report::write_picture(

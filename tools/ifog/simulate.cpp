@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog simulate: a capture from a scenario file, its truth apart.
+// ifog simulate: a capture from a scenario file; with --truth also the true values.
 #include <cstdint>
 #include <memory>
 #include <string>

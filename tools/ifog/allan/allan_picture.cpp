@@ -26,9 +26,9 @@ struct Extent {
   double first = std::numeric_limits<double>::infinity(), last = 0.0;  // s
   double low = std::numeric_limits<double>::infinity(), high = 0.0;    // °/h
 
-  // Along the averaging times; place: 0 to 1.
+  // Averaging time at a place along the axis, 0 to 1.
   [[nodiscard]] double tau_at(double place) const { return first * std::pow(last / first, place); }
-  // Lower edge of the picture, which leaves some room above and below.
+  // Lower edge of the picture; leaves room below the curves.
   [[nodiscard]] double bottom() const { return low / 3.0; }
   [[nodiscard]] double top() const { return high * 2.0; }
   [[nodiscard]] bool shows(double sigma) const { return sigma > bottom() && sigma < top(); }
@@ -77,7 +77,7 @@ std::string in_words(const NoiseCoefficients& fit, const NamedCoefficient& named
   return std::string(named.letter) + " = " + report::number(value) + " " + named.unit;
 }
 
-// A fitted term as the straight line that it is, where it matters.
+// Draws a fitted term as a straight line in the range where it contributes.
 void draw_term(Chart& chart, report::Role role, const NoiseCoefficients& fit, const NamedCoefficient& named,
                const Extent& extent) {
   NoiseCoefficients alone;
@@ -114,14 +114,13 @@ Chart allan_chart(const std::string& title, const std::vector<AllanRecord>& reco
   std::vector<std::string> labels;
   for (std::size_t r = 0; r < records.size(); ++r) {
     labels.push_back(records.size() == 1 ? "" : title_of(records[r], several));
-    // A filter's output is not made of the standard's terms, and a curve that covers another needs no second
-    // set of words.
+    // A filter's output does not consist of the standard's terms, and of two equal curves one is labelled.
     const bool covered = r > 0 && curves[r].sigma == curves[r - 1].sigma;
     if (!records[r].fit || records[r].signal == "denoised" || covered) continue;
     const char* before = labels[r].empty() ? "" : ": ";
     for (const NamedCoefficient& named : named_coefficients()) {
       if (!((*records[r].fit).*named.member).present) continue;
-      // Lines for as many records as the eye can take.
+      // More lines would not be readable.
       if (r < kMostWithLines) draw_term(chart, report::role_of(r), *records[r].fit, named, extent);
       labels[r] += std::exchange(before, ", ") + in_words(*records[r].fit, named);
     }

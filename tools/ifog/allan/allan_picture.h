@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Allan deviation as a picture: both axes logarithmic, with confidence bands and the fitted noise terms.
+// Allan deviation as a picture: logarithmic axes, confidence bands and the fitted noise terms.
 #pragma once
 
 #include <string>

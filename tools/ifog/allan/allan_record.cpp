@@ -22,10 +22,11 @@
 namespace ifog::tools {
 namespace {
 
-// Rates worked on at a time, were there fewer processors: with three on two processors in turn, one would be idle.
+// Rates analysed in parallel, even with fewer processors: three on two processors in turn would leave one
+// idle.
 constexpr unsigned kRatesTogether = 3;
 
-// "rate_x_radps" → signal "rate", axis "x"; likewise those of a denoised file. False for another column.
+// "rate_x_radps" → signal "rate", axis "x"; likewise for a denoised file. False for other columns.
 bool signal_of(const std::string& column, std::string& signal, std::string& axis) {
   for (const char* const prefix : {"rate", "raw", "compensated", "denoised"})
     if (axis_of(column, prefix, axis)) {
@@ -35,7 +36,7 @@ bool signal_of(const std::string& column, std::string& signal, std::string& axis
   return false;
 }
 
-// No value at all in a column's rows.
+// True if the rows have no value at all.
 bool is_dead(const SeriesView& values) {
   std::vector<double> room;
   for (std::size_t at = 0; at < values.size(); at += kSeriesPiece) {
@@ -46,8 +47,8 @@ bool is_dead(const SeriesView& values) {
   return true;
 }
 
-// Whether the part is at rest: all axes of the sensor together, since what turns one shakes the others. Of a file written
-// by denoise the raw rates.
+// Finds rest from all axes of the sensor together, because a turn about one disturbs the others. Uses the raw
+// rates of a file written by denoise.
 void find_rest_of(AnalysedPart& part, const AllanOptions& options) {
   const TimePart::Rows& rows = part.rows;
   std::vector<SeriesView> axes, references;
@@ -67,7 +68,7 @@ void find_rest_of(AnalysedPart& part, const AllanOptions& options) {
   const double period_s = part.clock.period_s;
   const Rest found = find_rest(axes, references, period_s);
   if (options.minus_reference) {
-    // Against a reference the sensor may turn.
+    // With a reference the sensor may turn.
     if (found.turned > 0)
       part.slow_turns =
           "turned in " + six_digits(static_cast<double>(found.turned) * period_s) +
@@ -77,14 +78,14 @@ void find_rest_of(AnalysedPart& part, const AllanOptions& options) {
   }
   part.rest = found;
   try {
-    require_rest(part.rest, period_s, part.told_time_s(0));
+    require_rest(part.rest, period_s, part.shown_time_s(0));
   } catch (const std::invalid_argument& error) {
     throw std::runtime_error(
         part.capture + ": " + error.what() + (references.empty() ? "" : ", or --minus-reference") +
         ", or --moving keep" +
         (references.empty() ? "" : "; a sensor turned with a reference is for ifog diagnose"));
   }
-  part.slow_turns = slow_turns_in_words(part.rest, period_s, part.told_time_s(0));
+  part.slow_turns = slow_turns_in_words(part.rest, period_s, part.shown_time_s(0));
 }
 
 LongSeries less_reference(const std::string& name, const LongTable& table, const SeriesView& rate,
@@ -104,7 +105,7 @@ LongSeries less_reference(const std::string& name, const LongTable& table, const
   return error;
 }
 
-// How many rows from the first on are the same bits in both, none in either counted as the same.
+// Number of leading rows with equal values in both; two missing values are equal.
 std::size_t same_rows(const SeriesView& a, const SeriesView& b) {
   std::vector<double> room, other_room;
   for (std::size_t at = 0; at < a.size(); at += kSeriesPiece) {
@@ -116,9 +117,9 @@ std::size_t same_rows(const SeriesView& a, const SeriesView& b) {
   return a.size();
 }
 
-// Rows of the table, from its first on, in which a denoised rate is the compensated one; 0 for other signals
-// and where it never is another. Until the filter has learned the noise it publishes the compensated rate as it is: in
-// the filter's output that would be leaps, and noise, that the filter does not have.
+// Number of leading rows in which a denoised rate equals the compensated one; 0 for other signals and if they
+// never differ. Until the filter knows the noise it publishes the compensated rate, whose noise and jumps are
+// not the filter's.
 std::size_t start_of_filter(const LongTable& table, const LongColumn& column, const std::string& signal,
                             const std::string& axis) {
   if (signal != "denoised") return 0;
@@ -131,13 +132,12 @@ std::size_t start_of_filter(const LongTable& table, const LongColumn& column, co
   return 0;
 }
 
-// A column that is analysed.
 struct AnalysedRate {
   const LongColumn& column;
   std::string signal, axis;
 };
 
-// What of the table is analysed; throws where nothing is left.
+// The rates to analyse; throws if there are none.
 std::vector<AnalysedRate> rates_of(const std::string& name, const LongTable& table,
                                    const TimePart::Rows& rows, const std::string& wanted) {
   std::vector<AnalysedRate> rates;
@@ -173,7 +173,7 @@ AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const 
     rate = error;
     shown = "error";
   }
-  // A part that ends before the filter has started has nothing else to show.
+  // A part that ends before the filter starts is shown as it is.
   const std::size_t started = start_of_filter(of.table, column, signal, axis);
   const bool later = started > rows.begin && started < rows.end;
   const std::vector<Stretch> running = {{later ? started - rows.begin : 0, rows.end - rows.begin}};
@@ -184,9 +184,9 @@ AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const 
   AllanRecord record = analyse(logged, shown, axis, analysed, options);
   if (later)
     record.notes.push_back(of.capture + ": " + column.name + ": until " +
-                           told_time(of.told_time_s(started - rows.begin)) +
+                           told_time(of.shown_time_s(started - rows.begin)) +
                            " s the filter had not started and this is the compensated rate: dropped");
-  if (const std::string motion = in_words(of.rest, of.clock.period_s, of.told_time_s(0)); !motion.empty())
+  if (const std::string motion = in_words(of.rest, of.clock.period_s, of.shown_time_s(0)); !motion.empty())
     record.notes.push_back(of.capture + ": " + motion + "; only the rest is analysed");
   if (!of.slow_turns.empty()) record.notes.push_back(of.capture + ": " + of.slow_turns);
   return record;
@@ -212,7 +212,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
   AnalysedPart part{name, table, rows, time_s, naming(name, [&] { return sample_clock(time_s); })};
   find_rest_of(part, options);
   const std::vector<AnalysedRate> rates = rates_of(name, table, rows, options.axis);
-  // Side by side. An axis that cannot be analysed costs the others nothing; where none can, the first says why.
+  // In parallel. An axis that fails is skipped; if all fail, the first error is thrown.
   std::vector<AllanRecord> records(rates.size());
   std::vector<std::exception_ptr> refused(rates.size());
   share_out(rates.size(), std::max(kRatesTogether, std::thread::hardware_concurrency()), [&](std::size_t i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `ifog allan` knows of one rate: its source, its points, its noise terms. Made from a column of a
-// capture, then written as table, JSON and picture.
+// Results of `ifog allan` for one rate, made from a column of a capture and written as table, JSON and
+// picture.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -22,23 +22,23 @@ using report::named_coefficients;
 using report::NamedCoefficient;
 
 struct AllanOptions {
-  std::string axis;           // only this axis; every one when empty
-  std::vector<double> tau_s;  // as asked; log-spaced when empty
+  std::string axis;           // only this axis; all if empty
+  std::vector<double> tau_s;  // as requested; log-spaced if empty
   int per_decade = 20;
   double confidence = 0.683;
   Deviation kind = Deviation::kAllan;
   bool refuse_gaps = false;
   bool minus_reference = false;
   bool long_tau = false;     // Thêo1 beyond the Allan variance's τ
-  bool keep_motion = false;  // analyse what a sensor at rest would not do, too
+  bool keep_motion = false;  // do not restrict the analysis to rest
   TimePart part;
 };
 
 struct AllanRecord {
   std::string capture;  // file
   std::string axis;
-  std::string signal;  // "rate", "error" (rate less reference), or of a denoised file "raw", "compensated",
-                       // "denoised"
+  // "rate", "error" (rate minus reference); in a denoised file "raw", "compensated", "denoised"
+  std::string signal;
   double sample_rate_hz = 0.0;
   std::size_t samples = 0, missing = 0, gaps = 0, longest = 0;
   double mean_radps = 0.0;
@@ -46,25 +46,25 @@ struct AllanRecord {
   std::vector<double> tau_s;
   std::vector<DeviationPoint> points;
   std::vector<AllanInterval> intervals;
-  std::vector<LongPoint> longer;  // Thêo1, when asked for
+  std::vector<LongPoint> longer;  // Thêo1, if requested
   std::optional<NoiseCoefficients> fit;
   std::vector<NoiseChange> noise_changes;
-  std::vector<ValueFault> findings;  // what the values say of the logger
-  double trusted_tau_s = 0.0;        // up to here the deviation is known to a quarter
-  std::vector<std::string> notes;    // what the reader should know, one line each
+  std::vector<ValueFault> findings;  // faults of the logger in the values
+  double trusted_tau_s = 0.0;        // the deviation is accurate to 25 % up to here
+  std::vector<std::string> notes;    // one line each
 
-  [[nodiscard]] std::string label() const;  // short, tells the records of one run apart only with `capture`
+  [[nodiscard]] std::string label() const;  // short; unique in a run only with `capture`
 };
 
-// One record for each rate column of the file. Throws std::runtime_error with one line for people.
+// One record for each rate column of the file. Throws std::runtime_error with one line.
 std::vector<AllanRecord> allan_records(const std::string& name, const LongTable& table,
                                        const AllanOptions& options);
-// Whether a column takes part.
+// True if the column is analysed.
 bool allan_wants(const std::string& column);
 
 nlohmann::ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOptions& options);
 void print_allan(const AllanRecord& record, const AllanOptions& options);
-// One line a record, for several.
+// One line per record, if there are several.
 void print_comparison(const std::vector<AllanRecord>& records);
 
 }  // namespace ifog::tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An Allan analysis as JSON for programs (SI) and as a table (the field's units).
+// An Allan analysis as JSON (SI) and as a table (the field's units).
 #include <array>
 #include <cmath>
 #include <string_view>
@@ -83,7 +83,7 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
     }
     if (!record.longer.empty()) axis["theo1"] = theo1_json(record.longer);
     axis["trusted_tau_s"] = record.trusted_tau_s;
-    // Without a fit nothing is known: neither value nor error.
+    // Without a fit, values and errors are unknown.
     axis["coefficients"] = report::coefficients_json(record.fit ? *record.fit : NoiseCoefficients{});
     if (!record.fit)
       for (auto& term : axis["coefficients"]) term["std_error"] = term["upper"] = nullptr;
@@ -91,7 +91,7 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
     axis["gauss_markov"] = record.fit ? report::markov_json(record.fit->markov) : ordered_json(nullptr);
     axis["noise_changes"] = report::noise_changes_json(record.noise_changes);
     axis["findings"] = ordered_json::array();
-    // Leaps are a note alone: the schema's first version has no such finding.
+    // Jumps are in the notes only: version 1 of the schema has no such finding.
     for (const ValueFault& found : record.findings)
       if (std::string_view(found.name) != "leaps")
         axis["findings"].push_back({{"name", found.name}, {"text", found.text}});
@@ -108,7 +108,7 @@ void print_allan(const AllanRecord& record, const AllanOptions& options) {
   for (const std::string& note : record.notes) say("  note: %s\n", note.c_str());
   say("  %12s  %12s  %25s  %9s  %s\n", "tau s", "sigma deg/h",
       formatted("%.3g %% interval", 100.0 * options.confidence).c_str(), "degrees", "noise here");
-  // On a screen three points a decade say enough; what was asked for is always shown.
+  // Prints three points per decade, and all points that were requested.
   double next = 0.0;
   for (std::size_t i = 0; i < record.points.size(); ++i) {
     const bool last = i + 1 == record.points.size();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Several records side by side: one line each, in the field's units.
+// Table of several records: one line each, in the field's units.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -25,7 +25,6 @@ std::string coefficient_cell(const AllanRecord& record, const NamedCoefficient& 
   return formatted("%.4g ± %.2g", c.value * named.factor, c.std_error * named.factor);
 }
 
-// Wide enough for the longest.
 void print_cell(const std::string& text) { say("%s", report::padded(text, 20).c_str()); }
 
 }  // namespace

@@ -19,7 +19,7 @@
 namespace ifog::tools {
 namespace {
 
-constexpr double kTrustedDegrees = 8.0;  // relative error of the deviation 1/√(2·8), a quarter
+constexpr double kTrustedDegrees = 8.0;  // d.o.f.; the relative error 1/√(2·8) of the deviation is 25 %
 
 const char* words_for(Deviation kind) {
   return kind == Deviation::kModified   ? "the modified deviation"
@@ -97,7 +97,7 @@ void note_what_fits_badly(const LoggedRate& logged, const SeriesView& rate, cons
                      "and R allow for that; run ifog diagnose");
 }
 
-// What is said of holes and of uneven stamps. Throws std::runtime_error where holes are to be refused.
+// Adds notes about gaps and uneven time stamps. Throws std::runtime_error if gaps are refused.
 void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
   const SampleClock& clock = logged.of.clock;
   const auto note = [&](std::size_t row, const std::string& what) {
@@ -114,10 +114,10 @@ void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
     note(clock.first_gap, std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
                               " in the time column (" + std::to_string(clock.missing) +
                               " samples missing), the first after " +
-                              told_time(logged.of.told_time_s(clock.first_gap)) + " s");
+                              told_time(logged.of.shown_time_s(clock.first_gap)) + " s");
   if (nans > 0)
     note(first_nan,
-         missing_in_words(logged.column, nans, logged.rate.size(), logged.of.told_time_s(first_nan)));
+         missing_in_words(logged.column, nans, logged.rate.size(), logged.of.shown_time_s(first_nan)));
   if (clock.worst_jitter_s > 0.1 * clock.period_s)
     record.notes.push_back(logged.of.capture + ": time is uneven by up to " +
                            six_digits(clock.worst_jitter_s * 1e3) +
@@ -125,11 +125,11 @@ void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
                            six_digits(record.sample_rate_hz) + " Hz");
 }
 
-// The deviations with their intervals, and the noise that they show.
+// Computes the deviations, their intervals and the noise coefficients.
 void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& options, double period,
              AllanRecord& record) {
   const std::string& name = logged.of.capture;
-  // A quarter of the longest stretch: beyond, a handful of differences decide.
+  // Longer averages have too few differences.
   const std::vector<std::size_t> m =
       options.tau_s.empty() ? log_spaced(std::max<std::size_t>(1, record.longest / 4), options.per_decade)
                             : asked_multiples(name, options, period, record.longest);
@@ -141,7 +141,7 @@ void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& 
   const TermVariances noise = record.fit ? record.fit->variances : TermVariances{};
   record.points = deviation(sum, m, options.kind);
   record.intervals = allan_intervals(sum, options.kind, record.points, noise, options.confidence);
-  // What a bias that comes back is at each τ.
+  // Terms equivalent to a Gauss-Markov bias at each τ.
   if (record.fit && record.fit->markov && record.fit->markov->present)
     for (std::size_t i = 0; i < m.size(); ++i)
       record.intervals[i] =
@@ -186,12 +186,12 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   const std::vector<Stretch> parts =
       common(stretches(logged.of.time_s, logged.rate, logged.of.clock), rest.at_rest);
   if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
-  const auto told_time_s = [&](std::size_t row) { return logged.of.told_time_s(row); };
-  // A filter leaps of itself, by its gain; what the logger did is in the raw rate.
+  const auto shown_time_s = [&](std::size_t row) { return logged.of.shown_time_s(row); };
+  // A filter's gain makes jumps of its own; faults of the logger are visible in the raw rate.
   record.findings.assign(logged.repeats.begin(), logged.repeats.end());
   std::optional<LongSeries> cleaned;
   if (signal != "denoised")
-    cleaned = without_leaps(logged.rate, logged.rate, parts, told_time_s, record.findings);
+    cleaned = without_leaps(logged.rate, logged.rate, parts, shown_time_s, record.findings);
   const SeriesView rate = cleaned ? SeriesView(*cleaned) : logged.rate;
   if (signal == "rate") find_value_faults(rate, parts, period, record.findings);
   for (const ValueFault& found : record.findings)
@@ -210,7 +210,7 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
 
   measure(logged, sum, options, period, record);
   if (record.fit && signal == "rate") note_what_fits_badly(logged, rate, parts, sum, period, record);
-  record.noise_changes = noise_changes(rate, parts, period, told_time_s);
+  record.noise_changes = noise_changes(rate, parts, period, shown_time_s);
   if (const std::string change = in_words(record.noise_changes); !change.empty())
     record.notes.push_back(name + ": " + column + ": " + change);
   if (record.fit) note_what_was_left_out(column, record);

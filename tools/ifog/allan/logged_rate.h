@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One rate of a capture as it was logged, and what `ifog allan` makes of it.
+// One rate of a capture as logged, and its analysis by `ifog allan`.
 #pragma once
 
 #include <cstddef>
@@ -14,35 +14,33 @@
 
 namespace ifog::tools {
 
-// For a line of text.
 std::string six_digits(double value);
 
-// The part of a capture that is analysed, and what holds for all of its rates.
+// The part of a capture that is analysed, with the properties that all of its rates share.
 struct AnalysedPart {
   const std::string& capture;  // its file
   const LongTable& table;
-  TimePart::Rows rows;  // of the table
+  TimePart::Rows rows;  // in the table
   SeriesView time_s;    // of these rows, since the table's origin
   SampleClock clock;
   Rest rest = {};
-  std::string slow_turns = {};  // what the reader should know of turns that stay in; "" for nothing
+  std::string slow_turns = {};  // note about turns that remain; "" if none
 
-  // For messages, of one of its rows.
-  [[nodiscard]] double told_time_s(std::size_t row) const { return table.origin.in_s(time_s.at(row)); }
-  // "file:line", or the sample's number where the file is no text.
+  // For messages; `row` counts in the part.
+  [[nodiscard]] double shown_time_s(std::size_t row) const { return table.origin.in_s(time_s.at(row)); }
+  // "file:line", or the sample's number if the file is not text.
   [[nodiscard]] std::string place(std::size_t row) const;
 };
 
-// A rate as it was logged.
+// A rate as logged.
 struct LoggedRate {
   const AnalysedPart& of;
   std::string column;
   SeriesView rate;                      // in the part's rows
-  std::span<const ValueFault> repeats;  // which are missing in it
+  std::span<const ValueFault> repeats;  // repeated values, missing in `rate`
 };
 
-// Its deviations, noise terms and changes, over what is at rest. Throws std::runtime_error with one line for
-// people.
+// Deviations, noise terms and changes of the noise, at rest. Throws std::runtime_error with one line.
 AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const std::string& axis,
                     const Rest& rest, const AllanOptions& options);
 
