@@ -53,18 +53,18 @@ std::vector<Tick> side_by_side(const Scale& scale, double edge) {
   constexpr double kApart = 10.0;
   for (int wanted = 7;; --wanted) {
     std::vector<Tick> ticks = scale.ticks(wanted);
-    std::vector<std::pair<double, double>> taken;
+    std::vector<std::pair<double, double>> occupied;
     bool all = true;
     for (const bool major : {true, false})
       for (Tick& tick : ticks) {
         if (tick.major != major) continue;
         const double half = 0.5 * text_width(tick.text), at = scale(tick.at);
         const bool beyond = at + half > edge;
-        const bool room = std::none_of(taken.begin(), taken.end(), [&](const auto& other) {
+        const bool room = std::none_of(occupied.begin(), occupied.end(), [&](const auto& other) {
           return at - half < other.second + kApart && at + half > other.first - kApart;
         });
         if (room && !beyond)
-          taken.emplace_back(at - half, at + half);
+          occupied.emplace_back(at - half, at + half);
         else
           tick.text.clear();
         all = all && (room || beyond);

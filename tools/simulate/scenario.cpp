@@ -256,10 +256,10 @@ class Reader {
   }
 
   void channel_name(const toml::node& node, const std::string& name) const {
-    const bool taken =
+    const bool in_use =
         std::any_of(s_.channels.begin(), s_.channels.end(), [&](const Recipe& c) { return c.name == name; });
     if (name.empty() || name == "rate" || name == "time_s" ||
-        name.find_first_of(", \"\n") != std::string::npos || name.find('_') == std::string::npos || taken)
+        name.find_first_of(", \"\n") != std::string::npos || name.find('_') == std::string::npos || in_use)
       fail(node, "channel.name", "is " + in_quotes(name) + ", expected NAME_UNIT, used once");
   }
 

@@ -16,7 +16,7 @@ namespace {
 constexpr std::uint32_t kChannelStream = 1000, kMotionStream = 2000, kEffectStream = 3000,
                         kNoiseStream = 4000, kRowStream = 5000, kReferenceStream = 6000;
 constexpr std::uint32_t kPerAxis = 100'000;
-constexpr std::size_t kToldEvery = 65'536;  // samples
+constexpr std::size_t kProgressEvery = 65'536;  // samples
 
 std::uint32_t stream(std::uint32_t block, std::size_t part, std::size_t axis) {
   return block + static_cast<std::uint32_t>(part) + kPerAxis * static_cast<std::uint32_t>(axis);
@@ -24,7 +24,7 @@ std::uint32_t stream(std::uint32_t block, std::size_t part, std::size_t axis) {
 
 class Simulator {
  public:
-  Simulator(const Scenario& scenario, const Told& told) : s_(scenario), told_(told) {
+  Simulator(const Scenario& scenario, const Progress& progress) : s_(scenario), progress_(progress) {
     if (!(s_.sample_rate_hz > 0.0)) throw std::invalid_argument("sample_rate_hz must be more than 0");
     if (!(s_.duration_s * s_.sample_rate_hz >= 2.0 && s_.duration_s * s_.sample_rate_hz <= 2e9))
       throw std::invalid_argument("duration_s × sample_rate_hz is " +
@@ -125,14 +125,15 @@ class Simulator {
   }
   void tell(std::size_t of_the_next) const {
     const std::size_t an_axis = s_.motions.size() + s_.effects.size() + 1;  // its noise
-    if (told_) told_(made_ + of_the_next, (s_.axes.size() * an_axis + s_.channels.size()) * grid_.samples);
+    if (progress_)
+      progress_(made_ + of_the_next, (s_.axes.size() * an_axis + s_.channels.size()) * grid_.samples);
   }
 
   std::vector<double> measured(std::size_t axis, const Truth& truth) {
     std::vector<double> rate(grid_.samples);
     RateNoise source(s_.noise, s_.sample_rate_hz, grid_.duration(), s_.seed, stream(kNoiseStream, 0, axis));
     for (std::size_t i = 0; i < rate.size(); ++i) {
-      if (i % kToldEvery == 0) tell(i);
+      if (i % kProgressEvery == 0) tell(i);
       rate[i] = truth.true_rate_radps[axis][i] + s_.bias_radps + source.next();
     }
     made(1);
@@ -198,11 +199,11 @@ class Simulator {
   const Scenario& s_;
   Grid grid_;
   std::vector<ChannelSignal> channels_;
-  const Told& told_;
+  const Progress& progress_;
   std::size_t made_ = 0;  // samples
 };
 
-nlohmann::ordered_json told(const Recipe& recipe) {
+nlohmann::ordered_json recipe_json(const Recipe& recipe) {
   nlohmann::ordered_json out;
   out["kind"] = recipe.kind;
   if (!recipe.name.empty()) out["name"] = recipe.name;
@@ -217,7 +218,9 @@ nlohmann::ordered_json told(const Recipe& recipe) {
 
 }  // namespace
 
-Simulation simulate(const Scenario& scenario, const Told& told) { return Simulator(scenario, told).run(); }
+Simulation simulate(const Scenario& scenario, const Progress& progress) {
+  return Simulator(scenario, progress).run();
+}
 
 std::string truth_json(const Truth& truth) {
   const Scenario& s = truth.scenario;
@@ -232,7 +235,7 @@ std::string truth_json(const Truth& truth) {
   out["noise"] = {{"Q", s.noise.Q}, {"N", s.noise.N}, {"B", s.noise.B}, {"K", s.noise.K}, {"R", s.noise.R}};
   for (const char* part : {"effects", "channels", "motions"}) out[part] = nlohmann::ordered_json::array();
   for (std::size_t e = 0; e < s.effects.size(); ++e) {
-    nlohmann::ordered_json effect = told(s.effects[e]);
+    nlohmann::ordered_json effect = recipe_json(s.effects[e]);
     effect["rms_radps"] = nlohmann::ordered_json::object();
     for (std::size_t a = 0; a < s.axes.size(); ++a) {
       double squares = 0.0;
@@ -242,8 +245,8 @@ std::string truth_json(const Truth& truth) {
     }
     out["effects"].push_back(effect);
   }
-  for (const Recipe& channel : s.channels) out["channels"].push_back(told(channel));
-  for (const Recipe& motion : s.motions) out["motions"].push_back(told(motion));
+  for (const Recipe& channel : s.channels) out["channels"].push_back(recipe_json(channel));
+  for (const Recipe& motion : s.motions) out["motions"].push_back(recipe_json(motion));
   return out.dump(1) + "\n";
 }
 

@@ -46,10 +46,10 @@ struct Simulation {
 
 // Same scenario, same bits. Each channel, motion, effect and noise term draws from a stream of its own, so
 // that taking one out leaves the others as they were. Throws std::invalid_argument: an effect of a channel or
-// axis that does not exist, a length or rate that is not positive, fewer than two rows. `told` is called with how many
+// axis that does not exist, a length or rate that is not positive, fewer than two rows. `progress` is called with how many
 // samples of signals are made, and of how many.
-using Told = std::function<void(std::size_t done, std::size_t total)>;
-[[nodiscard]] Simulation simulate(const Scenario& scenario, const Told& told = {});
+using Progress = std::function<void(std::size_t done, std::size_t total)>;
+[[nodiscard]] Simulation simulate(const Scenario& scenario, const Progress& progress = {});
 
 // The truth for programs: the scenario with its drawn values and the RMS of each effect.
 [[nodiscard]] std::string truth_json(const Truth& truth);

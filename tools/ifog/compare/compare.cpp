@@ -61,10 +61,10 @@ struct Motion {
 Motion motion_of(const CaptureView& capture, double period_s) {
   Motion motion;
   motion.rest = rest_of(capture, period_s);
-  motion.words = in_words(motion.rest, period_s, capture.told_time_s(0));
+  motion.words = in_words(motion.rest, period_s, capture.shown_time_s(0));
   if (motion.words.empty()) return motion;
   try {
-    require_rest(motion.rest, period_s, capture.told_time_s(0));
+    require_rest(motion.rest, period_s, capture.shown_time_s(0));
     motion.left_out = motion.rest.resting() > 0;
   } catch (const std::invalid_argument&) {
   }
@@ -207,7 +207,7 @@ std::vector<Verdict> print_axes(const CaptureView& capture, const Comparison& re
 void write_comparison(const CompareArguments& options, const CaptureView& capture, double period_s,
                       const Motion& motion, const Comparison& result, const FilterSettings& settings,
                       const std::vector<Verdict>& verdicts) {
-  json rows = json::array(), raw = json::array(), told = json::array();
+  json rows = json::array(), raw = json::array(), best = json::array();
   for (const ComparisonRow& row : result.rows)
     (row.rule == "raw" ? raw : rows)
         .push_back(row_json(row, capture.axes[static_cast<std::size_t>(row.axis)], settings));
@@ -215,7 +215,7 @@ void write_comparison(const CompareArguments& options, const CaptureView& captur
   for (std::size_t r = 0; r < rows.size(); ++r)
     rows[r]["above_best"] = verdicts[r % verdicts.size()].above[r / verdicts.size()];
   for (std::size_t a = 0; a < verdicts.size(); ++a)
-    told.push_back({{"axis", capture.axes[a]},
+    best.push_back({{"axis", capture.axes[a]},
                     {"figure", verdicts[a].figure},
                     {"best", rows[verdicts[a].best * verdicts.size() + a]["rule"]},
                     {"best_radps", verdicts[a].best_radps},
@@ -227,7 +227,7 @@ void write_comparison(const CompareArguments& options, const CaptureView& captur
                                      {"samples_at_rest", motion.rest.resting()},
                                      {"motion", motion.words},
                                      {"sample_rate_hz", 1.0 / period_s},
-                                     {"verdict", told},
+                                     {"verdict", best},
                                      {"raw", raw},
                                      {"rows", rows}});
 }

@@ -59,7 +59,7 @@ void add_axis(const CaptureView& capture, const std::vector<std::vector<Samples>
               const std::vector<std::string>& rules, std::size_t axis, std::size_t best,
               std::vector<report::PictureRow>& rows) {
   const std::string of = capture.axes[axis].empty() ? "" : "axis " + capture.axes[axis] + ": ";
-  const report::TimeAxis time(capture.told_time_s(0), capture.told_time_s(capture.size() - 1));
+  const report::TimeAxis time(capture.shown_time_s(0), capture.shown_time_s(capture.size() - 1));
   const SampleClock clock = sample_clock(capture.time_s);
   const report::ChartAxis tau{"averaging time τ (s)", true, {}, {}};
   Chart rate(of + "rate", "Raw rate and that of the best rule over time.", time.axis(),

@@ -56,9 +56,9 @@ void DenoisedRows::count(const ChainOutput& out) {
 }
 
 bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOutput& out) {
-  const double told_s = origin_.in_s(time_s);
-  if (extent_.rows++ == 0) extent_.first_s = told_s;
-  extent_.last_s = told_s;
+  const double shown_s = origin_.in_s(time_s);
+  if (extent_.rows++ == 0) extent_.first_s = shown_s;
+  extent_.last_s = shown_s;
   if (keep_) {
     columns_.time_s.push_back(time_s);
     columns_.dt_s.push_back(increment.dt_s);
@@ -83,7 +83,7 @@ bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
     }
     if (!inside) continue;
     AxisMoments& of_axis = moments_[a];
-    if (!std::isfinite(raw) && of_axis.missing++ == 0) of_axis.first_missing_s = told_s;
+    if (!std::isfinite(raw) && of_axis.missing++ == 0) of_axis.first_missing_s = shown_s;
     if ((increment.stuck_axes >> a & 1U) != 0) ++of_axis.stuck;
     of_axis.raw.add(raw);
     of_axis.compensated.add(compensated);

@@ -90,8 +90,8 @@ Common common_rows(const CaptureView& a, const CaptureView& b) {
       continue;
     }
     if (!same_row(a, i, b, j)) return {};
-    if (found.rows++ == 0) found.from_s = a.told_time_s(i);
-    found.to_s = a.told_time_s(i);
+    if (found.rows++ == 0) found.from_s = a.shown_time_s(i);
+    found.to_s = a.shown_time_s(i);
     ++i;
     ++j;
   }

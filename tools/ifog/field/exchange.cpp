@@ -15,8 +15,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kToldWithin = 3s;    // a status comes every second
-constexpr auto kTakenWithin = 15s;  // the daemon reloads at most once a second
+constexpr auto kStatusWithin = 3s;   // a status comes every second
+constexpr auto kEffectWithin = 15s;  // the daemon reloads at most once a second
 
 std::string process(pid_t id) { return "the daemon (process " + std::to_string(id) + ")"; }
 
@@ -47,7 +47,7 @@ ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, con
       daemon_(running_daemon(field.state())) {
   if (!daemon_) return;
   live_ = std::make_unique<LiveStatus>(field.state(), *daemon_);
-  if (!live_->ask(kToldWithin, [&](const Statuses& all) { return all.contains(sensor_); }))
+  if (!live_->ask(kStatusWithin, [&](const Statuses& all) { return all.contains(sensor_); }))
     throw std::runtime_error(process(*daemon_) + " has no sensor " + in_quotes(sensor_) +
                              ", expected it: nobody would see whether it uses a model");
   const status_t& status = *live_->of(sensor_);
@@ -71,18 +71,18 @@ void ModelExchange::ask_for_reload() {
   const std::optional<pid_t> now = running_daemon(field_.state());
   if (!now) throw std::runtime_error(process(*daemon_) + " has ended, and none runs in its place");
   live_ = std::make_unique<LiveStatus>(field_.state(), *now);
-  live_->reload(kTakenWithin);
+  live_->reload(kEffectWithin);
 }
 
-bool ModelExchange::taken(const std::string& identity) {
-  return live_->ask(kTakenWithin, [&](const Statuses&) {
+bool ModelExchange::takes_effect(const std::string& identity) {
+  return live_->ask(kEffectWithin, [&](const Statuses&) {
     const status_t* const status = live_->of(sensor_);
     return status != nullptr && status->model == identity && status->model_since != 0;
   });
 }
 
 // A sensor that fell silent only now passed for one that runs.
-std::string ModelExchange::why_not_taken() const {
+std::string ModelExchange::why_not_in_effect() const {
   const status_t* const status = live_->of(sensor_);
   if (status == nullptr || status->state == status_t::STATE_RUNNING) return "its log says why";
   return not_running(*status);
@@ -94,9 +94,9 @@ void ModelExchange::exchange(const std::optional<Model>& model, const std::optio
   std::string why;
   try {
     ask_for_reload();
-    if (taken(model ? model->identity() : "")) return;
+    if (takes_effect(model ? model->identity() : "")) return;
     why = process(*daemon_) + " does not use model " + in_words(model ? model->identity() : "") + " within " +
-          std::to_string(std::chrono::seconds(kTakenWithin).count()) + " s, " + why_not_taken();
+          std::to_string(std::chrono::seconds(kEffectWithin).count()) + " s, " + why_not_in_effect();
   } catch (const std::exception& error) {
     why = error.what();
   }

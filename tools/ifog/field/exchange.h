@@ -35,8 +35,8 @@ class ModelExchange {
  private:
   void put(const std::optional<Model>& model) const;
   void ask_for_reload();
-  [[nodiscard]] bool taken(const std::string& identity);
-  [[nodiscard]] std::string why_not_taken() const;
+  [[nodiscard]] bool takes_effect(const std::string& identity);
+  [[nodiscard]] std::string why_not_in_effect() const;
 
   const Field& field_;
   std::string sensor_, path_;

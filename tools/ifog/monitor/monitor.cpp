@@ -88,7 +88,7 @@ void Monitor::take_message(const lcm_recv_buf_t& buffer, const std::string& name
     ++refused_;
     return;
   }
-  last_heard_ = Clock::now();
+  last_data_ = Clock::now();
   if (json_) tell(message_json(name, message) + "\n");
   // Increments are for programs: people see the same turn in the rates.
   if constexpr (!std::is_same_v<Message, imu_t>) {
@@ -137,8 +137,8 @@ void Monitor::end_interval(double seconds) {
 // For who sees lines only: once, while nothing has come at all.
 void Monitor::say_what_is_waited_for() {
   constexpr double kPatience_s = 3.0;
-  if (screen_ || told_waiting_ || !sensors_.empty() || seconds_since(start_) < kPatience_s) return;
-  told_waiting_ = true;
+  if (screen_ || waiting_reported_ || !sensors_.empty() || seconds_since(start_) < kPatience_s) return;
+  waiting_reported_ = true;
   if (const std::string others = who_publishes(); !others.empty()) {
     warn("%s; these publish: %s\n", (waiting().front() + " " + waiting().back()).c_str(), others.c_str());
     return;
@@ -149,7 +149,7 @@ void Monitor::say_what_is_waited_for() {
       (waiting().front() + " " + waiting().back()).c_str());
 }
 
-bool Monitor::heard() const {
+bool Monitor::received_any() const {
   return std::any_of(sensors_.begin(), sensors_.end(),
                      [](const auto& entry) { return entry.second.messages() > 0 || entry.second.status(); });
 }
@@ -199,7 +199,7 @@ bool Monitor::run() {
     redraw(0, lines({}));  // what was seen last stays on the terminal
   }
   if (json_) json_->finish();
-  return heard();
+  return received_any();
 }
 
 void add_monitor(const Command& program) {

@@ -58,7 +58,7 @@ class Monitor {
   [[nodiscard]] bool wanted(const std::string& name) const;
   [[nodiscard]] std::string foot() const;
   [[nodiscard]] bool all_shown() const;
-  [[nodiscard]] bool heard() const;
+  [[nodiscard]] bool received_any() const;
 
   const MonitorOptions& options_;
   LcmListener listener_;
@@ -67,9 +67,9 @@ class Monitor {
   std::map<std::string, SensorView> sensors_;
   std::set<std::string> others_;  // that publish and are not wanted
   std::uint64_t refused_ = 0;     // that are no message of their channel's type
-  Clock::time_point start_ = Clock::now(), last_heard_ = start_, last_look_ = start_;
+  Clock::time_point start_ = Clock::now(), last_data_ = start_, last_look_ = start_;
   std::uint64_t crowded_ = 0;  // of more sensors than kMostSensors
-  bool told_waiting_ = false;
+  bool waiting_reported_ = false;
   struct {
     LineStyle style{};
     std::string only{};                                         // this sensor; empty: all

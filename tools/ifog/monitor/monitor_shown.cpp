@@ -20,7 +20,7 @@ std::vector<std::string> Monitor::waiting() const {
   const std::string wanted =
       options_.sensor.empty() ? "a sensor's messages (IFOG_*)" : in_quotes(options_.sensor);
   return {"waiting for " + wanted + " on " + printable(options_.url) + ",",
-          std::to_string(static_cast<int>(seconds_since(last_heard_))) + " s: nothing heard"};
+          std::to_string(static_cast<int>(seconds_since(last_data_))) + " s: nothing heard"};
 }
 
 std::vector<ShownLine> Monitor::lines(const LineStyle& style) const {
@@ -38,7 +38,7 @@ std::vector<ShownLine> Monitor::lines(const LineStyle& style) const {
     out.push_back({std::to_string(crowded_) + " messages of more sensors than " +
                        std::to_string(kMostSensors) + ", which are shown",
                    Tone::warning});
-  if (!screen_ || look_.paused || (!sensors_.empty() && seconds_since(last_heard_) <= kSilent_s)) return out;
+  if (!screen_ || look_.paused || (!sensors_.empty() && seconds_since(last_data_) <= kSilent_s)) return out;
   std::vector<ShownLine> all;
   const auto add = [&](const std::vector<std::string>& parts, Tone tone) {
     for (std::string& line : wrapped(parts, " ", style.width)) all.push_back({std::move(line), tone});

@@ -27,13 +27,13 @@ constexpr std::array kColours{std::pair{Tone::good, static_cast<short>(COLOR_GRE
 // As much of it as has room: longer text would continue in the next line.
 std::string cut(const std::string& text, int columns) {
   std::mbstate_t state{};
-  int taken = 0;
+  int used = 0;
   for (std::size_t at = 0; at < text.size();) {
     wchar_t wide = 0;
     const std::size_t length = std::mbrtowc(&wide, text.data() + at, text.size() - at, &state);
     if (length == 0 || length > text.size() - at) return text.substr(0, at);
-    taken += std::max(0, wcwidth(wide));
-    if (taken > columns) return text.substr(0, at);
+    used += std::max(0, wcwidth(wide));
+    if (used > columns) return text.substr(0, at);
     at += length;
   }
   return text;

@@ -19,7 +19,7 @@ double deviation(const Moments& of) {
 void SensorView::take(const rate_t& message) {
   ++messages_;
   ++in_interval_;
-  came_ = true;
+  received_ = true;
   model_ = message.model;
   way_.take(message);
   for (std::size_t i = 0; i < kFlagNames.size(); ++i)
@@ -38,7 +38,7 @@ void SensorView::take(const rate_t& message) {
 
 void SensorView::take(status_t message) {
   status_.message = std::move(message);
-  came_ = status_.came = true;
+  received_ = status_.received = true;
   status_.age_s = 0.0;
 }
 
@@ -46,8 +46,8 @@ void SensorView::end_interval(double seconds) {
   rate_hz_ = static_cast<double>(in_interval_) / seconds;
   judged_ = true;
   shown_ = shown_ || in_interval_ > 0 || status_.message;
-  silent_s_ = std::exchange(came_, false) ? 0.0 : silent_s_ + seconds;
-  status_.age_s = std::exchange(status_.came, false) ? 0.0 : status_.age_s + seconds;
+  silent_s_ = std::exchange(received_, false) ? 0.0 : silent_s_ + seconds;
+  status_.age_s = std::exchange(status_.received, false) ? 0.0 : status_.age_s + seconds;
   flagged_before_ = std::exchange(flagged_, {});
   axes_.clear();
   for (std::size_t a = 0; a < sums_.size(); ++a) {

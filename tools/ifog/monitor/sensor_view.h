@@ -78,7 +78,7 @@ class SensorView {
   [[nodiscard]] std::vector<Count> all_losses() const;
 
   std::int64_t messages_ = 0, in_interval_ = 0;
-  bool came_ = false;  // anything, in the interval
+  bool received_ = false;  // anything, in the interval
   double silent_s_ = 0.0;
   bool judged_ = false, shown_ = false;
   double rate_hz_ = 0.0;
@@ -91,7 +91,7 @@ class SensorView {
   struct Status {
     std::optional<status_t> message;
     double age_s = 0.0;
-    bool came = false;  // in the interval
+    bool received = false;  // in the interval
   } status_;
   std::vector<std::int64_t> forgotten_;
 };

@@ -72,16 +72,16 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
   if (style.width == 0) return out;
   // How high the line is, in the rate's unit.
   const auto scale = [&](const SparkLine& line) { return "  span " + number("", line.span); };
-  const std::size_t taken = report::characters_in(out) + 2;
-  if (taken + kLeastSpark > style.width) return out;
-  const std::size_t room = std::min(kMostSpark, style.width - taken);
+  const std::size_t used = report::characters_in(out) + 2;
+  if (used + kLeastSpark > style.width) return out;
+  const std::size_t room = std::min(kMostSpark, style.width - used);
   std::vector<double> rates;
   for (const SensorView::Second& each : sensor.history(a)) rates.push_back(each.rate_radps);
   const SparkLine whole = spark_line(rates, room);
   const std::size_t for_scale = report::characters_in(scale(whole));
-  if (!std::isfinite(whole.span) || taken + for_scale + kLeastSpark > style.width)
+  if (!std::isfinite(whole.span) || used + for_scale + kLeastSpark > style.width)
     return out + "  " + whole.text;
-  const SparkLine line = spark_line(rates, std::min(room, style.width - taken - for_scale));
+  const SparkLine line = spark_line(rates, std::min(room, style.width - used - for_scale));
   return out + "  " + line.text + scale(line);
 }
 

@@ -34,18 +34,18 @@ void Outlet::pause(int error) {
 bool Outlet::send(const void* bytes, std::size_t n, bool whole) {
   const auto* at = static_cast<const unsigned char*>(bytes);
   while (n > 0) {
-    const ssize_t taken = write(at, n);
+    const ssize_t accepted = write(at, n);
     // A datagram of which a part went is another one: nothing a second write could mend.
-    if (whole && taken > 0 && static_cast<std::size_t>(taken) != n)
-      throw std::runtime_error(name_ + ": cannot send: " + std::to_string(taken) + " of " +
+    if (whole && accepted > 0 && static_cast<std::size_t>(accepted) != n)
+      throw std::runtime_error(name_ + ": cannot send: " + std::to_string(accepted) + " of " +
                                std::to_string(n) + " bytes of a frame were accepted");
-    if (taken > 0) {
-      at += taken;
-      n -= static_cast<std::size_t>(taken);
+    if (accepted > 0) {
+      at += accepted;
+      n -= static_cast<std::size_t>(accepted);
       if (n > 0) ++retries_;
       continue;
     }
-    const int error = taken < 0 ? errno : EAGAIN;
+    const int error = accepted < 0 ? errno : EAGAIN;
     if (interrupted()) return false;
     if (error == EINTR) continue;
     if (error == EPIPE) throw std::runtime_error(name_ + ": the reader went away");

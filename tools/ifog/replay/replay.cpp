@@ -59,7 +59,7 @@ constexpr std::int64_t kLead_ns = 20'000'000;
 constexpr std::int64_t kLongestSleep_ns = 100'000'000;
 // Drawing a progress bar takes time that only a pause in the recording has.
 constexpr std::int64_t kPauseForProgress_ns = 2'000'000;
-constexpr std::int64_t kTold_ns = 500'000'000;  // within a long pause, so often
+constexpr std::int64_t kProgressEvery_ns = 500'000'000;  // within a long pause, so often
 
 // False: interrupted.
 bool sleep_until(std::int64_t due_ns, std::int64_t spin_ns) {
@@ -108,8 +108,8 @@ void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, Repl
       };
       if (settings.loops != 0 && (!paced || due - monotonic_ns() > kPauseForProgress_ns)) tell();
       for (std::int64_t now = monotonic_ns();
-           paced && settings.loops != 0 && due - now > 2 * kTold_ns && going; now = monotonic_ns()) {
-        going = sleep_until(now + kTold_ns, 0);
+           paced && settings.loops != 0 && due - now > 2 * kProgressEvery_ns && going; now = monotonic_ns()) {
+        going = sleep_until(now + kProgressEvery_ns, 0);
         tell();
       }
       if (!going) break;

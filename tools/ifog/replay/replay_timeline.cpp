@@ -38,8 +38,8 @@ FileKind kind_of(const ReplaySource& source, const InputFile& file) {
   if (source.input.has_layout()) return FileKind::capture;
   const FileKind found = file_kind(file);
   // A line's text (DSP-3000) looks like any other.
-  const bool told = source.input.has_driver() || source.block_bytes != 0;
-  return found == FileKind::unknown && told ? FileKind::bytes : found;
+  const bool described = source.input.has_driver() || source.block_bytes != 0;
+  return found == FileKind::unknown && described ? FileKind::bytes : found;
 }
 
 ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {

@@ -24,7 +24,7 @@ Rest rest_of(const CaptureView& capture, double period_s) {
 Rest mostly_at_rest(const CaptureView& capture, double period_s, const std::string& path) {
   Rest rest = rest_of(capture, period_s);
   try {
-    require_rest(rest, period_s, capture.told_time_s(0));
+    require_rest(rest, period_s, capture.shown_time_s(0));
   } catch (const std::invalid_argument& error) {
     const bool referenced = std::ranges::any_of(capture.reference_rate_radps,
                                                 [](const auto& reference) { return !reference.empty(); });

@@ -176,7 +176,7 @@ void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest&
     const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
     std::vector<ValueFault> faults;
     std::optional<LongSeries> cleaned = without_leaps(
-        rate, rate, parts, [&](std::size_t i) { return capture.told_time_s(i); }, faults);
+        rate, rate, parts, [&](std::size_t i) { return capture.shown_time_s(i); }, faults);
     if (cleaned) rate = repaired.emplace_back(*std::move(cleaned)).all();
     find_value_faults(rate, parts, clock.period_s, faults);
     for (const ValueFault& fault : faults) notes.push_back(axis_label(capture, a) + fault.text);
@@ -193,7 +193,7 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
     try {
       RestNoise found{
           noise_coefficients(AngleSum(rate, parts), clock.period_s),
-          noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.told_time_s(i); })};
+          noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.shown_time_s(i); })};
       if (const std::string markov = markov_in_words(found.terms); !markov.empty())
         notes.push_back(axis_label(capture, a) + markov);
       if (const std::string change = in_words(found.changes); !change.empty())
@@ -286,9 +286,9 @@ void run_tune(const TuneArguments& options) {
   repaired.reserve(capture.axes.size());
   leave_out_leaps(capture, clock, rest, repaired, notes);
   const NoiseByAxis noise = noise_of(capture, clock, rest, notes);
-  if (const std::string motion = in_words(rest, period, capture.told_time_s(0)); !motion.empty())
+  if (const std::string motion = in_words(rest, period, capture.shown_time_s(0)); !motion.empty())
     notes.push_back(motion + "; only the rest is used");
-  if (const std::string slow = slow_turns_in_words(rest, period, capture.told_time_s(0)); !slow.empty())
+  if (const std::string slow = slow_turns_in_words(rest, period, capture.shown_time_s(0)); !slow.empty())
     notes.push_back(slow);
   const auto [columns, left] = rest_columns(capture, rest, period, options.samples);
   const std::vector<std::span<const double>> axes(columns.begin(), columns.end());

@@ -74,8 +74,8 @@ std::string tiles(const Diagnosis& d) {
   std::array keys{"residual_rms_radps", "rms_10s_radps", "adev_1s_radps", "heading_drift_rad"};
   const auto left = [&](const char* key) {
     const auto before = d.before.find(key), after = d.after.find(key);
-    const bool told = before != d.before.end() && after != d.after.end() && before->second > 0.0;
-    return told ? after->second / before->second : std::numeric_limits<double>::infinity();
+    const bool known = before != d.before.end() && after != d.after.end() && before->second > 0.0;
+    return known ? after->second / before->second : std::numeric_limits<double>::infinity();
   };
   std::stable_sort(keys.begin(), keys.end(), [&](const char* a, const char* b) { return left(a) < left(b); });
   for (const char* key : keys) {

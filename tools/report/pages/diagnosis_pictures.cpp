@@ -33,10 +33,10 @@ Series centred(Series x, double scale) {
 }
 
 // As the captures' columns say them.
-Series told_times(const DiagnosisSeries& s) {
-  Series told = s.time_s;
-  for (double& time : told) time = s.origin.in_s(time);
-  return told;
+Series shown_times(const DiagnosisSeries& s) {
+  Series shown = s.time_s;
+  for (double& time : shown) time = s.origin.in_s(time);
+  return shown;
 }
 
 // "in 1 s means": the series are block means of whatever length kept them drawable.
@@ -53,7 +53,7 @@ std::string time_picture(const Diagnosis& d) {
   const TimeAxis time(s.origin.in_s(s.time_s.front()), s.origin.in_s(s.time_s.back()));
   Chart chart("The error over time, before and after", account_of_change(d, "rms_10s_radps"),
               {time.label(), false, {}, {}}, {"error (°/h)", false, {}, {}});
-  const Series t = time(told_times(s));
+  const Series t = time(shown_times(s));
   chart.line(Role::kBefore, "before", t, centred(s.before_radps, 1.0 / kDegreePerHour));
   if (!d.effects.empty()) chart.line(Role::kAfter, "after", t, centred(s.after_radps, 1.0 / kDegreePerHour));
   // Bursts come in clusters: a word where there is room for one.
@@ -119,7 +119,7 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
     return "";
   if (s.time_s.empty()) return "";
   const TimeAxis time(s.origin.in_s(s.time_s.front()), s.origin.in_s(s.time_s.back()));
-  const Series t = time(told_times(s));
+  const Series t = time(shown_times(s));
   const Series& part = s.contribution_radps[index];
   const Series effect = centred(part, 1.0), after = centred(s.after_radps, 1.0);
   Series with(effect), drawn(effect);

@@ -121,15 +121,15 @@ std::string parameter_label(const PopulationParameter& each) { return each.name 
 // A figure whose logarithm spreads is shown as itself, its spread as a share of it.
 std::string parameter_row(const PopulationParameter& each) {
   const FieldUnit unit = unit_of(each);
-  const auto told = [&](double middle, double sigma) -> std::string {
+  const auto text_of = [&](double middle, double sigma) -> std::string {
     if (each.logarithmic)
       return number(std::exp(middle) * unit.scale) + " ± " + number(100.0 * sigma, 2) + " %";
     return number(middle * unit.scale) + " ± " + number(sigma * unit.scale, 2);
   };
   return row(
       escaped(parameter_label(each)),
-      {escaped(unit.unit), std::to_string(each.values.size()), told(each.robust.median, each.robust.sigma),
-       each.spread ? told(each.spread->mean, each.spread->spread) : "",
+      {escaped(unit.unit), std::to_string(each.values.size()), text_of(each.robust.median, each.robust.sigma),
+       each.spread ? text_of(each.spread->mean, each.spread->spread) : "",
        each.spread ? number(100.0 * each.spread->i_squared, 3) + " %" : ""});
 }
 
