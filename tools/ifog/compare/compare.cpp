@@ -50,12 +50,11 @@ struct CompareArguments {
   FilterChoice choice;
 };
 
-// What the figures at rest are of: as `allan` leaves motion out, but that a record which mostly moved is
-// compared, too.
+// Restricts the figures to rest, as `allan` does, but keeps a record with too little rest.
 struct Motion {
   Rest rest;
   bool left_out = false;
-  std::string words;  // "": the sensor was at rest
+  std::string words;  // "": at rest throughout
 };
 
 Motion motion_of(const CaptureView& capture, double period_s) {
@@ -74,14 +73,12 @@ Motion motion_of(const CaptureView& capture, double period_s) {
   return motion;
 }
 
-// Q and R when nobody says them: from the record at rest, all axes together; from the first hours of one that
-// is longer than memory is for.
+// Default Q and R: from all axes at rest, in the first kMost rows.
 void fill_noise(FilterSettings& settings, const CaptureView& capture, const std::vector<Stretch>& at_rest,
                 double period_s) {
   if (settings.process_noise > 0.0 && settings.measurement_noise > 0.0) return;
   constexpr std::size_t kMost = std::size_t{1} << 23U;  // rows
-  // The quietest stretch that is white noise and a walk; of a record that has none what third differences
-  // bound.
+  // Uses the quietest stretch of white noise and random walk; without one, the third differences.
   Walk walk;
   double quietest = 0.0, ratio = kMostRatio;
   const auto take = [&](std::size_t begin, std::size_t end) {
@@ -211,7 +208,7 @@ void write_comparison(const CompareArguments& options, const CaptureView& captur
   for (const ComparisonRow& row : result.rows)
     (row.rule == "raw" ? raw : rows)
         .push_back(row_json(row, capture.axes[static_cast<std::size_t>(row.axis)], settings));
-  // Rows are by rule, and within a rule by axis.
+  // By rule, then by axis.
   for (std::size_t r = 0; r < rows.size(); ++r)
     rows[r]["above_best"] = verdicts[r % verdicts.size()].above[r / verdicts.size()];
   for (std::size_t a = 0; a < verdicts.size(); ++a)

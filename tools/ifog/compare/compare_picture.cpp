@@ -34,7 +34,7 @@ AllanCurve allan(const CaptureView& capture, std::span<const double> rate, const
   return curve;
 }
 
-// The curve over another's, at the averaging times of both.
+// Ratio of two curves at the averaging times of both.
 AllanCurve over(const AllanCurve& curve, const AllanCurve& other) {
   AllanCurve out;
   for (std::size_t i = 0, j = 0; i < curve.tau_s.size(); ++i) {
@@ -46,7 +46,7 @@ AllanCurve over(const AllanCurve& curve, const AllanCurve& other) {
   return out;
 }
 
-// A curve in the units that it is shown in, in no more points than are drawn.
+// A curve in the units of the picture, thinned to the points that are drawn.
 report::Thinned drawn(const CaptureView& capture, const report::TimeAxis& axis,
                       std::span<const double> rate_radps) {
   Samples time(capture.time_s), rate(rate_radps);

@@ -11,8 +11,8 @@
 
 namespace ifog::tools {
 
-// For each axis the rate and its Allan deviation, raw and by the best rule, and the other rules' deviation over that of the
-// best. The title is the verdict. Throws as write_picture does.
+// For each axis: the rate and its Allan deviation, raw and with the best rule, and the deviations of the
+// other rules relative to the best. The title is the verdict. Throws as write_picture does.
 void draw_comparison(const std::string& path, const CaptureView& capture, const Comparison& result,
                      const std::vector<std::string>& rules, const std::vector<Verdict>& verdicts);
 

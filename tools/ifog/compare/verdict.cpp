@@ -15,7 +15,7 @@ struct VerdictFigure {
   const char *key, *words;
   std::optional<double> (*of)(const ComparisonRow&);
 };
-// The first that every row has.
+// The first figure that every row has is used.
 constexpr std::array kVerdictFigures{
     VerdictFigure{"rmse_radps", "error against the reference",
                   [](const ComparisonRow& row) { return row.rmse_radps; }},

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which rule leaves the least, and how much more the others leave: against the reference where there is one, else at rest.
+// Finds the rule with the smallest error, against the reference if there is one, otherwise at rest, and the
+// excess of the others.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +15,7 @@ struct Verdict {
   std::string figure;    // as in the JSON: "rmse_radps", "adev_radps 1", "std_radps"
   std::size_t best = 0;  // in the order of the rules
   double best_radps = 0.0, raw_radps = 0.0;
-  std::vector<double> above;  // by rule: its figure over the best's, less 1
+  std::vector<double> above;  // by rule: its figure divided by the best one, minus 1
   std::string text;           // one line
 };
 

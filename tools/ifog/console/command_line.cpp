@@ -29,7 +29,7 @@ namespace {
 std::string typed;
 std::vector<std::string> words;
 
-// What a shell says of a program that this signal has ended, as it does others.
+// Exit code of a shell for a program that SIGPIPE ended.
 constexpr int kEndedBySigpipe = 128 + 13;
 
 class HelpFormat final : public CLI::Formatter {
@@ -47,7 +47,7 @@ std::vector<std::string> typed_words() { return words; }
 
 namespace {
 
-// `ifog help [command]` is `ifog [command] --help`; of what is no command the parser says so.
+// `ifog help [command]` is `ifog [command] --help`; the parser rejects unknown commands.
 std::vector<std::string> with_help_as_option(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> all(argv, argv + argc);
   if (all.size() < 2 || all[1] != "help") return all;
@@ -60,7 +60,7 @@ std::vector<std::string> with_help_as_option(const CLI::App& app, int argc, char
   return all;
 }
 
-// Exit status; what goes wrong is thrown on.
+// Returns the exit code; throws on errors.
 int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   typed = "ifog";
   words.assign(argv + std::min(argc, 1), argv + argc);
@@ -89,7 +89,7 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
     app.parse(count, arguments.data());
     if (const std::string written = written_in_words(); !written.empty()) say("%s\n", written.c_str());
   } catch (const CLI::ParseError& error) {
-    std::ostringstream out, complaint;  // --help and --version are errors to the parser, too
+    std::ostringstream out, complaint;  // the parser treats --help and --version as errors too
     status = app.exit(error, out, complaint) == 0 ? 0 : 2;
     say("%s", out.str().c_str());
     if (status != 0) warn("%s", usage_error(app, count, arguments.data(), error.what()).c_str());
@@ -105,7 +105,7 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
 
 }  // namespace
 
-// The one home of what any command throws: a line and exit 1, whatever it is.
+// Every exception of a command ends here: one line and exit code 1.
 int run_command_line(int argc, char** argv, std::span<const AddCommand> commands) {
   try {
     prepare_standard_streams();

@@ -13,8 +13,7 @@ volatile std::sig_atomic_t caught = 0;
 void catch_interrupts() {
   struct sigaction action {};
   action.sa_handler = [](int) { caught = 1; };
-  // Without SA_RESTART a waiting write or sleep returns. Reset, so that a program that hangs can still be
-  // ended.
+  // No SA_RESTART, so that a blocking call returns. SA_RESETHAND, so that a second signal ends the program.
   action.sa_flags = static_cast<int>(SA_RESETHAND);
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The --json of every command.
+// The --json option of every command.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,7 +9,7 @@
 
 namespace ifog::tools {
 
-// Names from files may hold bytes that are no UTF-8, which JSON cannot: they become U+FFFD.
+// Invalid UTF-8 in names from files becomes U+FFFD.
 template <typename Json>
 void write_json(const std::string& path, const Json& json, int indent = 2) {
   write_file(path, json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n");

@@ -21,7 +21,7 @@ namespace ifog::tools {
 template <typename T, typename Of>
 concept Is = std::same_as<std::remove_const_t<T>, Of>;
 
-// What is no number is null, which stands for no bound where a field may have none.
+// NaN and infinity become null; for a bound, null means unbounded.
 class FieldsWriter {
  public:
   template <typename T>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a part refuses, as one line that names the file it is of.
+// Adds the name of a file to error messages.
 #pragma once
 
 #include <stdexcept>
@@ -7,8 +7,8 @@
 
 namespace ifog::tools {
 
-// work(), whose std::runtime_error and std::invalid_argument become a std::runtime_error with `name` in front, unless it
-// stands there already.
+// Calls work(); puts `name` in front of the message of a std::runtime_error or std::invalid_argument, unless
+// it is there already.
 template <typename Work>
 auto naming(const std::string& name, const Work& work) {
   const auto named = [&name](const std::string& line) {

@@ -20,7 +20,7 @@ using namespace std::chrono_literals;
 constexpr std::chrono::milliseconds kQuiet = 1s, kBetween = 250ms, kLeastPause = 100ms;
 
 std::mutex line;           // of the terminal
-bool bar_on_line = false;  // under `line`
+bool bar_on_line = false;  // guarded by `line`
 std::atomic<Progress*> innermost = nullptr;
 
 double seconds(Progress::Clock::duration span) { return std::chrono::duration<double>(span).count(); }
@@ -29,7 +29,7 @@ double seconds(Progress::Clock::duration span) { return std::chrono::duration<do
 
 Progress::Progress(const std::string& what, std::size_t total, Between between)
     : outer_(innermost.exchange(this)),
-      what_(printable(what)),  // an axis has its name from the capture
+      what_(printable(what)),  // may contain an axis name from the capture
       terminal_(isatty(STDERR_FILENO) == 1),
       start_(Clock::now()),
       total_(total),
@@ -39,7 +39,7 @@ Progress::Progress(const std::string& what, std::size_t total, Between between)
   try {
     between_ = std::thread([this] { redraw_between(); });
   } catch (const std::system_error&) {
-    // Without a thread to be had the bar moves when the work says so.
+    // Without a thread, only at() redraws.
   }
 }
 
@@ -56,7 +56,7 @@ Progress::~Progress() {
   if (drawn_) clear_progress();
 }
 
-// A bar that there is no memory to draw must not end the program from this thread.
+// If memory for drawing is exhausted, this thread must not end the program.
 void Progress::redraw_between() noexcept try {
   std::unique_lock lock(mutex_);
   if (ended_.wait_for(lock, kQuiet, [this] { return end_; })) return;
@@ -105,7 +105,7 @@ std::string time_left(double until_step_s, double since_step_s, std::size_t done
   if (done == 0 || done >= total) return "";
   const double share = static_cast<double>(done) / static_cast<double>(total);
   if (share < kLeastShare && until_step_s + since_step_s < kLeast_s) return "";
-  // Without the share, so that what comes out even stays even.
+  // Without the rounded share, so that exact results stay exact.
   const double left_s =
       until_step_s * static_cast<double>(total - done) / static_cast<double>(done) - since_step_s;
   if (left_s <= 0.0) return "";

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A progress bar with the time left for anything that lasts over a second, on a terminal only; silent
-// elsewhere.
+// A progress bar with the time left, for work longer than one second, on a terminal only.
 #pragma once
 
 #include <chrono>
@@ -17,45 +16,42 @@ class Progress {
  public:
   using Clock = std::chrono::steady_clock;
 
-  // Whether a thread of its own redraws between the steps, so that a long step shows that it lasts. Not
-  // where a thread would be in the way.
+  // redraw: a thread redraws during long steps. nothing: no thread, if one would disturb.
   enum class Between { redraw, nothing };
 
-  // total: of whatever is counted, steps or rows or bytes; 0: not known, then the time spent is shown.
+  // total: number of steps, rows or bytes; 0: unknown, then the elapsed time is shown.
   Progress(const std::string& what, std::size_t total, Between between = Between::redraw);
   ~Progress();  // clears the line
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
-  // Cheap: looks at the clock and redraws at most ten times a second. A total that was not known before may
-  // come with it.
+  // Cheap: redraws at most ten times per second. `total` may become known here.
   void at(std::size_t done) { at(done, total_); }
   void at(std::size_t done, std::size_t total);
 
-  // For what tells its progress without knowing of this.
+  // For functions that report progress through a callback.
   [[nodiscard]] std::function<void(std::size_t done, std::size_t total)> teller();
 
  private:
   void draw(Clock::time_point now);
   void redraw_between() noexcept;
 
-  Progress* const outer_;  // that this one stands before: one bar at a time
+  Progress* const outer_;  // the bar that this one replaces while it lives
   const std::string what_;
   const bool terminal_;
   const Clock::time_point start_;
   std::mutex mutex_;  // of all below
   std::condition_variable ended_;
   std::size_t done_ = 0, total_;
-  Clock::time_point step_, drawn_at_;  // when `done_` came
+  Clock::time_point step_, drawn_at_;  // step_: last change of `done_`
   bool drawn_ = false, end_ = false;
   std::thread between_;
 };
 
-// "12 s left", "4 min left", "1 h 20 min left": the rest takes as long as what was done took, less what has
-// gone since then. "" before a twentieth is done, unless two seconds have gone, and when it should have
-// ended.
+// "12 s left", "4 min left", "1 h 20 min left", at the average speed so far. "" before 5 % or 2 s, and after
+// the predicted end.
 std::string time_left(double until_step_s, double since_step_s, std::size_t done, std::size_t total);
 
-// Before other text goes to the terminal: no bar stands in its line.
+// Removes the bar before other text is printed.
 void clear_progress();
 
 }  // namespace ifog::tools

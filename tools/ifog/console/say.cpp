@@ -26,8 +26,8 @@ namespace ifog::tools {
 namespace {
 
 std::FILE* people = stdout;
-std::string data_option;  // that took standard output
-int failure = 0;          // of the first write to standard output that could not be done
+std::string data_option;  // option that reserved standard output
+int failure = 0;          // errno of the first failed write to standard output
 
 constexpr std::size_t kWhole = std::numeric_limits<std::size_t>::max();
 
@@ -101,7 +101,7 @@ void finish_saying() {
 void prepare_standard_streams() {
   for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(fd, F_GETFD) != -1 || errno != EBADF) continue;
-    // The way round that is of no use: reading and writing still say that there is nothing to use.
+    // Opened in the wrong direction, so that reading or writing fails as on a closed descriptor.
     const int stand_in = ::open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
     if (stand_in >= 0 && stand_in != fd) ::close(stand_in);
   }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text for people. Everything that a command says goes through here, so that no name or value from
-// a file, a device or the network reaches the terminal as a command to it, and so that it stands on standard
-// error when standard output is where the data goes.
+// Text for people. All output goes through here: control characters from files, devices or the network are
+// escaped, and text goes to standard error if data goes to standard output.
 #pragma once
 
 #include <cstddef>
@@ -11,41 +10,39 @@
 
 namespace ifog::tools {
 
-// To standard output, or to standard error once data goes there. The text may have several lines; every
-// other control character in it is shown as \xNN. A name that could hold a line end goes through printable().
+// Prints to standard output, or to standard error if data goes there. Line ends are allowed; other control
+// characters are shown as \xNN. Use printable() for a name that may contain a line end.
 [[gnu::format(printf, 1, 2)]] void say(const char* format, ...);
 
-// To standard error: what went wrong or was ignored.
+// To standard error: errors and warnings.
 [[gnu::format(printf, 1, 2)]] void warn(const char* format, ...);
 
-// The data of this option takes standard output, and people read standard error from then on. Before the
-// first say(). Throws WrongUsage (usage) when a second one wants it, too.
+// Reserves standard output for the data of this option; say() then prints to standard error. Call it before
+// the first say(). Throws WrongUsage if another option has it.
 void data_to_standard_output(const std::string& option);
 
-// Whether a terminal may show colours: NO_COLOR (no-color.org) is not set, and it is no dumb one.
+// False if NO_COLOR (no-color.org) is set or the terminal has no colours.
 bool colours_wanted();
 
-enum class Tone { plain, figure, good, warning, bad };  // figure: what is read first
+enum class Tone { plain, figure, good, warning, bad };  // figure: the main figures
 
 struct ShownLine {
   std::string text;
-  Tone tone = Tone::plain;  // a colour at a terminal where they are wanted
+  Tone tone = Tone::plain;  // shown as a colour if the terminal has colours
 };
 
-// Lines that take the place of the `before` lines drawn last, where people sit at a terminal; elsewhere they
-// follow. Throws as finish_saying() does: nobody reads any more.
+// On a terminal replaces the last `before` lines; elsewhere appends. Throws as finish_saying() does.
 void redraw(std::size_t before, const std::vector<ShownLine>& lines);
 
-// People have read enough, as `head` has: the end of the work, and nothing to complain of. No runtime_error,
-// so that nobody makes a complaint of it on the way.
+// Standard output was closed by its reader, e.g. `head`: ends the work without an error message. Not a
+// runtime_error, so that no handler reports it.
 struct ReaderGone : std::exception {};
 
-// Makes sure that all output of the run has arrived. Throws std::runtime_error with one line: full, closed, …, or
-// ReaderGone.
+// Flushes all output. Throws std::runtime_error with one line if that fails, e.g. disk full, or ReaderGone.
 void finish_saying();
 
-// Before anything else in main: descriptors 0, 1 and 2 are open (a file opened later must not become standard
-// output), and a write that cannot be done is an error to report, not a signal to die from.
+// Call it first in main. Opens descriptors 0, 1 and 2 if they are closed, because a later file must not get
+// their numbers. A failed write becomes an error instead of a signal.
 void prepare_standard_streams();
 
 }  // namespace ifog::tools

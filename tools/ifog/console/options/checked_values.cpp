@@ -13,7 +13,7 @@
 namespace ifog::tools {
 namespace {
 
-// All of the text as a T; a plus sign may lead.
+// Parses the whole text as a T; a leading plus sign is allowed.
 template <typename T>
 std::optional<T> integer_in(std::string_view digits) {
   if (digits.size() > 1 && digits[0] == '+' && digits[1] != '-') digits.remove_prefix(1);
@@ -45,7 +45,7 @@ void ValueRule::range(double least, double most, bool without_least, const std::
 bool ValueRule::fits(const std::string& value) const {
   if (kind_ == ValueKind::text)
     return choices_.empty() ? !value.empty() : std::ranges::count(choices_, value) > 0;
-  // A whole number is one of 64 bits, with a sign or without.
+  // Whole numbers have 64 bits, signed or unsigned.
   const bool whole = integer_in<std::uint64_t>(value) || (kind_ == ValueKind::whole && whole_in(value));
   const std::optional<double> number = number_in(value);
   return (kind_ == ValueKind::number || whole) && number && *number <= most_ &&
@@ -56,7 +56,7 @@ std::string ValueRule::complaint(const std::string& value, const std::string& wo
   if (check_)
     if (std::string wrong = check_(value); !wrong.empty()) return wrong;
   if (fits(value)) return "";
-  std::string expected = word;  // a variable of a script that was never set: --model "$MODEL"
+  std::string expected = word;  // for an empty script variable: --model "$MODEL"
   if (!choices_.empty()) expected = ifog::one_of(value, choices_);
   if (kind_ != ValueKind::text) {
     expected = kind_ == ValueKind::number ? "a number" : "a whole number";

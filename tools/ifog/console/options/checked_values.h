@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an option's value must be, and the words for one that is not: the value and what was expected.
+// Rules for the values of options, and the error messages of wrong values.
 #pragma once
 
 #include <cstdint>
@@ -13,23 +13,23 @@ namespace ifog::tools {
 
 enum class ValueKind { text, number, whole, count };  // count: whole, 0 or more
 
-// Decimal and finite, by the rule of drivers/ifog/decimal.h; empty: it is none.
+// Decimal and finite, as in drivers/ifog/decimal.h; otherwise nullopt.
 std::optional<double> number_in(const std::string& text);
 
-// Whole, within 63 bits and a sign; empty: it is none. (The parser takes the largest one for what is larger.)
+// Whole and within 64 bits, signed; otherwise nullopt. (The parser would clamp larger numbers.)
 std::optional<std::int64_t> whole_in(const std::string& text);
 
-// What the values of one option are held to, beyond the type of the variable that they go to.
+// Rule for the values of one option, besides the type of its variable.
 class ValueRule {
  public:
   explicit ValueRule(ValueKind kind) : kind_(kind) {}
-  // words: "more than 0", "1 to 1000"; the help ends in them.
+  // words: "more than 0", "1 to 1000"; appended to the help.
   void range(double least, double most, bool without_least, const std::string& words);
   void one_of(const std::vector<std::string>& words) { choices_ = words; }
-  // Asked before the rest, for its words say more.
+  // Checked before the other rules, because its message is more specific.
   void check(std::function<std::string(const std::string&)> complaint) { check_ = std::move(complaint); }
 
-  // "" or "is 'VALUE', expected EXPECTED". word: for the value, in the help.
+  // "" or "is 'VALUE', expected EXPECTED". word: the value's name in the help.
   [[nodiscard]] std::string complaint(const std::string& value, const std::string& word) const;
 
  private:

@@ -17,7 +17,7 @@ namespace ifog::tools {
 
 namespace {
 
-// Texts that are no file. The same name is the same in every command.
+// Options whose values are not files. The value's name is the same in every command.
 constexpr std::array<std::pair<std::string_view, const char*>, 9> kTexts = {{{"--axis", "NAME"},
                                                                              {"--channel", "NAME"},
                                                                              {"--filter", "NAME"},
@@ -37,7 +37,7 @@ struct ValueOf<std::optional<T>> : ValueOf<T> {};
 template <typename T>
 struct ValueOf<std::vector<T>> : ValueOf<T> {};
 
-// The word for its value where the command gives none, and what it is held to: by the type of the variable.
+// Default of a value's name and rule, by the type of the variable.
 template <typename T>
 Option ruled(CLI::Option* option) {
   using Value = typename ValueOf<T>::type;
@@ -58,7 +58,6 @@ Option ruled(CLI::Option* option) {
   return Option(*option, std::move(rule));
 }
 
-// "1e-9", "0.5", "1e12".
 std::string in_digits(double value) {
   std::ostringstream out;
   out << value;
@@ -147,7 +146,7 @@ void Command::footer(const std::string& text) const { command_->footer(text); }
 
 void Command::callback(std::function<void()> run) const { command_->callback(std::move(run)); }
 
-// What commands take.
+// Types that commands use.
 template Option Command::add_option(const std::string&, std::string&, const std::string&) const;
 template Option Command::add_option(const std::string&, double&, const std::string&) const;
 template Option Command::add_option(const std::string&, int&, const std::string&) const;

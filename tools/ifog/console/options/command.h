@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a command is called, takes and does, in plain types. The parser behind it is CLI11, which this room
-// alone reads: it is headers, and whatever includes them compiles all of the parser again.
+// Names, options and actions of a command in plain types. Only this folder includes CLI11, because its
+// headers contain the whole parser.
 #pragma once
 
 #include <functional>
@@ -16,40 +16,39 @@ class Option;
 
 namespace ifog::tools {
 
-// "" or what is wrong with a value.
+// Returns "" or the error in a value.
 using Complaint = std::function<std::string(const std::string& value)>;
 
-// What an option takes, see checked_values.h.
+// Rule for an option's values; see checked_values.h.
 class ValueRule;
 
-// Stands for an option of the command line, and lives no longer than that. Its help and what is said of a wrong value
-// come from the same rule, so that they are in the same words.
+// Handle of an option; valid as long as the command line. Help and error messages come from one rule.
 class Option {
  public:
   explicit Option(CLI::Option& option, std::shared_ptr<ValueRule> rule = nullptr)
       : option_(&option), rule_(std::move(rule)) {}
 
   Option required() const;
-  // The word for its value, in the help.
+  // Sets the value's name in the help.
   Option type_name(const std::string& word) const;
-  // The help says what its variable now holds.
+  // Shows the present value of the variable as default.
   Option shows_default() const;
   Option group(const std::string& heading) const;
-  // Between the values of one word.
+  // Separator of several values in one word.
   Option delimiter(char between) const;
-  // It is given once for each value: a word that follows the first is not its own.
+  // Each value needs the option again: the next word is not a value.
   Option one_value_each() const;
 
   Option positive() const;
   Option not_negative() const;
-  // Both ends allowed.
+  // Both limits are allowed.
   Option within(double least, double most) const;
   Option within(int least, int most) const;
-  // The help has them as a|b in the place of a word for the value.
+  // The help shows them as a|b instead of a value's name.
   Option one_of(const std::vector<std::string>& words) const;
   Option check(Complaint complaint) const;
 
-  // Whether it stands on the command line.
+  // True if it is on the command line.
   [[nodiscard]] bool given() const;
 
  private:
@@ -59,27 +58,27 @@ class Option {
   std::shared_ptr<ValueRule> rule_;  // null: a flag
 };
 
-// Stands for a command, or for the program whose commands there are.
+// Handle of a command, or of the program with its commands.
 class Command {
  public:
   explicit Command(CLI::App& command) : command_(&command) {}
 
   [[nodiscard]] Command add_subcommand(const std::string& name, const std::string& help) const;
 
-  // `value` must outlive the parse. A name without dashes is an argument. T: what command.cpp lists, texts,
-  // numbers, and optional or several ones.
+  // `value` must outlive the parse. A name without dashes is an argument. T: the types listed in command.cpp:
+  // texts, numbers, and optional or several of them.
   template <typename T>
   Option add_option(const std::string& names, T& value, const std::string& help) const;
   Option add_flag(const std::string& names, bool& value, const std::string& help) const;
-  // Called with the value when all has been read; throws WrongUsage where it will not do.
+  // Called with the value after the parse; may throw WrongUsage.
   template <typename T>
   Option add_taken(const std::string& names, std::function<void(const T&)> take,
                    const std::string& help) const;
   Option add_flag_taken(const std::string& names, std::function<void()> take, const std::string& help) const;
 
-  // Examples, behind the options in the help.
+  // Text after the options in the help, e.g. examples.
   void footer(const std::string& text) const;
-  // What it does; throws WrongUsage, Failed or what goes wrong.
+  // The action; may throw WrongUsage, Failed or other errors.
   void callback(std::function<void()> run) const;
 
  private:

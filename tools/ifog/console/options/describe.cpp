@@ -12,7 +12,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// The words of "auto|candump|bytes", as a choice is written; what stands for a value is in capitals.
+// The choices in "auto|candump|bytes"; value names are in capitals.
 std::vector<std::string> choices_of(std::string_view value) {
   std::vector<std::string> words;
   const auto capital = [](char c) { return c >= 'A' && c <= 'Z'; };
@@ -47,7 +47,7 @@ Json options_of(const CLI::App& app) {
   Json options = Json::array();
   for (const CLI::Option* const option : app.get_options())
     if (!option->get_group().empty())
-      options.push_back(option_of(*option));  // no group: hidden from --help, too
+      options.push_back(option_of(*option));  // no group: hidden in --help too
   return options;
 }
 

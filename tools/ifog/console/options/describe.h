@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line as data: what --help tells people, for programs. The manual pages and the completion of
-// the shell are made from it.
+// The command line as data: the content of --help, from which manual pages and shell completion are made.
 #pragma once
 
 #include <string>
@@ -11,7 +10,7 @@ class App;
 
 namespace ifog::tools {
 
-// JSON, one document, schema "ifog.command_line/1".
+// One JSON document, schema "ifog.command_line/1".
 std::string describe(const CLI::App& app);
 
 }  // namespace ifog::tools

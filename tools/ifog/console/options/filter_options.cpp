@@ -17,7 +17,7 @@
 namespace ifog::tools {
 namespace {
 
-// What the command line reads the value as, before it is narrowed.
+// Type that the command line parses before it is converted.
 template <typename T>
 using Read = std::conditional_t<std::is_integral_v<T>, std::int64_t, T>;
 
@@ -35,14 +35,14 @@ std::optional<SettingValue> value_in(const std::string& text) {
   return number_in(text);
 }
 
-// "" or what is wrong with the value. What has its name elsewhere than in the table is known there.
+// Returns "" or the error in a value. Names from other tables are checked by expected_name().
 template <typename T>
 std::string complaint(const FilterSetting& setting, const std::string& text) {
   FilterChoice ignored;
   const std::optional<SettingValue> value = value_in<T>(text);
   std::string wrong;
   if constexpr (std::is_same_v<T, std::string>) wrong = expected_name(setting, text);
-  // A list has one word a value, and its setting all of them.
+  // A list is given in several words; its setting takes all of them.
   const bool listed = std::is_same_v<T, std::vector<double>>;
   if (wrong.empty() && !(value && (listed || choose(setting, *value, ignored))))
     wrong = expected(setting, text);

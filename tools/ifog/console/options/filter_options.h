@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options that say which filter: the same names in `denoise`, `compare` and `tune`, read into the same
-// structure the daemon's configuration is read into.
+// The options of the filter: the same names in `denoise`, `compare` and `tune`, with the structure of the
+// daemon's configuration.
 #pragma once
 
 #include "filters/settings/filter_settings.h"
@@ -8,8 +8,8 @@
 
 namespace ifog::tools {
 
-// An option for each row of filters/settings/filter_table.h. `choice` must outlive the parse. `with_rule`:
-// --filter too.
+// Adds an option for each row of filters/settings/filter_table.h, and --filter if `with_rule`. `choice` must
+// outlive the parse.
 void add_filter_options(const Command& command, FilterChoice& choice, bool with_rule = true);
 
 }  // namespace ifog::tools

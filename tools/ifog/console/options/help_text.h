@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// --help as a person reads it.
+// Layout of --help.
 #pragma once
 
 #include <cstddef>
@@ -7,12 +7,11 @@
 
 namespace ifog::tools {
 
-// What the parser has laid out in two columns, the second of which begins at `column`: its lines broken
-// between words to be no wider than `width`, and never two empty ones together. Examples to be copied stay
-// whole.
+// Breaks the parser's two columns, the second of which begins at `column`, into lines of at most `width`,
+// without repeated empty lines. Examples are not broken.
 [[nodiscard]] std::string broken_lines(const std::string& help, std::size_t column, std::size_t width);
 
-// Columns of the terminal that standard output is, within what reads well; 100 for any other output.
+// Width of the terminal on standard output, limited to readable lines; 100 for other outputs.
 [[nodiscard]] std::size_t help_width();
 
 }  // namespace ifog::tools

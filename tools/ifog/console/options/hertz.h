@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A rate as people read it: a decimal, and of a slow one as many as it takes to see it.
+// Formats a rate with one decimal, or with two significant digits below 1 Hz.
 #pragma once
 
 #include <string>

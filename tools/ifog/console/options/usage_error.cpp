@@ -29,7 +29,7 @@ std::vector<std::string> option_names(const CLI::App& command) {
   return names;
 }
 
-// The parser tells of an option that is missing before one that it does not know: mostly the same one.
+// The parser reports a missing option before an unknown one, although they are mostly the same.
 std::string unknown_option(const CLI::App& command, int argc, const char* const* argv) {
   const std::vector<std::string> known = option_names(command);
   for (int i = 2; i < argc; ++i) {
@@ -58,7 +58,7 @@ std::string plainly_counted(const std::string& said) {
   return said;
 }
 
-// The parser's "Could not convert: --option = value" expects nothing.
+// The parser's "Could not convert: --option = value" lacks the expected value.
 std::string plainly(const CLI::App& command, const std::string& said) {
   constexpr std::string_view kSays = "Could not convert: ", kIs = " = ";
   const std::size_t at = said.find(kIs);

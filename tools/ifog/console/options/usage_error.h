@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What to say of a command line that cannot be understood.
+// Messages for a wrong command line.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ class App;
 
 namespace ifog::tools {
 
-// One line on what is wrong with it, naming the word and what may have been meant, and one on where help is.
-// `said`: what the parser or the command made of it.
+// One line with the wrong word and what may have been meant, and one with the way to the help. `said`: the
+// message of the parser or command.
 std::string usage_error(const CLI::App& app, int argc, const char* const* argv, const std::string& said);
 
 }  // namespace ifog::tools

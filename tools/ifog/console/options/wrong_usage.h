@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A command line that can be read and makes no sense: exit code 2.
+// A command line that is well formed but not valid: exit code 2.
 #pragma once
 
 #include <stdexcept>
@@ -8,7 +8,7 @@
 namespace ifog::tools {
 
 struct WrongUsage : std::runtime_error {
-  // The option or file, and what is wrong with it: "is 'VALUE', expected EXPECTED".
+  // The option or file, and its error: "is 'VALUE', expected EXPECTED".
   WrongUsage(const std::string& what, const std::string& complaint)
       : std::runtime_error(what + ": " + complaint) {}
 };
