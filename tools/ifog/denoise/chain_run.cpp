@@ -12,7 +12,7 @@
 namespace ifog::tools {
 namespace {
 
-// What is wrong with the filter's settings, said of them; with the model, of its file.
+// Attributes an error to the filter's settings, or to the model with its file.
 std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::string& model_path) {
   const auto made = [](const ChainSettings& of) { return std::make_unique<ChainParts>(of); };
   if (!settings.model || model_path.empty()) return made(settings);
@@ -24,7 +24,7 @@ std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::s
   } catch (const std::exception& error) {
     ChainSettings without = settings;
     without.model.reset();
-    static_cast<void>(made(without));  // throws where it was not the model
+    static_cast<void>(made(without));  // throws if the model is not the cause
     throw std::runtime_error(model_path + ": " + error.what());
   }
 }
@@ -41,8 +41,8 @@ void add(const IncrementerCounts& from, const IncrementerCounts& less, Increment
 
 }  // namespace
 
-// As the daemon sets its chain up, with what only a recording knows. The daemon's own refusal of a driver
-// without a rate would name no file and a key of its configuration.
+// The daemon's settings, with those of the recording. Its own message for an unknown rate names a
+// configuration key, not the file.
 ChainSettings recording_settings(const OfflineSettings& settings, const DriverInstance& driver,
                                  const std::string& path) {
   const ifog_description& description = driver.description();
@@ -61,7 +61,7 @@ ChainRun::ChainRun(const ChainSettings& settings, const OfflineSettings& offline
 }
 
 void ChainRun::begin(const ChainSettings& settings) {
-  if (incrementer_) count(counts_);  // what came behind its last sample
+  if (incrementer_) count(counts_);  // counts after the last sample
   counted_ = {};
   incrementer_.emplace(settings.facts);
   chain_.emplace(parts_of(settings, model_path_));
@@ -78,7 +78,7 @@ void ChainRun::exchange(const ChainSettings& settings) {
 
 const Increment* ChainRun::run(const Reading& reading, ChainOutput& out) {
   if (!incrementer_->next(reading, increment_)) return nullptr;
-  // Modulo 2^64: the part may begin before where its own counter does.
+  // Modulo 2^64, because the part may begin before its own counter.
   if (first_sequence_) sequence_shift_ = *std::exchange(first_sequence_, std::nullopt) - increment_.sequence;
   increment_.sequence += sequence_shift_;
   chain_->process(increment_, out);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The chain as the daemon runs it, over what was recorded of one sensor: restarted where the daemon started,
-// its parts exchanged where it exchanged them.
+// Runs the daemon's chain over the samples of one sensor; restarts it and exchanges its parts where the
+// daemon did.
 #pragma once
 
 #include <cstdint>
@@ -12,22 +12,22 @@
 
 namespace ifog::tools {
 
-// Settings for a driver's samples. path: the recording's, for messages. Throws std::runtime_error with one line where
-// nobody knows the sample rate.
+// Settings for a driver's samples. path: of the recording, for messages. Throws std::runtime_error with one
+// line if the sample rate is unknown.
 [[nodiscard]] ChainSettings recording_settings(const OfflineSettings& settings, const DriverInstance& driver,
                                                const std::string& path);
 
 class ChainRun {
  public:
-  // Throws std::runtime_error with one line, of the model with its file.
+  // Throws std::runtime_error with one line; names the file if the model is wrong.
   ChainRun(const ChainSettings& settings, const OfflineSettings& offline);
-  // As the daemon starts.
+  // Starts as the daemon does.
   void begin(const ChainSettings& settings);
-  // As it takes other settings into use, from the next sample on.
+  // Uses other settings from the next sample on, as the daemon does.
   void exchange(const ChainSettings& settings);
-  // Null: the sample is a duplicate, or a later one had arrived.
+  // Null: the sample is a duplicate or out of order.
   const Increment* run(const Reading& reading, ChainOutput& out);
-  // Whether what has come since the last call counts in the result.
+  // Says if the samples since the last call count in the result.
   void count(bool counts);
   void discontinuity() { incrementer_->discontinuity(); }
   OfflineResult finish();
@@ -43,7 +43,7 @@ class ChainRun {
   std::uint64_t sequence_shift_ = 0;
   OfflineResult result_;
   IncrementerCounts counted_;  // of this incrementer, by count()
-  bool counts_ = true;         // the last sample
+  bool counts_ = true;         // for the last sample
 };
 
 }  // namespace ifog::tools

@@ -131,7 +131,7 @@ void tell_axis(const std::string& axis, const DenoisedRows::AxisMoments& moments
       moments.denoised.deviation() / kDegreePerHour);
 }
 
-// Samples that nobody has a row of; a row without a value is another thing, and is said by axis.
+// Samples without a row. Rows without a value are reported by axis.
 std::string gaps_in_words(const OfflineResult& result) {
   const IncrementerCounts& counts = result.counts;
   const bool one_run = result.runs == 1;
@@ -144,7 +144,7 @@ std::string gaps_in_words(const OfflineResult& result) {
   return out;
 }
 
-// Where the rows need not be what the daemon published.
+// Warns if the rows may differ from what the daemon published.
 void tell_not_as_published(const DenoiseOptions& options, const DenoisedRows& rows,
                            const OfflineResult& result) {
   if (!options.config.empty()) return;
@@ -181,9 +181,9 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
   if (result.runs > 1 || result.exchanges > 0)
     say("%zu run(s) of the daemon, model or filter exchanged %zu time(s): %s; at the end\n", result.runs,
         result.exchanges,
-        !options.config.empty()        ? "each run from its beginning, as configured"
-        : options.over_the_recording() ? "each as it was, but for what the command line says"
-                                       : "each as it was");
+        !options.config.empty()         ? "each run from its beginning, as configured"
+        : options.overrides_recording() ? "each as it was, but for what the command line says"
+                                        : "each as it was");
   const FilterSettings& filter = result.filter;
   if (rows.none_filtered())
     say("filter %s, state %s: not run\n", filter.rule.c_str(), filter.state.c_str());
@@ -194,7 +194,7 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
   for (std::size_t a = 0; a < result.axes.size(); ++a) tell_axis(result.axes[a], rows.moments(a));
 }
 
-// What the chain dropped as invalid takes no part; what it compensated does: the same effects are removed.
+// Samples that the chain dropped as invalid are not used; the effects of the model are already subtracted.
 void smooth(DenoisedColumns& columns, const OfflineResult& result) {
   if (!result.noise_known)
     throw std::runtime_error("--smooth: the noise is not known; expected a --model of 'ifog tune' at rest");
@@ -209,7 +209,7 @@ void smooth(DenoisedColumns& columns, const OfflineResult& result) {
   }
 }
 
-// Steps of the time column that are no multiple of what --rate says count as gaps or jitter.
+// With a wrong --rate, steps of the time column are counted as gaps or jitter.
 void tell_other_rate(const DenoiseOptions& options, double rate_hz, const LongTable& table) {
   constexpr double kAlike = 0.2;
   if (!(rate_hz > 0.0) || table.size() < 2) return;
@@ -219,7 +219,7 @@ void tell_other_rate(const DenoiseOptions& options, double rate_hz, const LongTa
          options.nominal_rate_hz > 0.0 ? "--rate" : "the configuration's rate", rate_hz, own_hz);
 }
 
-// What is read and written, before any of it is.
+// Registers inputs and outputs before any of them is used.
 void name_files(DenoiseOptions& options) {
   if (!options.sensor.empty() && options.config.empty())
     throw WrongUsage("--sensor", "is " + in_quotes(options.sensor) +
@@ -246,7 +246,7 @@ OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, c
   if (of.model && !table.dead_axes.empty())
     of.model = std::make_shared<const Model>(without_axes(*of.model, table.dead_axes));
   OfflineResult result = denoise_capture(table, options.capture, of, sink);
-  result.model = model;  // of the file, whatever of it is for axes that are not here
+  result.model = model;  // of the whole file, including effects of axes that are missing here
   return result;
 }
 
@@ -259,7 +259,7 @@ void run_denoise(DenoiseOptions options) {
   const std::optional<ConfiguredSensor> configured = configured_sensor(options, kind);
   expect_capture_name("--output", options.output, nullptr);
   const auto settings = [&] { return settings_of(options, configured, flight ? &*flight : nullptr); };
-  // What is wanted of the whole, which is filtered from its beginning: the part has the whole's bits.
+  // Filters the whole capture and writes the part, so that its bits are those of the whole.
   DenoisedRows rows(options.output, options.part, !options.picture.empty(), options.smooth);
   ModelTrial trial;
   const OfflineSink sink{[&](const std::vector<std::string>& axes) {
@@ -298,7 +298,7 @@ void run_denoise(DenoiseOptions options) {
   }
   if (options.smooth) smooth(rows.columns(), result);
   rows.finish(options.capture);
-  if (result.exchanges == 0) trial.weigh();  // else of several models
+  if (result.exchanges == 0) trial.weigh();  // otherwise there were several models
   tell(options, rows, result);
   trial.tell(options.capture);
   if (!options.json.empty()) write_json(options.json, summary(options, rows, trial, result));

@@ -28,7 +28,7 @@ void draw_denoised(const std::string& path, const DenoisedColumns& columns, cons
   std::vector<report::PictureRow> rows;
   const auto row = [&](const std::string& title, const char* noisy, const Samples& values,
                        const DenoisedAxis& axis, bool last) {
-    // The same range for raw and compensated, so that they compare at a glance.
+    // The same range for raw and compensated, for comparison.
     report::Bounds range;
     for (const double value : axis.raw) range.take(value / kDegreePerHour, false);
     for (const double value : axis.compensated) range.take(value / kDegreePerHour, false);

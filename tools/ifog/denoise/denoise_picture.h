@@ -10,8 +10,8 @@
 
 namespace ifog::tools {
 
-// The rate before and after, a row an axis and one more where a model corrects it, with one time axis below
-// all of them. Throws as write_picture does.
+// The rate before and after, one row per axis and another if a model corrects it, with a common time axis.
+// Throws as write_picture does.
 void draw_denoised(const std::string& path, const DenoisedColumns& columns, const TimeOrigin& origin,
                    const OfflineResult& result);
 

@@ -50,7 +50,7 @@ bool says_anything(const FilterChoice& choice) {
 
 }  // namespace
 
-bool DenoiseOptions::over_the_recording() const {
+bool DenoiseOptions::overrides_recording() const {
   return says_anything(filter) || !model.empty() || !noise.empty() || nominal_rate_hz > 0.0 ||
          start_up_s > 0.0 || since_power_up_s || first_sequence || input.has_driver() ||
          !input.options.empty();
@@ -59,7 +59,7 @@ bool DenoiseOptions::over_the_recording() const {
 std::optional<ConfiguredSensor> configured_sensor(DenoiseOptions& options, FileKind kind) {
   if (options.config.empty()) return std::nullopt;
   Config config = read_config(options.config);
-  // systemd gives the service its state folder; a person at a terminal has none.
+  // systemd gives the service its state folder; on a terminal there may be none.
   if (std::error_code none; state_folder(config.state_folder).empty() &&
                             std::filesystem::equivalent(options.config, kServiceConfig, none))
     use_adopted_models(config, kServiceState);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options of `ifog denoise`, and the sensor and its settings that this makes.
+// The options of `ifog denoise`, and the sensor and settings that they define.
 #pragma once
 
 #include <cstdint>
@@ -27,24 +27,24 @@ struct DenoiseOptions {
   FilterChoice filter;
   bool smooth = false;
 
-  // Something is said here that stands over what a recording was made with.
-  [[nodiscard]] bool over_the_recording() const;
+  // True if an option overrides the settings of a recording.
+  [[nodiscard]] bool overrides_recording() const;
 };
 
-// The sensor of --config; empty without.
+// The sensor of --config.
 struct ConfiguredSensor {
   SensorConfig sensor;
   std::vector<std::string> plugin_folders;
 };
 
-// The sensor of --config that is meant. Its files enter the table of the run's (command_files.h), and where
-// the capture goes through a driver and none other is named, `options` has its driver from here on, whose
-// options stand behind those of the command line; each option's path begins where that option was said.
-// Throws std::runtime_error or ConfigError.
+// Selects the sensor of --config and registers its files as inputs of the run (command_files.h). If the
+// capture needs a driver and none is given, `options` gets the sensor's driver, with its options after those
+// of the command line. Relative paths start at the folder of the configuration or the working folder. Throws
+// std::runtime_error or ConfigError.
 [[nodiscard]] std::optional<ConfiguredSensor> configured_sensor(DenoiseOptions& options, FileKind kind);
 
-// flight: null for other captures; its settings are those of the file it is in. What the command line says
-// stands over the configuration, and that over the recording.
+// flight: null for other captures; its settings are those of the present file. The command line overrides the
+// configuration, and that the recording.
 [[nodiscard]] OfflineSettings settings_of(const DenoiseOptions& options,
                                           const std::optional<ConfiguredSensor>& configured,
                                           const FlightInput* flight);

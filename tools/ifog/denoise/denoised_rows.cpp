@@ -11,7 +11,7 @@
 
 namespace ifog::tools {
 
-constexpr std::size_t kRowsTogether = std::size_t{1} << 14U;  // rows written at once
+constexpr std::size_t kRowsTogether = std::size_t{1} << 14U;  // rows per write
 
 DenoisedRows::DenoisedRows(std::string output, TimePart part, bool keep, bool smooth)
     : output_(std::move(output)), part_(std::move(part)), keep_(keep || smooth), smooth_(smooth) {}
@@ -30,21 +30,21 @@ void DenoisedRows::begin(const std::vector<std::string>& axes) {
     names.push_back("smoothed" + suffix + "radps");
     names.push_back("smoothed_variance" + suffix + "rad2ps2");
   }
-  held_.resize(names.size());
+  pending_.resize(names.size());
   file_.emplace(output_, "", names);
 }
 
-void DenoisedRows::append(double value) { held_[place_++].push_back(value); }
+void DenoisedRows::append(double value) { pending_[place_++].push_back(value); }
 
 void DenoisedRows::end_row() {
   place_ = 0;
-  if (held_.front().size() >= kRowsTogether) flush();
+  if (pending_.front().size() >= kRowsTogether) flush();
 }
 
 void DenoisedRows::flush() {
-  if (held_.front().empty()) return;
-  file_->rows(std::vector<std::span<const double>>(held_.begin(), held_.end()), origin_);
-  for (std::vector<double>& column : held_) column.clear();
+  if (pending_.front().empty()) return;
+  file_->rows(std::vector<std::span<const double>>(pending_.begin(), pending_.end()), origin_);
+  for (std::vector<double>& column : pending_) column.clear();
 }
 
 void DenoisedRows::count(const ChainOutput& out) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the chain says of each sample, on its way into the file: written as it comes, and kept only where
-// something looks at all of it.
+// Writes the chain's output for each sample at once; keeps rows only for a picture or for smoothing.
 #pragma once
 
 #include <cstdint>
@@ -19,10 +18,9 @@ namespace ifog::tools {
 
 struct DenoisedAxis {
   Samples raw, compensated, denoised, variance;
-  Samples smoothed, smoothed_variance;  // empty unless asked for
+  Samples smoothed, smoothed_variance;  // empty unless requested
 };
 
-// Whole columns, for a picture and for smoothing.
 struct DenoisedColumns {
   Samples time_s, dt_s;
   std::vector<DenoisedAxis> axes;
@@ -36,30 +34,30 @@ class DenoisedRows {
   struct AxisMoments {
     Moments raw, compensated, denoised;
     std::size_t missing = 0;       // rows without a raw value
-    double first_missing_s = 0.0;  // the time of the first of them
-    std::size_t stuck = 0;         // rows in which the sensor repeats one value, as the chain judges it
+    double first_missing_s = 0.0;  // time of the first of them
+    std::size_t stuck = 0;         // rows in which the chain finds that the sensor repeats one value
   };
 
-  // Writes what of it is in `part`, CSV or HDF5 by the name. keep: the columns as well; smooth: write nothing
+  // Writes the rows in `part`, CSV or HDF5 by the name. keep: also keeps the columns; smooth: writes nothing
   // before finish().
   DenoisedRows(std::string output, TimePart part, bool keep, bool smooth);
 
-  // Once, before the first sample.
+  // Call it once, before the first sample.
   void begin(const std::vector<std::string>& axes);
-  // That all times are counted from; before the first sample.
+  // Sets the origin of all times; before the first sample.
   void count_from(const TimeOrigin& origin) { origin_ = origin; }
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
-  // Whether it is in the part.
+  // True if the sample is in the part.
   bool add(double time_s, const Increment& increment, const ChainOutput& out);
-  // What was kept, of all rows: smoothing fills its last two columns. After the last sample.
+  // The kept columns of all rows, after the last sample; smoothing fills the last two.
   [[nodiscard]] DenoisedColumns& columns() { return columns_; }
-  // Ends the rows of the part. name: the capture's. Throws
-  // std::runtime_error with one line when there are none, or none with a value, or as OutputFile does.
+  // Ends the rows of the part. name: of the capture. Throws std::runtime_error with one line if there are
+  // none or none has a value, or as OutputFile does.
   void finish(const std::string& name);
 
   [[nodiscard]] std::size_t written() const { return extent_.written; }
-  // All figures are of the rows in the part.
-  // Not one was filtered: the noise was known too late, or never.
+  // All figures are those of the rows in the part.
+  // True if no row was filtered because the noise was not known in time.
   [[nodiscard]] bool none_filtered() const { return counts_.unknown_noise == extent_.written; }
   [[nodiscard]] const Counts& counts() const { return counts_; }
   [[nodiscard]] const AxisMoments& moments(std::size_t axis) const { return moments_[axis]; }
@@ -75,15 +73,15 @@ class DenoisedRows {
   TimePart part_;
   bool keep_, smooth_;
   std::vector<std::string> axes_;
-  std::vector<std::vector<double>> held_;  // by column: rows that are written together
-  std::size_t place_ = 0;                  // of the next value in its row
+  std::vector<std::vector<double>> pending_;  // by column: rows of the next block
+  std::size_t place_ = 0;                     // of the next value in its row
   DenoisedColumns columns_;
   std::vector<AxisMoments> moments_;
   Counts counts_;
   struct Extent {
     std::size_t rows = 0, written = 0;
     double first_s = 0.0, last_s = 0.0;
-    bool over = false;  // beyond the part
+    bool over = false;  // after the end of the part
   } extent_;
   TimeOrigin origin_;
 };

@@ -12,7 +12,7 @@
 namespace ifog::tools {
 namespace {
 
-// A flight recording through the chain, run by run of the daemon.
+// Runs the chain over a flight recording, run by run of the daemon.
 class FlightChain {
  public:
   FlightChain(FlightInput& flight, DriverInstance& driver, const std::function<OfflineSettings()>& settings,
@@ -42,7 +42,7 @@ class FlightChain {
       reading_.channel[c] = value.value;
       reading_.channel_age_s[c] = value.age_s(recorded.read_ns);
     }
-    times_.come(recorded.sample);
+    times_.advance(recorded.sample);
     const Increment* const increment = chain_.run(reading_, out_);
     if (increment == nullptr) return;
     missed_.sample(times_.now_s());
@@ -64,7 +64,7 @@ class FlightChain {
     runs_.run = header.run;
     runs_.settings = header.settings;
     OfflineSettings settings = settings_();
-    // What was said of the first sample.
+    // It applies to the first sample only.
     if (another_run) settings.since_power_up_s.reset();
     ChainSettings next = chain_settings(settings);
     if (next.axes != now_.axes)
@@ -93,7 +93,7 @@ class FlightChain {
   }
 
  private:
-  // What happened before the next sample, and when it did first.
+  // Something that happened before the next sample, and its first time.
   struct Occurrence {
     bool before_next = false;
     std::optional<double> first_s;
@@ -107,14 +107,14 @@ class FlightChain {
     std::size_t count = 1, exchanges = 0;
   };
 
-  // Nobody knows it of an older recording.
+  // True also for an older recording, which does not contain it.
   static bool begins_a_run(const FlightHeader& header) {
     return header.began == 0 || header.number == header.began;
   }
   ChainSettings chain_settings(const OfflineSettings& settings) {
     ChainSettings out = recording_settings(settings, driver_, flight_.path());
     if (!settings.since_power_up_s) out.powered_ns = flight_.header().powered_ns;
-    // By name: the settings may be others than those it was recorded with.
+    // By name, because the settings may differ from those of the recording.
     const std::vector<std::string>& names = flight_.header().channels;
     recorded_at_.clear();
     for (const ChannelConfig& channel : outside_channels(settings.sensor))
@@ -136,8 +136,8 @@ class FlightChain {
   Runs runs_;
   Reading reading_;
   ChainOutput out_;
-  Occurrence missed_;  // something
-  Occurrence merged_;  // samples, about where the next one is
+  Occurrence missed_;  // samples or the beginning of a run
+  Occurrence merged_;  // samples merged near the next one
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether what a model corrects is there in the capture that it is used on. One capture cannot tell a
-// channel's effect from a hidden cause that ran along with it; the next one mostly can, and a warning says so.
+// Tests if the effects that a model corrects are in the capture. A channel's effect and a hidden cause that
+// is correlated with it look alike in one capture, but rarely in the next one. Then a warning is printed.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,14 +16,14 @@ namespace ifog::tools {
 
 class ModelTrial {
  public:
-  // Once, before the first sample. An axis whose correction depends on the rate is not weighed.
+  // Call it once, before the first sample. Axes whose correction depends on the rate are not tested.
   void begin(const Model& model, const std::vector<std::string>& axes);
   void add(double time_s, const Axes& raw_radps, const Axes& compensated_radps);
-  // Once, behind the last sample.
+  // Call it once, after the last sample.
   void weigh();
-  // A line of an axis in whose rate less than half of the correction is there, for sure.
+  // Warns about each axis in whose rate significantly less than half of the correction is found.
   void tell(const std::string& capture) const;
-  // model_share and its standard error, of each axis that was weighed.
+  // Adds model_share and its standard error for each tested axis.
   void add_to(nlohmann::json& axes) const;
 
  private:

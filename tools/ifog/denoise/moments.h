@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mean and standard deviation of what is a number, by Welford's recurrence; NaN where nothing was.
+// Mean and standard deviation of finite values by Welford's recurrence; NaN if there are none.
 #pragma once
 
 #include <cmath>

@@ -21,7 +21,7 @@
 namespace ifog::tools {
 namespace {
 
-constexpr double kChannelMaxAge_s = 10.0;  // as for the channels of a sensor's own frames in the daemon
+constexpr double kChannelMaxAge_s = 10.0;  // as for channels in a sensor's frames in the daemon
 
 bool used(const Model* model, const std::string& channel) {
   const auto names_it = [&](const std::string& of_effect) {
@@ -34,8 +34,7 @@ bool used(const Model* model, const std::string& channel) {
          });
 }
 
-// Columns that the chain can hold, by their place: all channels, or where they are too many, those the model
-// uses.
+// Columns of channels that the chain uses: all, or if they are too many, those of the model.
 std::vector<std::size_t> chosen_channels(const LongTable& capture, const CaptureShape& shape,
                                          const Model* model) {
   std::vector<std::size_t> out;
@@ -47,8 +46,7 @@ std::vector<std::size_t> chosen_channels(const LongTable& capture, const Capture
   return out;
 }
 
-// By the median step, which holes cannot move; by the mean where the stamps are too coarse or scatter too
-// much for that.
+// Rate from the median step, which gaps do not bias; from the mean if the stamps are coarse or scatter.
 double rate_of(const SeriesView& time_s, const SampleClock& clock) {
   constexpr double kCoarse = 1e-4;
   const double median = rounded_rate(median_step(time_s)), mean = rounded_rate(clock.period_s);
@@ -89,7 +87,7 @@ OfflineTimes::OfflineTimes(const ifog_description& description, const OfflineSin
   times_.allow_restarts();
 }
 
-void OfflineTimes::come(const ifog_sample& sample) {
+void OfflineTimes::advance(const ifog_sample& sample) {
   if (const std::optional<SampleTimes::Stamped> stamped = times_.next(sample)) now_s_ = stamped->since_s;
   if (!std::exchange(begun_, true)) sink_.count_from(times_.origin());
 }
@@ -120,7 +118,7 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
     const std::size_t count = std::min(kSeriesPiece, capture.size() - begin);
     for (std::size_t v = 0; v < views.size(); ++v) now[v] = views[v].piece(begin, count, room[v]);
     for (std::size_t i = 0; i < count; ++i) {
-      // The column's own times are the device's clock, from the first sample on.
+      // The file's times serve as the device's clock.
       reading.device_time_ns = std::llround(times->next(now[0][i]) * 1e9);
       reading.valid_axes = 0;
       for (std::size_t axis = 0; axis < shape.axes.size(); ++axis) {
@@ -137,7 +135,7 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
     }
   }
   OfflineResult result = chain.finish();
-  // A row's time is what whoever wrote the file took it to be, and no clock that might have been set.
+  // Row times are as logged; no clock was set.
   result.counts.ambiguous = 0;
   return result;
 }
@@ -149,14 +147,14 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
   sink.begin(chain_settings.axes);
   ChainRun chain(chain_settings, settings);
   Reading reading;
-  // Channels that did not come in the frames are not in the recording: never a value, for ever stale.
+  // The recording has no channels of other sources: they have no value and infinite age.
   reading.channel.fill(std::numeric_limits<double>::quiet_NaN());
   reading.channel_age_s.fill(std::numeric_limits<float>::infinity());
   ChainOutput out;
   OfflineTimes times(driver.description(), sink);
   if (driver.takes_can()) times.times().keep_stamps(zero_of_stamps(file.head()));
   const RecordingCounts counts = input.for_each_sample(file, driver, [&](const ifog_sample& sample) {
-    times.come(sample);
+    times.advance(sample);
     read_sample(sample, facts.frame_channels, reading);
     if (const Increment* const increment = chain.run(reading, out))
       chain.count(sink.sample(times.now_s(), *increment, out));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The daemon's signal chain over a recording: the same parts, fed from a file, so that each sample comes out
-// with the bits the daemon publishes for the same frames and settings.
+// Runs the daemon's signal chain over a recording. For the same frames and settings each output has the bits
+// that the daemon publishes.
 #pragma once
 
 #include <cstdint>
@@ -24,28 +24,28 @@ struct OfflineSettings {
   SensorConfig sensor;                  // model, filter, options, channels; its transport is not used
   std::shared_ptr<const Model> model;   // null: none
   std::optional<LearnedNoise> learned;  // ChainSettings::learned
-  // Number of the first sample in the recording that this one is a part of; its own otherwise.
+  // Number of the first sample if this is a part of a longer recording; otherwise the recording's own number.
   std::optional<std::uint64_t> first_sequence;
   std::optional<double> since_power_up_s;  // ChainSettings::since_power_up_s
 };
 
 struct OfflineSink {
-  // Once, before the first sample: the sensor's axes.
+  // Called once, before the first sample, with the sensor's axes.
   std::function<void(const std::vector<std::string>& axes)> begin;
-  // Before the first sample of a recording: what its times are counted from.
+  // Called before the first sample of a recording, with the origin of its times.
   std::function<void(const TimeOrigin&)> count_from;
-  // One sample. time_s: as the capture or recording has it (sample_times.h), from its origin. Whether it
-  // counts in the result: it is of the part that is wanted.
+  // Called for each sample. time_s: as in the capture or recording (sample_times.h), since the origin.
+  // Returns true if the sample is in the wanted part and counts.
   std::function<bool(double time_s, const Increment&, const ChainOutput&)> sample;
 };
 
-// Hands a recording's samples on with the times that every command has for them. Of a device whose clock
-// jumps back the daemon continues, and so does this.
+// Times of a recording's samples, the same in every command. If a device's clock jumps back, the times
+// continue, as in the daemon.
 class OfflineTimes {
  public:
   OfflineTimes(const ifog_description& description, const OfflineSink& sink);
-  // Before what the chain makes of the sample is asked for.
-  void come(const ifog_sample& sample);
+  // Call it before the chain's output for the sample is passed on.
+  void advance(const ifog_sample& sample);
   [[nodiscard]] double now_s() const { return now_s_; }
   [[nodiscard]] SampleTimes& times() { return times_; }
 
@@ -58,8 +58,8 @@ class OfflineTimes {
 
 struct OfflineResult {
   std::vector<std::string> axes;
-  IncrementerCounts counts;           // of what counts, see OfflineSink
-  FilterSettings filter;              // in force at the end
+  IncrementerCounts counts;           // of the samples that count, see OfflineSink
+  FilterSettings filter;              // in use at the end
   AxisShares shares;                  // ChainParts::shares()
   bool learns_walk = false;           // ChainParts::learns_walk()
   bool noise_learned = false;         // from the first seconds
@@ -67,26 +67,24 @@ struct OfflineResult {
   std::vector<std::string> left_out;  // effects of the model that are not corrected
   std::string model;                  // identity
   double sample_rate_hz = 0.0;        // nominal
-  // For a flight recording: something is missing there, or its run's beginning, and the filter of the daemon
-  // may have stood otherwise.
+  // From here on the state of the daemon's filter may have been different, because samples or the beginning
+  // of its run are missing.
   std::optional<double> not_as_published_from_s;
-  // Samples that the daemon's filter had as one with others, so that these rows are more than it published,
-  // and about where the first was.
+  // Samples that the daemon merged with others; so there are more rows than published messages. Also the time
+  // of the first one.
   std::uint64_t merged = 0;
   std::optional<double> merged_from_s;
   std::size_t runs = 1;         // of the daemon, in a flight recording
   double between_runs_s = 0.0;  // not recorded
-  std::size_t exchanges = 0;    // of model or filter settings within them
+  std::size_t exchanges = 0;    // of model or filter settings within the runs
 };
 
-// All throw std::runtime_error or std::invalid_argument with one line.
-// name: of the capture, for messages.
+// All throw std::runtime_error or std::invalid_argument with one line. name: of the capture, for messages.
 OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
                               const OfflineSettings& settings, const OfflineSink& sink);
-// The samples, times and channels that the daemon had.
-// As it was recorded: settings are asked for at the first file, at each with which the daemon took others
-// into use, and at each restart of the daemon. `fixed`: they are one for all of it, and only
-// the restarts count.
+// Uses the samples, times and channels that the daemon had. Calls `settings` at the first file, at each file
+// with other settings and at each restart of the daemon. `fixed`: the settings do not change, and only
+// restarts count.
 OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
                              const std::function<OfflineSettings()>& settings, bool fixed,
                              const OfflineSink& sink);
