@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog diagnose: what the error is made of, what to correct, and what stays.
+// ifog diagnose: the components of the error, the correctable ones and the rest.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -51,7 +51,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   will_write("--write-model", arguments.write_model, kModelEndings);
   will_write("--report", arguments.report, kPageEndings);
   std::vector<LongCapture> read;
-  std::vector<std::string> hashes;  // for the model file, which says what it was found on
+  std::vector<std::string> hashes;  // for the model file, which lists its captures
   for (const std::string& path : arguments.captures) {
     hashes.emplace_back();
     const bool wanted = !arguments.write_model.empty() || !arguments.report.empty();

@@ -135,7 +135,7 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
     json[key] = Json::object();
     for (const AxisDiagnosis& each : axes) json[key][each.axis] = make(each.diagnosis);
   };
-  // Of all axes, each entry with its own where there are several.
+  // All axes in one list; with several axes each entry has its axis.
   const auto list = [&](const char* key, auto items, auto&& make) {
     json[key] = Json::array();
     for (const AxisDiagnosis& each : axes)

@@ -15,8 +15,8 @@ struct AxisDiagnosis {
   Diagnosis diagnosis;
 };
 
-// One axis: the keys of the schema at the top. Several: the effects, alternatives and noise of all axes carry
-// an "axis", and the figures are objects by axis.
+// One axis: the keys of the schema at the top level. Several axes: effects, alternatives and noise of all
+// axes have an "axis", and the figures are objects by axis.
 nlohmann::ordered_json diagnosis_json(const std::vector<AxisDiagnosis>& axes);
 
 }  // namespace ifog::tools

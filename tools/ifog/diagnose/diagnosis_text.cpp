@@ -24,7 +24,7 @@ std::string percent(double share) {
 
 std::string chance(double p) { return p < 1e-6 ? "under one in a million" : formatted("%.2g", p); }
 
-// In the field's units, as on the report's page; when something happened as a time of the capture.
+// In the field's units, as on the report's page; a time as in the capture.
 std::string value_of(const ModelParameter& parameter) {
   if (parameter.name == kTimeRange) return told_time(parameter.value) + " s";
   const report::FieldUnit field = report::field_unit(parameter.unit);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A diagnosis in plain words, for the console.
+// A diagnosis as text for the console.
 #pragma once
 
 #include <string>

@@ -9,7 +9,7 @@ namespace ifog::tools {
 namespace {
 
 constexpr double kSame_s = 1.0;
-// Time constants after which too little of a warm-up is left to say what it was at power-up.
+// Time constants after which a warm-up is too small to extrapolate to power-up.
 constexpr double kLongPast = 3.0;
 
 ModelParameter* named(Effect& effect, const char* name, std::size_t& at) {
@@ -18,7 +18,7 @@ ModelParameter* named(Effect& effect, const char* name, std::size_t& at) {
   return nullptr;
 }
 
-// Row or column `to` of an n x n matrix becomes scale times itself plus slope times `with`, both ways.
+// Replaces row and column `to` of an n x n matrix by scale times itself plus slope times `with`.
 void transform(std::vector<double>& matrix, std::size_t n, std::size_t to, std::size_t with, double scale,
                double slope) {
   for (std::size_t i = 0; i < n; ++i)

@@ -32,7 +32,7 @@
 namespace ifog::tools {
 namespace {
 
-// In a model such a name is that of two columns.
+// A model reads such a name as the difference of two columns.
 bool reads_as_difference(const std::string& name) { return !names_in(name).less.empty(); }
 
 Record record_of(const CaptureView& capture, const std::string& name, std::size_t axis) {
@@ -55,7 +55,7 @@ Record record_of(const CaptureView& capture, const std::string& name, std::size_
   return record;
 }
 
-// One not-a-number is the other.
+// Bits are compared because NaN is not equal to itself.
 std::uint64_t bits(double rate) { return std::bit_cast<std::uint64_t>(rate); }
 
 bool same_row(const CaptureView& a, std::size_t i, const CaptureView& b, std::size_t j) {
@@ -69,16 +69,16 @@ struct Common {
   double from_s = 0.0, to_s = 0.0;
 };
 
-// Rows at the same times, where in all of them the rates are the same: two parts of one record. None where
-// one row differs, as it does between records that both begin at 0.
+// Rows with equal times if the rates are equal in all of them: two parts of one record. None if a row
+// differs, as in records that both begin at 0.
 Common common_rows(const CaptureView& a, const CaptureView& b) {
   if (a.size() == 0 || b.size() == 0 || a.rate_radps.size() != b.rate_radps.size()) return {};
-  const double later_s = b.origin.later_than(a.origin);  // what b's times are counted from
+  const double later_s = b.origin.later_than(a.origin);  // origin of b's times
   const auto first = [](const CaptureView& of, double from_s) {
     return static_cast<std::size_t>(std::lower_bound(of.time_s.begin(), of.time_s.end(), from_s) -
                                     of.time_s.begin());
   };
-  // Counted from two places, the same time is no more than about the same double.
+  // With different origins, equal times differ by rounding.
   const double room_s = later_s == 0.0 ? 0.0 : 0.5e-9;
   Common found;
   for (std::size_t i = first(a, b.time_s.front() + later_s - room_s),
@@ -98,8 +98,8 @@ Common common_rows(const CaptureView& a, const CaptureView& b) {
   return found;
 }
 
-// One record given twice, be it as a copy or in another format, or in parts that overlap, would count as
-// twice the evidence.
+// A record that is given twice, as a copy, in another format or in overlapping parts, would count as twice
+// the evidence.
 void require_each_once(const std::vector<CaptureView>& captures, const std::vector<std::string>& names) {
   constexpr std::size_t kByChance = 100;  // rows of a coarse sensor at rest
   for (std::size_t later = 1; later < captures.size(); ++later)
@@ -114,14 +114,14 @@ void require_each_once(const std::vector<CaptureView>& captures, const std::vect
     }
 }
 
-// Mean of those that are there; 0 where there are none.
+// Mean of the finite values; 0 if there are none.
 double mean_of(std::span<const double> values) {
   const FiniteSum finite = finite_sum(values);
   return finite.count > 0.0 ? finite.sum / finite.count : 0.0;
 }
 
-// What a triad at rest says of the Earth: its mean rate along the mean specific force is the vertical part of
-// the Earth's rate, whatever the mounting. Empty unless there are three gyros and three accelerometers.
+// Earth's rate in a triad at rest: the mean rate along the mean specific force is its vertical component, for
+// any mounting. "" unless there are three gyros and three accelerometers.
 std::string vertical_rate(const CaptureView& capture, unsigned threads) {
   if (capture.axes != std::vector<std::string>{"x", "y", "z"}) return "";
   std::array<std::span<const double>, 6> columns;  // rates, then accelerations
@@ -161,13 +161,13 @@ std::vector<Record> records_of(const std::vector<CaptureView>& captures,
 
 namespace {
 
-// work(), with what it refuses as one line that names a capture.
+// Calls work(); its errors become one line that names a capture.
 template <typename Work>
 auto naming_a_capture(const std::vector<std::string>& names, const Work& work) {
   try {
     return work();
   } catch (const std::invalid_argument& error) {
-    // With several captures the diagnosis names the one it means.
+    // The diagnosis names one of several captures itself.
     const std::string what = error.what();
     const bool named = std::any_of(names.begin(), names.end(),
                                    [&](const std::string& name) { return what.starts_with(name + ": "); });
@@ -175,10 +175,10 @@ auto naming_a_capture(const std::vector<std::string>& names, const Work& work) {
   }
 }
 
-// What several axes have done, together.
-class Together {
+// Sum of the progress of several axes.
+class SharedProgress {
  public:
-  Together(const std::string& what, std::size_t axes, std::size_t each)
+  SharedProgress(const std::string& what, std::size_t axes, std::size_t each)
       : done_(axes, 0), progress_(what, axes * each) {}
   void at(std::size_t axis, std::size_t done) {
     const std::lock_guard lock(guard_);
@@ -204,15 +204,15 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
   options.latitude_rad = wanted.latitude_rad;
   options.allow_motion_channels = wanted.allow_motion_channels;
   options.allow_proxies = wanted.allow_proxies;
-  Together together("diagnose", axes.size(), options.most_effects + 1);
+  SharedProgress progress("diagnose", axes.size(), options.most_effects + 1);
   std::vector<AxisDiagnosis> found(axes.size());
   std::vector<std::exception_ptr> failed(axes.size());
-  // Each axis has a thread: of three on two processors, the third would leave one of them idle.
+  // One thread per axis: with two processors and two threads, the third axis would leave one idle.
   const auto threads = wanted.threads == 0 ? static_cast<unsigned>(axes.size()) : wanted.threads;
   share_out(axes.size(), threads, [&](std::size_t i) {
     DiagnoseOptions own = options;
     own.axis = found[i].axis = captures.front().axes[axes[i]];
-    own.progress = [&, i](std::size_t done, std::size_t) { together.at(i, done); };
+    own.progress = [&, i](std::size_t done, std::size_t) { progress.at(i, done); };
     try {
       const std::vector<Record> records = records_of(captures, names, axes[i]);
       found[i].diagnosis = naming_a_capture(names, [&] { return diagnose(records, own); });
@@ -220,7 +220,7 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
       failed[i] = std::current_exception();
     }
   });
-  // The failure of the first axis that has one, whichever came first.
+  // Reports the failure of the first axis, independent of which failed first.
   for (const std::exception_ptr& failure : failed)
     if (failure) std::rethrow_exception(failure);
   return found;
@@ -302,7 +302,7 @@ std::string diagnosis_report(const std::vector<CaptureView>& captures,
         static_cast<std::size_t>(std::find(axes.begin(), axes.end(), each.axis) - axes.begin());
     const std::vector<Record> records = records_of(captures, names, index);
     OwnedRecords derived = with_differences(records);
-    // Drawn as they were measured: what the fit takes out of them is no line's width.
+    // Drawn without the correction of the other references.
     for (Record& record : derived.records) record.other_references.clear();
     drawn.push_back(with_other_axes(std::move(derived)));
     axis.records = drawn.back().records;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the captures of one sensor to what is wrong with it and the model that corrects it: what `ifog
-// diagnose` does between reading and writing, for whoever reads and writes otherwise.
+// The work of `ifog diagnose` between reading and writing: from the captures of one sensor to its errors and
+// the model that corrects them.
 #pragma once
 
 #include <optional>
@@ -17,27 +17,27 @@ namespace ifog::tools {
 struct AxesToDiagnose {
   std::vector<std::string> axes;  // empty: all
   double significance = 0.01;
-  double fit_from = 0.0, fit_to = 1.0;  // DiagnoseOptions, as the rest
+  double fit_from = 0.0, fit_to = 1.0;  // DiagnoseOptions, like the following members
   bool earth = false;
   std::optional<double> latitude_rad;
   bool allow_motion_channels = false, allow_proxies = false;
-  unsigned threads = 0;  // axes at once; 0: as many as there are processors. The result is the same
+  unsigned threads = 0;  // axes in parallel; 0: all. The result does not depend on it
 };
 
 // names: of the captures, for messages, one each. Throws std::runtime_error with one line: captures with
-// different axes, too short, none of the axes wanted.
+// different axes, too short, or without the wanted axes.
 std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& captures,
                                          const std::vector<std::string>& names, const AxesToDiagnose& wanted);
 
-// One axis of the captures as a diagnosis takes it, which must outlive this.
+// The records of one axis; the captures must outlive them.
 std::vector<Record> records_of(const std::vector<CaptureView>& captures,
                                const std::vector<std::string>& names, std::size_t axis);
 
-// `model` with what was found added to its own. hashes: SHA-256 of the captures.
+// Adds the found effects to `model`. hashes: SHA-256 of the captures.
 Model model_with(Model model, const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
                  const std::vector<std::string>& hashes);
 
-// The HTML page. hashes: as above. model_path: where the model is, "" for nowhere. read_with: the captures'
+// The HTML page. hashes: as above. model_path: "" if there is no model file. read_with: the captures'
 // options, as typed.
 std::string diagnosis_report(const std::vector<CaptureView>& captures,
                              const std::vector<AxisDiagnosis>& found, const std::vector<std::string>& names,
