@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who runs the processes of a fleet, one a gyro: the processors of this machine, or Slurm. Both start the
-// same command, `ifog fleet --one INDEX MANIFEST …`, and what comes of it stands in the results alone.
+// Starts the processes of a fleet, one per gyro, on this computer or with Slurm. Both run `ifog fleet --one
+// INDEX MANIFEST …`, whose only output is the results folder.
 #pragma once
 
 #include <cstddef>
@@ -21,27 +21,27 @@ class Engine {
   Engine(const Engine&) = delete;
   Engine& operator=(const Engine&) = delete;
 
-  // Processes for these gyros of the manifest, started and waited for. For those that failed the last
-  // word on how, where it is known. done: called now and then with how many have ended. Throws Failed when
-  // interrupted, std::runtime_error with one line when none can be started.
+  // Runs a process for each of these gyros and waits. Returns the last message of those that failed, if
+  // known. done: called with the number of ended processes. Throws Failed if interrupted, std::runtime_error
+  // with one line if none can be started.
   virtual std::map<std::size_t, std::string> run(const std::vector<std::size_t>& gyros,
                                                  const std::function<void(std::size_t)>& done) = 0;
 
-  // What run() would start, for a person or a shell.
+  // The command that run() would start, for a person or a shell.
   [[nodiscard]] virtual std::string in_words(const std::vector<std::size_t>& gyros) const = 0;
 };
 
-// jobs: at once; 0: as many as there are processors.
+// jobs: in parallel; 0: one per processor.
 std::unique_ptr<Engine> local_engine(const Results& results, std::size_t jobs);
 
-// jobs: at once; 0: as many as Slurm gives. Partition, memory and time are Slurm's to know: by its defaults
-// and the environment of sbatch (SBATCH_PARTITION, SBATCH_TIMELIMIT, SBATCH_MEM_PER_CPU).
+// jobs: in parallel; 0: no limit. Partition, memory and time are set by Slurm's defaults and the environment
+// of sbatch (SBATCH_PARTITION, SBATCH_TIMELIMIT, SBATCH_MEM_PER_CPU).
 std::unique_ptr<Engine> slurm_engine(const Results& results, std::size_t jobs);
 
-// The command for one gyro. Its index stands before all that was typed, where a `--` ends the options.
+// The command for one gyro. The index precedes the typed words, because a `--` there ends the options.
 std::vector<std::string> command_for_one(const std::string& index);
 
-// The same for a shell, all but `index` in quotes where they are needed.
+// The same for a shell; all words except `index` are quoted where necessary.
 std::string shell_command_for_one(const std::string& index);
 
 }  // namespace ifog::tools

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog fleet: one diagnosis for each gyro of a type, on this machine or on a cluster; then what the type is,
-// and what it gives back to each of its gyros.
+// ifog fleet: diagnoses all gyros of a type, on this computer or on a cluster; then estimates the type's
+// properties and improves each gyro's model with them.
 #include <algorithm>
 #include <csignal>
 #include <filesystem>
@@ -35,8 +35,8 @@
 namespace ifog::tools {
 namespace {
 
-constexpr std::size_t kAttempts = 3;  // at a gyro whose process ended without a word in the results
-constexpr std::size_t kFormsFor = 2;  // measurements: from then on effects are only dropped, so that it ends
+constexpr std::size_t kAttempts = 3;  // for a gyro whose process ended without a result
+constexpr std::size_t kFormsFor = 2;  // measurements; later ones only drop effects, so that the loop ends
 
 struct FleetArguments {
   std::string manifest, results, engine = "auto";
@@ -99,7 +99,7 @@ class FleetRun {
     return missing;
   }
 
-  // Runs what is missing until every gyro has a result or has said why not; how the others ended.
+  // Runs the missing gyros until each has a result or a recorded failure; returns how the others ended.
   template <typename Missing, typename Failure>
   std::map<std::size_t, std::string> run_missing(const char* what, const Missing& missing,
                                                  const Failure& failure) {
@@ -112,7 +112,7 @@ class FleetRun {
       Progress progress(what, left.size());
       ended = engine_->run(left, [&](std::size_t done) { progress.at(done); });
       left = missing();
-      std::erase_if(left, failure);  // what has said why is not asked again
+      std::erase_if(left, failure);  // gyros with a recorded failure are not tried again
     }
     for (const std::size_t gyro : left)
       if (ended.count(gyro) == 0) ended[gyro] = "no result";
@@ -128,7 +128,7 @@ class FleetRun {
     return out;
   }
 
-  // Removes an earlier run's failure: what stands there afterwards is this one's.
+  // Removes the failure of an earlier run.
   void forget_failure(std::size_t gyro) const {
     const FleetGyro& of = manifest_.gyros[gyro];
     if (const auto done = results_.done(of); done && done->failed) results_.forget_done(of);
@@ -137,7 +137,7 @@ class FleetRun {
       results_.forget_measured(of, type_.id);
   }
 
-  // What is not written again would pass for this run's.
+  // Removes results of an earlier run.
   void forget_with_prior() const {
     for (const FleetGyro& gyro : manifest_.gyros) results_.forget_with_prior(gyro);
   }
@@ -167,7 +167,7 @@ class FleetRun {
     }
   }
 
-  // The type's effects, measured on every gyro until what the measurements say of the choice is the choice.
+  // Measures the type's effects on every gyro until the measurements no longer change their selection.
   void measure_type() {
     if (diagnosed_.gyros.size() < kFewestOfType) {
       population_.remarks.push_back("fleet statistics need " + std::to_string(kFewestOfType) +
@@ -256,14 +256,14 @@ class FleetRun {
   std::string options_;
   double level_;
   std::unique_ptr<Engine> engine_;
-  std::map<std::size_t, std::string> absent_;  // gyros without captures, and why no process looks at them
+  std::map<std::size_t, std::string> absent_;  // gyros without captures, with the reason
   Diagnosed diagnosed_;
   TypeToMeasure type_;
   std::map<std::size_t, GyroMeasured> measured_;
   Population population_;
 };
 
-// SIGHUP interrupts, too, unless it is ignored, as by nohup.
+// SIGHUP interrupts too unless it is ignored, as by nohup.
 void end_with_the_terminal() {
   struct sigaction interrupt {
   }, hangup{};

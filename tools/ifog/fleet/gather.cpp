@@ -12,7 +12,7 @@
 namespace ifog::tools {
 namespace {
 
-// Twice the log-likelihood, of all gyros together, that another form has to explain more.
+// Twice the log-likelihood by which another form must be better, over all gyros.
 constexpr double kBetterForm = 6.0;
 
 struct NoiseKey {
@@ -24,7 +24,7 @@ constexpr std::array<NoiseKey, 5> kNoiseKeys{{{"Q", "Q_rad", "rad"},
                                               {"K", "K_radps2_rthz", "rad/s2/rtHz"},
                                               {"R", "R_radps2", "rad/s2"}}};
 
-// "noise" of a diagnosis is that of its axis, or an object by axis.
+// "noise" of a diagnosis is that of one axis, or an object by axis.
 void add_noise(const nlohmann::json& noise, const std::string& axis, std::size_t gyro,
                std::map<std::pair<std::string, std::string>, PopulationParameter>& found) {
   for (const NoiseKey& term : kNoiseKeys) {
@@ -43,7 +43,7 @@ void add_noise(const nlohmann::json& noise, const std::string& axis, std::size_t
   }
 }
 
-// Noise of each axis for which the model has it. Throws std::runtime_error with one line.
+// Noise of each axis for which the model contains it. Throws std::runtime_error with one line.
 std::map<std::string, nlohmann::json> noise_by_axis(const std::string& path, const Model& model) {
   try {
     const nlohmann::json noise = parse_json(read_whole_file(path), path).at("noise");
@@ -63,7 +63,7 @@ const MeasuredEffect* measured_of(const GyroMeasured& gyro, std::size_t of_type)
   return nullptr;
 }
 
-// Sums over the gyros that measured the form that leads.
+// Sums over the gyros that measured the first form.
 std::vector<double> explained_by_form(const TypeCandidate& candidate, std::size_t of_type,
                                       const std::map<std::size_t, GyroMeasured>& measured) {
   std::vector<double> sums(candidate.forms.size(), 0.0);
@@ -91,7 +91,7 @@ Diagnosed gather_diagnosed(const Results& results, const Manifest& manifest, con
       for (const Effect& effect : model.effects) diagnosed.found.push_back({i, effect});
       diagnosed.gyros.push_back(i);
       diagnosed.models[i] = std::move(model);
-    } catch (const std::exception& error) {  // of a file, or of the JSON or the numbers in it
+    } catch (const std::exception& error) {  // from the file, the JSON or its numbers
       results.forget_done(gyro);
       failed.push_back({i, std::string(error.what()) + "; the next run diagnoses it again"});
     }

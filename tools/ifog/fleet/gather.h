@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the result files of single gyros to what their type is.
+// Computes the properties of a type from the results of its gyros.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace ifog::tools {
 
-// Gyros that are diagnosed, with what their diagnoses wrote.
+// The diagnosed gyros with the content of their diagnoses.
 struct Diagnosed {
   std::vector<std::size_t> gyros;
   std::map<std::size_t, Model> models;
@@ -19,32 +19,32 @@ struct Diagnosed {
   std::vector<FoundInGyro> found;                                      // all effects of all models
 };
 
-// A gyro whose diagnosis or model cannot be read is among `failed`, and diagnosed again by the next run.
+// A gyro whose diagnosis or model cannot be read is in `failed`; the next run diagnoses it again.
 Diagnosed gather_diagnosed(const Results& results, const Manifest& manifest, const std::string& options,
                            std::vector<Population::Failure>& failed);
 
-// The noise of every gyro on every axis, by the diagnoses.
+// Noise parameters of every gyro and axis, from the diagnoses.
 std::vector<PopulationParameter> noise_parameters(const Diagnosed& diagnosed);
 
-// The measurements of the type's effects, by gyro. Those that failed, or belong to other captures or
-// options, are among `failed` instead.
+// Measurements of the type's effects, by gyro. Failed ones, and those of other captures or options, are in
+// `failed` instead.
 std::map<std::size_t, GyroMeasured> gather_measured(const Results& results, const Manifest& manifest,
                                                     const std::string& options, const Diagnosed& diagnosed,
                                                     const TypeToMeasure& type,
                                                     std::vector<Population::Failure>& failed);
 
-// The type's effects, judged; in the order of `type`. level: of a false effect in a gyro, for all of them.
+// Tests the type's effects; in the order of `type`. level: probability of a false effect in a gyro, for all
+// of them together.
 std::vector<TypeEffect> judged_effects(const TypeToMeasure& type,
                                        const std::map<std::size_t, GyroMeasured>& measured,
                                        const Diagnosed& diagnosed, double level);
 
-// What the measurements say of the choice: of each effect the form that explains most in all gyros together
-// comes first (where `forms` may change), and the least of those that chance would not show is
-// dropped. Returns whether anything changed: then it has to be measured again.
+// Revises the type's effects from the measurements. If `forms`: the form that explains most in all gyros
+// becomes the first one. Otherwise drops the weakest insignificant effect. True if changed: measure again.
 bool reconsider(TypeToMeasure& type, const std::vector<TypeEffect>& judged,
                 const std::map<std::size_t, GyroMeasured>& measured, double level, bool forms);
 
-// A value of every gyro for each effect of the type.
+// A value per gyro for each effect of the type.
 std::vector<PopulationParameter> coefficient_parameters(const std::vector<TypeEffect>& effects);
 
 }  // namespace ifog::tools

@@ -20,7 +20,7 @@ namespace {
 
 struct Opened {
   std::vector<LongCapture> read;
-  std::vector<CaptureView> captures;  // of those
+  std::vector<CaptureView> captures;  // of `read`
   std::vector<std::string> hashes;
 };
 
@@ -39,12 +39,12 @@ Opened read_captures(const FleetGyro& gyro, const FleetSettings& settings) {
 void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSettings& settings,
                    const Opened& opened) {
   AxesToDiagnose wanted = settings.wanted;
-  wanted.threads = 1;  // the other processors have gyros of their own
+  wanted.threads = 1;  // other processors work on other gyros
   const std::vector<AxisDiagnosis> found = diagnose_axes(opened.captures, gyro.captures, wanted);
   Model model = model_with({}, found, gyro.captures, opened.hashes);
   model.sensor = gyro.serial;
   const std::string model_path = results.path(gyro, "model.toml");
-  results.forget_done(gyro);  // until all of the files are of this diagnosis
+  results.forget_done(gyro);  // until all files belong to this diagnosis
   write_json(results.path(gyro, "diagnosis.json"), diagnosis_json(found));
   write_file(model_path, model_text(model));
   write_file(results.path(gyro, "report.html"),
@@ -71,7 +71,7 @@ EffectsToMeasure effects_of_axis(const TypeToMeasure& type, const Model& model, 
   return wanted;
 }
 
-// What cannot be weighed is not measured: a column that is none after the captures were cleaned.
+// Throws if a coefficient has no finite error, e.g. of a column that is constant after cleaning.
 void refuse_without_error(AxisMeasured& axis) {
   for (MeasuredEffect& each : axis.together) {
     if (!each.not_measured.empty()) continue;
@@ -109,7 +109,7 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
   return measured;
 }
 
-// By its content what a driver's option names a file of: the same name may be another bus description now.
+// Hash of the files named by a driver's options, because a file may have changed under the same name.
 std::string files_of(const DriverSettings& settings) {
   std::string text;
   for (const auto& [key, value] : settings)
@@ -124,7 +124,7 @@ std::string FleetSettings::text() const {
   const nlohmann::json of_diagnosis = {wanted.axes,  part.from.text,
                                        part.to.text, wanted.significance,
                                        wanted.earth, wanted.latitude_rad.value_or(NAN)};
-  // Another version may find something else.
+  // Another version may have other results.
   return "ifog " IFOG_VERSION + input.as_typed() + files_of(input.settings()) + of_diagnosis.dump();
 }
 
@@ -147,7 +147,7 @@ bool is_measured(const Results& results, const FleetGyro& gyro, const std::strin
 void work_on(const Results& results, const FleetGyro& gyro, const FleetSettings& settings) {
   const std::string options = settings.text();
   results.make_folder_of(gyro);
-  // Before anything is read: what changes while it is read is done again.
+  // Before reading: a file that changes while it is read is processed again.
   const std::string inputs = identity_of(gyro, options);
   std::optional<Opened> opened;
   if (!is_diagnosed(results, gyro, options)) {

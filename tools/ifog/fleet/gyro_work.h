@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is done for one gyro of a fleet, by a process of its own: its diagnosis, as `ifog diagnose` makes it,
-// and the measurement of its type's effects.
+// Work of the process of one gyro: its diagnosis, as `ifog diagnose` makes it, and the measurement of its
+// type's effects.
 #pragma once
 
 #include <string>
@@ -17,17 +17,17 @@ struct FleetSettings {
   TimePart part;
   AxesToDiagnose wanted;
 
-  // All of the above that changes a result, and the program's version, as text.
+  // All settings that change a result, and the program's version, as text.
   [[nodiscard]] std::string text() const;
 };
 
-// Whether the results hold what these captures and options come to. A failure is none: it is tried again.
+// True if there is a result of these captures and options. A failure does not count and is tried again.
 bool is_diagnosed(const Results& results, const FleetGyro& gyro, const std::string& options);
 bool is_measured(const Results& results, const FleetGyro& gyro, const std::string& options,
                  const TypeToMeasure& type);
 
-// Does what is missing: the diagnosis, and where the type's effects are written, their measurement. What is
-// wrong with the captures is written into the results and thrown, std::runtime_error with one line.
+// Does what is missing: the diagnosis, and the measurement if the type's effects are known. Errors in the
+// captures are written into the results and thrown as std::runtime_error with one line.
 void work_on(const Results& results, const FleetGyro& gyro, const FleetSettings& settings);
 
 }  // namespace ifog::tools

@@ -27,7 +27,7 @@ class LocalEngine : public Engine {
       : results_(results),
         jobs_(jobs > 0 ? jobs : std::max<std::size_t>(1, std::thread::hardware_concurrency())) {}
 
-  // Children that an error leaves behind do not outlive it.
+  // Ends the children if run() throws.
   ~LocalEngine() override { end_all(); }
 
   std::map<std::size_t, std::string> run(const std::vector<std::size_t>& gyros,
@@ -59,7 +59,7 @@ class LocalEngine : public Engine {
     running_[start(command_for_one(std::to_string(gyro)), results_.log(gyro))] = gyro;
   }
 
-  // Whether one of them came to its end.
+  // True if a process has ended.
   bool collect() {
     for (auto at = running_.begin(); at != running_.end(); ++at) {
       int status = 0;
@@ -100,7 +100,7 @@ std::vector<std::string> command_for_one(const std::string& index) {
 }
 
 std::string shell_command_for_one(const std::string& index) {
-  // What was typed may hold the same word: the place, not the word, says which is the index.
+  // Only the position marks the index: other words may be equal to it.
   const std::vector<std::string> words = command_for_one(index);
   const auto place = std::find(words.begin() + 1, words.end(), "--one") + 1;
   std::string text;

@@ -29,15 +29,15 @@ bool is_serial(const std::string& text) {
          });
 }
 
-// As it opens, relative to the manifest. "." goes, ".." does not: behind a link it leads elsewhere.
+// Path relative to the manifest. "." is removed, ".." is not, because after a link it leads elsewhere.
 std::string path_next_to(const std::string& manifest, const std::string& name) {
   std::filesystem::path there;
   for (const std::filesystem::path& part : std::filesystem::path(manifest).parent_path() / name)
     if (part != ".") there /= part;
-  return there == "-" || there.empty() ? "./" + there.string() : there.string();  // no standard input here
+  return there == "-" || there.empty() ? "./" + there.string() : there.string();  // no standard input
 }
 
-// One name for a file however it is reached.
+// Canonical path, equal for all paths to a file.
 std::string true_path(const std::string& path) {
   std::error_code error;
   const std::filesystem::path found = std::filesystem::weakly_canonical(path, error);
@@ -55,7 +55,7 @@ Manifest parse_manifest(std::string_view text, const std::string& path) {
   Manifest manifest;
   manifest.type = in.required_text("type", "the name of the type");
   std::set<std::string> names;
-  std::map<std::string, std::string> owners;  // serials, by the true paths of their captures
+  std::map<std::string, std::string> owners;  // serials, by the canonical paths of their captures
   if (!in.has("gyro")) in.complain("gyro", ": missing; expected a [[gyro]] for each");
   for (const toml::table* const gyro : in.tables("gyro")) {
     TableReader of(*gyro, "gyro", path, errors);

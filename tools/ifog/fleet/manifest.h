@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The manifest of a fleet: which gyros of one type there are and where their captures lie.
+// The manifest of a fleet: the gyros of one type and their captures.
 //
 //   type = "DSP-1760"
 //   [[gyro]]
-//   serial = "A017"                           names its folder of results
-//   captures = ["A017/cold.csv.gz", "…"]      relative to the manifest, each file once in all of it
+//   serial = "A017"                           name of its results folder
+//   captures = ["A017/cold.csv.gz", "…"]      relative to the manifest; each file only once
 #pragma once
 
 #include <string>
@@ -15,7 +15,7 @@ namespace ifog::tools {
 
 struct FleetGyro {
   std::string serial;
-  std::vector<std::string> captures;  // as they can be opened
+  std::vector<std::string> captures;  // paths that can be opened
 };
 
 struct Manifest {
@@ -23,11 +23,11 @@ struct Manifest {
   std::vector<FleetGyro> gyros;
 };
 
-// Throws std::runtime_error with one line: file, line, key, value, what was expected. A serial is 1 to 64
-// letters, digits, '.', '_' and '-', the first a letter, digit or '_', and stands once, whatever its case: it
-// names a folder.
+// Throws std::runtime_error with one line: file, line, key, value, expected value. A serial has 1 to 64
+// letters, digits, '.', '_' and '-', begins with a letter, digit or '_', and is unique regardless of case,
+// because it names a folder.
 Manifest read_manifest(const std::string& path);
-// The same of a text; path: of the file that it would stand in.
+// The same from a text; path: for messages.
 Manifest parse_manifest(std::string_view text, const std::string& path);
 
 }  // namespace ifog::tools

@@ -29,7 +29,7 @@ constexpr std::chrono::milliseconds kBetweenLooks{5};
   throw std::runtime_error(what + ": " + std::generic_category().message(error));
 }
 
-// A descriptor that is closed with it.
+// Closes its descriptor.
 class OpenFile {
  public:
   OpenFile(int fd, const std::string& name) : fd_(fd) {
@@ -46,14 +46,14 @@ class OpenFile {
 
 struct Parent {
   pid_t process;
-  bool ignores_hangup;  // as by nohup; glib makes it the default again
+  bool ignores_hangup;  // as by nohup; glib resets it
 };
 
-// In the child, behind what glib does there.
+// Runs in the child after glib's own setup.
 void tie_to_parent(void* data) {
   const auto& parent = *static_cast<const Parent*>(data);
   if (parent.ignores_hangup) std::signal(SIGHUP, SIG_IGN);
-  // It may have died before it could be asked for.
+  // The parent may have ended before this call.
   if (prctl(PR_SET_PDEATHSIG, SIGTERM) != 0 || getppid() != parent.process) _exit(1);
 }
 

@@ -39,7 +39,7 @@ void make_folder(const fs::path& path) {
                              (error ? error.message() : "something of that name exists"));
 }
 
-// What was written, or nothing: missing, cut short by an old disk, of another program.
+// nullopt: missing, truncated, or from another program.
 template <typename T>
 std::optional<T> read_marker(const std::string& path, const std::string& schema) {
   std::error_code none;
@@ -61,7 +61,7 @@ std::string stamp(const fs::path& path) {
          (error ? "" : std::to_string(time.time_since_epoch().count())) + "\n";
 }
 
-// What stands in the files behind their schema.
+// Content of the files after their schema.
 struct TypeFile {
   std::string id, type;
   std::vector<TypeCandidate> effects;
@@ -145,7 +145,7 @@ std::string Results::see_log(std::size_t gyro) const {
   const std::string file = log(gyro);
   std::error_code none;
   if (const auto bytes = fs::file_size(file, none); !none && bytes > 0) return ", see " + file;
-  // A full disk takes nothing of what was said, either; the next byte shows it.
+  // On a full disk the output is lost too; writing one byte detects that.
   const int fd = ::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
   const bool written = fd >= 0 && ::write(fd, "\n", 1) == 1;
   const int error = errno;
@@ -161,7 +161,7 @@ void Results::make_folder_of(const FleetGyro& gyro) const { make_folder(path(gyr
 
 std::optional<TypeToMeasure> Results::type() const {
   const auto file = read_marker<TypeFile>(path("type.json"), "ifog.type/1");
-  // The id becomes part of a file's name.
+  // The id becomes part of a file name.
   if (!file || file->id.size() != kShort ||
       file->id.find_first_not_of("0123456789abcdef") != std::string::npos)
     return std::nullopt;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The folder of a fleet's results, which is all that its processes share. Every file is there whole or not at
-// all, and what says that a step is done is written last:
+// The results folder, the only thing that a fleet's processes share. Every file is written whole, and the
+// file that marks a step as done is written last:
 //
 //   gyros/SERIAL/diagnosis.json, model.toml, report.html, gyro.json
-//                                     what `ifog diagnose` says; gyro.json last
+//                                     output of `ifog diagnose`; gyro.json last
 //   gyros/SERIAL/measured-ID.json     the type's effects in this gyro
-//   gyros/SERIAL/with_prior.toml      the model with what the type adds
-//   type.json                         the type's effects as they are measured, of ID
+//   gyros/SERIAL/with_prior.toml      the model with the type's prior
+//   type.json                         the type's effects to measure, with ID
 //   fleet.json, fleet.html            the population
-//   log/INDEX.txt                     what the processes of a gyro said
+//   log/INDEX.txt                     output of the processes of a gyro
 #pragma once
 
 #include <optional>
@@ -23,19 +23,19 @@
 
 namespace ifog::tools {
 
-// The type's effects, all of one sensor's axes.
+// The type's effects, all on the axes of one sensor.
 struct TypeToMeasure {
   std::vector<TypeCandidate> effects;
   std::string id;  // of the file's content; 16 hex digits
 };
 
-// The result of a gyro's own diagnosis.
+// State of a gyro's own diagnosis.
 struct GyroDone {
-  std::string inputs;                 // of which captures, with which options
-  std::optional<std::string> failed;  // why there is none
+  std::string inputs;                 // its captures and options
+  std::optional<std::string> failed;  // reason if it failed
 };
 
-// An effect of the type: its number there.
+// A measured effect with its number in the type.
 struct EffectOfType : MeasuredEffect {
   std::size_t of_type = 0;
 };
@@ -57,30 +57,30 @@ struct GyroMeasured {
 
 class Results {
  public:
-  // Makes the folder where it is not there. Throws std::runtime_error with one line.
+  // Makes the folder if necessary. Throws std::runtime_error with one line.
   explicit Results(std::string folder);
 
   [[nodiscard]] const std::string& folder() const { return folder_; }
   [[nodiscard]] std::string path(const std::string& file) const;
   [[nodiscard]] std::string log(std::size_t gyro) const;
-  // Where it is to be read why a process of the gyro failed: `, see LOG`, or why nothing could be said there.
+  // `, see LOG`, the file with the output of a gyro's process, or the reason why it could not be written.
   [[nodiscard]] std::string see_log(std::size_t gyro) const;
-  // In the gyro's folder.
+  // Path of a file in the gyro's folder.
   [[nodiscard]] std::string path(const FleetGyro& gyro, const std::string& file) const;
-  // Before anything of it is written.
+  // Call it before writing anything of the gyro.
   void make_folder_of(const FleetGyro& gyro) const;
 
-  // nullopt where there is none, or it cannot be read: it is made again.
+  // nullopt if it is missing or unreadable; then it is made again.
   [[nodiscard]] std::optional<TypeToMeasure> type() const;
   [[nodiscard]] std::optional<GyroDone> done(const FleetGyro& gyro) const;
   [[nodiscard]] std::optional<GyroMeasured> measured(const FleetGyro& gyro, const std::string& type_id) const;
 
-  // The effects get their id.
+  // Also sets the id of the effects.
   void write_type(const std::string& type, TypeToMeasure& effects) const;
   void forget_type() const;
   void forget_done(const FleetGyro& gyro) const;
   void forget_measured(const FleetGyro& gyro, const std::string& type_id) const;
-  // What the population gave to the gyro, and what was written of the population.
+  // Removes the gyro's results that depend on the population, and those of the population.
   void forget_with_prior(const FleetGyro& gyro) const;
   void forget_population() const;
   void write_done(const FleetGyro& gyro, const GyroDone& done) const;
@@ -90,8 +90,8 @@ class Results {
   std::string folder_;
 };
 
-// Names these captures as they are now, read with these options: sizes and times of the files, not their
-// content, which is days of data.
+// Identifies the captures with these options: by size and time of the files, because reading days of data
+// takes too long.
 std::string identity_of(const FleetGyro& gyro, const std::string& options);
 
 template <typename Io, Is<ModelParameter> T>
@@ -101,7 +101,7 @@ void fields(Io& io, T& of) {
   io("std_error", of.std_error);
   io("unit", of.unit);
 }
-// What tells it from others, without the table of a "lookup", which is no type's.
+// Identity of an effect, without the table of a "lookup", which differs between gyros.
 template <typename Io, Is<Effect> T>
 void fields(Io& io, T& of) {
   io("axis", of.axis);

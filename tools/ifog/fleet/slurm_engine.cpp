@@ -20,15 +20,15 @@ namespace {
 
 using Seconds = std::chrono::duration<double>;
 
-// Slurm's MaxArraySize is 1001 unless it was changed: more gyros are several arrays.
+// Slurm's default MaxArraySize is 1001; more gyros need several arrays.
 constexpr std::size_t kLargestArray = 1000;
 constexpr double kFirstPause_s = 0.5, kLongestPause_s = 15.0;
-// A controller that restarts answers again within this time.
+// Time in which a restarted controller answers again.
 constexpr double kPatience_s = 600.0;
-// Slurm's own commands give up sooner; longer waits one whose network or file system hangs.
+// Slurm's own timeouts are shorter; a longer wait means that the network or file system hangs.
 constexpr std::chrono::minutes kAnswer{2};
 
-// "0-3,7" of ascending numbers.
+// "0-3,7" from ascending numbers.
 std::string ranges_of(const std::vector<std::size_t>& numbers) {
   std::string text;
   for (std::size_t i = 0; i < numbers.size();) {
@@ -41,7 +41,7 @@ std::string ranges_of(const std::vector<std::size_t>& numbers) {
   return text;
 }
 
-// Lines that are the id of a job or of an array's task, 12 or 12_3; what else there is are warnings.
+// Counts lines that are the id of a job or of an array's task, 12 or 12_3; other lines are warnings.
 std::size_t jobs_in(const std::string& said) {
   const auto number = [](const std::string& text) {
     return !text.empty() && text.find_first_not_of("0123456789") == std::string::npos;
@@ -69,7 +69,7 @@ class SlurmEngine : public Engine {
 
   std::map<std::size_t, std::string> run(const std::vector<std::size_t>& gyros,
                                          const std::function<void(std::size_t)>& done) override {
-    // What an interrupted run has left with Slurm is not submitted a second time.
+    // Jobs of an interrupted run are not submitted twice.
     if (under_way() > 0)
       say("waiting for the array %s, which is under way\n", name_.c_str());
     else
@@ -95,7 +95,7 @@ class SlurmEngine : public Engine {
     return texts;
   }
 
-  // Nothing of the manifest is in it. What a person typed is, each word in quotes.
+  // Contains nothing from the manifest, and each typed word in quotes.
   [[nodiscard]] std::string script(std::size_t first, const std::vector<std::size_t>& numbers) const {
     std::string text = "#!/bin/bash\n#SBATCH --job-name=" + name_ + "\n#SBATCH --array=" + ranges_of(numbers);
     if (jobs_ > 0) text += "%" + std::to_string(jobs_);
@@ -114,7 +114,7 @@ class SlurmEngine : public Engine {
     say("submitted the array %s\n", first_line(ran.said).c_str());
   }
 
-  // Jobs of this fleet that Slurm has yet to end.
+  // Number of this fleet's jobs that have not ended.
   std::size_t under_way() {
     const auto since = std::chrono::steady_clock::now();
     for (;;) {

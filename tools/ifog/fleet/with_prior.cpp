@@ -19,7 +19,7 @@ EffectInGyro* gyro_of(TypeEffect& effect, std::size_t gyro) {
 }
 
 struct Fitted {
-  std::vector<Effect> effects;  // of one axis, that the model gets
+  std::vector<Effect> effects;  // the effects of one axis for the model
   std::vector<Eigen::Index> at;
   JointEstimate estimate;
 };
@@ -59,7 +59,8 @@ Fitted fit_with_prior(const AxisMeasured& axis, std::size_t gyro, std::vector<Ty
   return fitted;
 }
 
-// In the fit, whether the model then has it or not: one of the type's, or one with a place next to them.
+// True if the effect was in the fit, even if the model does not contain it: of the type, or another one
+// fitted with them.
 bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effect& effect) {
   const auto alike = [&](const Effect& other) {
     return other.form == effect.form && other.channel == effect.channel &&
@@ -73,15 +74,15 @@ bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effec
   return false;
 }
 
-// Covariance of all parameters of a model whose first effects are these: as given for coefficients that were fitted
-// together, their own for the others.
+// Covariance of all parameters of a model that begins with these effects: from the joint fit where available,
+// otherwise from the effects' own errors.
 std::vector<double> covariance_of(const std::vector<Fitted>& axes, const std::vector<Effect>& effects) {
   std::vector<double> all = of_all_parameters({}, effects);
-  std::vector<std::size_t> first;  // parameter of each effect
+  std::vector<std::size_t> first;  // index of the first parameter of each effect
   first.reserve(effects.size());
   std::size_t n = 0;
   for (const Effect& effect : effects) first.push_back(std::exchange(n, n + effect.parameters.size()));
-  std::size_t begin = 0;  // effect
+  std::size_t begin = 0;  // index of the effect
   for (const Fitted& fitted : axes) {
     for (std::size_t i = 0; i < fitted.effects.size(); ++i)
       for (std::size_t j = 0; j < i; ++j) {
@@ -116,7 +117,7 @@ Model model_with_prior(const Model& own, const TypeToMeasure& type, const GyroMe
     if (!fitted) model.effects.push_back(effect);
   }
   model.covariance = covariance_of(together, model.effects);
-  // Those figures are of the model that the gyro's own diagnosis wrote.
+  // These figures belong to the model of the gyro's own diagnosis.
   model.source.before.clear();
   model.source.after.clear();
   return model;
