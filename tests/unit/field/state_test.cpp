@@ -191,11 +191,11 @@ TEST_F(StateFolder, TheHistoryKeepsEveryModelAndRevertsCloseLikeBrackets) {
 }
 
 TEST_F(StateFolder, OneCommandAtATime) {
-  const StateInHand mine(folder());
-  EXPECT_NE(complaint([&] { const StateInHand other(folder()); }).find("another command works in it"),
+  const StateLock mine(folder());
+  EXPECT_NE(complaint([&] { const StateLock other(folder()); }).find("another command works in it"),
             std::string::npos);
   EXPECT_NE(
-      complaint([&] { const StateInHand other(path("none")); }).find("expected the daemon's state folder"),
+      complaint([&] { const StateLock other(path("none")); }).find("expected the daemon's state folder"),
       std::string::npos);
 }
 
@@ -270,9 +270,9 @@ TEST_F(StateFolder, AChangeThatNeverCameAboutIsForgotten) {
   History history(folder(), "nose");
   history.add({"adopt", "a", name_of(first), {}, "", {}, ""}, std::nullopt);
   history.add({"adopt", "b", name_of(second), name_of(first), "", {}, ""}, first);
-  history.forget_what_never_was(name_of(second));
+  history.drop_incomplete_change(name_of(second));
   EXPECT_EQ(history.changes().size(), 2U);
-  history.forget_what_never_was(name_of(first));
+  history.drop_incomplete_change(name_of(first));
   ASSERT_EQ(history.changes().size(), 1U);
   EXPECT_EQ(history.in_force()->model, name_of(first));
 }

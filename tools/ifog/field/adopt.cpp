@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog adopt and ifog revert: a proposed model into use, watched, and the one before back.
+// ifog adopt and ifog revert: use a proposed model and watch it; restore the one before.
 #include <array>
 #include <cstdint>
 #include <exception>
@@ -45,15 +45,15 @@ Proposal waiting(const std::string& state, const std::string& sensor, const Mode
   return std::move(*found);
 }
 
-// Writes the watch's outcome into the history: a later reader finds the result.
+// Writes the outcome of the watch into the history.
 void keep_outcome(const Field& field, const std::string& sensor, const ModelName& model,
                   const std::string& text) {
-  const StateInHand hand(field.state());
+  const StateLock hand(field.state());
   History history(field.state(), sensor);
   if (!history.changes().empty() && history.changes().back().model == model) history.set_outcome(text);
 }
 
-// The last recording that there is, 0: none. Nothing: they cannot be seen, which the watch will say.
+// Number of the last recording; 0: none; nullopt: not readable, which the watch reports.
 std::optional<std::uint64_t> last_recording(const SensorConfig& sensor) {
   try {
     const std::vector<RecordedFile> files = recorded_files(sensor);
@@ -99,10 +99,10 @@ struct Adoption {
   std::unique_ptr<ModelExchange> exchange;
 };
 
-// The waiting proposal into use, with the state in hand.
+// Replaces the model in use by the proposed one, with the state folder locked.
 Adoption take_into_use(const Field& field, const SensorConfig& sensor,
                        std::optional<std::uint64_t> recorded_before) {
-  const StateInHand hand(field.state());
+  const StateLock hand(field.state());
   Adoption now;
   now.before = model_in_use(field, sensor);
   now.proposal = waiting(field.state(), sensor.name, now.before.name);
@@ -110,8 +110,8 @@ Adoption take_into_use(const Field& field, const SensorConfig& sensor,
   require_that_it_fits(field, sensor, now.model);
   now.exchange = std::make_unique<ModelExchange>(field, sensor, now.before.name);
   History history(field.state(), sensor.name);
-  history.forget_what_never_was(now.before.name);
-  // First what undoes it, then it, and the proposal goes last: wherever this ends, nothing is lost.
+  history.drop_incomplete_change(now.before.name);
+  // In this order (history, exchange, removal of the proposal) an interruption loses nothing.
   history.add({"adopt", utc_now(), now.proposal.model, now.before.name, now.proposal.why, now.proposal.gain,
                "", recorded_before},
               now.before.model);
@@ -172,10 +172,10 @@ void revert(const AdoptArguments& arguments) {
   share_with_the_group();
   const Field field(arguments.field);
   const SensorConfig& sensor = field.sensor(arguments.sensor);
-  const StateInHand hand(field.state());
+  const StateLock hand(field.state());
   History history(field.state(), sensor.name);
   const ModelInUse now = model_in_use(field, sensor);
-  history.forget_what_never_was(now.name);
+  history.drop_incomplete_change(now.name);
   const ModelChange* const in_force = history.in_force();
   if (in_force == nullptr)
     throw std::runtime_error("nothing was adopted for sensor " + in_quotes(sensor.name) +

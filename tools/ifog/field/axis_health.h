@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Innovations of a sensor's axes in words.
+// Innovation statistics of a sensor's axes as text.
 #pragma once
 
 #include <cstddef>
@@ -11,8 +11,8 @@
 
 namespace ifog::tools {
 
-// "x NIS 0.97, whiteness +0.01; y no value", of status_t's nis_mean and whiteness or means of them: a mean
-// square of exactly nothing is that of an axis that has had no value.
+// "x NIS 0.97, whiteness +0.01; y no value", from nis_mean and whiteness in status_t, or means of them. A
+// mean square of exactly 0 means that the axis had no value.
 inline std::string axis_health(const std::vector<double>& nis, const std::vector<double>& whiteness) {
   std::string out;
   for (std::size_t a = 0; a < nis.size(); ++a) {

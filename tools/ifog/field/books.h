@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was received and where it went, as status_t's identities have it, in words.
+// The balances of bytes, frames and samples in status_t as text.
 #pragma once
 
 #include <ifog/status_t.hpp>
@@ -8,7 +8,7 @@
 
 namespace ifog::tools {
 
-// In parts, between which a line may end.
+// In parts between which a line may be broken.
 inline std::vector<std::string> books_parts(const status_t& status) {
   const auto n = [](std::int64_t count) { return std::to_string(count); };
   std::vector<std::string> out;
@@ -31,7 +31,7 @@ inline std::string books_text(const status_t& status) {
   return out;
 }
 
-// Whether they balance in this message.
+// True if all balances of this message are exact.
 inline bool books_balance(const status_t& s) {
   const bool of_can = s.frames_read > 0 || s.frames_other > 0;
   return s.bytes_read == s.bytes_framed + s.bytes_skipped + s.bytes_pending &&

@@ -15,8 +15,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kStatusWithin = 3s;   // a status comes every second
-constexpr auto kEffectWithin = 15s;  // the daemon reloads at most once a second
+constexpr auto kStatusWithin = 3s;   // status messages arrive every second
+constexpr auto kEffectWithin = 15s;  // the daemon reloads at most once per second
 
 std::string process(pid_t id) { return "the daemon (process " + std::to_string(id) + ")"; }
 
@@ -67,7 +67,7 @@ void ModelExchange::put(const std::optional<Model>& model) const {
 }
 
 void ModelExchange::ask_for_reload() {
-  // It may have been started again since.
+  // The daemon may have been restarted.
   const std::optional<pid_t> now = running_daemon(field_.state());
   if (!now) throw std::runtime_error(process(*daemon_) + " has ended, and none runs in its place");
   live_ = std::make_unique<LiveStatus>(field_.state(), *now);
@@ -81,7 +81,7 @@ bool ModelExchange::takes_effect(const std::string& identity) {
   });
 }
 
-// A sensor that fell silent only now passed for one that runs.
+// The sensor may have stopped after the check in the constructor.
 std::string ModelExchange::why_not_in_effect() const {
   const status_t* const status = live_->of(sensor_);
   if (status == nullptr || status->state == status_t::STATE_RUNNING) return "its log says why";
@@ -101,7 +101,7 @@ void ModelExchange::exchange(const std::optional<Model>& model, const std::optio
     why = error.what();
   }
   put(before);
-  // Whatever has become of the first question: the daemon must continue with the model that is in place now.
+  // Also if the first request failed: the daemon must use the model that is now in place.
   try {
     ask_for_reload();
   } catch (const std::exception& error) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Puts a sensor's model in place of another, and sees that the daemon uses it: all of it or nothing.
+// Replaces a sensor's model and checks that the daemon uses it; on failure restores the previous one.
 #pragma once
 
 #include <sys/types.h>
@@ -14,22 +14,21 @@
 
 namespace ifog::tools {
 
-// Throws std::runtime_error with one line when the daemon could not run the sensor with this model: it is put
-// together by the daemon's own code.
+// Throws std::runtime_error with one line if the daemon cannot run the sensor with this model. Uses the
+// daemon's own code.
 void require_that_it_fits(const Field& field, const SensorConfig& sensor, const Model& model);
 
 class ModelExchange {
  public:
-  // Looks, changes nothing. `in_use`: what the file in place holds. Throws std::runtime_error with one line:
-  // the daemon runs and cannot be asked, or uses another model; the sensor gives
-  // no samples, so that nobody would see whether it uses one.
+  // Checks only. `in_use`: the model in the file. Throws std::runtime_error with one line if the daemon runs
+  // but does not answer or uses another model, or if the sensor is not running, so that the exchange could
+  // not be verified.
   ModelExchange(const Field& field, const SensorConfig& sensor, const ModelName& in_use);
 
   [[nodiscard]] bool daemon_runs() const { return daemon_.has_value(); }
   [[nodiscard]] LiveStatus& live() { return *live_; }
 
-  // Nothing in `model`: the file goes. Throws std::runtime_error with one line; what was in place is then in
-  // place again.
+  // model: nullopt removes the file. Throws std::runtime_error with one line after restoring `before`.
   void exchange(const std::optional<Model>& model, const std::optional<Model>& before);
 
  private:

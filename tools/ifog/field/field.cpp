@@ -50,7 +50,7 @@ Field::Field(const FieldOptions& options) : typed_(options.as_typed()) {
   config_path_ = options.config.empty() ? kServiceConfig : options.config;
   std::error_code none;
   if (!options.config.empty() || std::filesystem::exists(config_path_, none))
-    // Adopted models come from the state folder that is meant here, which need not be the configured one.
+    // Adopted models come from this state folder, which may differ from the configured one.
     config_ = parse_config(read_toml_text(config_path_), config_path_);
   state_ = options.state.empty() ? state_folder(config_ ? config_->state_folder : "") : options.state;
   if (state_.empty()) state_ = kServiceState;
@@ -81,7 +81,7 @@ std::string Field::model_path(const SensorConfig& sensor) const {
 
 void share_with_the_group() { ::umask(S_IWOTH); }
 
-StateInHand::StateInHand(const std::string& folder)
+StateLock::StateLock(const std::string& folder)
     : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (fd_ < 0)
     throw std::runtime_error(folder + ": cannot open: " + std::generic_category().message(errno) +
@@ -94,6 +94,6 @@ StateInHand::StateInHand(const std::string& folder)
                                          : ": cannot lock: " + std::generic_category().message(error)));
 }
 
-StateInHand::~StateInHand() { ::close(fd_); }
+StateLock::~StateLock() { ::close(fd_); }
 
 }  // namespace ifog::tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the daemon of this computer has its configuration and its state, for the commands that look after it.
+// Configuration and state folder of this computer's daemon, for the commands that work on them.
 #pragma once
 
 #include <optional>
@@ -15,31 +15,31 @@ inline constexpr const char* kServiceConfig = "/etc/ifogd/ifogd.toml";
 inline constexpr const char* kServiceState = "/var/lib/ifogd";
 
 struct FieldOptions {
-  std::string config;  // --config; "": where the service has it, if it is there
-  std::string state;   // --state; "": as configured, else STATE_DIRECTORY, else where the service has it
+  std::string config;  // --config; "": the service's, if it exists
+  std::string state;   // --state; "": as configured, else STATE_DIRECTORY, else the service's
   void add_to(const Command& command);
-  // Those that were given, as a shell takes them again: " --config F".
+  // The given options in shell syntax: " --config F".
   [[nodiscard]] std::string as_typed() const;
 };
 
 class Field {
  public:
-  // Throws ConfigError or std::runtime_error with one line: a configuration that was named or is there and
-  // cannot be read. One that was not named need not be there.
+  // Throws ConfigError or std::runtime_error with one line if a given or existing configuration cannot be
+  // read. The default one need not exist.
   explicit Field(const FieldOptions& options);
 
-  // Null: there is no configuration.
+  // Null: no configuration.
   [[nodiscard]] const Config* config() const { return config_ ? &*config_ : nullptr; }
   [[nodiscard]] const std::string& state() const { return state_; }
-  // The file that was read, or looked for.
+  // The file that was read or searched for.
   [[nodiscard]] const std::string& config_path() const { return config_path_; }
-  // A command about a sensor that looks after the same field, to be copied.
+  // Command line of another command for this sensor with the same options, to be copied by the user.
   [[nodiscard]] std::string command(const std::string& name, const std::string& sensor) const;
 
-  // Throws std::runtime_error with one line: no configuration, or no such sensor in it, with those there are.
+  // Throws std::runtime_error with one line: no configuration, or no such sensor (lists those there are).
   [[nodiscard]] const SensorConfig& sensor(const std::string& name) const;
   [[nodiscard]] const Config& required_config() const;
-  // The file that the sensor's model is in, or would be.
+  // Path of the sensor's model; the file may not exist.
   [[nodiscard]] std::string model_path(const SensorConfig& sensor) const;
 
  private:
@@ -47,18 +47,18 @@ class Field {
   std::string config_path_, state_, typed_;
 };
 
-// What a person writes into the state folder, the daemon's own user reads and writes on, and the other way
-// round: by its group, which the folder hands on (tmpfiles.d).
+// Makes new files writable for the group, which the state folder passes on (tmpfiles.d), so that the daemon's
+// user and a person can change each other's files.
 void share_with_the_group();
 
-// While it lives no other command changes anything in the state folder. Throws std::runtime_error with one
-// line: another one does, no such folder, no right to it.
-class StateInHand {
+// Locks the state folder against other commands. Throws std::runtime_error with one line: locked, no such
+// folder, no permission.
+class StateLock {
  public:
-  explicit StateInHand(const std::string& folder);
-  ~StateInHand();
-  StateInHand(const StateInHand&) = delete;
-  StateInHand& operator=(const StateInHand&) = delete;
+  explicit StateLock(const std::string& folder);
+  ~StateLock();
+  StateLock(const StateLock&) = delete;
+  StateLock& operator=(const StateLock&) = delete;
 
  private:
   int fd_;

@@ -47,7 +47,7 @@ History::History(const std::string& state, const std::string& sensor) : state_(s
   with_keys(path(), [&] { changes_ = from_json<std::vector<ModelChange>>(file->at("changes")); });
 }
 
-// A revert undoes the latest adoption that was not reverted before, as brackets close.
+// A revert undoes the latest adoption that is not reverted yet, like nested brackets.
 const ModelChange* History::in_force() const {
   std::size_t reverts = 0;
   for (auto change = changes_.rbegin(); change != changes_.rend(); ++change) {
@@ -80,7 +80,7 @@ void History::take_back() {
   write();
 }
 
-void History::forget_what_never_was(const ModelName& in_use) {
+void History::drop_incomplete_change(const ModelName& in_use) {
   if (!changes_.empty() && changes_.back().model != in_use && changes_.back().replaced == in_use) take_back();
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What was adopted for a sensor and what it took the place of, oldest first: NAME.history.json in the state
-// folder, schema ifog.history/1. A model that was replaced is kept in the same folder as NAME.kept-IDENTITY.toml.
+// Adopted and replaced models of a sensor, oldest first: NAME.history.json in the state folder, schema
+// ifog.history/1. A replaced model is kept there as NAME.kept-IDENTITY.toml.
 #pragma once
 
 #include <cstdint>
@@ -16,35 +16,35 @@ namespace ifog::tools {
 struct ModelChange {
   std::string what;            // "adopt" or "revert"
   std::string when;            // UTC
-  ModelName model, replaced;   // in use from then on, and before
-  std::string why;             // of the proposal
-  std::vector<AxisGain> gain;  // promised
-  std::string outcome;         // in words, "" while nothing is known
-  // Number of the last recording that was there then, 0 for none: what is newer was made afterwards, whatever
-  // the wall clock did. Nothing: they could not be seen, or an older program wrote it.
+  ModelName model, replaced;   // in use afterwards, and before
+  std::string why;             // from the proposal
+  std::vector<AxisGain> gain;  // predicted
+  std::string outcome;         // text, "" if unknown
+  // Number of the last recording at that time, 0: none. Newer recordings have higher numbers even if the wall
+  // clock was set. nullopt: not readable, or written by an older version.
   std::optional<std::uint64_t> recorded{};
 };
 
 class History {
  public:
-  // Throws std::runtime_error with one line: damaged.
+  // Throws std::runtime_error with one line if the file is damaged.
   History(const std::string& state, const std::string& sensor);
 
   [[nodiscard]] const std::vector<ModelChange>& changes() const { return changes_; }
-  // The adoption that is in force, which a revert takes back; null: none is.
+  // The adoption that is in use and that a revert undoes; null: none.
   [[nodiscard]] const ModelChange* in_force() const;
 
-  // Both write the file, whole. `replaced` is kept first.
+  // Both write the whole file. `replaced` is stored first.
   void add(ModelChange change, const std::optional<Model>& replaced);
   // Sets the outcome of the last change.
   void set_outcome(const std::string& outcome);
-  // The last change did not come about.
+  // Removes the last change because it failed.
   void take_back();
-  // A change that was written down and never made, as the model before it is in use: an adoption or a
-  // revert that was killed between the two. Taken back.
-  void forget_what_never_was(const ModelName& in_use);
+  // Removes the last change if the model before it is in use: the command was killed between writing the
+  // history and exchanging the model.
+  void drop_incomplete_change(const ModelName& in_use);
 
-  // Nothing where the name is that of no model. Throws as above: not there, another one.
+  // nullopt if `name` is "". Throws as above if the file is missing or another model.
   [[nodiscard]] std::optional<Model> kept(const ModelName& name) const;
 
  private:

@@ -32,7 +32,7 @@ Statuses decoded(std::string_view answer) {
 
 bool LiveStatus::ask(std::chrono::milliseconds most, const std::function<bool(const Statuses&)>& enough) {
   using Clock = std::chrono::steady_clock;
-  constexpr std::chrono::milliseconds kBetween{500};  // twice as often as a status is made
+  constexpr std::chrono::milliseconds kBetween{500};  // half of the period of status messages
   const Clock::time_point end = Clock::now() + most;
   for (;;) {
     const auto left = std::chrono::duration_cast<std::chrono::milliseconds>(end - Clock::now());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the daemon that works with a state folder says of its sensors, asked by the socket in that folder.
+// Asks the daemon for the status of its sensors through the socket in its state folder.
 #pragma once
 
 #include <sys/types.h>
@@ -19,10 +19,10 @@ class LiveStatus {
  public:
   LiveStatus(std::string folder, pid_t daemon) : folder_(std::move(folder)), daemon_(daemon) {}
 
-  // Asks twice a second until enough(), or the time is over, or the user interrupts. False: not enough. Throws
-  // std::runtime_error with one line: the daemon cannot be asked or does not answer.
+  // Asks twice per second until enough(), a timeout or an interrupt; false in the last two cases. Throws
+  // std::runtime_error with one line if the daemon does not answer.
   bool ask(std::chrono::milliseconds most, const std::function<bool(const Statuses&)>& enough);
-  // Throws likewise, and with what was refused.
+  // Throws likewise, also with the reasons for which the daemon rejects the configuration.
   void reload(std::chrono::milliseconds most) const;
 
   [[nodiscard]] const Statuses& all() const { return all_; }

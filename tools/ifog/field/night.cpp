@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog night: what the flight recorder kept since the last time is diagnosed, and where that would pay, a new
-// model is proposed. Nothing is put into use, no device is touched, and the daemon is not asked for anything.
+// ifog night: diagnoses what the flight recorder stored since the last run, and proposes a new model if it
+// improves held-out data. Adopts nothing and needs neither device nor daemon.
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
@@ -46,15 +46,15 @@ struct NightArguments {
   double most_bytes = 400e6;
 };
 
-// What is found is fitted on the first part of the time and judged on the rest.
+// Fraction of the time for the fit; the rest is held out.
 constexpr double kFitTo = 0.7;
-// At some averaging time the error falls by this much at least, and at none does it grow by more than that.
+// The error must fall by this at one averaging time or more, and may not grow by more at any.
 constexpr double kLeastGain = 0.05;
 constexpr double kMostLoss = 0.02;
 
 const std::string kCannotBeJudged = "the recordings could not be judged; the night's log says why";
 
-// The newest of them that together are no more than so many bytes, or the newest.
+// The newest files of at most that many bytes in total, but at least one.
 std::vector<RecordedFile> newest(std::vector<RecordedFile> files, double most_bytes) {
   std::size_t from = files.size() - 1;
   double bytes = static_cast<double>(files[from].bytes);
@@ -91,23 +91,23 @@ std::string effects_text(const std::vector<AxisDiagnosis>& found) {
   return out;
 }
 
-// The night of one sensor. What is said of it is one line.
+// Processes one sensor; the result is one line of text.
 class Night {
  public:
   Night(const NightArguments& arguments, const Field& field, const SensorConfig& sensor)
       : arguments_(arguments), field_(field), sensor_(sensor) {}
 
   std::string run();
-  // The recordings could not be judged: what run() gave is why.
+  // True if the recordings could not be evaluated; run() returned the reason.
   [[nodiscard]] bool failed() const { return failed_; }
-  // The model that was proposed, "": none.
+  // Identity of the proposed model, "": none.
   [[nodiscard]] const std::string& proposed() const { return proposed_; }
-  // The outcome of the last adoption, in words; "" where that was not judged.
+  // Outcome of the last adoption as text; "" if not evaluated.
   [[nodiscard]] const std::string& promise() const { return promise_; }
 
  private:
   std::string judge(const std::vector<RecordedFile>& all);
-  [[nodiscard]] std::string not_to_be_judged(const ModelInUse& in_use, const Recorded& recorded) const;
+  [[nodiscard]] std::string why_not_judged(const ModelInUse& in_use, const Recorded& recorded) const;
   [[nodiscard]] bool corrects_warm_up(const ModelInUse& in_use) const;
   std::string diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
                        const ModelInUse& in_use);
@@ -121,7 +121,7 @@ class Night {
   const NightArguments& arguments_;
   const Field& field_;
   const SensorConfig& sensor_;
-  bool gone_through_ = false;  // not to be looked at again
+  bool processed_ = false;  // these recordings need not be processed again
   bool failed_ = false;
   std::string proposed_, promise_;
 };
@@ -132,7 +132,7 @@ std::string Night::run() {
   const std::string written = closing(files);
   std::erase_if(files, [](const RecordedFile& file) { return file.open; });
   const std::optional<Bookmark> bookmark = read_bookmark(field_.state(), sensor_.name);
-  // Numbers that start again are those of a new folder.
+  // Lower numbers belong to a new folder.
   const bool same_folder = bookmark && !files.empty() && files.back().number >= bookmark->until;
   if (same_folder)
     std::erase_if(files, [&](const RecordedFile& file) { return file.number <= bookmark->until; });
@@ -145,9 +145,9 @@ std::string Night::run() {
     said = error.what();
     failed_ = true;
   }
-  // What is kept says nothing of what a file held.
-  if (gone_through_) {
-    const StateInHand hand(field_.state());
+  // The stored text must not quote content of a recording.
+  if (processed_) {
+    const StateLock hand(field_.state());
     write_bookmark(field_.state(), sensor_.name, {until, utc_now(), failed_ ? kCannotBeJudged : said});
   }
   return said;
@@ -155,31 +155,31 @@ std::string Night::run() {
 
 std::string Night::judge(const std::vector<RecordedFile>& all) {
   const ModelInUse in_use = model_in_use(field_, sensor_);
-  // A warm-up that is not there yet would be found where two of them follow each other, too.
+  // Across several power-ups a warm-up would be found that is not there.
   const std::vector<RecordedFile> files = sensor_.powered_with_computer ? of_one_power_up(all) : all;
   if (files.size() < all.size())
     warn("%s: of several times that it was switched on the longest is judged: %zu of %zu recordings\n",
          sensor_.name.c_str(), files.size(), all.size());
-  // A recording that cannot be read today cannot be tomorrow; a proposal that a full disk did not take can.
-  gone_through_ = true;
+  // Unreadable recordings stay unreadable; an error while writing a proposal may pass.
+  processed_ = true;
   const Recorded recorded = read_recorded(sensor_, files, field_.required_config().plugin_folders);
-  gone_through_ = false;
+  processed_ = false;
   const double rest_s = static_cast<double>(recorded.rest.resting()) * recorded.period_s;
   if (rest_s < arguments_.least_rest_s) {
     return "at rest for " + in_hours(rest_s) + " of " +
            in_hours(static_cast<double>(recorded.rest.samples) * recorded.period_s) + " recorded, expected " +
            in_hours(arguments_.least_rest_s) + " at least: waits for more";
   }
-  if (std::string why = not_to_be_judged(in_use, recorded); !why.empty()) return why;
+  if (std::string why = why_not_judged(in_use, recorded); !why.empty()) return why;
   judge_last_adoption(files, in_use);
   std::string said = diagnose(recorded, files, in_use);
-  gone_through_ = true;
+  processed_ = true;
   return said;
 }
 
-// In a recording that does not say when the sensor was switched on, the daemon's correction of a warm-up
-// cannot be made again: the drift that is left would be traced to another cause, and corrected twice.
-std::string Night::not_to_be_judged(const ModelInUse& in_use, const Recorded& recorded) const {
+// Without the time of power-up the daemon's warm-up correction cannot be repeated. Then the remaining drift
+// would be attributed to another cause and corrected twice.
+std::string Night::why_not_judged(const ModelInUse& in_use, const Recorded& recorded) const {
   if (!corrects_warm_up(in_use) || recorded.capture.since_power_up_s) return "";
   return "the model in use corrects a warm-up by the time since power-up, which these recordings do not say: "
          "diagnose them by hand with --since-power-up";
@@ -192,14 +192,14 @@ bool Night::corrects_warm_up(const ModelInUse& in_use) const {
                      [](const Effect& each) { return each.form == "warm_up"; });
 }
 
-// What was adopted proves itself on all that was recorded since.
+// Evaluates the last adoption with everything recorded since.
 void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const ModelInUse& in_use) {
   const History history(field_.state(), sensor_.name);
   if (history.changes().empty() || history.changes().back().what != "adopt") return;
   const ModelChange last = history.changes().back();
   if (in_use.name != last.model) return;
   std::vector<RecordedFile> since = files;
-  // By their numbers, for the wall clock may have been set since; numbers that start again are all newer.
+  // By numbers, because the wall clock may have been set. If the numbering restarted, all files are newer.
   if (!last.recorded)
     std::erase_if(since, [&](const RecordedFile& file) { return file.opened < last.when; });
   else if (!since.empty() && since.back().number >= *last.recorded)
@@ -213,7 +213,7 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
     promise_ = outcome(watched);
     const std::string text = "night of " + utc_now() + ": " + promise_;
     say("%s: %s\n", sensor_.name.c_str(), text.c_str());
-    const StateInHand hand(field_.state());
+    const StateLock hand(field_.state());
     if (History fresh(field_.state(), sensor_.name);
         !fresh.changes().empty() && fresh.changes().back().when == last.when)
       fresh.set_outcome(text);
@@ -222,7 +222,7 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
   }
 }
 
-// When the newest recording, which is being written, will be closed; "" where none is.
+// Time when the newest recording will be closed; "" if none is being written.
 std::string Night::closing(const std::vector<RecordedFile>& files) const {
   if (files.empty() || !files.back().open) return "";
   const RecordedFile& last = files.back();
@@ -276,7 +276,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
     return "found " + traced + ", without a gain on held-out data" +
            (tried.empty() ? "" : ": " + gain_text(tried));
   Model model = with();
-  // A daemon whose model has no filter learns its noise, and continues to.
+  // If the model has no filter, the daemon learns the noise, and this stays so.
   const std::string fitted =
       model.filter ? fit_noise_left(model, model_with({}, found, {name}, hashes), corrected, name) : "";
   if (!fitted.empty()) say("%s: %s\n", sensor_.name.c_str(), fitted.c_str());
@@ -304,7 +304,7 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
   proposal.report_file = file + ".html";
   const std::string report =
       diagnosis_report({CaptureView(recorded.capture)}, found, {name}, hashes, proposal.model_file, "");
-  const StateInHand hand(field_.state());
+  const StateLock hand(field_.state());
   write_proposal(field_.state(), proposal, model, report);
 }
 
@@ -332,7 +332,7 @@ void run_nights(const NightArguments& arguments) {
       said = error.what();
     }
     const std::string line = sensor.name + ": " + printable(said, kLongestMessage);
-    // Each sensor has its night, whatever became of another's.
+    // An error of one sensor does not stop the others.
     if (good)
       say("%s\n", line.c_str());
     else

@@ -29,17 +29,17 @@ std::string inside(const std::string& state, const std::string& file) {
   return (fs::path(state) / file).string();
 }
 
-// Models and pages of proposals that are no longer waiting.
+// Removes models and pages of proposals that were replaced.
 void remove_others(const std::string& state, const std::string& sensor, const std::optional<Proposal>& kept) {
   const std::string prefix = sensor + ".proposal-";
   for (const std::string& name : names_in_state_folder(state))
     if (name.starts_with(prefix) && (!kept || (name != kept->model_file && name != kept->report_file))) try {
         remove_state_file(inside(state, name));
-      } catch (const std::runtime_error&) {  // no file of ours: the others go all the same
+      } catch (const std::runtime_error&) {  // not a file of ours; continue
       }
 }
 
-// A file that the index names lies in the same folder and nowhere else.
+// Files named in the index must be in the same folder.
 void require_plain_name(const std::string& name, const std::string& path) {
   if (name.empty() || name != fs::path(name).filename().string())
     throw std::runtime_error(path + ": names a file outside of its folder");
@@ -94,7 +94,7 @@ std::string gain_text(const std::vector<AxisGain>& gain) {
 
 namespace {
 
-// The proposal that the index names; one that cannot be read names nothing.
+// The proposal in the index; nullopt also if it cannot be read.
 std::optional<Proposal> waiting(const std::string& state, const std::string& sensor) {
   try {
     return read_proposal(state, sensor);
@@ -112,7 +112,7 @@ void write_proposal(const std::string& state, const Proposal& proposal, const Mo
     write_state_file(inside(state, proposal.report_file), report);
     write_state_json(index_path(state, proposal.sensor), kProposalSchema, proposal);
   } catch (...) {
-    // What no index names would lie there for ever.
+    // Files that no index names would never be removed.
     remove_others(state, proposal.sensor, waiting(state, proposal.sensor));
     throw;
   }

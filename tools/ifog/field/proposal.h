@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A new model that was found at night and that nobody has adopted yet. Of each sensor at most one waits, in
-// the state folder:
+// A model that `ifog night` found and that is not adopted yet. At most one per sensor, in the state folder:
 //
-//   NAME.proposal.json             schema ifog.proposal/1: what it is; written last and removed first
+//   NAME.proposal.json             schema ifog.proposal/1: index; written last and removed first
 //   NAME.proposal-IDENTITY.toml    the model
 //   NAME.proposal-IDENTITY.html    the report page
 #pragma once
@@ -18,20 +17,20 @@
 
 namespace ifog::tools {
 
-// A model as files of the state folder name it; both "" for none.
+// Identity and SHA-256 of a model; both "" for no model.
 struct ModelName {
   std::string identity, sha256;
   bool operator==(const ModelName&) const = default;
 };
 [[nodiscard]] ModelName name_of(const Model& model);
-// A sensor's model, whose file need not be there.
+// The model of a sensor; nullopt if there is no file.
 struct ModelInUse {
   std::optional<Model> model;
   ModelName name;
 };
 [[nodiscard]] ModelInUse model_in_use(const Field& field, const SensorConfig& sensor);
 
-// What a model gained, or promises to gain, on data it was not fitted on.
+// Measured or predicted gain of a model on data that it was not fitted to.
 struct AxisGain {
   std::string axis;
   PromiseKept kept;
@@ -42,10 +41,10 @@ struct Proposal {
   std::string why;           // one line
   ModelName against, model;
   std::string model_file, report_file;  // in the state folder
-  std::vector<AxisGain> gain;           // on held-out data; axes that it changes
+  std::vector<AxisGain> gain;           // on held-out data; the axes that the model changes
 };
 
-// "10 s means 0.0312 -> 0.0081 °/h": of the averaging time that gains most.
+// "10 s means 0.0312 -> 0.0081 °/h", for the averaging time with the largest gain.
 [[nodiscard]] std::string gain_text(const std::vector<AxisGain>& gain);
 
 template <typename Io, Is<ModelName> T>
@@ -69,18 +68,18 @@ void fields(Io& io, T& of) {
   io("errors", of.kept.errors);
 }
 
-// Replaces the waiting one, if any. All files are whole or none counts. Throws std::runtime_error with
-// one line.
+// Replaces an existing proposal. Files are written whole, the index last. Throws std::runtime_error with one
+// line.
 void write_proposal(const std::string& state, const Proposal& proposal, const Model& model,
                     const std::string& report);
 
-// Nothing: none waits. Throws std::runtime_error with one line: damaged, of another version.
+// nullopt: no proposal. Throws std::runtime_error with one line if it is damaged or of another version.
 [[nodiscard]] std::optional<Proposal> read_proposal(const std::string& state, const std::string& sensor);
-// Its model, which is what the proposal says it is. Throws as above.
+// Reads its model and checks that it is the one in the index. Throws as above.
 [[nodiscard]] Model proposed_model(const std::string& state, const Proposal& proposal);
 void remove_proposal(const std::string& state, const std::string& sensor);
 
-// Sensors of which one waits, by name.
+// Names of the sensors with a proposal.
 [[nodiscard]] std::vector<std::string> sensors_with_proposal(const std::string& state);
 
 }  // namespace ifog::tools

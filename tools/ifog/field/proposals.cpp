@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog proposals: what the nights have found and nobody has adopted yet.
+// ifog proposals: lists the models that were found at night and not adopted.
 #include <exception>
 #include <filesystem>
 #include <memory>
@@ -23,7 +23,7 @@ struct ProposalsArguments {
   std::string json;
 };
 
-// Why adopting it would be refused, "": it would not.
+// Reason why `adopt` would refuse it; "": none.
 std::string why_stale(const Field& field, const Proposal& proposal) {
   if (field.config() == nullptr) return "";
   for (const SensorConfig& sensor : field.config()->sensors)

@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// 2026-01-31T13:05:09Z for NUMBER-20260131T130509Z.ifr; "" for another name.
+// 2026-01-31T13:05:09Z for NUMBER-20260131T130509Z.ifr; "" for other names.
 std::string opened_at(std::string_view name) {
   const std::size_t dash = name.find('-');
   if (dash == std::string_view::npos || name.size() < dash + 17) return "";
@@ -37,7 +37,7 @@ struct PowerUp {
   std::string boot;
 };
 
-// The sensor's power-up as the file says it; a file that cannot be read says nothing here and is reported when it is read.
+// Power-up in the file's header; nullopt also if the file cannot be read, which is reported later.
 std::optional<PowerUp> power_up(const RecordedFile& file) try {
   InputFile input(file.path, std::deque<std::string>{file.path});
   const FlightInput flight(input);
@@ -47,16 +47,16 @@ std::optional<PowerUp> power_up(const RecordedFile& file) try {
   return std::nullopt;
 }
 
-// The arrival clock of another run of the daemon may be off by what the wall clock was set.
+// Tolerance for changes of the wall clock between runs of the daemon.
 constexpr std::int64_t kOnePowerUp_ns = 10'000'000'000;
 
-// A clock that begins at the same time each day tells none apart: the computer's runs have names.
+// Compares boot identities too, because clocks may start at the same time every day.
 bool same(const PowerUp& a, const PowerUp& b) {
   if (!a.boot.empty() && !b.boot.empty() && a.boot != b.boot) return false;
   return std::abs(a.powered_ns - b.powered_ns) <= kOnePowerUp_ns;
 }
 
-// Rows begin … end − 1 of the stretches.
+// The parts of the stretches from row `begin` on.
 std::vector<Stretch> from_row(const std::vector<Stretch>& all, std::size_t begin) {
   std::vector<Stretch> out;
   for (const Stretch& each : all)
@@ -78,7 +78,7 @@ std::vector<RecordedFile> recorded_files(const SensorConfig& sensor) {
     const auto [end, wrong] = std::from_chars(name.data(), name.data() + name.size(), file.number);
     if (wrong != std::errc() || *end != '-') continue;
     file.opened = opened_at(name);
-    // No link: others may write there. None: removed or renamed meanwhile.
+    // Links are ignored, because others may write here. The file may have been removed or renamed.
     std::error_code gone;
     if (entry.symlink_status(gone).type() != fs::file_type::regular) continue;
     file.bytes = entry.file_size(gone);

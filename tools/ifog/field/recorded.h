@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the daemon's flight recorder has kept of a sensor, for the commands that judge a model by it.
+// The daemon's flight recordings of a sensor, for the commands that assess a model with them.
 #pragma once
 
 #include <cstdint>
@@ -18,15 +18,15 @@ struct RecordedFile {
   std::uint64_t number = 0;
   std::string path;
   std::uint64_t bytes = 0;
-  bool open = false;   // still being written, or left so
-  std::string opened;  // UTC, as utc_now() writes it
+  bool open = false;   // being written, or not closed properly
+  std::string opened;  // UTC, format of utc_now()
 };
 
-// The files of the sensor's folder, by number; none where there is no such folder.
+// The files in the sensor's folder, by number; empty if there is no folder.
 [[nodiscard]] std::vector<RecordedFile> recorded_files(const SensorConfig& sensor);
 
-// Those of one power-up of the sensor, of several that with most bytes, where the recordings say when it was
-// switched on: each power-up has its own warm-up. All of them where they do not say.
+// The files of one power-up, that with most bytes, because each power-up has its own warm-up. All files if
+// they do not contain the time of power-up.
 [[nodiscard]] std::vector<RecordedFile> of_one_power_up(const std::vector<RecordedFile>& files);
 
 struct Recorded {
@@ -35,17 +35,17 @@ struct Recorded {
   Rest rest;
 };
 
-// Through the driver that they name. Throws std::runtime_error with one line.
+// Reads them with the driver that they name. Throws std::runtime_error with one line.
 [[nodiscard]] Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFile>& files,
                                      const std::vector<std::string>& plugin_folders);
 
-// How the new model's correction compares with the old one's on rows from `begin` on; the rows before are
-// there for both to settle on what has a memory. Axes on which the two differ. Throws std::runtime_error or
-// std::invalid_argument with one line.
+// Compares the corrections of two models on the rows from `begin` on; the rows before settle effects with
+// memory. Returns the axes on which they differ. Throws std::runtime_error or std::invalid_argument with one
+// line.
 [[nodiscard]] std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before,
                                                  const Model& after, std::size_t begin);
 
-// The worst of the axes.
+// The worst verdict of the axes.
 [[nodiscard]] PromiseVerdict verdict_of(const std::vector<AxisGain>& gain);
 
 }  // namespace ifog::tools

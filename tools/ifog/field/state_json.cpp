@@ -56,7 +56,7 @@ std::optional<nlohmann::json> read_state_json(const std::string& path, const std
 }
 
 void refuse_keys(const std::string& path, const nlohmann::json::exception& error) {
-  // Behind the library's own "[json.exception.out_of_range.403] ".
+  // Removes the library's prefix "[json.exception.out_of_range.403] ".
   const std::string what = error.what();
   const std::size_t words = what.find("] ");
   throw std::runtime_error(

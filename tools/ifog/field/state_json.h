@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON files of the state folder: read strictly, written whole.
+// JSON files of the state folder: checked strictly when read, written as a whole.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -11,14 +11,14 @@
 
 namespace ifog::tools {
 
-// Discarded where the text is no JSON. Throws std::runtime_error with one line: nested deeper than any file of ours.
+// Discarded value if the text is not JSON. Throws std::runtime_error with one line if it is nested too deep.
 [[nodiscard]] nlohmann::json parse_json(const std::string& text, const std::string& path);
 
-// Nothing: no such file. Throws std::runtime_error with one line: unreadable, no JSON, another schema.
+// nullopt: no such file. Throws std::runtime_error with one line: unreadable, not JSON, another schema.
 [[nodiscard]] std::optional<nlohmann::json> read_state_json(const std::string& path,
                                                             const std::string& schema);
 
-// The fields of `what` behind the schema's name.
+// The schema's name, followed by the fields of `what`.
 template <typename T>
 void write_state_json(const std::string& path, const char* schema, const T& what) {
   nlohmann::ordered_json file{{"schema", schema}};
@@ -26,10 +26,10 @@ void write_state_json(const std::string& path, const char* schema, const T& what
   write_state_file(path, file.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
 }
 
-// Throws std::runtime_error with one line: the file and what is wrong in it.
+// Throws std::runtime_error with one line: the file and its error.
 [[noreturn]] void refuse_keys(const std::string& path, const nlohmann::json::exception& error);
 
-// `read` of what a file says, a wrong or missing key as one line with the file's name.
+// Calls `read`; a wrong or missing key becomes one line with the file's name.
 template <typename Read>
 auto with_keys(const std::string& path, Read&& read) {
   try {

@@ -35,20 +35,20 @@ struct StatusArguments {
   FieldOptions field;
   std::string json;
   bool csv = false;
-  double wait_s = 2.5;  // a status comes every second
+  double wait_s = 2.5;  // status messages arrive every second
 };
 
 std::string utc(std::int64_t utime) { return utc_text(utime / 1'000'000); }
 
-// What the state folder knows of a sensor.
+// Data on a sensor in the state folder.
 struct Kept {
   ModelName model;
   std::optional<Proposal> proposal;
   std::optional<ModelChange> last;  // of its model
-  // Where it is recorded; "" for nowhere. Nothing: no configuration says.
+  // Folder of its recordings; "": not recorded; nullopt: no configuration.
   std::optional<std::string> recordings;
   std::string damaged;  // "" or one line
-  bool gone = false;    // the configuration that there is has no such sensor
+  bool gone = false;    // the configuration has no such sensor
 };
 
 Kept kept_of(const Field& field, const std::string& name) {
@@ -111,7 +111,7 @@ void say_recorded(const status_t* live, const std::optional<std::string>& record
         static_cast<double>(live->record_file_bytes) * 1e-6, where.c_str());
 }
 
-// adopt: the command that would.
+// adopt: the command that adopts the proposal.
 void say_sensor(const std::string& name, const status_t* live, const Kept& kept, const std::string& adopt) {
   if (live != nullptr) {
     say("%s  %s%s%s  %s in, %s published\n", printable(name).c_str(), state_name(live->state),
@@ -195,7 +195,7 @@ ordered_json sensor_json(const std::string& name, const status_t* live, const Ke
   return out;
 }
 
-// For scripts: of the JSON what fits into a line, nothing where it is not known. Columns are added at the end only.
+// For scripts: JSON values that fit into one line; empty if unknown. New columns are appended only.
 std::string csv_line(const ordered_json* sensor) {
   std::string out;
   const auto add = [&](const std::string& name, const std::string& pointer) {
@@ -225,7 +225,7 @@ std::string csv_line(const ordered_json* sensor) {
   return out;
 }
 
-// Names in the order of the configuration, then those besides.
+// Names in the order of the configuration, then further ones.
 std::vector<std::string> names_of(const Field& field, const Statuses& statuses) {
   std::vector<std::string> out;
   std::set<std::string> known;
@@ -244,7 +244,7 @@ struct Running {
   Statuses statuses{};
 };
 
-// What cannot be seen or asked is said.
+// Prints a warning if the daemon cannot be found or does not answer.
 Running running(const Field& field, double wait_s) {
   Running out;
   try {

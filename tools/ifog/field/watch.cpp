@@ -14,11 +14,11 @@
 namespace ifog::tools {
 namespace {
 
-// What the two models remember of channels settles in these before it counts.
+// Recordings before the exchange, in which effects with memory settle.
 constexpr std::size_t kFilesBefore = 3;
 constexpr std::uint64_t kMostBytesBefore = 64'000'000;
 
-// How many rows the recordings to settle on have. Recordings that cannot be read are skipped.
+// Number of rows in those recordings; unreadable recordings are skipped.
 std::size_t rows_to_settle(const SensorConfig& sensor, std::vector<RecordedFile>& files, const Field& field) {
   if (files.empty()) return 0;
   try {
@@ -57,7 +57,7 @@ void weigh(Watched& out, const Field& field, const SensorConfig& sensor, const M
     out.gain = weigh_models(recorded, before, after, begin);
     if (out.gain.empty()) out.not_weighed = "the two models corrected alike meanwhile";
   } catch (const std::exception& error) {
-    // Into the history goes nothing of what a recording holds.
+    // The history must not quote content of a recording.
     warn("%s\n", error.what());
     out.not_weighed = "the recordings could not be used";
   }
