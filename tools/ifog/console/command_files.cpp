@@ -69,7 +69,7 @@ std::string written_in_words() {
   return words;
 }
 
-void forget_what_is_written() { files.clear(); }
+void forget_written_files() { files.clear(); }
 
 void expect_no_other_kind(const std::string& option, const std::string& path,
                           std::span<const std::string_view> endings) {

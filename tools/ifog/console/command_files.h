@@ -25,7 +25,7 @@ void will_write(const std::string& option, const std::string& path,
 // "wrote a.json, b.svg" for the regular files above, at the end of a run; "" if there are none.
 std::string written_in_words();
 // For a run that prints nothing.
-void forget_what_is_written();
+void forget_written_files();
 
 inline constexpr auto kJsonEndings = std::to_array<std::string_view>({".json", ".jsonl", ".ndjson"});
 inline constexpr auto kModelEndings = std::to_array<std::string_view>({".toml"});

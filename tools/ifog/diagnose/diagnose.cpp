@@ -92,7 +92,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
     if (!arguments.quiet && !fitted.empty()) say("\n%s\n", fitted.c_str());
     write_file(arguments.write_model, model_text(model));
   }
-  if (arguments.quiet) forget_what_is_written();
+  if (arguments.quiet) forget_written_files();
   if (!arguments.report.empty())
     write_file(arguments.report, diagnosis_report(captures, found, arguments.captures, hashes,
                                                   arguments.write_model, arguments.input.as_typed()));
