@@ -16,7 +16,7 @@
 namespace ifog::tools {
 namespace {
 
-// "": there is none.
+// "": no model.
 void look_at_model(const Field& field, const SensorConfig& sensor, KnownSensor& known) {
   const ModelInUse in_use = model_in_use(field, sensor);
   if (!in_use.model) return;
@@ -50,7 +50,7 @@ void KnownHere::look() {
   if (!field_ || field_->config() == nullptr) return;
   try {
     if (!named_ && !running_daemon(field_->state())) return;
-  } catch (const std::exception&) {  // not to be seen by this user
+  } catch (const std::exception&) {  // this user may not read it
     return;
   }
   constexpr std::array kKinds{"serial ", "CAN ", "", "tcp ", "file "};  // as TransportConfig::Kind
@@ -60,7 +60,7 @@ void KnownHere::look() {
                    printable(source_of(sensor.transport));
     for (const ChannelConfig& channel : sensor.channels)
       if (channel.source != ChannelConfig::Source::frame) known.channels.insert(channel.name);
-    // A model that is being exchanged, or that this user may not read, is shown by its identity.
+    // A model that is being exchanged or is not readable is shown by its identity.
     for (const auto look_at : {look_at_model, look_at_proposal}) try {
         look_at(*field_, sensor, known);
       } catch (const std::exception&) {

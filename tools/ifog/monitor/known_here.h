@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Configuration, models and proposals of this computer's daemon, for who shows what it publishes.
+// Configuration, models and proposals of this computer's daemon, to complete what it publishes.
 #pragma once
 
 #include <map>
@@ -13,12 +13,12 @@ namespace ifog::tools {
 
 class KnownHere {
  public:
-  // A configuration that was not named counts while a daemon runs with its state folder, and need not be there or be readable.
-  // Throws as Field does, for a named configuration.
+  // A configuration that is not given is used while a daemon runs with its state folder; it may be missing or
+  // unreadable. Throws as Field does for a given one.
   explicit KnownHere(const FieldOptions& options);
   // Reads models and proposals again.
   void look();
-  // By the name in capitals, as in a channel's; null: nothing is known.
+  // By the name in capitals, as in a channel's name; null: unknown.
   [[nodiscard]] const KnownSensor* of(const std::string& name) const;
 
  private:

@@ -15,7 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Names may hold any bytes: what is no UTF-8 is replaced, not an error.
+// Names may contain any bytes; invalid UTF-8 is replaced.
 std::string line(const ordered_json& json) {
   return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A message of the daemon as JSON on one line, schema "ifog.monitor/1", with the names that its type gives
-// the fields. What is no number is null.
+// A message of the daemon as one line of JSON, schema "ifog.monitor/1", with the field names of its type. NaN
+// and infinity are null.
 #pragma once
 
 #include <ifog/imu_t.hpp>
@@ -11,7 +11,7 @@
 
 namespace ifog::tools {
 
-// "sensor" is the channel's name without IFOG_, "type" "rate", "status" or "imu". No line end.
+// "sensor" is the channel's name without IFOG_, "type" is "rate", "status" or "imu". No line end.
 std::string message_json(std::string_view sensor, const rate_t& message);
 std::string message_json(std::string_view sensor, const status_t& message);
 std::string message_json(std::string_view sensor, const imu_t& message);

@@ -31,7 +31,7 @@
 namespace ifog::tools {
 namespace {
 
-// What ends the monitor, which every thread leaves to run().
+// Signals that end the monitor; blocked in every thread so that run() receives them.
 sigset_t blocked_signals() {
   sigset_t set;
   sigemptyset(&set);
@@ -48,12 +48,12 @@ Monitor::Monitor(const MonitorOptions& options)
       listener_(options.url, [this](const lcm_recv_buf_t& message,
                                     const std::string& channel) { take(message, channel); }),
       known_(options.field) {
-  // All of them: a name that none has is answered with those that publish.
+  // All sensors, so that for an unknown name the publishing ones can be listed.
   listener_.listen_to_sensor("");
   if (!options.json.empty()) json_.emplace(options.json);
   const bool people = isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1;
   if (!options.web.empty()) {
-    blocked_signals();  // before there are threads
+    blocked_signals();  // before threads are started
     web_ = std::make_unique<WebMonitor>(*page_address(options.web), sensors_, known_,
                                         [this] { return waiting().front() + " " + waiting().back(); });
     say("http://%s/ shows it; Ctrl-C ends this\n", options.web.find(':') == std::string::npos
@@ -65,7 +65,7 @@ Monitor::Monitor(const MonitorOptions& options)
   }
 }
 
-// Lines without an end: who reads them ends it, as with what is said, also while nothing comes.
+// True if the reader of the JSON output has closed it, also while no message arrives.
 bool Monitor::reader_gone() const {
   if (!json_ || !is_standard_output(options_.json)) return false;
   pollfd reader{json_->descriptor(), 0, 0};
@@ -90,7 +90,7 @@ void Monitor::take_message(const lcm_recv_buf_t& buffer, const std::string& name
   }
   last_data_ = Clock::now();
   if (json_) tell(message_json(name, message) + "\n");
-  // Increments are for programs: people see the same turn in the rates.
+  // Increments are for programs; for people the rates are sufficient.
   if constexpr (!std::is_same_v<Message, imu_t>) {
     if (sensors_.size() >= kMostSensors && !sensors_.contains(name)) {
       ++crowded_;
@@ -134,7 +134,7 @@ void Monitor::end_interval(double seconds) {
   look_.lines_drawn = now.size();
 }
 
-// For who sees lines only: once, while nothing has come at all.
+// Only for output as lines: once, while no message has arrived.
 void Monitor::say_what_is_waited_for() {
   constexpr double kPatience_s = 3.0;
   if (screen_ || waiting_reported_ || !sensors_.empty() || seconds_since(start_) < kPatience_s) return;
@@ -183,7 +183,7 @@ bool Monitor::run() {
     if (options_.seconds > 0.0 && seconds_since(start_) >= options_.seconds) break;
     if (!screen_ || (!pressed && ready >= 0 && seconds_since(drawn) < 0.25)) continue;
     for (int key = screen_->key(); on && key != 0; key = screen_->key()) on = obey(key);
-    // A terminal that hung up is for ever ready to be read.
+    // A closed terminal is always ready for reading.
     if ((wanted[2].revents & (POLLHUP | POLLERR)) != 0) break;
     draw();
     drawn = Clock::now();
@@ -196,7 +196,7 @@ bool Monitor::run() {
   if (screen_) {
     screen_.reset();
     look_.only.clear();
-    redraw(0, lines({}));  // what was seen last stays on the terminal
+    redraw(0, lines({}));  // the last state stays on the terminal
   }
   if (json_) json_->finish();
   return received_any();
@@ -229,7 +229,7 @@ void add_monitor(const Command& program) {
   command.callback([options] {
     if (options->once && !options->web.empty())
       throw WrongUsage("--once", "with --web, whose page is shown until it is ended");
-    // Without a time limit, --once waits for a daemon that may never come: give up as a script would want.
+    // Without a time limit, --once gives up like a script, because a daemon may never start.
     constexpr double kPatience_s = 10.0;
     if (options->once && options->seconds == 0.0) options->seconds = kPatience_s;
     will_write("--json", options->json, kJsonEndings);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `ifog monitor` hears, and shows: a screen with keys where people sit at a terminal, lines elsewhere, a page, JSON for
-// programs.
+// Receives and shows messages for `ifog monitor`: on an interactive screen, as lines, as a page, or as JSON.
 #pragma once
 
 #include <chrono>
@@ -39,7 +38,7 @@ class Monitor {
 
  private:
   using Clock = std::chrono::steady_clock;
-  // Any name of anybody's on the network would be one.
+  // Limits the memory, because anybody on the network can publish names.
   static constexpr std::size_t kMostSensors = 256;
   static double seconds_since(Clock::time_point then) {
     return std::chrono::duration<double>(Clock::now() - then).count();
@@ -65,15 +64,15 @@ class Monitor {
   std::optional<OutputFile> json_;
   std::optional<Screen> screen_;
   std::map<std::string, SensorView> sensors_;
-  std::set<std::string> others_;  // that publish and are not wanted
-  std::uint64_t refused_ = 0;     // that are no message of their channel's type
+  std::set<std::string> others_;  // publishing but not selected
+  std::uint64_t refused_ = 0;     // messages that are not of their channel's type
   Clock::time_point start_ = Clock::now(), last_data_ = start_, last_look_ = start_;
-  std::uint64_t crowded_ = 0;  // of more sensors than kMostSensors
+  std::uint64_t crowded_ = 0;  // messages of sensors beyond kMostSensors
   bool waiting_reported_ = false;
   struct {
     LineStyle style{};
-    std::string only{};                                         // this sensor; empty: all
-    std::optional<std::map<std::string, SensorView>> paused{};  // as they stood then
+    std::string only{};                                         // only this sensor; empty: all
+    std::optional<std::map<std::string, SensorView>> paused{};  // copy that is shown while paused
     bool help = false;
     std::size_t lines_drawn = 0;
   } look_;  // of the screen

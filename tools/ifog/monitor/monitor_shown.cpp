@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person sees of the monitor at a terminal, and its keys.
+// Screen and keys of the monitor on a terminal.
 #include <iterator>
 #include <utility>
 
@@ -15,7 +15,7 @@ std::string Monitor::who_publishes() const {
   return out;
 }
 
-// For what, and since when.
+// The sensor or network that is waited for, and for how long.
 std::vector<std::string> Monitor::waiting() const {
   const std::string wanted =
       options_.sensor.empty() ? "a sensor's messages (IFOG_*)" : in_quotes(options_.sensor);

@@ -24,7 +24,7 @@ constexpr std::array kColours{std::pair{Tone::good, static_cast<short>(COLOR_GRE
                               std::pair{Tone::warning, static_cast<short>(COLOR_YELLOW)},
                               std::pair{Tone::bad, static_cast<short>(COLOR_RED)}};
 
-// As much of it as has room: longer text would continue in the next line.
+// Truncates, because longer text would continue in the next line.
 std::string cut(const std::string& text, int columns) {
   std::mbstate_t state{};
   int used = 0;
@@ -42,10 +42,10 @@ std::string cut(const std::string& text, int columns) {
 }  // namespace
 
 Screen::Screen() {
-  // Units and spark lines are UTF-8, whatever the rest of the locale is.
+  // Units and spark lines are UTF-8 in any locale.
   if (std::setlocale(LC_CTYPE, "") == nullptr || std::strcmp(nl_langinfo(CODESET), "UTF-8") != 0)
     std::setlocale(LC_CTYPE, "C.UTF-8");
-  // initscr() ends the program where the terminal is unknown; newterm() says so.
+  // initscr() exits if the terminal is unknown; newterm() returns an error.
   screen_ = newterm(nullptr, stdout, stdin);
   if (screen_ == nullptr) {
     const char* const term = std::getenv("TERM");
@@ -109,12 +109,12 @@ void Screen::draw(const std::vector<ShownLine>& lines, const std::string& foot) 
   const int rows = getmaxy(stdscr), columns = getmaxx(stdscr);
   lines_ = lines.size();
   const auto room = static_cast<std::size_t>(std::max(1, rows - 1));
-  // Nothing is scrolled out of sight that would fit.
+  // Limits scrolling to lines that do not fit.
   first_ = std::min(first_, lines_ > room ? lines_ - room : 0);
   erase();
   for (std::size_t row = 0; row < room && first_ + row < lines_; ++row) {
     const ShownLine& line = lines[first_ + row];
-    // A pair that was not made is no colour.
+    // A pair that was not defined has no colour.
     const int look =
         line.tone == Tone::figure ? static_cast<int>(A_BOLD) : COLOR_PAIR(static_cast<int>(line.tone));
     attron(look);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A terminal as a whole, on ncurses: lines that can be scrolled, a line at its foot, keys. As long as it
-// lives nothing else may write there.
+// The whole terminal, with ncurses: lines that scroll, a line at the foot, and keys. Nothing else may write
+// to the terminal while it exists.
 #pragma once
 
 #include <cstddef>
@@ -13,17 +13,17 @@ namespace ifog::tools {
 
 class Screen {
  public:
-  // Throws std::runtime_error where the terminal cannot be drawn on.
+  // Throws std::runtime_error if the terminal has no such capability.
   Screen();
   ~Screen();
   Screen(const Screen&) = delete;
   Screen& operator=(const Screen&) = delete;
 
-  // The next key that was pressed and does not scroll, a character; 0: none is waiting.
+  // The next character that does not scroll; 0: none.
   int key();
 
   [[nodiscard]] std::size_t width() const;
-  // Draws what fits, from the line that was scrolled to.
+  // Draws what fits, from the scroll position on.
   void draw(const std::vector<ShownLine>& lines, const std::string& foot);
 
  private:

@@ -30,7 +30,7 @@ void SensorView::take(const rate_t& message) {
     Sums& sums = sums_[a];
     sums.denoised.add(message.denoised[a]);
     sums.raw.add(message.raw[a]);
-    sums.raw_low = std::fmin(sums.raw_low, message.raw[a]);  // a NaN is ignored
+    sums.raw_low = std::fmin(sums.raw_low, message.raw[a]);  // ignores NaN
     sums.raw_high = std::fmax(sums.raw_high, message.raw[a]);
     sums.angle = message.angle[a];
   }
@@ -79,7 +79,7 @@ std::vector<SensorView::Count> SensorView::all_losses() const {
 std::vector<SensorView::Count> SensorView::losses() const {
   std::vector<Count> out = all_losses();
   for (std::size_t i = 0; i < forgotten_.size(); ++i) {
-    // A daemon that was started again counts from nought.
+    // A restarted daemon counts from 0.
     if (out[i].count >= forgotten_[i]) out[i].count -= forgotten_[i];
   }
   std::erase_if(out, [](const Count& each) { return each.count == 0; });

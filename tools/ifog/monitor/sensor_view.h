@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a person is shown of one sensor: figures of the last interval, what was lost, where the rate went.
+// The values of one sensor that are shown: figures of the last interval, losses, and the recent rate.
 #pragma once
 
 #include <array>
@@ -26,19 +26,19 @@ struct AxisView {
 
 class SensorView {
  public:
-  // Two statuses have not come: a daemon that was killed says nothing of its end.
+  // Two status messages are missing: a killed daemon does not report its end.
   static constexpr double kStale_s = 2.5;
-  // Intervals that are remembered.
+  // Number of intervals in the history.
   static constexpr std::size_t kRemembered = 120;
   struct Second {
-    double raw_low_radps, raw_high_radps, rate_radps;  // NaN: nothing came
+    double raw_low_radps, raw_high_radps, rate_radps;  // NaN: no data
   };
 
   void take(const rate_t& message);
   void take(status_t message);
-  // The figures are those since the last call from here on.
+  // Computes the figures from the messages since the last call.
   void end_interval(double seconds);
-  // Losses are counted from here on.
+  // Counts losses from now on.
   void forget_losses();
 
   [[nodiscard]] std::int64_t messages() const { return messages_; }
@@ -47,7 +47,7 @@ class SensorView {
   // Age of the last message, s, at the end of the interval.
   [[nodiscard]] double silent_s() const { return silent_s_; }
   [[nodiscard]] bool silent() const { return silent_s_ > kStale_s; }
-  // Null: none was received, or it is too old, s, to describe the present.
+  // Null: none received, or too old.
   [[nodiscard]] const status_t* live_status() const {
     return status_.message && status_.age_s <= kStale_s ? &*status_.message : nullptr;
   }
@@ -55,7 +55,7 @@ class SensorView {
   [[nodiscard]] bool two_publishers() const { return way_.two_publishers(); }
   [[nodiscard]] double message_rate_hz() const { return rate_hz_; }
   [[nodiscard]] const std::string& model() const { return model_; }
-  [[nodiscard]] const std::vector<AxisView>& axes() const { return axes_; }  // none: nothing came
+  [[nodiscard]] const std::vector<AxisView>& axes() const { return axes_; }  // empty: no data
   [[nodiscard]] std::size_t axis_count() const { return sums_.size(); }      // of the last message
   [[nodiscard]] const std::deque<Second>& history(std::size_t axis) const { return history_[axis]; }
   [[nodiscard]] const std::optional<status_t>& status() const { return status_.message; }
@@ -64,9 +64,9 @@ class SensorView {
     std::string_view name;
     std::int64_t count;
   };
-  // Messages of the interval with each flag, without those that have none.
+  // Number of messages in the interval per flag, without zeros.
   [[nodiscard]] std::vector<Count> flags() const;
-  // Whatever was lost, refused or skipped on the way from the device to here; empty: nothing.
+  // Losses, rejections and skips between device and here, without zeros.
   [[nodiscard]] std::vector<Count> losses() const;
 
  private:
@@ -78,7 +78,7 @@ class SensorView {
   [[nodiscard]] std::vector<Count> all_losses() const;
 
   std::int64_t messages_ = 0, in_interval_ = 0;
-  bool received_ = false;  // anything, in the interval
+  bool received_ = false;  // any message in the interval
   double silent_s_ = 0.0;
   bool judged_ = false, shown_ = false;
   double rate_hz_ = 0.0;

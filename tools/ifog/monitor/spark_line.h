@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A line of eight heights, one a value, from the least to the greatest of them.
+// A line of block characters with eight heights, scaled from the least to the greatest value.
 #pragma once
 
 #include <algorithm>
@@ -13,10 +13,10 @@ namespace ifog::tools {
 
 struct SparkLine {
   std::string text;
-  double span;  // its height: the greatest less the least; NaN without a number
+  double span;  // greatest minus least value; NaN without values
 };
 
-// The last `width` of `values`; a blank where a value is no number.
+// The last `width` of `values`; a blank for NaN.
 template <typename Values>
 SparkLine spark_line(const Values& values, std::size_t width) {
   constexpr std::array<const char*, 8> kHeights{"▁", "▂", "▃", "▄", "▅", "▆", "▇", "█"};

@@ -44,7 +44,7 @@ Unit unit_for(double rate_radps, RateUnit wanted) {
   return std::abs(rate_radps) / kDegree < 0.1 ? kHourly : kSecondly;
 }
 
-// Beyond a tenth no crystal is off: a recording is played faster or slower than it was made.
+// An error above 10 % is not the clock's: a recording is played at another speed.
 std::string clock_text(double offset_ppm) {
   return std::abs(offset_ppm) > 1e5 ? "not in real time" : formatted("%+.0f ppm", offset_ppm);
 }
@@ -64,13 +64,13 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
                     angle = formatted("  angle %+.6f°", axis.angle_rad / kDegree);
   if (!std::isfinite(axis.rate_radps) && axis.angle_rad == 0.0)
     return "  " + std::string(axis_name(a, sensor.axes().size())) + "  not measured";
-  // What there is no room for goes, the least needed first.
+  // If there is not enough space, the least important parts are dropped first.
   std::string out = rate + noise + raw + angle;
   if (style.width != 0 && report::characters_in(out) > style.width) out = rate + noise + angle;
   if (style.width != 0 && report::characters_in(out) > style.width) out = rate + angle;
   constexpr std::size_t kMostSpark = 60, kLeastSpark = 4;
   if (style.width == 0) return out;
-  // How high the line is, in the rate's unit.
+  // Height of the line in the rate's unit.
   const auto scale = [&](const SparkLine& line) { return "  span " + number("", line.span); };
   const std::size_t used = report::characters_in(out) + 2;
   if (used + kLeastSpark > style.width) return out;
@@ -85,7 +85,7 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
   return out + "  " + line.text + scale(line);
 }
 
-// By name and date where its file is here, else by its identity.
+// By name and date if its file is here, otherwise by its identity.
 std::string model_text(const std::string& identity, const KnownSensor* known) {
   if (identity.empty()) return "";
   if (known != nullptr && known->identity == identity) return "  model " + known->model;
@@ -106,7 +106,7 @@ std::string head_line(std::string_view name, const SensorView& sensor, const Kno
   return out + (sensor.silent() ? "" : model_text(sensor.model(), known));
 }
 
-// Environment channels by name; the age of one that is not fresh. One of the driver's that never came the sensor does not have.
+// Environment channels by name; with age if not fresh. Omits those of the driver that never had a value.
 std::vector<std::string> channels(const status_t& status, const KnownSensor* known) {
   constexpr double kFresh_s = 2.0;
   std::vector<std::string> out;
@@ -123,7 +123,7 @@ std::vector<std::string> channels(const status_t& status, const KnownSensor* kno
 
 std::vector<std::string> health(const status_t& status) {
   std::vector<std::string> out;
-  // A file's samples arrive at no time, and an axis that has had no value has no mean square.
+  // Samples from a file have no latency, and an axis without values has no mean square.
   if (status.latency_max_us > 0.0)
     out.push_back(formatted("latency p50 %.0f p99 %.0f max %.0f us", status.latency_p50_us,
                             status.latency_p99_us, status.latency_max_us));
@@ -136,7 +136,7 @@ std::vector<std::string> health(const status_t& status) {
   return out;
 }
 
-// Empty without any.
+// Empty if there are none.
 std::vector<std::string> counted(const std::string& when, const std::vector<SensorView::Count>& counts) {
   std::vector<std::string> out;
   out.reserve(counts.size());
@@ -192,13 +192,13 @@ std::vector<ShownLine> view_lines(std::string_view name, const SensorView& senso
                    Tone::warning});
   for (std::size_t a = 0; a < sensor.axes().size(); ++a)
     out.push_back({axis_line(sensor, a, style), Tone::figure});
-  // Each line says of when its counts are: a kind of fault may stand in both.
+  // The same kind of fault may be in both lines; each line names its time.
   add(counted("in the last second:", sensor.flags()));
   if (sensor.two_publishers())
     add({"two publishers send on this channel: two daemons, or a log that is played?"}, Tone::bad);
   if (sensor.silent()) return out;
   const auto losses = counted("so far:", sensor.losses());
-  // What is no longer received is not known to be nothing.
+  // Without a recent status, zero losses are not certain.
   if (!losses.empty() || status != nullptr || sensor.status_age_s() <= SensorView::kStale_s)
     add(losses.empty() ? std::vector<std::string>{"nothing lost"} : losses,
         losses.empty() ? Tone::good : Tone::warning);

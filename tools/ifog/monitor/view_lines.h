@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A sensor as lines of text, for a screen of any width and for a file.
+// A sensor as lines of text, for a screen of any width or a file.
 #pragma once
 
 #include <set>
@@ -20,30 +20,31 @@ enum class RateUnit {
 };
 
 struct LineStyle {
-  std::size_t width = 0;  // columns; 0: as wide as it takes
-  bool details = true;    // latency, books, channels
+  std::size_t width = 0;  // columns; 0: unlimited
+  bool details = true;    // latency, balances, channels
   RateUnit unit = RateUnit::automatic;
 };
 
-// What this computer's own files say of a sensor on LCM: its messages carry neither driver nor transport, and of the model
-// an identity.
+// Information in this computer's files about a sensor on LCM. Its messages contain neither driver nor
+// transport, and only the model's identity.
 struct KnownSensor {
-  std::string driver;           // "kvh1750, serial /dev/ttyUSB0"
-  std::string model, identity;  // "nose.toml of 2026-11-27 01:30", and that model's identity; "" without one
-  std::string proposal;         // that waits, in one line; "" for none
-  std::set<std::string> channels;  // configured besides those of its own frames
+  std::string driver;  // "kvh1750, serial /dev/ttyUSB0"
+  // "nose.toml of 2026-11-27 01:30", and that model's identity; "" without a model
+  std::string model, identity;
+  std::string proposal;            // one line; "" without a proposal
+  std::set<std::string> channels;  // configured in addition to those in its frames
 };
 
 const char* tone_name(Tone tone);
 
-// How the sensor does, in a word.
+// State of the sensor as a colour.
 Tone tone_of(const SensorView& sensor);
 
-// Names from the network are unchanged in them, but without control characters. `known`: null for nothing.
+// Control characters in names from the network are removed. `known`: null if nothing is known.
 std::vector<ShownLine> view_lines(std::string_view name, const SensorView& sensor, const LineStyle& style,
                                   const KnownSensor* known = nullptr);
 
-// Words one behind the other, in as many lines as it takes; the second and later ones are indented by four.
+// Joins parts into as many lines as necessary; lines after the first are indented by four.
 std::vector<std::string> wrapped(const std::vector<std::string>& parts, std::string_view separator,
                                  std::size_t width);
 

@@ -71,7 +71,7 @@ std::string WebMonitor::data(const std::string& wanted) {
     out["chosen"] = shown->first;
     out["sensor"] = of_sensor(shown->first, shown->second, known_.of(shown->first));
   }
-  // Names may hold any bytes.
+  // Names may contain any bytes.
   return out.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
 }
 

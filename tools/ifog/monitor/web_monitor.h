@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page shows, as JSON: of every sensor its name, of one its lines, figures, last two minutes and Allan deviation so far.
+// Data of the page as JSON: the sensors' names, and for one sensor its lines, figures, last two minutes and
+// Allan deviation.
 #pragma once
 
 #include <chrono>
@@ -16,11 +17,11 @@ namespace ifog::tools {
 
 class WebMonitor {
  public:
-  // `waiting`: what is waited for, while there is no sensor. All three are read under the guard. Throws as PageServer does.
+  // `waiting`: text while there is no sensor. All three are read under the guard. Throws as PageServer does.
   WebMonitor(const PageAddress& address, const std::map<std::string, SensorView>& sensors,
              const KnownHere& known, std::function<std::string()> waiting);
 
-  // To be held by who changes the sensors, what is known of them, or calls the following.
+  // Lock it to change the sensors or what is known of them, and to call the following functions.
   [[nodiscard]] std::mutex& guard() { return guard_; }
   void end_interval() { interval_ended_ = Clock::now(); }
 
@@ -33,7 +34,7 @@ class WebMonitor {
   std::function<std::string()> waiting_;
   Clock::time_point interval_ended_ = Clock::now();
   std::mutex guard_;
-  PageServer server_;  // last: it calls data() from its first moment to its end
+  PageServer server_;  // last, because it calls data() during its whole life
 };
 
 }  // namespace ifog::tools

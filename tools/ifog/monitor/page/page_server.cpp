@@ -26,7 +26,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// A client's socket. httplib has limits for each read only: who sends a byte every few seconds would stay for ever.
+// A client's socket with a limit for the whole request, because httplib limits only each read.
 class Client final : public httplib::Stream {
  public:
   Client(int socket, const std::atomic<bool>& stop) : socket_(socket), stop_(stop) {}
@@ -34,7 +34,7 @@ class Client final : public httplib::Stream {
   bool is_writable() const override { return wait(POLLOUT); }
   ssize_t read(char* out, std::size_t size) override {
     if (at_ == held_) {
-      // Full: no browser asks at such length.
+      // Full: browsers send shorter requests.
       if (held_ == buffer_.size() || !wait(POLLIN)) return -1;
       const ssize_t got = ::recv(socket_, buffer_.data() + held_, buffer_.size() - held_, 0);
       if (got <= 0) return got;
@@ -74,7 +74,7 @@ class Client final : public httplib::Stream {
   std::size_t at_ = 0, held_ = 0;
 };
 
-// As httplib's own, but with an end: who is not answered yet waits in the kernel's queue.
+// Like httplib's own, but with a limit: further clients wait in the kernel's queue.
 class Clients final : public httplib::TaskQueue {
  public:
   void enqueue(std::function<void()> answer) override {
@@ -119,7 +119,7 @@ std::optional<PageAddress> page_address(const std::string& text) {
 class PageServer::Server final : public httplib::Server {
  public:
   Server(const PageAddress& address, Data data) : data_(std::move(data)), local_(is_loopback(address.host)) {
-    // Not httplib's own, with which a second monitor would share the port.
+    // httplib's own options would let a second monitor share the port.
     set_socket_options([](int socket) {
       const int on = 1;
       ::setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &on, sizeof on);
@@ -144,7 +144,7 @@ class PageServer::Server final : public httplib::Server {
       listen_after_bind();
       ended_ = true;
     });
-    // Before that it would not hear of stop().
+    // Before listening, stop() would have no effect.
     while (!is_running() && !ended_) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   ~Server() override {
@@ -161,7 +161,7 @@ class PageServer::Server final : public httplib::Server {
       response.status = status;
       response.set_content(why, "text/plain");
     };
-    // Another site's page whose name was made to lead here may not read.
+    // Protects against DNS rebinding: another site's name may resolve to this address.
     if (local_ && !is_loopback(host.substr(0, end)))
       return refuse(403, "expected this computer's own name: localhost\n");
     if (request.method != "GET" && request.method != "HEAD") return refuse(405, "read only\n");
@@ -174,14 +174,14 @@ class PageServer::Server final : public httplib::Server {
     refuse(404, "expected /\n");
   }
 
-  // As httplib's own does it for TLS: with a stream of one's own.
+  // As httplib does for TLS, with a stream class of its own.
   bool process_and_close_socket(int socket) override {
     bool done = false;
     try {
       Client client(socket, stop_);
       bool closed = false;
       done = process_request(client, true, closed, [](httplib::Request& request) { request.ranges.clear(); });
-    } catch (const std::exception&) {  // of this client alone
+    } catch (const std::exception&) {  // of this client only
     }
     ::shutdown(socket, SHUT_RDWR);
     ::close(socket);
