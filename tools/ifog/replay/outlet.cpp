@@ -14,7 +14,7 @@
 namespace ifog::tools {
 namespace {
 
-constexpr int kPatience_ms = 100;  // between two looks at whether the user wants to stop
+constexpr int kPatience_ms = 100;  // between checks for an interrupt
 
 }  // namespace
 
@@ -22,7 +22,7 @@ ssize_t Outlet::write(const void* bytes, std::size_t n) { return ::write(fd_, by
 
 void Outlet::pause(int error) {
   if (error == ENOBUFS) {
-    // A CAN interface's queue is full, and poll() knows nothing of it: wait for about a frame at 1 Mbit/s.
+    // poll() does not see a full queue of a CAN interface: wait for about one frame at 1 Mbit/s.
     const timespec frame{0, 100'000};
     nanosleep(&frame, nullptr);
     return;
@@ -35,7 +35,7 @@ bool Outlet::send(const void* bytes, std::size_t n, bool whole) {
   const auto* at = static_cast<const unsigned char*>(bytes);
   while (n > 0) {
     const ssize_t accepted = write(at, n);
-    // A datagram of which a part went is another one: nothing a second write could mend.
+    // Part of a datagram is a different datagram; a second write cannot repair that.
     if (whole && accepted > 0 && static_cast<std::size_t>(accepted) != n)
       throw std::runtime_error(name_ + ": cannot send: " + std::to_string(accepted) + " of " +
                                std::to_string(n) + " bytes of a frame were accepted");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A descriptor that `ifog replay` writes to. Where the system has no room at the moment it tries again; an
-// interrupt by the user ends that.
+// File descriptor to which `ifog replay` writes. It tries again while the system has no space, until the user
+// interrupts.
 #pragma once
 
 #include <sys/types.h>
@@ -19,18 +19,18 @@ class Outlet {
   Outlet(const Outlet&) = delete;
   Outlet& operator=(const Outlet&) = delete;
 
-  // All bytes, in as many portions as the system takes. False: interrupted before. Throws std::runtime_error
-  // with one line: the other end is gone, or any other failure.
+  // Sends all bytes, in several writes if necessary. False: interrupted. Throws std::runtime_error with one
+  // line if the other end is closed or writing fails.
   bool send_bytes(const void* bytes, std::size_t n) { return send(bytes, n, false); }
-  // One datagram, which the system accepts whole or not at all. As above.
+  // Sends one datagram as a whole. Errors as above.
   bool send_datagram(const void* bytes, std::size_t n) { return send(bytes, n, true); }
 
-  // Times the system had no room (ENOBUFS, EAGAIN), or accepted a part only.
+  // Number of writes that the system rejected (ENOBUFS, EAGAIN) or accepted in part.
   [[nodiscard]] std::uint64_t retries() const { return retries_; }
   [[nodiscard]] int fd() const { return fd_; }
 
  protected:
-  // The two places where it meets the system. write() as write(2); pause() waits for room, not for ever.
+  // System calls, for tests: write() as write(2); pause() waits for space for a limited time.
   virtual ssize_t write(const void* bytes, std::size_t n);
   virtual void pause(int error);
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog replay: a recording onto a CAN interface, a serial device, a file or a FIFO, at the times it was
-// recorded.
+// ifog replay: sends a recording to a CAN interface, a serial device, a file or a FIFO at the recorded times.
 //
-// Every deadline is computed from the first item's, so that lateness never adds up, and slept for by absolute
-// time on CLOCK_MONOTONIC. Lateness is what passes from an item's deadline until the system has accepted it.
+// Deadlines are computed from the first item's, so that lateness does not accumulate, with absolute sleeps on
+// CLOCK_MONOTONIC. Lateness is the time from an item's deadline until the system has accepted it.
 #include <sched.h>
 #include <sys/mman.h>
 #include <sys/prctl.h>
@@ -40,26 +39,26 @@ struct ReplaySettings {
   std::string to, json;
   SerialSettings line;
   double speed = 1.0;
-  std::uint64_t loops = 1;  // 0: for ever
+  std::uint64_t loops = 1;  // 0: unlimited
   double spin_us = 0.0;
   bool realtime = false;
 };
 
 struct ReplayResult {
   std::uint64_t sent = 0;    // accepted by the system
-  std::uint64_t wanted = 0;  // 0: without end
+  std::uint64_t wanted = 0;  // 0: unlimited
   bool failed = false;
-  std::int64_t begin_ns = 0;  // monotonic: of the first deadline
+  std::int64_t begin_ns = 0;  // CLOCK_MONOTONIC, of the first deadline
   double seconds = 0.0;
   DurationHistogram late;
 };
 
-// Time from being ready to the first deadline: the first item is slept for like every other.
+// From the start to the first deadline, so that the first item is delayed like the others.
 constexpr std::int64_t kLead_ns = 20'000'000;
 constexpr std::int64_t kLongestSleep_ns = 100'000'000;
-// Drawing a progress bar takes time that only a pause in the recording has.
+// The progress bar is drawn only in pauses of at least this length.
 constexpr std::int64_t kPauseForProgress_ns = 2'000'000;
-constexpr std::int64_t kProgressEvery_ns = 500'000'000;  // within a long pause, so often
+constexpr std::int64_t kProgressEvery_ns = 500'000'000;  // interval within a long pause
 
 // False: interrupted.
 bool sleep_until(std::int64_t due_ns, std::int64_t spin_ns) {
@@ -68,14 +67,14 @@ bool sleep_until(std::int64_t due_ns, std::int64_t spin_ns) {
     const std::int64_t now = monotonic_ns();
     if (now >= due_ns) return true;
     if (due_ns - now <= spin_ns) continue;
-    // In slices, for a signal that arrives between the question above and the sleep would else be waited out.
+    // In slices, because a signal may arrive between the check above and the sleep.
     const std::int64_t until = std::min(due_ns - spin_ns, now + kLongestSleep_ns);
     const timespec when{until / 1'000'000'000, until % 1'000'000'000};
     clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &when, nullptr);
   }
 }
 
-// What one round of a loop takes: the recording and one mean step to its beginning.
+// Duration of one loop: the recording and one mean step.
 std::int64_t round_ns(const ReplayTimeline& timeline) {
   const std::size_t n = timeline.size();
   if (n < 2) return 1'000'000'000;
@@ -89,7 +88,7 @@ void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, Repl
   const bool paced = settings.speed > 0.0;
   const auto spin_ns = static_cast<std::int64_t>(settings.spin_us * 1e3);
   const std::int64_t round = round_ns(timeline);
-  // By the recording's time where it is paced: a pause of an hour is an hour of it, with or without frames.
+  // Progress by recorded time if paced, so that pauses count.
   constexpr double kPerSecond = 1e3;
   const double length_s = static_cast<double>(round) * 1e-9 * static_cast<double>(settings.loops);
   const auto steps = [&](double recorded_s) { return static_cast<std::size_t>(recorded_s * kPerSecond); };
@@ -123,7 +122,7 @@ void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, Repl
 }
 
 void prepare(const ReplaySettings& settings) {
-  // A sleep of an ordinary thread may otherwise end 50 µs late.
+  // Otherwise the kernel may end a sleep 50 µs late.
   prctl(PR_SET_TIMERSLACK, 1UL);
   if (!settings.realtime) return;
   const auto going_without = [](const char* what) {
@@ -135,7 +134,7 @@ void prepare(const ReplaySettings& settings) {
   if (sched_setscheduler(0, SCHED_FIFO, &priority) != 0) going_without("SCHED_FIFO");
 }
 
-// Whether it came to an end of its own. One without end comes to its end by the interrupt.
+// True if all was sent. An unlimited loop ends with an interrupt.
 bool complete(const ReplayResult& result) {
   return !result.failed && (!interrupted() || result.wanted == 0 || result.sent == result.wanted);
 }
@@ -202,13 +201,13 @@ void run(ReplaySettings settings) {
     warn("ifog replay: %s\n", error.what());
     result.failed = true;
   }
-  result.sent -= target->held();
+  result.sent -= target->buffered();
   result.seconds = std::max(0.0, static_cast<double>(monotonic_ns() - result.begin_ns) * 1e-9);
   report(settings, timeline, *target, result);
   if (!complete(result)) throw Failed("not all was sent");
 }
 
-// "" or what is wrong with it, as CLI11 wants it.
+// "" or the error in the value, for CLI11.
 std::string names_a_target(const std::string& text) {
   try {
     ReplayDestination::parse(text);

@@ -28,14 +28,14 @@
 namespace ifog::tools {
 namespace {
 
-constexpr int kLook_ms = 100;             // between two looks at whether the user wants to stop
-constexpr std::size_t kHeld = 1U << 16U;  // bytes collected when nothing is due at a time of its own
+constexpr int kLook_ms = 100;                   // between checks for an interrupt
+constexpr std::size_t kBufferSize = 1U << 16U;  // buffer size in bytes if items have no deadlines
 
 [[noreturn]] void fail(const std::string& name, const std::string& what, int error) {
   throw std::runtime_error(name + ": " + what + ": " + std::generic_category().message(error));
 }
 
-// The wait for a FIFO's reader can be interrupted: null.
+// Null if interrupted while waiting for the FIFO's reader.
 std::unique_ptr<OutputFile> open_fifo(const std::string& name) {
   struct stat info {};
   const bool there = stat(name.c_str(), &info) == 0;
@@ -88,8 +88,7 @@ IpSocket connected_udp(const std::string& name) {
   return socket;
 }
 
-// As a sensor or a serial server does: listens there and serves the first that connects. Not open when
-// interrupted meanwhile.
+// Listens like a sensor or serial server and accepts the first client. Not open if interrupted.
 IpSocket served_tcp(const std::string& name) {
   const HostAndPort at = read_host_and_port(name);
   socklen_t size = 0;
@@ -103,7 +102,7 @@ IpSocket served_tcp(const std::string& name) {
   for (;;) {
     IpSocket served = IpSocket::accepted(listener);
     if (served.is_open()) {
-      // Each item at its time.
+      // Send each item at its time.
       if (const int error = served.set(IPPROTO_TCP, TCP_NODELAY, 1); error != 0)
         fail(name, "cannot serve", error);
       return served;
@@ -156,18 +155,18 @@ bool ReplayTarget::send(std::size_t i) {
     item = std::span(timeline_.bytes).subspan(begin, timeline_.blocks[i].end - begin);
   }
   if (form_ == Form::datagrams) return outlet_.send_datagram(item.data(), item.size());
-  if (!hold_) return outlet_.send_bytes(item.data(), item.size());
-  held_.insert(held_.end(), item.begin(), item.end());
-  if (held_.size() >= kHeld) return flush();
-  ++held_items_;
+  if (!buffering_) return outlet_.send_bytes(item.data(), item.size());
+  buffer_.insert(buffer_.end(), item.begin(), item.end());
+  if (buffer_.size() >= kBufferSize) return flush();
+  ++buffered_items_;
   return true;
 }
 
-// What was interrupted in the middle is not sent a second time, and has not been sent.
+// After an interrupt the rest is neither sent nor repeated.
 bool ReplayTarget::flush() {
-  const bool done = outlet_.send_bytes(held_.data(), held_.size());
-  held_.clear();
-  if (done) held_items_ = 0;
+  const bool done = outlet_.send_bytes(buffer_.data(), buffer_.size());
+  buffer_.clear();
+  if (done) buffered_items_ = 0;
   return done;
 }
 
@@ -178,11 +177,11 @@ bool ReplayTarget::finish() {
 }
 
 std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const ReplayTimeline& timeline,
-                                          SerialSettings line, bool hold) {
+                                          SerialSettings line, bool buffering) {
   using Kind = ReplayDestination::Kind;
   using Form = ReplayTarget::Form;
   const auto target = [&](int fd, Form form, std::function<void()> finish) {
-    return std::make_unique<ReplayTarget>(to.name, fd, form, timeline, hold, std::move(finish));
+    return std::make_unique<ReplayTarget>(to.name, fd, form, timeline, buffering, std::move(finish));
   };
   const auto expect_bytes = [&](const char* where) {
     if (timeline.is_can())

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where `ifog replay` sends to.
+// Destinations of `ifog replay`.
 #pragma once
 
 #include <cstddef>
@@ -19,22 +19,22 @@ namespace ifog::tools {
 class ReplayTarget {
  public:
   enum class Form { stream, datagrams, can_frames };
-  // name, fd: see Outlet. finish: behind the last byte, and what keeps the descriptor open until then.
-  ReplayTarget(std::string name, int fd, Form form, const ReplayTimeline& timeline, bool hold,
+  // name, fd: see Outlet. finish: called after the last byte; it also keeps the descriptor open until then.
+  ReplayTarget(std::string name, int fd, Form form, const ReplayTimeline& timeline, bool buffering,
                std::function<void()> finish)
       : outlet_(std::move(name), fd),
         form_(form),
         timeline_(timeline),
-        hold_(hold),
+        buffering_(buffering),
         finish_(std::move(finish)) {}
 
-  // Sends item i and returns once the system has accepted it; waits where the system has no room for it at the
-  // moment. False: interrupted before. Throws std::runtime_error when the target is gone.
+  // Sends item i and returns when the system has accepted it; waits while the system has no space. False:
+  // interrupted. Throws std::runtime_error if the target is closed.
   bool send(std::size_t i);
-  // Sends what is still held. False: interrupted.
+  // Sends what is still buffered. False: interrupted.
   bool finish();
-  // Items that send() accepted and the system has not.
-  [[nodiscard]] std::uint64_t held() const { return held_items_; }
+  // Items in the buffer, accepted by send() but not yet by the system.
+  [[nodiscard]] std::uint64_t buffered() const { return buffered_items_; }
   [[nodiscard]] std::uint64_t retries() const { return outlet_.retries(); }
 
  private:
@@ -43,10 +43,10 @@ class ReplayTarget {
   Outlet outlet_;
   Form form_;
   const ReplayTimeline& timeline_;
-  bool hold_;
+  bool buffering_;
   std::function<void()> finish_;
-  std::vector<std::uint8_t> held_;
-  std::uint64_t held_items_ = 0;
+  std::vector<std::uint8_t> buffer_;
+  std::uint64_t buffered_items_ = 0;
 };
 
 struct ReplayDestination {
@@ -60,12 +60,12 @@ struct ReplayDestination {
   [[nodiscard]] bool is_can() const { return kind == Kind::can; }
 };
 
-// Opens it; a FIFO waits for its reader and a TCP port, on which this end listens as a sensor does, for its
-// client; null when interrupted meanwhile. Over UDP each item is a datagram. `line` is for a serial device,
-// its `device` is set here. `hold` collects bytes before they are written, for sending as fast as possible.
-// CAN frames go into a file as a candump log. Keeps a reference to the timeline. Throws std::runtime_error:
-// one line.
+// Opens a destination. A FIFO waits for its reader; a TCP port listens, as a sensor does, and waits for its
+// client; null if interrupted. With UDP each item is a datagram. `line` is for a serial device; its `device`
+// is set here. `buffering` is for sending as fast as possible. CAN frames are written to a file as candump
+// log. Keeps a reference to the timeline. Throws std::runtime_error with one line.
 std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& destination,
-                                          const ReplayTimeline& timeline, SerialSettings line, bool hold);
+                                          const ReplayTimeline& timeline, SerialSettings line,
+                                          bool buffering);
 
 }  // namespace ifog::tools

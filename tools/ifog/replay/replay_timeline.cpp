@@ -37,7 +37,7 @@ FileKind kind_of(const ReplaySource& source, const InputFile& file) {
   if (source.format == "csv") return FileKind::capture;
   if (source.input.has_layout()) return FileKind::capture;
   const FileKind found = file_kind(file);
-  // A line's text (DSP-3000) looks like any other.
+  // Text of a sensor (DSP-3000) is not recognised by its content.
   const bool described = source.input.has_driver() || source.block_bytes != 0;
   return found == FileKind::unknown && described ? FileKind::bytes : found;
 }
@@ -67,7 +67,7 @@ ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
   return timeline;
 }
 
-// Blocks of a given size at a given rate.
+// Cuts blocks of a given size at a given rate.
 void cut_evenly(const ReplaySource& source, ReplayTimeline& timeline) {
   for (std::size_t end = 0; end < timeline.bytes.size();) {
     end = std::min(end + source.block_bytes, timeline.bytes.size());
@@ -76,7 +76,7 @@ void cut_evenly(const ReplaySource& source, ReplayTimeline& timeline) {
   }
 }
 
-// Blocks that end where a sample does, at the device's time or else at the nominal rate by its counter.
+// Cuts blocks at the ends of samples, at the device's time or by its counter and the nominal rate.
 void cut_by_driver(const ReplaySource& source, ReplayTimeline& timeline) {
   DriverInstance driver = source.input.make_driver();
   const ifog_description& d = driver.description();
@@ -94,7 +94,7 @@ void cut_by_driver(const ReplaySource& source, ReplayTimeline& timeline) {
         static_cast<void>(steps.first(frame));
       } else if (const Timeline::Step step = steps.next(frame); !step.out_of_turn) {
         time_s += step.dt_s;
-      }  // what came again or late is sent where it came
+      }  // repeated or late samples keep their place
       timeline.blocks.push_back({nanoseconds(time_s), i + 1});
     });
   if (timeline.blocks.empty())
@@ -142,7 +142,7 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   return timeline;
 }
 
-// Each delivery at the time at which it came.
+// Each delivery at its arrival time.
 ReplayTimeline from_flight(const ReplaySource& source, InputFile& file) {
   FlightInput flight(file);
   ReplayTimeline timeline;
@@ -161,7 +161,7 @@ ReplayTimeline from_flight(const ReplaySource& source, InputFile& file) {
   const SensorConfig sensor = flight.sensor();
   if (!sensor.transport.interface.empty()) timeline.interfaces = {sensor.transport.interface};
   if (!flight.header().interface.empty()) timeline.interfaces = {flight.header().interface};
-  // The line's speed as it was; a driver that is not here leaves it to --baud.
+  // The recorded baud rate; without the driver, --baud is needed.
   timeline.baud = sensor.transport.serial.baud;
   if (timeline.baud == 0 && plugin_is_there(flight.header().driver))
     timeline.baud =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `ifog replay` sends: blocks of bytes or CAN frames, each with its recorded time, all in memory so that
-// nothing but the sending happens between two deadlines.
+// Data of `ifog replay`: blocks of bytes or CAN frames with their recorded times, all in memory, so that
+// nothing delays sending.
 #pragma once
 
 #include <cstddef>
@@ -21,10 +21,10 @@ struct ReplayTimeline {
   std::vector<ifog_can_frame> frames;  // arrival_ns is the recorded time
   std::vector<std::uint8_t> bytes;     // either these or frames
   std::vector<Block> blocks;
-  // For writing a log again: the log's, and of each frame which of them, or else the first of all.
+  // For writing a log: the interfaces, and the interface of each frame; without it the first one.
   std::vector<std::string> interfaces{"can0"};
   std::vector<std::uint16_t> on;
-  std::uint32_t baud = 0;  // what the driver's maker prescribes; 0: unknown
+  std::uint32_t baud = 0;  // baud rate that the driver prescribes; 0: unknown
 
   [[nodiscard]] bool is_can() const { return blocks.empty() && !frames.empty(); }
   [[nodiscard]] std::size_t size() const { return is_can() ? frames.size() : blocks.size(); }
@@ -39,17 +39,17 @@ struct ReplayTimeline {
 struct ReplaySource {
   std::string path;
   std::string format = "auto";  // or "candump", "bytes", "csv"
-  std::size_t block_bytes{};    // raw bytes: sent together, one frame of the device
-  double rate_hz{};             // raw bytes: blocks a second
-  // csv: whose frames the rows become; raw bytes: whose frames and times they are, instead of the two above;
-  // the channel is the interface: of a candump log that which is sent, of others that which a log is to name.
+  std::size_t block_bytes{};    // raw bytes: one frame of the device, sent together
+  double rate_hz{};             // raw bytes: blocks per second
+  // csv: driver of the frames to encode. Raw bytes: driver that finds frames and times instead of the two
+  // above. Its channel is an interface: the one to send from a candump log, or the one to write into a log.
   CaptureInput input;
   std::string axis;
-  bool prefer_can = false;  // csv: for a driver that speaks both
+  bool prefer_can = false;  // csv: for a driver of both bytes and CAN
 };
 
-// Throws std::runtime_error with one line: what the file lacks, or which setting a format needs. Notices
-// (columns without a place in the frames, …) go to stderr.
+// Throws std::runtime_error with one line: missing data in the file, or a missing option for its format.
+// Prints warnings on standard error, e.g. columns that the frames cannot contain.
 ReplayTimeline read_timeline(const ReplaySource& source);
 
 }  // namespace ifog::tools
