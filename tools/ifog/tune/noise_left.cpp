@@ -18,7 +18,7 @@
 namespace ifog::tools {
 namespace {
 
-constexpr std::size_t kMostRows = 200000;  // the default of `ifog tune`
+constexpr std::size_t kMostRows = 200000;  // default of `ifog tune`
 
 CaptureView first_rows(CaptureView capture, std::size_t most) {
   const std::size_t rows = std::min(capture.size(), most);

@@ -39,8 +39,8 @@ RestColumns rest_columns(const CaptureView& capture, const Rest& rest, double pe
   out.rate_radps.resize(capture.axes.size());
   const std::size_t rows = std::min(capture.size(), most);
   out.left_out = capture.size() - rows;
-  // An hour's hole in a fast record would be millions of missing samples, which tell the fit nothing; nor do
-  // all holes together, beyond ten times the rows.
+  // Longer gaps are shortened, and all gaps together to ten times the rows: missing samples do not help the
+  // fit.
   constexpr double kLongestHole = 10000.0;
   std::size_t room = 10 * rows, part = 0;
   for (std::size_t row = 0; row < rows; ++row) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a capture is at rest, in columns as a fit of its noise takes them.
+// The stretches at rest of a capture as columns for a fit of the noise.
 #pragma once
 
 #include <cstddef>
@@ -11,10 +11,10 @@
 
 namespace ifog::tools {
 
-// Of all axes together, and of the sensor's rates that the user did not choose.
+// Rest from all axes together, including rates that the user did not select.
 [[nodiscard]] Rest rest_of(const CaptureView& capture, double period_s);
-// The same. Throws std::runtime_error with one line, path in front, where the sensor was mostly
-// turned.
+// The same. Throws std::runtime_error with one line, beginning with path, if the sensor moved most of the
+// time.
 [[nodiscard]] Rest mostly_at_rest(const CaptureView& capture, double period_s, const std::string& path);
 
 struct RestColumns {
@@ -22,8 +22,8 @@ struct RestColumns {
   std::size_t left_out = 0;                     // rows beyond `most`
 };
 
-// Evenly spaced: a sample that moved or is missing from the record becomes a NaN, so that the filter's step
-// stays the period. Of at most `most` rows of the capture, whatever is missing between them.
+// Evenly spaced columns: samples in motion or missing become NaN, so that the filter's step is the period.
+// Uses at most `most` rows of the capture.
 [[nodiscard]] RestColumns rest_columns(const CaptureView& capture, const Rest& rest, double period_s,
                                        std::size_t most);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// ifog tune: Q, R and the state model of a sensor at rest, into a model file.
+// ifog tune: fits Q, R and the state model of a sensor at rest and writes a model file.
 #include "filters/tune/tune.h"
 #include "drivers/system/utc_now.h"
 #include "filters/units/told_time.h"
@@ -51,7 +51,7 @@ struct TuneArguments {
   std::size_t samples = 200000;
 };
 
-// What people read: deg/h, deg/h/sqrt(h) and SI.
+// The value in deg/h or deg/h/sqrt(h); "" for other units.
 std::string in_field_units(const TunedFigure& figure) {
   double factor = 0.0;
   const char* unit = "";
@@ -115,7 +115,7 @@ void print_models(const Tuning& tuning) {
   if (chosen.walk_is_bound) say("  no random walk is detectable: process_noise is its 1 sigma upper limit\n");
 }
 
-// One line a figure: measured, published with the chosen model, and with the random walk alone.
+// One line per figure: measured, published with the selected model, and with the random walk.
 void print_figure(const char* name, double before, double after, const double* walk) {
   say("  %-22s %12.4g %12.4g", name, before / kDegreePerHour, after / kDegreePerHour);
   if (walk != nullptr) say(" %12.4g", *walk / kDegreePerHour);
@@ -145,8 +145,8 @@ void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) 
   }
 }
 
-// By axis, of all of the capture's rest: what `ifog allan` says of it. A filter's own Q and R are no noise
-// terms: with colour in the state they are whatever predicts best.
+// Noise terms by axis at rest, as in `ifog allan`. A filter's Q and R are not noise terms: with coloured
+// noise in the state they only predict best.
 struct RestNoise {
   NoiseCoefficients terms;
   std::vector<NoiseChange> changes;
@@ -167,8 +167,8 @@ std::string axis_label(const CaptureView& capture, std::size_t axis) {
   return capture.axes[axis].empty() ? "" : capture.axes[axis] + ": ";
 }
 
-// Single leaps are out of the capture afterwards, repaired holds what is there instead. What else the values
-// say of the program that logged them is noted: what is fitted to such a record is no gyro's noise.
+// Replaces single jumps in the capture by values in `repaired`. Other faults of the logging program are
+// noted, because a fit to such data is not a gyro's noise.
 void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest& rest,
                      std::vector<LongSeries>& repaired, std::vector<std::string>& notes) {
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
@@ -183,7 +183,7 @@ void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest&
   }
 }
 
-// An axis too short for them has none, and is said to.
+// An axis that is too short has none, which is noted.
 NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const Rest& rest,
                      std::vector<std::string>& notes) {
   NoiseByAxis noise;
@@ -207,8 +207,7 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
   return noise;
 }
 
-// `before`: the rates were corrected by its effects; they stay, and so do its filter's settings besides
-// the noise.
+// `before`: the effects that corrected the rates are kept, and all filter settings except the noise.
 Model model_of(Model before, const Tuning& tuning, const NoiseByAxis& noise, const std::string& path) {
   Model model = std::move(before);
   const FilterSettings& tuned = tuning.models[tuning.chosen].settings;
@@ -228,7 +227,7 @@ Model model_of(Model before, const Tuning& tuning, const NoiseByAxis& noise, con
     put(found.terms.K, terms.K);
     put(found.terms.R, terms.R);
   }
-  if (!model.effects.empty()) return model;  // which came from the captures that it names
+  if (!model.effects.empty()) return model;  // whose effects are from the captures that it names
   model.source.capture = printable(std::filesystem::path(path).filename().string(), kLongestMessage);
   model.source.date = utc_now();
   return model;
@@ -249,7 +248,7 @@ json tuning_json(const TuneArguments& options, const Tuning& tuning, std::size_t
               {"models", models}};
 }
 
-// The columns that are needed, less the effects of a model.
+// Reads the required columns and subtracts a model's effects.
 LongCapture read_rates(const TuneArguments& options, const Model& before) {
   LongCapture read =
       options.input.read_long_capture(options.capture, nullptr, [&](const std::string& column) {
@@ -333,7 +332,7 @@ void add_tune(const Command& program) {
       .not_negative();
   command.add_option("--write-model", options->write_model, "model file that ifogd and denoise read");
   command.add_option("--json", options->json_file, "write the figures as JSON");
-  // One a flag: a capture that follows is no state model.
+  // One per option, so that a following capture is not read as a state model.
   command.add_option("--state", options->states, "state models to try; may stand several times")
       .one_value_each();
   command.add_option("--samples", options->samples, "most rows of the capture to fit")
