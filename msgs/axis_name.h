@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What people call the axes of a message, which carries no names.
+// Names of a message's axes; messages contain none.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 
 namespace ifog {
 
-// x, y, z; of a single axis, which may lie anywhere, "rate".
+// x, y, z; "rate" for a single axis, whose direction is unknown.
 constexpr std::string_view axis_name(std::size_t axis, std::size_t axes) {
   constexpr std::array<std::string_view, 3> kNames{"x", "y", "z"};
   return axes == 1 ? "rate" : axis < kNames.size() ? kNames[axis] : "?";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The LCM channels of a sensor: rates on IFOG_<NAME>, health and increments on that with an ending. The one
-// home of this rule.
+// The LCM channels of a sensor: rates on IFOG_<NAME>, status and increments on that name with a suffix. The
+// only definition of this rule.
 #pragma once
 
 #include <array>
@@ -18,7 +18,7 @@ struct ChannelName {
 
 inline constexpr std::string_view kChannelPrefix = "IFOG_", kStatusEnding = "_STATUS", kImuEnding = "_IMU";
 
-// What a channel of this name carries when it is the daemon's.
+// Content of the channel if the daemon publishes it.
 inline ChannelName channel_name(std::string_view channel) {
   if (!channel.starts_with(kChannelPrefix)) return {};
   channel.remove_prefix(kChannelPrefix.size());

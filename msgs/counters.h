@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The counters of status_t, a line each: the daemon's log, `ifog monitor`, `ifog status` and the JSON go by this
-// list. A new one is a line here, one in status_t.lcm, one in its schema, and where it is counted.
+// List of the counters in status_t for the daemon's log, `ifog monitor`, `ifog status` and the JSON. A new
+// counter needs a line here, one in status_t.lcm, one in its schema, and the code that counts.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace ifog {
 
 enum StatusCounterUse : std::uint8_t {
   kCounterOnly = 0,
-  kCounterLogged = 1,  // stands still while all is well: the log says by how much it grew
+  kCounterLogged = 1,  // constant without faults: the log reports its increase
   kCounterListed = 2   // `ifog status` lists it among the losses
 };
 
@@ -22,7 +22,7 @@ struct StatusCounter {
   const char* loss = "";  // what the monitor calls it among the losses; "": it is none
 };
 
-// In the message's order. What the recorder loses it says itself, once, and stale channels are logged by name.
+// In the message's order. The recorder reports its losses itself, and stale channels are logged by name.
 inline constexpr std::array kStatusCounters{
     StatusCounter{"samples_decoded", &status_t::samples_decoded},
     StatusCounter{"samples_in", &status_t::samples_in},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The flags of rate_t in words, for whoever shows them.
+// Names of the flags of rate_t.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of one sensor in the order of their numbers: LCM (UDP multicast) may deliver neighbours exchanged.
+// Puts messages of one sensor into the order of their numbers: LCM (UDP multicast) may exchange neighbours.
 #pragma once
 
 #include <algorithm>
@@ -12,12 +12,12 @@
 
 namespace ifog {
 
-// Message: a rate_t, or that with more.
+// Message: rate_t or derived from it.
 template <typename Message = rate_t>
 class InOrder {
  public:
-  // Hands on, in order, what may go: `sink(const Message&)`. A message whose predecessor is missing waits
-  // until that has come, or kWindow behind it have. One that comes later still is handed on as it comes.
+  // Calls `sink(const Message&)` in order. After a gap, messages wait for the missing one or until kWindow
+  // are waiting. A message that arrives still later is passed on at once.
   template <typename Sink>
   void take(Message message, Sink&& sink) {
     const std::int64_t by = message.seq - last_;
@@ -31,15 +31,15 @@ class InOrder {
     held_.emplace(seq, std::move(message));
     while (!held_.empty() && (follows(held_.begin()->second) || held_.size() > kWindow)) release(sink);
   }
-  // At the end.
+  // Passes on what is waiting, at the end.
   template <typename Sink>
   void flush(Sink&& sink) {
     while (!held_.empty()) release(sink);
   }
 
  private:
-  static constexpr std::size_t kWindow = 16;     // messages: more than a network exchanges
-  static constexpr std::int64_t kRestart = 256;  // numbers back: the daemon counts from its start again
+  static constexpr std::size_t kWindow = 16;     // messages; larger than any reordering of a network
+  static constexpr std::int64_t kRestart = 256;  // numbers back: the daemon restarted
 
   [[nodiscard]] bool follows(const Message& message) const {
     return message.seq - last_ <= std::max<std::int64_t>(1, message.merged) ||

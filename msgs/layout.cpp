@@ -28,21 +28,21 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(0, text.find_last_not_of(kBlanks) + 1);
 }
 
-// Takes `bytes` from the front; false when there are fewer.
+// Removes `bytes` from the front; false if there are fewer.
 bool take(std::span<const std::uint8_t>& from, std::size_t bytes) {
   if (bytes > from.size()) return false;
   from = from.subspan(bytes);
   return true;
 }
 
-// Big-endian, with its sign; the caller has seen that the bytes are there.
+// Big-endian, signed; the caller has checked the length.
 std::int64_t number(std::span<const std::uint8_t> from, std::size_t bytes) {
   std::uint64_t value = (from[0] & 0x80U) != 0 ? ~std::uint64_t{0} : 0;
   for (std::size_t i = 0; i < bytes; ++i) value = value << 8U | from[i];
   return static_cast<std::int64_t>(value);
 }
 
-// Length of an array if it is part of the type; 0: another member has it.
+// Length of an array if the type defines it; 0: in another member.
 std::size_t fixed_count(std::string_view text) {
   std::size_t count = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), count);
@@ -107,14 +107,14 @@ void MessageLayout::add(std::string_view type, std::string_view name) {
 
 bool MessageLayout::fits(std::span<const std::uint8_t> bytes) const {
   const std::size_t total = bytes.size();
-  // What a member that is one number holds; only those are asked for as counts.
+  // Values of integer members, for use as counts.
   std::vector<std::int64_t> value(members_.size(), 0);
   for (std::size_t m = 0; m < members_.size(); ++m) {
     const Member& member = members_[m];
     std::size_t elements = member.fixed;
     for (const std::size_t count : member.counts) {
-      // More than the message has bytes there cannot be, so that no product overflows. That holds also where
-      // an inner count is 0 and nothing follows: the decoder makes room for the outer one.
+      // A count may not exceed the message's bytes, so that no product overflows. Also checked if an inner
+      // count is 0, because the decoder allocates the outer array.
       if (value[count] < 0 || static_cast<std::uint64_t>(value[count]) > total || elements > total)
         return false;
       elements *= static_cast<std::size_t>(value[count]);

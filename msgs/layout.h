@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which bytes can be a message of a type at all: asked before LCM's generated decoder is let loose on them.
-// That decoder believes every count and length it finds, and allocates and indexes by them: a count of -1 or
-// 2^31-1, or a string of length 0, ends the program.
+// Checks that bytes are a possible message of a type, before LCM's generated decoder reads them. The decoder
+// trusts every count and length: a count of -1 or 2^31-1, or a string of length 0, crashes the program.
 //
 // LCM's format (lcm-proj.github.io, "Type specification"): the type's hash, 8 bytes; then the members in
-// order, big-endian; an array's counts are members before it; a string is its length with the ending 0, an
-// int32, and its bytes.
+// order, big-endian. An array's counts are earlier members. A string is an int32 length including the
+// terminating 0, and its bytes.
 #pragma once
 
 #include <cstddef>
@@ -19,20 +18,20 @@ namespace ifog {
 
 class MessageLayout {
  public:
-  // Reads the text of a .lcm file with one struct of numbers, strings and arrays of them. Throws
-  // std::invalid_argument for anything else.
+  // Parses a .lcm file with one struct of numbers, strings and arrays of them. Throws std::invalid_argument
+  // for anything else.
   explicit MessageLayout(std::string_view definition);
 
-  // `members`: the message behind its hash. True: every count is one, and with them it has exactly these
+  // `members`: the message after its hash. True if all counts are valid and give exactly this number of
   // bytes.
   [[nodiscard]] bool fits(std::span<const std::uint8_t> members) const;
 
  private:
   struct Member {
-    std::size_t size = 0;   // bytes of an element; 0: a string
-    std::size_t fixed = 1;  // elements that the type itself says
+    std::size_t size = 0;   // bytes per element; 0: a string
+    std::size_t fixed = 1;  // number of elements in the type
     std::string name;
-    std::vector<std::size_t> counts;  // the members that say how many, the outermost first
+    std::vector<std::size_t> counts;  // members with the number of elements, the outermost first
   };
   void add(std::string_view type, std::string_view name);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The states of status_t in words, for whoever shows them: the daemon's log and `ifog monitor`.
+// Names of the states of status_t, for the daemon's log and `ifog monitor`.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Prints what ifogd publishes of one sensor: the number of each sample, and of each axis the angle increment
-// in rad and the denoised rate in rad/s.
+// Prints what ifogd publishes for one sensor: each sample's number, and for each axis the angle increment in
+// rad and the denoised rate in rad/s.
 //
 //   subscribe_cpp CHANNEL COUNT [LCM_URL]     subscribe_cpp IFOG_NOSE 100 'udpm://239.255.76.67:7667?ttl=0'
 //
@@ -39,7 +39,7 @@ int main(int argc, char** argv) {
     return 1;
   }
   Printer printer(std::atol(argv[2]));
-  // LCM keeps 30 messages for who is late, and drops the rest.
+  // By default LCM drops messages beyond 30 that wait.
   lcm.subscribe(argv[1], &Printer::handle, &printer)->setQueueCapacity(10000);
   while (!printer.done() && lcm.handle() == 0) {
   }
