@@ -14,7 +14,7 @@ namespace ifog::report {
 namespace {
 
 constexpr double kLeft = 68.0, kRight = 16.0, kLegendRow = 17.0;
-constexpr double kCharacter = 6.9;  // mean width of the 12 px face
+constexpr double kCharacter = 6.9;  // mean width in the 12 px font
 
 const char* css_class(Role role) {
   switch (role) {
@@ -38,7 +38,7 @@ const char* css_class(Role role) {
 
 std::string fixed(double value) { return formatted("%.1f", value); }
 
-// One for every so many pixels, so that low panels are not crowded.
+// Fewer ticks on low panels.
 int y_ticks(double pixels) { return std::clamp(static_cast<int>(pixels / 48.0), 2, 6); }
 
 double text_width(const std::string& text) { return kCharacter * static_cast<double>(characters_in(text)); }
@@ -48,7 +48,7 @@ std::string words(const char* style, double x, double y, const char* anchor, con
          "\" text-anchor=\"" + anchor + "\">" + escaped(text) + "</text>\n";
 }
 
-// Their texts next to each other along x, none over another or beyond the edge: fewer where they are long.
+// Places labels along x without overlap or crossing the edge; fewer if they are long.
 std::vector<Tick> side_by_side(const Scale& scale, double edge) {
   constexpr double kApart = 10.0;
   for (int wanted = 7;; --wanted) {
@@ -73,7 +73,7 @@ std::vector<Tick> side_by_side(const Scale& scale, double edge) {
   }
 }
 
-// A path through the points; pixel columns that hold several are covered from their least to their most.
+// A path through the points. Pixel columns with several points are drawn from minimum to maximum.
 std::string path(const std::vector<double>& x, const std::vector<double>& y, const Scale& sx,
                  const Scale& sy) {
   std::string d;
@@ -102,7 +102,7 @@ std::string path(const std::vector<double>& x, const std::vector<double>& y, con
   return d;
 }
 
-// There along the upper edge, back along the lower.
+// Along the upper edge and back along the lower one.
 std::string outline(const std::vector<double>& x, const std::vector<double>& low,
                     const std::vector<double>& high, const Scale& sx, const Scale& sy) {
   std::string there, back;
@@ -114,7 +114,7 @@ std::string outline(const std::vector<double>& x, const std::vector<double>& low
   return there.empty() ? "" : there + back + "Z";
 }
 
-// One path of zero-length strokes: round caps make them dots at a tenth of the size of circles.
+// One path of zero-length strokes: with round caps they are dots, at a tenth of the size of circles.
 std::string dots(const std::vector<double>& x, const std::vector<double>& y, const Scale& sx,
                  const Scale& sy) {
   std::string d;
@@ -240,7 +240,7 @@ std::string Chart::axes(const Frame& f, const Scale& sx, const Scale& sy, double
 std::string Chart::curves(const Frame& f, const Scale& sx, const Scale& sy) const {
   const std::string box =
       fixed(f.left) + " " + fixed(f.top) + " " + fixed(f.right - f.left) + " " + fixed(f.bottom - f.top);
-  // Axis limits that were asked for may cut a curve.
+  // Given axis limits may clip a curve.
   std::string out = "<svg class=\"curves\" x=\"" + fixed(f.left) + "\" y=\"" + fixed(f.top) + "\" width=\"" +
                     fixed(f.right - f.left) + "\" height=\"" + fixed(f.bottom - f.top) + "\" viewBox=\"" +
                     box + "\">";
@@ -320,14 +320,14 @@ std::string Chart::plot_data(const Frame& f) const {
                         {"x", axis(x_, sx)},
                         {"y", axis(y_, sy)},
                         {"series", series}}
-      .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);  // a name may hold any bytes
+      .dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);  // a name may contain any bytes
 }
 
 std::string Chart::panel(double width, double height, double left) const {
   return empty() ? "" : drawing(width, height, left, true);
 }
 
-// A drawing without numbers takes those of the one before it, within a frame of its own.
+// A drawing without numbers uses those of the previous one; it has its own frame.
 std::string Chart::element(const std::string& style, double width, double height, bool with_numbers) const {
   const double left = std::max(with_numbers ? kLeft : 0.0, left_margin(height));
   const Frame f = frame(width, height, left, false, legend(left, width - kRight, 4.0));

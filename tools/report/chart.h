@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One chart as SVG: crisp at any size, coloured by the style of the page or picture it stands in, readable by
-// a screen reader (title and description). Nothing is fetched.
+// One chart as SVG. The page's or picture's style sets the colours; title and description are for screen
+// readers. It loads no other resource.
 #pragma once
 
 #include <cstddef>
@@ -11,34 +11,34 @@
 
 namespace ifog::report {
 
-// What a curve is; the style gives each a colour, and a stroke by which it is known without colour.
+// Kind of a curve; the style gives each a colour, and a stroke for readers without colour.
 enum class Role { kBefore, kAfter, kFit, kSecond, kRaw, kThird, kFourth };
 
-// The role of one of several curves of a kind, by its place.
+// Role of the index-th of several similar curves.
 Role role_of(std::size_t index);
 
 class Chart {
  public:
-  // title names the picture, description says in words what it shows.
+  // title: of the picture; description: its content in words.
   Chart(std::string title, std::string description, ChartAxis x, ChartAxis y);
 
-  // x ascending. Where there are more points than pixels the stroke covers the extremes of each pixel column.
+  // x ascending. With more points than pixels, each pixel column shows minimum and maximum.
   void line(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
-  // For samples in time: open where there is a hole, and nothing was measured.
+  // For samples over time: interrupted at gaps.
   void line_in_time(Role role, const std::string& label, std::vector<double> time, std::vector<double> y);
   void points(Role role, const std::string& label, std::vector<double> x, std::vector<double> y);
   void band(Role role, std::vector<double> x, std::vector<double> low, std::vector<double> high);
-  // A thin pale curve, never dashed as some of the data is, that is no data and does not widen the axes.
+  // A thin pale line that is not data and does not extend the axes; never dashed.
   void guide(Role role, std::vector<double> x, std::vector<double> y);
-  void mark_x(double x, const std::string& label);  // a vertical rule
+  void mark_x(double x, const std::string& label);  // a vertical line
 
-  [[nodiscard]] bool empty() const;  // nothing finite to draw
-  // For a page, with its numbers for that page's script: as wide as that, and once more for a telephone,
-  // whose style shows one of them. Both have letters of one size.
+  [[nodiscard]] bool empty() const;  // true if there are no finite values
+  // For a page, with the data for its script: at full width and again for a phone; the style shows one. Both
+  // have the same font size.
   [[nodiscard]] std::string svg(double width = 720, double height = 320) const;
 
-  // For a picture of several: the width that the numbers and the label of the y axis want, and the drawing
-  // without the element around it, under a heading, the frame `left` from its edge.
+  // For a picture of several charts: the margin that numbers and label of the y axis need, and the drawing
+  // under a heading, without the outer element and with its frame at `left`.
   [[nodiscard]] double left_margin(double height) const;
   [[nodiscard]] std::string panel(double width, double height, double left) const;
 

@@ -13,7 +13,7 @@ namespace ifog::report {
 namespace {
 
 std::string value_and_error(double value, double error) {
-  // As many digits as the error has to say: two of its own.
+  // Digits up to the second digit of the error.
   const int digits =
       error > 0.0 && value > 0.0
           ? std::clamp(static_cast<int>(std::floor(std::log10(value)) - std::floor(std::log10(error))) + 2, 2,
@@ -36,7 +36,7 @@ const std::vector<NamedCoefficient>& named_coefficients() {
 }
 
 std::string bound_text(double upper) {
-  // The digits by the library's own rounding, then one more in the last place if that fell short.
+  // Rounds with the library and adds one in the last place if the result is too small.
   std::string text = formatted("%.2g", upper);
   const double shown = std::strtod(text.c_str(), nullptr);
   if (!(upper > 0.0) || shown >= upper) return text;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise coefficients of a record in the words and units of the field, the same from every command.
+// Noise coefficients with the field's names and units, the same in every command.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -13,8 +13,7 @@
 
 namespace ifog::report {
 
-// The coefficients in order Q N B K R with the units of the field: name, value in SI, and the factor to
-// people's unit.
+// The coefficients in the order Q N B K R: names, SI unit, field unit, and the factor between them.
 struct NamedCoefficient {
   const char* letter;
   const char* meaning;
@@ -25,19 +24,19 @@ struct NamedCoefficient {
 };
 const std::vector<NamedCoefficient>& named_coefficients();
 
-// Two digits, never below the value: a bound that is printed has to hold as printed.
+// Two digits, rounded up, so that the printed bound holds.
 std::string bound_text(double upper);
 
-// A line each: value and error bar, or the bound of a term that is not seen.
+// One line each: value and error, or the bound of a term that is not significant.
 std::string coefficient_lines(const NoiseCoefficients& found);
 
 // {Q|N|B|K|R: {value, std_error, upper, unit, present, from_s}}, SI.
 nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found);
 
-// {sigma_radps, correlation_s, lower_s, upper_s, K, K_until_s} of a correlated bias; null where none is seen.
+// {sigma_radps, correlation_s, lower_s, upper_s, K, K_until_s} of a correlated bias; null if not found.
 nlohmann::ordered_json markov_json(const std::optional<MarkovNoise>& found);
 
-// [{from_s, to_s, times, low_hz, high_hz}], empty where the noise is the same all along.
+// [{from_s, to_s, times, low_hz, high_hz}]; empty if the noise is constant.
 nlohmann::ordered_json noise_changes_json(std::span<const NoiseChange> changes);
 
 }  // namespace ifog::report

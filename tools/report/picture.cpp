@@ -21,7 +21,7 @@ constexpr double kEdge = 10.0, kTitle = 30.0, kGap = 6.0;
 
 std::string whole(double value) { return std::to_string(std::lround(value)); }
 
-// One for each column that a chart begins in, so that frames stand in line.
+// Margin of a column, so that its frames are aligned.
 double column_margin(const std::vector<PictureRow>& rows, std::size_t column) {
   double widest = 0.0;
   for (const PictureRow& row : rows)
@@ -31,7 +31,7 @@ double column_margin(const std::vector<PictureRow>& rows, std::size_t column) {
 }
 
 std::string png(const std::string& path, const std::string& svg) {
-  constexpr double kDots = 2.0;  // a pixel of the SVG
+  constexpr double kDots = 2.0;  // per pixel of the SVG
   const auto fail = [&](const char* why) {
     throw std::runtime_error(path + ": cannot draw the picture: " + why);
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A picture of several charts as a file of its own, SVG or PNG: what `--plot` of every command writes.
+// A picture of several charts as SVG or PNG file, for `--plot` of every command.
 #pragma once
 
 #include <string>
@@ -19,13 +19,13 @@ struct PictureRow {
   std::vector<PictureCell> cells;
 };
 
-// Rows below each other, the frames of a column in line. Charts that are empty leave their place empty.
+// Rows from top to bottom with aligned columns. An empty chart leaves its place empty.
 std::string picture_svg(const std::string& title, const std::vector<PictureRow>& rows, double width = 1000.0);
 
-// "" or what is wrong with it: the name of a picture ends in .svg or .png, or is "-" (SVG).
+// "" or the error: a picture's name must end in .svg or .png, or be "-" (SVG).
 std::string wrong_picture_name(const std::string& path);
 
-// By the ending; PNG at two dots a pixel. Throws std::runtime_error with one line.
+// Format by the name's ending; PNG with two dots per pixel. Throws std::runtime_error with one line.
 void write_picture(const std::string& path, const std::string& svg);
 
 }  // namespace ifog::report

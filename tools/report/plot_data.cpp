@@ -17,7 +17,7 @@ static_assert(std::endian::native == std::endian::little, "a page's script reads
 
 Thinned thinned(std::span<const double> x, std::span<const double> y) {
   constexpr std::size_t kMost = 5000,
-                        kStretches = 1500;  // twice as many as a screen has pixels, less than a page minds
+                        kStretches = 1500;  // twice the pixels of a screen
   const std::size_t size = std::min(x.size(), y.size());
   if (size <= kMost) return {{x.begin(), x.end()}, {y.begin(), y.end()}};
   Thinned out;
@@ -25,7 +25,7 @@ Thinned thinned(std::span<const double> x, std::span<const double> y) {
     const std::size_t from = size * k / kStretches, to = size * (k + 1) / kStretches;
     const auto begin = y.begin() + static_cast<std::ptrdiff_t>(from),
                end = y.begin() + static_cast<std::ptrdiff_t>(to);
-    // A value that is no number compares as less than none: the stretch keeps it only when it has no other.
+    // NaN compares as less, so it is kept only if the stretch has nothing else.
     const auto less = [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a < b; };
     const auto more = [](double a, double b) { return std::isnan(b) ? !std::isnan(a) : a > b; };
     auto first = std::min_element(begin, end, less), second = std::min_element(begin, end, more);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers of a chart for the script of a page, see page.js.
+// A chart's data for the page's script, see page.js.
 #pragma once
 
 #include <span>
@@ -8,17 +8,17 @@
 
 namespace ifog::report {
 
-// The same curve in fewer points, its extremes kept; one that is short enough as it is.
+// The same curve in fewer points with its extremes; short curves are unchanged.
 struct Thinned {
   std::vector<double> x, y;
 };
 Thinned thinned(std::span<const double> x, std::span<const double> y);
 
-// As float32, little-endian, in base64: seven digits are more than a screen shows.
+// As float32, little-endian, base64: its seven digits exceed the screen's resolution.
 std::string packed(std::span<const double> values);
 
-// A point that is no number in the middle of each hole: where the time advances by more than ten of its
-// steps. As many y as times.
+// Inserts a NaN in the middle of each gap: a step of more than ten times the usual one. y has the length of
+// time.
 void open_at_holes(std::vector<double>& time, std::vector<double>& y);
 
 }  // namespace ifog::report

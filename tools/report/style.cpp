@@ -10,7 +10,7 @@
 namespace ifog::report {
 namespace {
 
-// The page's colours in daylight, for programs that know no variables.
+// The page's colours of light mode, for programs without CSS variables.
 constexpr std::array<std::pair<std::string_view, std::string_view>, 12> kDaylight{{{"--paper", "#ffffff"},
                                                                                    {"--ink", "#1c2127"},
                                                                                    {"--muted", "#4a545e"},

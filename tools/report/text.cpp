@@ -14,7 +14,7 @@ namespace {
 
 std::string printed(const char* format, int digits, double value) { return formatted(format, digits, value); }
 
-// A true minus sign, and powers of ten as people write them.
+// With a true minus sign and powers of ten as superscripts.
 std::string typeset(const std::string& plain) {
   std::string out;
   for (const char c : plain) {
@@ -40,7 +40,7 @@ int decade(double value) { return static_cast<int>(std::floor(std::log10(std::ab
 
 std::string escaped(std::string_view text) {
   std::string out;
-  // Control characters and broken UTF-8 have no place in XML, and as \xNN none is needed.
+  // XML allows neither control characters nor invalid UTF-8; they become \xNN.
   for (const char c : printable(text, std::numeric_limits<std::size_t>::max())) {
     switch (c) {
       case '&':
@@ -68,7 +68,7 @@ std::string escaped(std::string_view text) {
 std::string number(double value, int digits) {
   if (!std::isfinite(value)) return "–";
   if (value == 0.0) return "0";
-  // Rounding may reach the next decade: 999.9 to three digits is 1000.
+  // Rounding may reach the next decade: 999.9 with three digits is 1000.
   const double rounded = std::strtod(printed("%.*e", digits - 1, value).c_str(), nullptr);
   const int power = decade(rounded);
   if (power >= -4 && power < 6) return typeset(printed("%.*f", std::max(0, digits - 1 - power), rounded));

@@ -8,7 +8,7 @@ namespace ifog::report {
 
 TimeAxis::TimeAxis(double first_s, double last_s)
     : first_s_(first_s), last_s_(last_s), unit_(time_unit(last_s - first_s)) {
-  constexpr double kLong = 1e5, kFar = 10.0;  // s, lengths of the picture
+  constexpr double kLong = 1e5, kFar = 10.0;  // kLong in s; kFar in lengths of the picture
   const double far = std::max(std::abs(first_s), std::abs(last_s));
   if (far >= kLong && far > kFar * (last_s - first_s)) origin_s_ = std::floor(first_s);
 }

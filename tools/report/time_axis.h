@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How times stand at a picture's axis: in the unit that the stretch is best read in, and counted from a whole
-// second where the record's own would be numbers too long to read (seconds since 1970 or 1980).
+// Times on a picture's axis: in a suitable unit, and relative to a whole second if the record's times are too
+// long to read (seconds since 1970 or 1980).
 #pragma once
 
 #include <string>
@@ -13,15 +13,15 @@ namespace ifog::report {
 
 class TimeAxis {
  public:
-  // For a picture from the one time to the other.
+  // Limits of the picture.
   TimeAxis(double first_s, double last_s);
 
-  // At the axis, of a time in s.
+  // Value on the axis for a time in s.
   [[nodiscard]] double operator()(double time_s) const { return (time_s - origin_s_) / unit_.seconds; }
   [[nodiscard]] std::vector<double> operator()(std::vector<double> time_s) const;
   // "time (min)", "time since 1700000000 s (min)".
   [[nodiscard]] std::string label() const;
-  // From the first time to the last; without label and numbers where a picture below has them.
+  // From the first to the last time; without label and numbers if the picture below has them.
   [[nodiscard]] ChartAxis axis(bool numbered = true) const;
 
  private:

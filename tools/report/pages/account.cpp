@@ -24,7 +24,7 @@ int family(const std::string& key) {
   return 3;
 }
 
-// The averaging time at which the effects mattered most.
+// The averaging time with the largest improvement.
 std::string most_improved(const Diagnosis& d) {
   std::string best;
   double least = 1.0;
@@ -45,7 +45,7 @@ std::string count_words(std::size_t count) {
   return count < 6 ? kWords[count] : std::to_string(count) + " effects";
 }
 
-// One entry an effect, HTML; a comb of lines is one finding to the reader.
+// One entry per effect, HTML; a comb of lines is one entry.
 std::vector<std::string> effects_in_words(const Diagnosis& d) {
   std::string lines;
   std::size_t line_count = 0;

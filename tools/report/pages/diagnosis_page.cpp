@@ -24,7 +24,7 @@ std::string parameter_rows(const FoundEffect& found) {
   for (const ModelParameter& p : shown_parameters(found)) {
     const FieldUnit unit = field_unit(p.unit);
     std::string name = p.name;
-    for (const std::string_view suffix : {"_hz", "_s"}) {  // the unit has a column of its own
+    for (const std::string_view suffix : {"_hz", "_s"}) {  // the unit has its own column
       if (name.ends_with(suffix)) name.erase(name.size() - suffix.size());
     }
     std::replace(name.begin(), name.end(), '_', ' ');
@@ -68,7 +68,7 @@ std::string figures_table(const Diagnosis& d) {
                {"figure", number_cell("before"), number_cell("after"), "unit", number_cell("change")}, rows);
 }
 
-// The figure that gained most comes first.
+// The figure with the largest gain comes first.
 std::string tiles(const Diagnosis& d) {
   std::string out;
   std::array keys{"residual_rms_radps", "rms_10s_radps", "adev_1s_radps", "heading_drift_rad"};
@@ -146,7 +146,7 @@ std::string remaining(const Diagnosis& d) {
   return out + noise_table(d.noise) + heading_words(d.heading) + heading_picture(d.heading);
 }
 
-// The commands are for a shell, and the line of the configuration is TOML.
+// Commands are quoted for a shell, the configuration's line for TOML.
 std::string applying(const Page& page) {
   const std::string path = page.model_path.empty() ? "model.toml" : page.model_path;
   const std::string model = escaped(shell_file(path)), read_with = escaped(page.read_with);
@@ -169,7 +169,7 @@ std::string applying(const Page& page) {
          read_with + " --model " + model + "</pre>\n";
 }
 
-// What would be asked for first if somebody doubted the page.
+// Information needed to check the page.
 std::string origin(const Page& page) {
   std::string out;
   if (!page.command.empty()) out += "<p>Made by</p>\n<pre>" + escaped(page.command) + "</pre>\n";

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The report of a diagnosis as one self-contained HTML page: inline SVG, CSS and a few lines of script
-// that show values and let one look closer; nothing fetched; light and dark, fit for a screen reader, a
-// telephone and paper.
+// The report of a diagnosis as one HTML page with its SVG, CSS and script; it loads no other resource. For
+// light and dark mode, screen readers, phones and print.
 #pragma once
 
 #include <string>
@@ -14,20 +13,20 @@ namespace ifog::report {
 struct PageAxis {
   std::string axis;  // "" for a single-axis sensor
   const Diagnosis* diagnosis = nullptr;
-  std::vector<Record> records;  // what it was made from
+  std::vector<Record> records;  // its input
 };
 
 struct Page {
   std::string sensor;                 // for the title
-  std::vector<std::string> captures;  // as the user named them
+  std::vector<std::string> captures;  // as given by the user
   std::vector<PageAxis> axes;
-  std::string read_with;   // options that the captures are read with, as a shell takes them: " --driver NAME"
-  std::string model_path;  // that was written; "" when none
+  std::string read_with;   // options for reading the captures, in shell syntax: " --driver NAME"
+  std::string model_path;  // of the written model; "" if none
   std::string made;        // date and program version
-  std::string command;     // as it was typed; "" when not known
+  std::string command;     // as typed; "" if unknown
   struct Input {
-    std::string name, sha256;           // of the file as unpacked; "" when not known
-    std::vector<std::string> comments;  // the file's own
+    std::string name, sha256;           // of the unpacked file; "" if unknown
+    std::vector<std::string> comments;  // from the file
   };
   std::vector<Input> inputs;
 };

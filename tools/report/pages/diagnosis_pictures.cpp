@@ -21,7 +21,7 @@ namespace {
 
 using Series = std::vector<double>;
 
-// About its mean, which is the switch-on bias.
+// Minus the mean, which is the switch-on bias.
 Series centred(Series x, double scale) {
   double sum = 0.0;
   std::size_t count = 0;
@@ -32,14 +32,14 @@ Series centred(Series x, double scale) {
   return x;
 }
 
-// As the captures' columns say them.
+// Times as in the captures' columns.
 Series shown_times(const DiagnosisSeries& s) {
   Series shown = s.time_s;
   for (double& time : shown) time = s.origin.in_s(time);
   return shown;
 }
 
-// "in 1 s means": the series are block means of whatever length kept them drawable.
+// "in 1 s means": the series are block means, so that they can be drawn.
 std::string block_words(const DiagnosisSeries& s) {
   if (s.time_s.size() < 2) return "";
   return duration(s.time_s[1] - s.time_s[0]) + " means";
@@ -56,7 +56,7 @@ std::string time_picture(const Diagnosis& d) {
   const Series t = time(shown_times(s));
   chart.line(Role::kBefore, "before", t, centred(s.before_radps, 1.0 / kDegreePerHour));
   if (!d.effects.empty()) chart.line(Role::kAfter, "after", t, centred(s.after_radps, 1.0 / kDegreePerHour));
-  // Bursts come in clusters: a word where there is room for one.
+  // Bursts are clustered; labels are drawn where there is space.
   double named = -1e300;
   for (const double burst : d.unexplained.times_s) {
     const bool room = burst - named > 0.1 * (s.time_s.back() - s.time_s.front());
@@ -125,9 +125,9 @@ std::string contribution_picture(const Diagnosis& d, std::size_t index) {
   Series with(effect), drawn(effect);
   for (std::size_t k = 0; k < with.size(); ++k) {
     with[k] += after[k];
-    if (std::isnan(with[k])) drawn[k] = with[k];  // over a hole the channel is a guess
+    if (std::isnan(with[k])) drawn[k] = with[k];  // no data in a gap of the error
   }
-  std::size_t turns = 0;  // an effect faster than a pixel is only a bar of ink
+  std::size_t turns = 0;  // an effect faster than a pixel is only a filled band
   for (std::size_t k = 2; k < part.size(); ++k)
     if ((effect[k] - effect[k - 1]) * (effect[k - 1] - effect[k - 2]) < 0.0) ++turns;
   if (turns > 250 && turns > part.size() / 3) return "";

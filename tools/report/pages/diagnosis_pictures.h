@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The pictures of a diagnosis, each a <figure> with its caption; "" where there is nothing to draw.
+// The pictures of a diagnosis, each a <figure> with caption; "" if there is nothing to draw.
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@ namespace ifog::report {
 std::string time_picture(const Diagnosis& d);
 std::string spectrum_picture(const Diagnosis& d);
 std::string allan_picture(const Diagnosis& d);
-// For the effect of that index: the error against the channel that it was traced to, and its part over time.
+// For one effect: the error against its channel, and its part over time.
 std::string traced_picture(const PageAxis& axis, std::size_t index);
 std::string contribution_picture(const Diagnosis& d, std::size_t index);
 std::string heading_picture(const HeadingPrediction& h);

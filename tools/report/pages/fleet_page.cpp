@@ -17,7 +17,7 @@
 namespace ifog::report {
 namespace {
 
-constexpr std::size_t kMostDrawn = 7;  // parameters of one picture: a colour each
+constexpr std::size_t kMostDrawn = 7;  // parameters per picture; one colour each
 
 std::string linked(const Population& p, std::size_t gyro) {
   const std::string serial = escaped(p.serials[gyro]);
@@ -28,7 +28,7 @@ std::string on_axis(const std::string& axis) { return axis.empty() ? "" : ", axi
 
 std::string count(std::size_t n, std::size_t of) { return std::to_string(n) + " of " + std::to_string(of); }
 
-// Gyros from the left to the right, the first of the manifest being 1, none at the frame's edge.
+// Gyros from left to right in the manifest's order, beginning with 1, with a margin.
 ChartAxis gyro_axis(const std::vector<std::string>& serials, std::size_t last) {
   constexpr std::size_t kLongest = 16;
   ChartAxis axis{"gyro, in the manifest's order", false, 0.5, static_cast<double>(last) + 1.5};
@@ -36,7 +36,7 @@ ChartAxis gyro_axis(const std::vector<std::string>& serials, std::size_t last) {
   return axis;
 }
 
-// With room above and below, so that a band is seen to end.
+// With a margin above and below the bands.
 ChartAxis roomy_axis(const std::string& label, std::initializer_list<const std::vector<double>*> all) {
   double least = std::numeric_limits<double>::infinity(), most = -least;
   for (const std::vector<double>* const values : all)
@@ -47,7 +47,7 @@ ChartAxis roomy_axis(const std::string& label, std::initializer_list<const std::
   return {label, false, least - room, most + room};
 }
 
-// Every gyro's coefficient alone and with what the type says, in the manifest's order.
+// Each gyro's coefficient with and without the type's prior, in the manifest's order.
 std::string gyros_picture(const TypeEffect& effect, const std::vector<std::string>& serials) {
   const FieldUnit unit = field_unit(effect.effect.parameters.front().unit);
   std::vector<double> x, own, with_x, with, band_x, low, high;
@@ -107,7 +107,7 @@ std::string effect_section(const TypeEffect& effect, const std::vector<std::stri
          gyros_picture(effect, serials);
 }
 
-// Noise in the units that data sheets give it in.
+// Noise in the units of data sheets.
 FieldUnit unit_of(const PopulationParameter& each) {
   if (!each.logarithmic) return field_unit(each.unit);
   if (each.name == "N") return {1.0 / kDegreePerRootHour, "°/√h"};
@@ -118,7 +118,7 @@ FieldUnit unit_of(const PopulationParameter& each) {
 
 std::string parameter_label(const PopulationParameter& each) { return each.name + on_axis(each.axis); }
 
-// A figure whose logarithm spreads is shown as itself, its spread as a share of it.
+// A parameter with a log-normal spread is shown as a value with a relative spread.
 std::string parameter_row(const PopulationParameter& each) {
   const FieldUnit unit = unit_of(each);
   const auto text_of = [&](double middle, double sigma) -> std::string {
@@ -136,7 +136,7 @@ std::string parameter_row(const PopulationParameter& each) {
 std::string z_picture(const Population& p) {
   if (p.serials.size() < 2) return "";
   const ChartAxis along = gyro_axis(p.serials, p.serials.size() - 1);
-  const std::vector<double> limits = {-kStandsOut, kStandsOut};  // seen also where no gyro is near them
+  const std::vector<double> limits = {-kStandsOut, kStandsOut};  // drawn even if no gyro is near them
   std::vector<double> drawn = limits;
   for (std::size_t i = 0; i < std::min(kMostDrawn, p.parameters.size()); ++i)
     drawn.insert(drawn.end(), p.parameters[i].z.begin(), p.parameters[i].z.end());
@@ -213,7 +213,7 @@ std::string account(const Population& p) {
   return "<div class=\"account\">" + out + "</div>\n";
 }
 
-// The likeliest; what is reckoned with is more where few gyros cannot exclude it.
+// The most likely spread; the spread in use is larger if few gyros cannot exclude it.
 std::string spread_in_words(const TypeEffect& effect, double scale) {
   const double likeliest = effect.prior.likeliest_spread, most = effect.prior.spread;
   return ", from gyro to gyro ± " + number(likeliest * scale, 2) +

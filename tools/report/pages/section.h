@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a page: nothing of what is empty.
+// Building blocks of a page; empty ones are omitted.
 #pragma once
 
 #include <string>
@@ -20,7 +20,7 @@ inline std::string figure_html(const std::string& svg, const std::string& captio
   return "<figure>\n" + svg + "<figcaption>" + caption + "</figcaption>\n</figure>\n";
 }
 
-// A cell of a table, HTML. `number` stands at the right, `better` in colour, too.
+// A cell of a table, HTML. `number`: right-aligned; `better`: also coloured.
 struct Cell {
   enum class Kind { text, number, better };
   Cell(std::string text, Kind its = Kind::text) : html(std::move(text)), kind(its) {}
@@ -39,7 +39,7 @@ inline std::string row(const std::string& head, const std::vector<Cell>& cells) 
   return out + "</tr>\n";
 }
 
-// style: of the table, "" for none.
+// style: of the table; may be "".
 inline std::string table(const std::string& caption, const std::vector<Cell>& heads, const std::string& rows,
                          const std::string& style = "") {
   if (rows.empty()) return "";
@@ -49,7 +49,7 @@ inline std::string table(const std::string& caption, const std::vector<Cell>& he
   return out + "</tr></thead><tbody>\n" + rows + "</tbody></table></div>\n";
 }
 
-// The page around its sections, with its style and its script in it. All but the script is HTML.
+// The page with its style and script around the sections. All arguments are HTML except the script.
 inline std::string whole_page(const std::string& title, const std::string& subtitle, const std::string& body,
                               const std::string& footer) {
   return "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n<meta name=\"viewport\" "

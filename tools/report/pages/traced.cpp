@@ -22,12 +22,12 @@ std::span<const double> column(const Record& record, const std::string& name) {
   return {};
 }
 
-// The time each sample covers; the first one takes its neighbour's.
+// Time step before a sample; the first one has that of its neighbour.
 double step_s(const Record& r, std::size_t k) {
   return r.time_s[std::max<std::size_t>(k, 1)] - r.time_s[std::max<std::size_t>(k, 1) - 1];
 }
 
-// The error without every effect but one, about its mean.
+// The error minus all effects except one, minus its mean.
 Trace error_without(const Record& record, const Diagnosis& diagnosis, std::size_t kept) {
   Model others;
   for (std::size_t i = 0; i < diagnosis.effects.size(); ++i)
@@ -52,7 +52,7 @@ Trace abscissa(const Record& record, const Effect& effect) {
                                 with = column(record, effect.with_channel);
   Trace out(record.rate_radps.size(), std::nan(""));
   if (x.size() != out.size() || (!effect.with_channel.empty() && with.size() != out.size())) return out;
-  // A polynomial without a partner is drawn over the channel, where its curve shows.
+  // A polynomial without a partner is drawn over the channel, so that its curve is visible.
   const bool plain = table || (effect.with_channel.empty() && power_of(*form_named(effect.form)) > 0);
   Shape shape(plain ? ShapeSettings{} : shape_settings(effect));
   Shape partner(effect.with_channel.empty() ? ShapeSettings{} : with_shape_settings(effect));
@@ -72,7 +72,7 @@ Trace abscissa(const Record& record, const Effect& effect) {
   return out;
 }
 
-// Angle errors wander with the integrated noise; within a few wraps of the channel they do not.
+// Angle errors drift with the integrated noise, but little within a few wraps of the channel.
 Trace integrated(const Record& record, const Trace& error, const Trace& x, double period) {
   Trace angle(error.size());
   double sum = 0.0;
@@ -92,7 +92,7 @@ Trace integrated(const Record& record, const Trace& error, const Trace& x, doubl
   return out;
 }
 
-// Means of x and y over so many bins of x.
+// Means of x and y in bins of x.
 void bin(const Trace& x, const Trace& y, std::size_t bins, Traced& out) {
   FiledVector<std::size_t> order;
   for (std::size_t k = 0; k < x.size(); ++k)
@@ -154,7 +154,7 @@ Traced trace(const std::vector<Record>& records, const Diagnosis& diagnosis, std
     out.curve_x.push_back(x);
     out.curve_y.push_back(size * (over_channel ? shape.at(x) : x));
   }
-  // The constant belongs to the switch-on bias: the curve is set at the height of the points.
+  // The offset is the switch-on bias: the curve is moved to the points.
   double offset = 0.0;
   for (std::size_t i = 0; i < out.x.size(); ++i)
     offset += (out.y[i] - size * (over_channel ? shape.at(out.x[i]) : out.x[i])) /

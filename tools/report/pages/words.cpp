@@ -38,7 +38,7 @@ std::string typeset_unit(std::string unit) {
   return unit;
 }
 
-// The column's own unit, "mps2" of "accel_x_mps2".
+// Unit in the column's name, "mps2" in "accel_x_mps2".
 std::string raw_unit(const std::string& column) {
   const auto at = column.rfind('_');
   return at == std::string::npos || at + 1 == column.size() ? "" : column.substr(at + 1);
@@ -131,7 +131,7 @@ Figure figure(const std::string& key) {
 FieldUnit field_unit(const std::string& si) {
   if (si.rfind("rad/s", 0) == 0) {
     const std::string rest = si.substr(5);
-    // Errors in proportion to the rate are read in parts per million.
+    // Errors proportional to the rate are given in ppm.
     if (rest.rfind("/(rad/s)", 0) == 0 && rest.find('^') == std::string::npos)
       return {1e6, "ppm" + typeset_unit(rest.substr(8))};
     return {1.0 / kDegreePerHour, "°/h" + typeset_unit(rest)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Names of channels, effects and figures as a person reads them.
+// Names of channels, effects and figures for people.
 #pragma once
 
 #include <string>
@@ -12,21 +12,22 @@ namespace ifog::report {
 
 std::string channel_label(const std::string& column);  // "temperature (°C)"
 std::string channel_words(const std::string& column);  // "temperature"
-std::string abscissa_label(const Effect& effect);      // what its effect is drawn against
+std::string abscissa_label(const Effect& effect);      // label of the effect's abscissa
 std::string effect_words(const Effect& effect);        // "quadratic in temperature", "line at 3.31 Hz"
 
-// As a person reads them: a line by amplitude and phase, of amplitude * cos(2 pi f t - phase). The amplitude's error is from the
-// likelihood, for cosine and sine share that of the frequency, which turns the phase alone.
+// Parameters for people: a line by amplitude and phase of amplitude * cos(2 pi f t - phase). The amplitude's
+// error is from the likelihood, because the errors of cosine and sine contain that of the frequency, which
+// only changes the phase.
 std::vector<ModelParameter> shown_parameters(const FoundEffect& found);
 
-// A figure of `before` and `after`: its label and its value in the field's unit, from the key's unit ending.
+// A figure in `before` and `after`: its label and its value in the field's unit, from the key's suffix.
 struct Figure {
   std::string label, unit;
-  double scale;  // of the SI value
+  double scale;  // factor from the SI value
 };
 Figure figure(const std::string& key);
 
-// "rad/s/degC" -> value scaled to °/h and "°/h/°C".
+// "rad/s/degC": factor to °/h and the name "°/h/°C".
 struct FieldUnit {
   double scale;
   std::string unit;
