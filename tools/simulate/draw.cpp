@@ -7,7 +7,7 @@
 namespace ifog::simulate {
 namespace {
 
-// Separates these streams from every other use of philox with the same seed (the filter's weights, for one).
+// Separates these streams from other uses of philox with the same seed, e.g. the filter's weights.
 constexpr std::uint32_t kDomain = 0x53494d55U;
 
 template <std::size_t n>
@@ -26,7 +26,7 @@ double plain_log(double x) noexcept {
     mantissa *= 2.0;
     --exponent;
   }
-  // ln m = 2 artanh((m − 1)/(m + 1)); |s| < 0.172, so that the 13th term is below the last bit.
+  // ln m = 2 artanh((m − 1)/(m + 1)); |s| < 0.172, so the 13th term is below the last bit.
   const double s = (mantissa - 1.0) / (mantissa + 1.0);
   const double s2 = s * s;
   double series = 0.0;
@@ -108,7 +108,7 @@ double Draw::log_uniform(double low, double high) noexcept { return low * std::p
 double Draw::normal() noexcept { return normal_quantile(uniform()); }
 
 std::uint64_t Draw::below(std::uint64_t n) noexcept {
-  // Rejects the top sliver that would make small values likelier.
+  // Rejects the highest values, which would make small results more probable.
   const std::uint64_t limit = ~std::uint64_t{0} - ~std::uint64_t{0} % n;
   std::uint64_t value = bits();
   while (value >= limit) value = bits();

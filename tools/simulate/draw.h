@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Random numbers for simulation, the same bits on every machine: philox for the integers, and the normal
-// distribution by its inverse (Wichura, "Algorithm AS 241: the percentage points of the normal distribution",
-// Applied Statistics 37(3), 1988, PPND16), which needs nothing but + − × ÷ and square roots here. The
-// standard library's distributions and libm's logarithm promise no such thing.
+// Random numbers for simulation with equal bits on every machine: integers from philox, normal values by the
+// inverse distribution (Wichura, "Algorithm AS 241: the percentage points of the normal distribution",
+// Applied Statistics 37(3), 1988, PPND16), which needs only + − × ÷ and square roots here. The standard
+// library's distributions and logarithm do not guarantee that.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace ifog::simulate {
 
-// Natural logarithm by a series in plain arithmetic; x > 0 and normal. Relative error below 4e-16.
+// Natural logarithm as a series; x > 0 and normal. Relative error below 4e-16.
 [[nodiscard]] double plain_log(double x) noexcept;
 
 // Quantile of the standard normal distribution, 0 < p < 1; relative error about 1e-15.
 [[nodiscard]] double normal_quantile(double p) noexcept;
 
-// One sequence of draws. (seed, stream) name it: streams of one seed are independent of each other, so adding
-// a noise term or a channel to a scenario leaves all others as they were.
+// One sequence of draws, identified by (seed, stream). Streams of one seed are independent, so an additional
+// noise term or channel does not change the others.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed, std::uint32_t stream = 0) noexcept;

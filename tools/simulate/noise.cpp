@@ -10,11 +10,11 @@
 namespace ifog::simulate {
 namespace {
 
-constexpr double kSpacing = 4.0;  // ratio of neighbouring correlation times of the flicker sum
+constexpr double kSpacing = 4.0;  // ratio of adjacent correlation times in the flicker sum
 
 // An Ornstein–Uhlenbeck process of unit variance over a step of h correlation times. Given both end points,
-// the mean over the step is Gaussian about mean_weight·(x₀ + x₁) with variance rest, independent of
-// everything else.
+// the mean over the step is Gaussian with mean mean_weight·(x₀ + x₁) and variance rest, independent of all
+// else.
 struct Step {
   double decay, drive, mean_weight, rest;
 };
@@ -25,7 +25,7 @@ Step step_of(double h) {
   Step s{};
   s.decay = std::exp(-h);
   s.drive = std::sqrt(-std::expm1(-2.0 * h));
-  if (h < 1e-3) {  // the closed form loses its digits here
+  if (h < 1e-3) {  // the closed form is inaccurate here
     s.mean_weight = 0.5 * (1.0 - h * h / 12.0);
     s.rest = h / 6.0 - h * h * h / 90.0;
   } else {
@@ -72,8 +72,8 @@ Flicker::Flicker(double B, double period_s, double duration_s, Draw draw) : draw
     rest += variance * s.rest;
     correlation *= kSpacing;
   }
-  // Faster processes are white at this sample time; without them the spectrum bends down below the Nyquist
-  // frequency.
+  // Includes processes that are white at this sample time; without them the spectrum would fall below the
+  // Nyquist frequency.
   correlation = period_s / 16.0 / kSpacing;
   while (correlation > 1e-9 * period_s) {
     rest += variance * variance_of_mean(period_s / correlation);
@@ -124,8 +124,7 @@ double RateNoise::next() noexcept {
 
 void quantise_angle(std::span<double> rate_radps, double period_s, double lsb_rad) {
   if (!(lsb_rad > 0.0)) return;
-  // The angle is kept as whole steps plus a remainder of less than one, so that a day of rotation costs no
-  // digits.
+  // The angle is whole steps plus a remainder below one step, so that a day of rotation loses no digits.
   double remainder = 0.0;
   for (double& rate : rate_radps) {
     const double steps = rate * period_s / lsb_rad + remainder;

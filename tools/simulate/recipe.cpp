@@ -160,7 +160,7 @@ const std::vector<Kind>& effect_kinds() {
 
 namespace {
 
-// Every number known and within its range; what was not given takes its fallback.
+// Checks names and ranges of all numbers and fills in defaults.
 void complete_numbers(Recipe& recipe, const std::vector<Key>& keys) {
   for (const auto& [name, value] : recipe.number) {
     const auto key =

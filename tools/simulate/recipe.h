@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The parts of a scenario are recipes: a kind, numbers by name, lists by name, and the channel it works on.
-// Which keys a kind takes, their defaults and ranges are tables here, so that reading a file, drawing values,
-// the truth file and the error messages all go by one definition.
+// The parts of a scenario are recipes: a kind, numbers and lists by name, and a channel. Tables here define
+// each kind's keys, defaults and ranges, for reading files, drawing values, the truth file and error
+// messages.
 #pragma once
 
 #include <map>
@@ -12,8 +12,8 @@ namespace ifog::simulate {
 
 struct Recipe {
   std::string kind;  // a channel's shape, an effect's form, a motion's kind
-  std::string name;  // of a channel: its column
-  std::string axis;  // "" all axes
+  std::string name;  // column of a channel
+  std::string axis;  // "": all axes
   // "rate": the true rate of the axis, "rate_y" that of axis y; minus_channel is subtracted from `channel`.
   std::string channel, with_channel, minus_channel;
   std::map<std::string, double> number;
@@ -24,7 +24,7 @@ struct Recipe {
 
 struct Key {
   const char* name;
-  double fallback;  // NaN: must be given
+  double fallback;  // NaN: required
   double low, high;
   const char* unit;
 };
@@ -32,17 +32,17 @@ struct Key {
 struct Kind {
   const char* name;
   std::vector<Key> keys;
-  std::vector<const char*> lists;  // all must be given
+  std::vector<const char*> lists;  // all are required
   int channels = 0;                // effects: 0 none, 1 `channel`, 2 also `with_channel`
 };
 
 [[nodiscard]] const std::vector<Kind>& channel_kinds();
-[[nodiscard]] const std::vector<Key>& channel_common();  // keys that every channel takes
+[[nodiscard]] const std::vector<Key>& channel_common();  // keys of every channel
 [[nodiscard]] const std::vector<Kind>& motion_kinds();
 [[nodiscard]] const std::vector<Kind>& effect_kinds();
 
-// A recipe with every default filled in. Throws std::invalid_argument naming what is unknown, missing or out
-// of range.
+// Fills in all defaults. Throws std::invalid_argument with the name of an unknown, missing or out-of-range
+// key.
 [[nodiscard]] Recipe completed(Recipe recipe, const std::vector<Kind>& kinds,
                                const std::vector<Key>& common = {});
 

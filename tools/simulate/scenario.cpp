@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scenario files: strict TOML, every complaint one line with file, line, key and what was expected.
+// Reads scenario files: strict TOML; errors are one line with file, line, key and expected value.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace ifog::simulate {
 namespace {
 
-constexpr std::uint32_t kDrawnStream = 900;  // one below the parts' streams
+constexpr std::uint32_t kDrawnStream = 900;  // one below the streams of the parts
 constexpr std::uint32_t kDrawnLast = 999;
 
 const char* type_name(const toml::node& node) {
@@ -40,7 +40,7 @@ class Reader {
 
   Scenario read(const std::uint64_t* other_seed) {
     const toml::table file = parse_toml(read_whole_file(path_), path_);
-    // First, because every drawn number hangs on it.
+    // First, because all drawn numbers depend on it.
     if (const toml::node* seed = file.get("seed")) s_.seed = whole(*seed, "seed");
     if (other_seed != nullptr) s_.seed = *other_seed;
     for (auto&& [key, node] : file) top(std::string(key.str()), node);

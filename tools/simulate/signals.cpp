@@ -16,7 +16,7 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
 constexpr double kGravity = 9.80665;    // m/s²
 
-// First-order low-pass that starts settled on its first input; time_constant 0 passes everything.
+// First-order low-pass, settled at its first input; time_constant 0: no filter.
 class LowPass {
  public:
   LowPass(double time_constant_s, double period_s)
@@ -32,17 +32,17 @@ class LowPass {
   bool started_ = false;
 };
 
-// Level i of a list while time runs through dwells of equal length, the list repeating.
+// Level of a repeating list with dwells of equal length at time t.
 double level_at(const std::vector<double>& levels, double dwell_s, double t) {
   return levels[static_cast<std::size_t>(t / dwell_s) % levels.size()];
 }
 
-// Noise through a resonance: discrete two-pole filter, scaled to the wanted RMS.
+// Noise through a resonance: discrete two-pole filter, scaled to the RMS.
 std::vector<double> resonance(const Grid& grid, double frequency_hz, double damping, double rms, Draw& draw) {
   const double w = kTurn * std::min(frequency_hz, 0.49 * grid.rate_hz) * grid.period();
   const double r = std::exp(-damping * w);
   const double a1 = 2.0 * r * std::cos(w * std::sqrt(std::max(0.0, 1.0 - damping * damping))), a2 = -r * r;
-  // Variance of an AR(2) process driven by unit noise.
+  // Variance of an AR(2) process with unit input noise.
   const double variance = (1.0 - a2) / ((1.0 + a2) * ((1.0 - a2) * (1.0 - a2) - a1 * a1));
   const double gain = rms / std::sqrt(variance);
   std::vector<double> out(grid.samples);
@@ -90,13 +90,13 @@ std::vector<double> physical_channel(const Recipe& c, const Grid& grid, std::spa
       const bool on = c["on_s"] <= 0.0 || std::fmod(grid.time(i), cycle) >= c["off_s"];
       x[i] = c["level"] + (on ? x[i] : 0.0);
     }
-  } else if (c.kind == "angle") {  // what a table's encoder says of the turn
+  } else if (c.kind == "angle") {  // encoder of a rate table
     double angle = c["start"];
     for (std::size_t i = 0; i < x.size(); ++i) {
       angle += true_rate[i] * grid.period() * c["turn"] / kTurn;
       x[i] = angle -= c["turn"] * std::floor(angle / c["turn"]);
     }
-  } else {  // feedback_ramp: the loop's phase, whole counts modulo the register
+  } else {  // feedback_ramp: phase of the loop, integer counts modulo the register
     double counts = c["start"];
     for (std::size_t i = 0; i < x.size(); ++i) {
       counts += (c["counts_per_rad"] * true_rate[i] + c["counts_per_s"]) * grid.period();
@@ -123,7 +123,8 @@ double table(const Recipe& e, double x) {
   const auto i = static_cast<std::size_t>(above - knots.begin()) - 1;
   if (above == knots.end()) {
     if (period <= 0.0) return values.back();
-    const double span = knots.front() + period - knots.back();  // around the end to the first knot
+    // From the last knot over the period to the first
+    const double span = knots.front() + period - knots.back();
     return span > 0.0 ? values.back() + (values.front() - values.back()) * (x - knots.back()) / span
                       : values.back();
   }
@@ -139,7 +140,7 @@ ChannelSignal channel_signal(const Recipe& c, const Grid& grid, std::span<const 
   signal.logged = signal.physical;
   const double resolution = c.kind == "feedback_ramp" ? std::max(1.0, c["resolution"]) : c["resolution"];
   const auto hold = static_cast<std::size_t>(std::max(1.0, std::round(c["every_s"] * grid.rate_hz)));
-  // Noise, then the converter's steps, then the bus that sends a value now and then.
+  // Noise, then the converter's steps, then the bus's update interval.
   for (std::size_t i = 0; i < grid.samples; ++i) {
     double& x = signal.logged[i];
     if (c["noise"] > 0.0) x += c["noise"] * draw.normal();
@@ -159,7 +160,7 @@ std::vector<double> motion_signal(const Recipe& m, const Grid& grid, Draw draw) 
   const auto fill = [&](auto value) {
     for (std::size_t i = 0; i < rate.size(); ++i) rate[i] = value(grid.time(i));
   };
-  // A smooth edge is a moving mean over edge_s, by running sum.
+  // Smooth edges by a moving mean over edge_s.
   const auto smooth = [&](double edge_s) {
     const auto width = static_cast<std::size_t>(std::round(edge_s * grid.rate_hz));
     if (width < 2) return;
@@ -202,7 +203,7 @@ std::vector<double> motion_signal(const Recipe& m, const Grid& grid, Draw draw) 
 
 namespace {
 
-// What an effect is made of, and what it makes: `out` has a sample of zero for each of the grid.
+// Inputs and output of an effect: `out` has a zero for each sample of the grid.
 struct Making {
   const Recipe& e;
   const Grid& grid;
@@ -216,7 +217,7 @@ struct Making {
   }
 };
 
-// Makes an effect of the channel's value now. False: it is of no such kind.
+// Adds an effect of the channel's present value. False: another kind of effect.
 bool make_of_value(const Making& m) {
   const Recipe& e = m.e;
   const std::span<const double> channel = m.channel;
@@ -241,7 +242,7 @@ bool make_of_value(const Making& m) {
       return e["coefficient"] * (e.kind == "sine" ? std::sin(phase) : std::cos(phase));
     });
   } else if (e.kind == "earth_rate") {
-    // An axis along the heading, tilted as its accelerometer says: the Earth's rate along it.
+    // Earth's rate along an axis in the direction of the heading, tilted as its accelerometer measures.
     const double latitude = e["latitude_deg"] * kTurn / 360.0;
     const double north = std::cos(latitude) * std::cos(e["heading_deg"] * kTurn / 360.0);
     m.each([&](std::size_t i) {
@@ -259,7 +260,7 @@ bool make_of_value(const Making& m) {
   return true;
 }
 
-// Makes an effect of the channel's history.
+// Adds an effect of the channel's history.
 bool make_of_history(const Making& m) {
   const Recipe& e = m.e;
   const std::span<const double> channel = m.channel;
@@ -292,7 +293,7 @@ bool make_of_history(const Making& m) {
       return e["coefficient"] * mean(fast * fast);
     });
   } else if (e.kind == "backlash") {
-    // A play of the given width: the output moves only when the input pushes against one side of it.
+    // Play of the given width: the output changes only at one of its sides.
     const double half = 0.5 * e["width"];
     double play = channel.empty() ? 0.0 : channel[0];
     m.each([&](std::size_t i) {
@@ -305,7 +306,7 @@ bool make_of_history(const Making& m) {
   return true;
 }
 
-// Makes an effect of time or chance, without a channel.
+// Adds an effect of time or chance, without a channel.
 void make_of_time(Making& m) {
   const Recipe& e = m.e;
   const Grid& grid = m.grid;

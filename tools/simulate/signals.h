@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time series of the parts of a scenario, one value a sample.
+// Time series of the parts of a scenario, one value per sample.
 #pragma once
 
 #include <span>
@@ -18,18 +18,18 @@ struct Grid {
   [[nodiscard]] double duration() const { return static_cast<double>(samples) / rate_hz; }
 };
 
-// The channel as it is, and as it is logged: with its sensor's noise, resolution and update interval.
+// The true channel, and the logged one with its sensor's noise, resolution and update interval.
 struct ChannelSignal {
   std::vector<double> physical, logged;
 };
-// true_rate: of the axis the channel belongs to; only a feedback ramp uses it.
+// true_rate: of the channel's axis; used by a feedback ramp only.
 [[nodiscard]] ChannelSignal channel_signal(const Recipe& recipe, const Grid& grid,
                                            std::span<const double> true_rate, Draw draw);
 
 [[nodiscard]] std::vector<double> motion_signal(const Recipe& recipe, const Grid& grid, Draw draw);
 
-// The part of the rate that an effect makes from the physical channel. `quantisation` acts on the sum and is
-// not made here: zero.
+// Contribution of an effect to the rate, from the true channel. Zero for `quantisation`, which acts on the
+// sum.
 [[nodiscard]] std::vector<double> effect_signal(const Recipe& recipe, const Grid& grid,
                                                 std::span<const double> channel,
                                                 std::span<const double> with_channel,

@@ -12,7 +12,7 @@
 namespace ifog::simulate {
 namespace {
 
-// Streams of the seed: a block for each sort of part, a place in it for each part and axis.
+// Streams of the seed: a block for each kind of part, in it one for each part and axis.
 constexpr std::uint32_t kChannelStream = 1000, kMotionStream = 2000, kEffectStream = 3000,
                         kNoiseStream = 4000, kRowStream = 5000, kReferenceStream = 6000;
 constexpr std::uint32_t kPerAxis = 100'000;
@@ -118,13 +118,13 @@ class Simulator {
     return parts;
   }
 
-  // So many signals more are whole.
+  // Counts signals that are complete.
   void made(std::size_t signals) {
     made_ += signals * grid_.samples;
     tell(0);
   }
   void tell(std::size_t of_the_next) const {
-    const std::size_t an_axis = s_.motions.size() + s_.effects.size() + 1;  // its noise
+    const std::size_t an_axis = s_.motions.size() + s_.effects.size() + 1;  // with the noise
     if (progress_)
       progress_(made_ + of_the_next, (s_.axes.size() * an_axis + s_.channels.size()) * grid_.samples);
   }
@@ -139,7 +139,7 @@ class Simulator {
     made(1);
     for (const auto& part : truth.effect_radps[axis])
       for (std::size_t i = 0; i < rate.size(); ++i) rate[i] += part[i];
-    // The converter comes last: it rounds the sum of everything.
+    // Last, because the converter rounds the sum.
     quantise_angle(rate, grid_.period(), s_.noise.Q * std::sqrt(12.0));
     for (const Recipe& effect : s_.effects) {
       if (effect.kind != "quantisation" || (!effect.axis.empty() && effect.axis != s_.axes[axis])) continue;
