@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Overlapping Allan deviation of a file of doubles (rad/s, native byte order) at the averaging times of a
-// second file (whole numbers as text). Prints processor seconds of the analysis alone, user's
-// and all, bytes of the samples and peak bytes of the process, then one deviation a line.
+// second file (integers as text). Prints the processor time of the analysis (user, and total), the bytes of
+// the samples and the peak memory, then one deviation per line.
 #include <sys/resource.h>
 
 #include <cmath>
@@ -16,7 +16,7 @@
 
 namespace {
 
-// Of this program's own memory: what getrusage reports survives exec, and a large caller would be counted in.
+// Of this program only: the value of getrusage includes that of the program that called exec.
 long peak_kib() {
   std::ifstream status("/proc/self/status");
   for (std::string line; std::getline(status, line);) {
@@ -25,7 +25,7 @@ long peak_kib() {
   return 0;
 }
 
-// A busy machine's other work does not count.
+// Independent of other work on the machine.
 struct ProcessorTime {
   double user = 0.0, all = 0.0;  // s
 };

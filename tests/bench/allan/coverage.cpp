@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often what is said about a record's noise is true: intervals of the deviations, presence of terms,
-// their error bars and bounds, over simulated records with known coefficients, one term alone or two that
-// cross somewhere along τ.
+// How often statements about a record's noise are true: intervals of the deviations, presence of terms, their
+// errors and bounds, over simulated records with known coefficients: one term alone, or two that cross along
+// τ.
 //
-// The noise is synthesised in time (tools/simulate), not from the covariances the fit uses; quantisation is
-// the difference of independent errors of the angle, Gaussian as the theory has them, or with --uniform those
-// of a counter, whose squares scatter less. Prints a Markdown table.
+// The noise is synthesised in the time domain (tools/simulate), not from the covariances of the fit.
+// Quantisation is the difference of independent errors of the angle: Gaussian as in the theory, or with
+// --uniform those of a counter, whose squares scatter less. Prints a Markdown table.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
@@ -27,7 +27,7 @@ constexpr std::array<const char*, kTerms> kName{"Q", "N", "B", "K"};
 constexpr std::array<Deviation, 3> kKinds{Deviation::kAllan, Deviation::kModified, Deviation::kHadamard};
 constexpr std::array<double, 2> kConfidence{0.683, 0.95};
 
-// Allan variance of one unit of each coefficient at m samples of one second.
+// Allan variance for one unit of each coefficient at m samples of one second.
 double allan_of(std::size_t term, double m) {
   const std::array<double, kTerms> v{3.0 / (m * m), 1.0 / m, 2.0 * std::log(2.0) / M_PI, m / 3.0};
   return v[term];
@@ -35,7 +35,7 @@ double allan_of(std::size_t term, double m) {
 
 struct Case {
   std::string name;
-  std::array<double, kTerms> truth{};  // coefficients, sample time one second
+  std::array<double, kTerms> truth{};  // coefficients, for a sample time of one second
 };
 
 std::vector<Case> all_cases(std::size_t n) {
@@ -88,7 +88,7 @@ struct Tally {
   int ramps = 0;
 };
 
-// What does not depend on the record, made once.
+// Objects that do not depend on the record.
 class Estimators {
  public:
   Estimators(const std::vector<std::size_t>& m, std::size_t samples) : samples_{samples} {
@@ -142,7 +142,7 @@ void judge_terms(const Case& c, const ifog::NoiseCoefficients& found, Tally& tal
   }
 }
 
-// Largest part of the Allan variance at any octave up to n/4.
+// Largest fraction of the Allan variance at any octave up to n/4.
 double largest_share(const Case& c, const std::vector<std::size_t>& m, std::size_t term) {
   double share = 0.0;
   for (const std::size_t k : m) {
@@ -183,7 +183,7 @@ void print(const Case& c, const Tally& tally, const std::vector<std::size_t>& m,
   std::fflush(stdout);
 }
 
-// Of error over error bar, in one case.
+// Standard deviation of error / standard error in one case.
 double width_of(const Tally& tally, std::size_t term) {
   const double found = tally.present[term], mean = tally.sum[term] / found;
   return std::sqrt(std::max(0.0, tally.square[term] / found - mean * mean));
@@ -208,14 +208,14 @@ struct Summary {
         false_terms += tally.present[t];
         continue;
       }
-      // Where there is a term to fall below; nothing falls below zero.
+      // Only for terms above zero: nothing can be below zero.
       bounds += tally.absent[t];
       held += tally.bound_holds[t];
       uppers += records;
       uppers_held += tally.upper_holds[t];
       least_held = std::min(least_held, static_cast<double>(tally.upper_holds[t]) / records);
-      // Where the term is seen in few records, those that show too much of it are chosen, and no error bar is
-      // kept.
+      // If a term is found in few records, these are the ones with too large values, so their standard errors
+      // are not tested.
       if (2 * tally.present[t] >= records) {
         const double width = width_of(tally, t);
         ++widths;

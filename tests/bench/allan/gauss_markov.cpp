@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often a correlated bias is found where there is none and where there is one, and what is then said of
-// it. Prints a Markdown table. Samples of one second; white noise of one unit.
+// How often a correlated bias is found without and with one in the record, and the error of its parameters.
+// Prints a Markdown table. Samples of one second; white noise of one unit.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ namespace {
 struct Case {
   std::string name;
   ifog::simulate::NoiseLevels terms;
-  double sigma = 0.0, correlation = 0.0;  // of a correlated bias; samples
+  double sigma = 0.0, correlation = 0.0;  // of a correlated bias; in samples
 };
 
 std::vector<double> record_of(const Case& c, std::size_t n, std::uint64_t seed) {
@@ -30,7 +30,7 @@ std::vector<double> record_of(const Case& c, std::size_t n, std::uint64_t seed) 
   return rate;
 }
 
-// One law crosses the white noise at so many samples.
+// The law crosses the white noise at `at` samples.
 ifog::simulate::NoiseLevels white_and(double at, bool flicker, bool walk) {
   ifog::simulate::NoiseLevels out{.N = 1.0};
   if (flicker) out.B = 1.0 / std::sqrt(2.0 * std::log(2.0) / M_PI * at);
@@ -45,7 +45,7 @@ ifog::NoisePosterior::Part part_of(double weight, const ifog::TermVariances& ter
   return {weight, terms[ifog::kN], terms[ifog::kK], flicker, 0.0, 0.0};
 }
 
-// Mean square of the heading an hour after a bias of five minutes, over what is foretold of it.
+// Mean square of the heading an hour after a bias estimate of five minutes, divided by the predicted one.
 double foretold(const Case& c, const ifog::NoiseCoefficients& found) {
   constexpr double kAligned_s = 300.0, kAfter_s = 3600.0;
   ifog::NoisePosterior truth, seen;

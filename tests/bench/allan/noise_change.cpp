@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How often noise that is the same all along a record is said to change, and how often one that changes is
-// found: `ifog allan`, `tune` and `diagnose` say so in one line.
+// How often a change of constant noise is reported, and how often a true change is found, by `ifog allan`,
+// `tune` and `diagnose`.
 //
 //   noise_change_bench [--records N] [--seed FIRST]
 //
@@ -45,7 +45,7 @@ Rates autoregressive(std::size_t samples, std::uint64_t seed, double first, doub
   return independent(samples, next);
 }
 
-// Two poles, so many samples of correlation.
+// Two poles, correlated over `samples`.
 Rates resonance(std::size_t samples, std::uint64_t seed) {
   const double pole = std::exp(-1.0 / 100.0), turn = 2.0 * std::numbers::pi * 0.03;
   return autoregressive(samples, seed, 2.0 * pole * std::cos(turn), -pole * pole);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs of a pipeline with random faults, one a seed: do the books balance, is the angle that of the intact
-// frames, and does anything stay behind?
+// Pipeline runs with random faults, one per seed: are all data accounted for, is the angle that of the intact
+// frames, and is anything left over?
 #include <CLI/CLI.hpp>
 #include <cstdio>
 
@@ -8,7 +8,7 @@
 
 int main(int argc, char** argv) {
   CLI::App app("Runs with random faults; exit 1 if anything did not hold", "books_bench");
-  unsigned runs = 5000, first = 1'000'000;  // apart from the unit test's
+  unsigned runs = 5000, first = 1'000'000;  // differ from the unit test's
   app.add_option("--runs", runs)->check(CLI::PositiveNumber);
   app.add_option("--first", first, "seed of the first run");
   CLI11_PARSE(app, argc, argv);

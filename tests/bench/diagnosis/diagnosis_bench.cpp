@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time and memory of one diagnosis: by default an hour at 1 kHz with eight channels, three effects hidden in
-// it. The capture is made in memory, so that no parsing is in the figures. Prints processor and elapsed time
-// and the process's peak memory as a multiple of the capture's own doubles; exits 1 when a target of 10 s of
-// processor time or 3 x is missed, or an effect is.
+// Time and memory of a diagnosis: by default one hour at 1 kHz with eight channels and three hidden effects.
+// The capture is made in memory, so parsing is not included. Prints processor time, elapsed time and peak
+// memory as a multiple of the capture's doubles. Exit 1 if the target of 10 s of processor time or 3 x is
+// missed, or an effect.
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
@@ -66,7 +66,7 @@ int main(int argc, char** argv) {
   app.add_option("--minutes", minutes)->check(CLI::Range(1.0, 1440.0));
   app.add_option("--rate", rate_hz, "Hz")->check(CLI::Range(1.0, 10000.0));
   std::string unused;
-  app.add_option("--benchmark_min_time", unused)->group("");  // given to every benchmark by tools/test
+  app.add_option("--benchmark_min_time", unused)->group("");  // tools/test passes it to every benchmark
   CLI11_PARSE(app, argc, argv);
 
   const Made made = make(minutes, rate_hz);

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Heading over a day, accelerated: three gyros of 5 kHz through the daemon's own pipelines (driver, ring,
-// filter, LCM encoding), with reloads and overload all the way. What is published, decoded from the encoded
-// messages, is compared with what was sent, which is known exactly: every rate is a whole multiple of 2^-20
-// rad/s, and the sum is kept in whole numbers.
+// Heading over a simulated day: three gyros at 5 kHz through the daemon's pipelines (driver, ring, filter,
+// LCM encoding), with reloads and overload. Compares the encoded messages with the input, which is known
+// exactly: every rate is a multiple of 2^-20 rad/s, and the sum is an integer.
 //
-//   heading_bench [--hours H] [--sensors N]     exit 1 when an angle is off by more than 1e-9 rad
+//   heading_bench [--hours H] [--sensors N]     exit 1 if an angle is off by more than 1e-9 rad
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <chrono>
@@ -25,17 +24,17 @@ using namespace ifog;
 using namespace std::chrono_literals;
 
 constexpr double kRate_hz = 5000.0;
-constexpr double kUnit_radps = 1.0 / (1 << 20);    // float32 holds whole multiples of it up to 16 rad/s
-constexpr std::size_t kFrame = 36, kPortion = 64;  // bytes of a frame, frames a delivery
+constexpr double kUnit_radps = 1.0 / (1 << 20);    // float32 holds its multiples up to 16 rad/s exactly
+constexpr std::size_t kFrame = 36, kPortion = 64;  // bytes per frame, frames per delivery
 constexpr std::size_t kSlots = 1024;
-constexpr int kBlock = 128 * 512;                // frames that are sent over and over: 13 s
+constexpr int kBlock = 128 * 512;                // frames, repeated: 13 s
 constexpr std::uint64_t kCalm = 100'000;         // frames between two overloads: 20 s
-constexpr std::uint64_t kOverload = 4 * kSlots;  // frames sent without regard for the filter
+constexpr std::uint64_t kOverload = 4 * kSlots;  // frames sent faster than the filter
 constexpr double kAllowed_rad = 1e-9;
-constexpr double kAllowedDenoised_deg = 1e-3;  // of the denoised rate, once it is at rest
+constexpr double kAllowedDenoised_deg = 1e-3;  // of the denoised rate at rest
 
-// What one axis measures, in units of kUnit_radps: at rest with the Earth's rate, a turn of 90° with a sharp
-// start and a slow end and one back, and noise of some 1e-4 rad/s.
+// Rate of one axis in units of kUnit_radps: Earth's rate at rest, a turn of 90° with a sharp start and a slow
+// end and one back, noise of some 1e-4 rad/s.
 int units(int n, int axis) {
   const double t = n / kRate_hz;
   const auto turn = [](double s) { return s < 0.0 ? 0.0 : s < 0.5 ? 1.0 : std::exp(-(s - 0.5) / 0.4); };
@@ -74,7 +73,7 @@ Block make_block() {
   return block;
 }
 
-// Sends the block again and again, as fast as the filter follows; now and then faster.
+// Sends the block repeatedly as fast as the filter follows, and sometimes faster.
 class DayTransport final : public Transport {
  public:
   DayTransport(const Block& block, std::uint64_t frames) : Transport("day"), block_(block), frames_(frames) {}
@@ -86,7 +85,7 @@ class DayTransport final : public Transport {
     }
     const bool overload = given_ % (kCalm + kOverload) >= kCalm;
     if (!overload && given_ - filter_->counters().device_samples.value() > 3 * kSlots / 4) {
-      // An empty delivery, so that the reader looks for room for what it has merged.
+      // An empty delivery, so that the reader tries to store what it has merged.
       std::this_thread::sleep_for(200us);
       return {};
     }
@@ -94,7 +93,7 @@ class DayTransport final : public Transport {
     const std::uint64_t n = std::min({std::uint64_t{kPortion}, kBlock - at, frames_ - given_});
     Delivery out;
     out.bytes = std::span(block_.bytes).subspan(at * kFrame, n * kFrame);
-    // No arrival times: the counter alone says that nothing is missing, however fast this runs.
+    // No arrival times: only the counter shows that nothing is missing, at any speed.
     given_ += n;
     return out;
   }
@@ -106,7 +105,7 @@ class DayTransport final : public Transport {
   FilterStage* filter_ = nullptr;
 };
 
-// Takes the messages apart as a subscriber would.
+// Decodes the messages as a subscriber would.
 class SummingPublisher final : public Publisher {
  public:
   bool publish(const char*, std::span<const std::uint8_t> message) noexcept override {
@@ -158,7 +157,7 @@ struct Sensor {
   std::unique_ptr<Pipeline> pipeline;
 };
 
-// A new filter for every sensor, as SIGHUP makes it.
+// Makes a new filter for every sensor, as SIGHUP does.
 void reload(std::vector<std::unique_ptr<Sensor>>& sensors, int number) {
   for (auto& sensor : sensors) {
     sensor->chain.filter.measurement_noise = number % 2 == 0 ? 1e-8 : 2e-8;

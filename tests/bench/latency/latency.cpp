@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a frame's last byte to the end of its LCM send, and processor time a sample: the daemon's pipeline
-// compared with a bare loop that reads the same FIFO and calls lcm_publish on a message of the same size, without
-// ring, plugin or filter. With --record a third time, with the flight recorder on, and a fourth, without it
-// again: what this machine makes of two that are the same. Interleaved rounds in one process. Run it by
-// tests/bench/latency/run, in a network namespace of its own.
+// Time from a frame's last byte to the end of its LCM send, and processor time per sample. Compares the
+// daemon's pipeline with a bare loop that reads the same FIFO and calls lcm_publish with a message of the
+// same size. With --record there are two more runs, with the flight recorder and without it, whose difference
+// is the noise of this machine. Interleaved rounds in one process. Start it with tests/bench/latency/run in
+// its own network namespace.
 #include <fcntl.h>
 #include <lcm/lcm.h>
 #include <sys/stat.h>
@@ -40,7 +40,8 @@ std::int64_t cpu_ns(clockid_t clock) {
   return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
 }
 
-// When each frame was written and when its send was done; frame n is message n, as nothing is lost on a FIFO.
+// Times when each frame was written and when its send ended; frame n is message n, because a FIFO loses
+// nothing.
 struct Stamps {
   explicit Stamps(std::size_t n) : written(n), sent(n) {}
   std::vector<std::atomic<std::int64_t>> written, sent;
@@ -70,7 +71,7 @@ struct Plan {
   std::string place = "any";
   std::string rule = "irwe-akfg";
 
-  // Where the source and who reads it run; empty: wherever the scheduler likes.
+  // Processors of the source and its reader; empty: chosen by the scheduler.
   [[nodiscard]] std::vector<int> source_cpus() const {
     return place == "any" ? std::vector<int>{} : std::vector<int>{0};
   }
@@ -94,7 +95,7 @@ std::vector<std::uint8_t> frames(std::size_t count) {
   return out;
 }
 
-// Writes one frame a period at absolute deadlines, to the FIFO of every sensor in turn.
+// Writes one frame per period at absolute deadlines to each sensor's FIFO in turn.
 void write_frames(const Plan& plan, const std::vector<int>& fifos, const std::vector<std::uint8_t>& bytes,
                   std::vector<std::unique_ptr<Stamps>>& stamps, std::int64_t& used_ns) {
   apply_to_this_thread({"source", 0, plan.source_cpus()});
@@ -149,7 +150,7 @@ enum class Kind { bare, daemon, recording, again };
 struct Result {
   std::vector<double> latency_us;
   std::vector<double> p50_us, p99_us;  // of each round
-  double cpu_us = 0.0;                 // a sample, writer left out
+  double cpu_us = 0.0;                 // per sample, without the writer
   std::size_t lost = 0;
   std::uint64_t unrecorded = 0;  // deliveries
   ThreadCosts readers, recorders;
@@ -240,7 +241,7 @@ void run_round(Kind kind, const Plan& plan, const std::vector<std::string>& path
   for (const int fd : fifos) close(fd);
   std::vector<double> latency_us;
   for (const auto& one : stamps)
-    for (std::size_t n = count / 10; n < count; ++n) {  // the first tenth warms caches up
+    for (std::size_t n = count / 10; n < count; ++n) {  // the first tenth warms the caches
       const std::int64_t sent_ns = one->sent[n].load();
       if (sent_ns == 0)
         ++result.lost;
@@ -258,7 +259,7 @@ void print(const char* name, const std::vector<double>& l, double cpu_us, std::s
               percentile(l, 0.999), l.empty() ? 0.0 : l.back(), cpu_us, lost);
 }
 
-// Round by round, each compared with the one of the same round: median and quartiles.
+// Each round relative to the reference of the same round: median and quartiles.
 void print_rounds(const char* what, const std::vector<double>& of, const std::vector<double>& by) {
   std::vector<double> ratios;
   for (std::size_t i = 0; i < of.size(); ++i) ratios.push_back(of[i] / by[i]);
@@ -349,7 +350,7 @@ int main(int argc, char** argv) {
   for (int round = 0; round < plan.rounds; ++round) {
     run_round(Kind::bare, plan, paths, bytes, size, bare);
     for (const auto& [kind, result] : ways) run_round(kind, plan, paths, bytes, size, *result);
-    // In every order in turns: what the one before leaves behind is shared.
+    // In every order, because each run affects the next one.
     std::next_permutation(ways.begin(), ways.end());
   }
   for (Result* const result : {&bare, &daemon, &recording})

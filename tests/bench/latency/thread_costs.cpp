@@ -8,7 +8,7 @@
 namespace ifog {
 namespace {
 
-// proc(5): the tenth field, the second behind the name in parentheses being the first here.
+// proc(5): the tenth field; here the first one is the second after the name in parentheses.
 std::uint64_t minor_faults(const std::filesystem::path& task) {
   std::string line;
   std::getline(std::ifstream(task / "stat"), line);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the kernel has counted of this process's threads.
+// Counters of the kernel for this process's threads.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 namespace ifog {
 
 struct ThreadCosts {
-  std::uint64_t faults = 0;     // pages that were not there
-  std::uint64_t slept = 0;      // times that one went to sleep
-  std::uint64_t preempted = 0;  // times that one was put off its processor
+  std::uint64_t faults = 0;     // page faults
+  std::uint64_t slept = 0;      // voluntary context switches
+  std::uint64_t preempted = 0;  // involuntary context switches
 
   ThreadCosts& operator+=(const ThreadCosts& other) {
     faults += other.faults;
@@ -23,7 +23,7 @@ struct ThreadCosts {
   }
 };
 
-// Of all that have this name, while they run.
+// Sum over all threads of this name, while they run.
 ThreadCosts costs_of_threads(const std::string& name);
 
 }  // namespace ifog

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The gyros of this bench, in units of their white noise.
+// The gyros of this benchmark, in units of their white noise.
 #pragma once
 
 #include <vector>
@@ -8,13 +8,12 @@
 
 namespace ifog::bench {
 
-// Kinds whose Allan deviation reaches 0.664 B, or the least of N and K, after so long.
+// Kinds by the averaging time at which the Allan deviation reaches 0.664 B, or the minimum of N and K.
 [[nodiscard]] std::vector<NoiseKind> kinds();
-// What no table of noise has: a temperature that leaves something in the rate, from day to night and from
-// hour to hour.
+// A temperature effect that remains in the rate, by day and by hour; no table of noise contains it.
 [[nodiscard]] std::vector<NoiseKind> wandering_kinds();
 
-// As IEEE Std 952 has it: the floor of the Allan deviation is 0.664 of it. 0: there is no floor.
+// As in IEEE Std 952: the minimum of the Allan deviation divided by 0.664. 0: no minimum.
 [[nodiscard]] double bias_instability(const NoiseKind& kind);
 
 }  // namespace ifog::bench

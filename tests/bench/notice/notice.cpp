@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the daemon notices of a gyro, and how often wrongly: many months in blocks, and the whole chain at its
-// sample rate. One line a case; results.md has them.
+// Changes of a gyro that the daemon detects, and false alarms: many months in blocks, and the whole chain at
+// its sample rate. Prints one line per case; results are in results.md.
 //
 // usage: notice_bench blocks MONTHS SEED [WORD]  months of each kind of noise, in blocks of ten seconds
-//        notice_bench steps SENSORS SEED [WORD]  steps of the bias and more noise, after three days at
-//        rest,
-//                                                in twenty continuations of each, in
-//        notice_bench limits BLOCKS SEED [WORD]  what nobody, or nobody of some knowledge, can beat
+//        notice_bench steps SENSORS SEED [WORD]  steps of the bias and more noise, after three days at rest,
+//                                                in twenty continuations of each
+//        notice_bench limits BLOCKS SEED [WORD]  the best possible detection for several kinds of knowledge
 //        notice_bench chain DAYS SEED            a gyro at 200 Hz through signal chain and watch
-// WORD: only kinds of noise whose name has it.
+// WORD: only kinds of noise with it in their name.
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -36,10 +35,10 @@ using ifog::bench::SlowNoise;
 
 constexpr double kRate = 200.0, kBlock_s = SensorWatch::kBlock_s;
 constexpr double kLook_s = 600.0, kAlarmEvery_s = 30.0 * 86400.0;
-constexpr unsigned kWays = 20;  // that one sensor goes on in
+constexpr unsigned kWays = 20;  // continuations of one sensor
 constexpr int kPerDay = static_cast<int>(86400.0 / kBlock_s), kPerMonth = 30 * kPerDay;
 
-// A sensor block by block: what ten seconds of samples add to the sums.
+// A sensor in blocks: the contribution of ten seconds of samples to the sums.
 class Blocks {
  public:
   Blocks(const NoiseKind& kind, unsigned seed)
@@ -58,7 +57,7 @@ class Blocks {
     samples_ += static_cast<std::uint64_t>(n);
     watch.take(sums_, samples_, 0);
   }
-  // From here on it continues otherwise.
+  // From here on another continuation.
   void go_on_as(unsigned seed) { random_.seed(seed); }
 
  private:
@@ -119,10 +118,10 @@ std::vector<Change> changes(const NoiseKind& kind) {
   return out;
 }
 
-// Whether this sensor's change is found within ten minutes.
+// Counts if this sensor's change is found within ten minutes.
 void look_for(Change& change, Blocks blocks) {
   constexpr int kTenMinutes = static_cast<int>(kLook_s / kBlock_s);
-  if ((blocks.watch.noticed() & change.bit) != 0) return;  // a false alarm is no find
+  if ((blocks.watch.noticed() & change.bit) != 0) return;  // a false alarm is not a detection
   ++change.trials;
   blocks.step = change.step;
   blocks.louder = change.louder;
@@ -134,7 +133,7 @@ void look_for(Change& change, Blocks blocks) {
   }
 }
 
-// The share found within ten minutes, the median time of those found, and what nobody can beat.
+// Prints the fraction found within ten minutes, their median time, and the upper limit of any method.
 void steps(int sensors, unsigned seed, const std::string& word) {
   for (const NoiseKind& kind : ifog::bench::kinds()) {
     if (kind.name.find(word) == std::string::npos) continue;
@@ -165,7 +164,7 @@ void steps(int sensors, unsigned seed, const std::string& word) {
   }
 }
 
-// A gyro like that of tools/simulate/scenarios/demo.toml.
+// A gyro like that in tools/simulate/scenarios/demo.toml.
 void chain(double days, unsigned seed) {
   const NoiseKind gyro{"chain", 2.5e-8, 1.0e-9, 1.0e-11};
   std::mt19937_64 random(seed);

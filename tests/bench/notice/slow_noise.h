@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The noise of a gyro as it is seen in means over some seconds, and below.
+// Noise of a gyro in means over some seconds and longer.
 #pragma once
 
 #include <random>
@@ -12,8 +12,8 @@ namespace ifog::bench {
 struct NoiseKind {
   std::string name;
   double N = 1.0, B = 0.0, K = 0.0;
-  // A temperature in the rate, in its unit: half of what is between day and night, and the deviation of what
-  // wanders in an hour.
+  // Temperature effect in the rate, in its unit: half the difference between day and night, and the standard
+  // deviation of the hourly variation.
   double day = 0.0, hour = 0.0;
 };
 
@@ -25,7 +25,7 @@ class SlowNoise {
   struct Markov {
     double keep, drive, value;
   };
-  // What it is made of, besides the walk.
+  // Its processes except the random walk.
   [[nodiscard]] const std::vector<Markov>& processes() const { return processes_; }
 
  private:
@@ -33,7 +33,7 @@ class SlowNoise {
   double temperature(std::mt19937_64& random);
   double walk_ = 0.0, walk_step_;
   double day_, hour_, step_s_, time_s_ = 0.0;
-  double room_ = 0.0, sensor_ = 0.0;  // what wanders, and what follows it
+  double room_ = 0.0, sensor_ = 0.0;  // the temperature, and the sensor's delayed one
   std::normal_distribution<double> normal_;
 };
 

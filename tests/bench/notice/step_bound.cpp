@@ -10,7 +10,7 @@ namespace ifog::bench {
 namespace {
 
 constexpr double kPast_s = 3.0 * 86400.0;
-// Nobody knows the bias to begin with: the variance of it, in units of the white noise of a block.
+// Variance of the unknown initial bias, in units of the white noise of a block.
 constexpr double kAnyBias = 1e8;
 
 double normal(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
@@ -38,7 +38,7 @@ std::vector<double> left_of_step(const NoiseKind& kind, double step, double bloc
   for (double block = 0.0; block < all; block += 1.0) {
     const Eigen::VectorXd of_sum = covariance.rowwise().sum();
     const double total = of_sum.sum() + white;
-    // The step alone goes through the filter; before it there is nothing.
+    // The step alone passes through the filter; before it the input is zero.
     const double left = block < past ? 0.0 : step - state.sum();
     if (block >= past) out.push_back(left / std::sqrt(total));
     state = keep.cwiseProduct(state + of_sum * (left / total));

@@ -17,7 +17,7 @@ namespace ifog::bench {
 namespace {
 
 constexpr double kLimitBlock_s = SensorWatch::kBlock_s, kLimitLook_s = 600.0, kMonth_s = 30.0 * 86400.0;
-constexpr double kFine = 20.0;  // blocks of a twentieth: as good as none
+constexpr double kFine = 20.0;  // of a block; small enough to be continuous
 constexpr std::size_t kLooks = static_cast<std::size_t>(kLimitLook_s / kLimitBlock_s), kTrials = 20000;
 constexpr double kTimes = 5.0, kAllowed = kLimitBlock_s / kMonth_s;
 

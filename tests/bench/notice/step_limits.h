@@ -6,8 +6,8 @@
 
 namespace ifog::bench {
 
-// What of the steps of 5 B can be found within ten minutes with each piece of knowledge taken away that a
-// daemon does not have, one line a kind of noise whose name has the word; `blocks` without a step set the
+// Fraction of steps of 5 B that can be found within ten minutes without each kind of knowledge that a daemon
+// lacks. Prints one line per kind of noise with `word` in its name; `blocks` without a step set the
 // thresholds.
 void print_limits(std::size_t blocks, unsigned seed, const std::string& word);
 

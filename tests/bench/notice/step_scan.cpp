@@ -10,7 +10,7 @@
 namespace ifog::bench {
 namespace {
 
-constexpr double kLeast = 2.0;  // deviations: the formula is for rare ones
+constexpr double kLeast = 2.0;  // in standard deviations: the formula is valid for rare events
 
 }  // namespace
 
@@ -28,7 +28,8 @@ StepScan::StepScan(std::vector<double> left, std::vector<Window> windows, bool e
   }
 }
 
-// Over windows that end at each of the last `looks` innovations: the most seldom of them, over its share.
+// Over windows that end at each of the last `looks` innovations: the smallest false alarm rate divided by the
+// window's share.
 double StepScan::rarest(const std::vector<float>& innovations, std::size_t looks) const {
   double out = 1.0;
   std::vector<float> sums(looks);
@@ -59,7 +60,7 @@ void StepScan::watch_nothing(std::size_t blocks, std::mt19937_64& random) {
   std::sort(chunks_.begin(), chunks_.end());
 }
 
-// Alarms come as a Poisson process does: none in a chunk with probability exp(-rate x chunk).
+// Alarms are a Poisson process: none in a chunk with probability exp(-rate x chunk).
 double StepScan::level(double alarms_per_block) const {
   const double share = -std::expm1(-alarms_per_block * kChunk);
   return chunks_[static_cast<std::size_t>(share * static_cast<double>(chunks_.size()))];
@@ -77,7 +78,7 @@ double StepScan::found(double level, std::size_t looks, bool anywhere, std::size
   std::vector<float> innovations(longest_ + looks);
   std::size_t out = 0;
   for (std::size_t trial = 0; trial < trials; ++trial) {
-    const double late = anywhere ? uniform(random) : 0.0;  // of the first block
+    const double late = anywhere ? uniform(random) : 0.0;  // fraction of the first block
     for (float& each : innovations) each = normal(random);
     for (std::size_t i = 0; i < looks; ++i)
       innovations[longest_ + i] +=

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a scan for a step can find that does not know when the step comes, but knows the noise: windows of
-// some lengths that end at the newest block, each weighted by what a step at its beginning leaves in the
-// innovations. By simulation of white innovations, thresholds included; ifog::exceeded_per_block() is the
-// second method for them.
+// Detection by a scan that knows the noise but not the time of the step: windows of several lengths end at
+// the newest block and are weighted with the signal of a step at their beginning. Simulates white
+// innovations, also for the thresholds; ifog::exceeded_per_block() is an independent method for these.
 #pragma once
 
 #include <cstddef>
@@ -17,17 +16,17 @@ class StepScan {
     std::size_t blocks;
     double share;  // of the false alarms
   };
-  // left: of the step in the innovations, block by block from the first on, in standard deviations.
+  // left: signal of the step in the innovations from its first block on, in standard deviations.
   StepScan(std::vector<double> left, std::vector<Window> windows, bool either_sign);
 
-  // Looks at so many blocks without a step, a multiple of kChunk.
+  // Simulates blocks without a step, a multiple of kChunk.
   void watch_nothing(std::size_t blocks, std::mt19937_64& random);
-  // Afterwards: how rare, by the formula, something must be for alarms to come so often.
+  // Afterwards: threshold on the formula's rate for this frequency of false alarms.
   [[nodiscard]] double level(double alarms_per_block) const;
-  // How often they come if something must be as rare as this by the formula.
+  // Frequency of false alarms for a threshold on the formula's rate.
   [[nodiscard]] double alarms_per_block(double level) const;
-  // Share of steps found within `looks` blocks. The step begins at the beginning of the first, or anywhere
-  // in it.
+  // Fraction of steps found within `looks` blocks. The step begins at the start of the first block, or at a
+  // random time in it.
   [[nodiscard]] double found(double level, std::size_t looks, bool anywhere, std::size_t trials,
                              std::mt19937_64& random) const;
 
@@ -38,10 +37,10 @@ class StepScan {
   std::vector<double> left_;
   std::vector<Window> windows_;
   std::vector<std::vector<float>> weights_;
-  std::vector<double> anew_;  // 1 less the correlation of neighbours
+  std::vector<double> anew_;  // 1 minus the correlation of neighbours
   std::size_t longest_ = 0;
   bool either_sign_;
-  std::vector<double> chunks_;  // the rarest of each, sorted
+  std::vector<double> chunks_;  // the smallest of each chunk, sorted
 };
 
 }  // namespace ifog::bench

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ways of keeping the angle, side by side: what each loses over a turn and makes of coning and of a sea, and
-// what it costs at rest.
+// Compares ways of conserving the angle: the loss over a turn, the response to coning and to a sea, and the
+// cost at rest.
 //
 //   angle_bench     prints a markdown table, a minute or two
 //
-// Rest: RMSE over that of the Kalman filter told the truth, Q/R = 1e-3. Turn: 50 deg/s at once, then away
-// over ten seconds; heading lost for good. Coning of 10 x 3 degrees at 0.1 Hz, and a roll and pitch sea:
-// drift the filter adds to an attitude integrated from its output over 300 s. Gyro of 0.01 deg/sqrt(h).
+// Rest: RMSE relative to the Kalman filter with true Q and R, Q/R = 1e-3. Turn: 50 deg/s as a step, then
+// decreasing over ten seconds; the permanent heading error. Coning of 10 x 3 degrees at 0.1 Hz, and roll and
+// pitch of a sea: drift that the filter adds to an attitude integrated from its output over 300 s. Gyro of
+// 0.01 deg/sqrt(h).
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -71,8 +72,8 @@ Filter one_per_axis(const ifog::FilterSettings& settings, double period) {
   };
 }
 
-// Angle and rate as states, the summed increments as the measurement, the rule's gain on its innovation: what
-// is lost of the angle stays in the innovation until it is made good.
+// Angle and rate are states, the summed increments are the measurement, with the rule's gain on its
+// innovation. Missing angle stays in the innovation until it is recovered.
 Filter angle_state(const ifog::FilterSettings& settings, double period) {
   struct State {
     ifog::KalmanCore<2> core;
@@ -155,7 +156,7 @@ double at_rest(const Candidate& candidate) {
 
 double gyro_noise(double period) { return 0.01 * kDegree / 60 / std::sqrt(period); }
 
-// Degrees lost for good: a mean over the last ten of sixty seconds.
+// Permanent heading error in degrees: mean over the last ten of sixty seconds.
 double over_a_turn(const Candidate& candidate) {
   const double period = 1e-3, noise = gyro_noise(period);
   const Filter filter = candidate.make(noise, period);
@@ -199,7 +200,7 @@ Quaternion sea(double envelope, double t) {
                turned(12 * kDegree * envelope * (std::sin(w * t) + 0.3 * std::sin(1.7 * w * t)), 0, 0));
 }
 
-// Largest component of the drift added, deg/h.
+// Largest component of the added drift, deg/h.
 double drift(const Candidate& candidate, Quaternion (*attitude)(double, double), double period) {
   constexpr double still = 10.0, moving = 300.0;
   const double noise = gyro_noise(period);

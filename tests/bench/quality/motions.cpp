@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// 0 up to 0, 1 from 1 on.
+// 0 for t < 0, 1 for t > 1.
 double raised_cosine(double t) { return 0.5 - 0.5 * std::cos(kPi * std::clamp(t, 0.0, 1.0)); }
 
 std::size_t in_samples(double seconds) {
@@ -34,7 +34,7 @@ struct Section {
 
 constexpr int kOrder = 8;
 
-// By the bilinear transform with the corner kept; `corner` = tan(π f_c / f_s).
+// By the bilinear transform with a prewarped corner; `corner` = tan(π f_c / f_s).
 std::array<Section, kOrder / 2> butterworth(double corner) {
   std::array<Section, kOrder / 2> sections{};
   for (int k = 0; k < kOrder / 2; ++k) {
@@ -47,17 +47,17 @@ std::array<Section, kOrder / 2> butterworth(double corner) {
   return sections;
 }
 
-// Variance of the filter's output for white noise of variance one: the mean of |H|² over frequency, by the
-// trapezoid rule, which is exact to rounding for a smooth periodic function sampled finely enough.
+// Variance of the filter's output for white noise of variance one: mean of |H|² over frequency. The trapezoid
+// rule is exact to rounding for a smooth periodic function.
 double power_passed(double corner) {
   constexpr int kPoints = 1 << 16;
-  double sum = 0.5;  // |H|² at zero; at half the sample rate it is nought
+  double sum = 0.5;  // |H|² at frequency zero; it is zero at half the sample rate
   for (int i = 1; i < kPoints; ++i)
     sum += 1.0 / (1.0 + std::pow(std::tan(0.5 * kPi * i / kPoints) / corner, 2 * kOrder));
   return sum / kPoints;
 }
 
-// Gaussian of that standard deviation, its spectrum flat up to `band_hz`.
+// Gaussian of that standard deviation with a flat spectrum up to `band_hz`.
 std::vector<double> unfaded(Random& random, std::size_t samples, double rms, double band_hz) {
   constexpr double kRunInBands = 30.0;
   const double corner = std::tan(kPi * band_hz / kSampleRate_hz);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Measurement noise of the regimes, in units of its standard deviation at rest, σ = 1. Each is white with
-// variance 1 and mean 0 unless it says otherwise.
+// Measurement noise of the regimes, in units of its standard deviation at rest, σ = 1: white, variance 1,
+// mean 0 unless stated otherwise.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,22 @@ namespace ifog::bench {
 using Random = std::mt19937_64;
 
 struct Noise {
-  std::vector<double> value;     // σ; NaN: the sample is missing
-  std::vector<double> variance;  // of each sample, σ²; empty: 1 throughout
+  std::vector<double> value;     // σ; NaN: missing
+  std::vector<double> variance;  // of each sample, σ²; empty: 1
 };
 
 Noise gaussian_noise(Random& random, std::size_t samples);
-// Student's t with three degrees of freedom: variance 3 before it is scaled, no fourth moment.
+// Student's t with three degrees of freedom: variance 3 before scaling, no fourth moment.
 Noise student_noise(Random& random, std::size_t samples);
-// Exponential less its mean: skewness 2.
+// Exponential minus its mean: skewness 2.
 Noise skewed_noise(Random& random, std::size_t samples);
 // Two Gaussians at ±0.9, kurtosis 3 − 2·0.9⁴.
 Noise bimodal_noise(Random& random, std::size_t samples);
 // Gaussian, each sample missing with probability `share`, independently.
 Noise missing_noise(Random& random, std::size_t samples, double share);
-// Gaussian, each sample with probability `share` displaced by `size` to either side: variance 1 +
-// share·size².
+// Gaussian, each sample displaced by ±`size` with probability `share`: variance 1 + share·size².
 Noise outlier_noise(Random& random, std::size_t samples, double share, double size);
-// Gaussian of standard deviation 1, from `from` on `factor` and 1 in turns of `turn` samples, louder first.
+// Gaussian of standard deviation 1; from `from` on `factor` and 1 in turns of `turn` samples, `factor` first.
 Noise changing_noise(Random& random, std::size_t samples, std::size_t from, std::size_t turn, double factor);
 // AR(1): correlation^k between samples k apart.
 Noise coloured_noise(Random& random, std::size_t samples, double correlation);

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The quality study: every rule on every motion, given Q and R rightly and wrongly. Figures are RMSE over the
-// samples after the first thousand, as a multiple of a Kalman filter given the true Q and R of the noise, mean
-// over seeds with the standard deviation between seeds; on moving scenarios that filter lags, so figures far
-// below one are possible.
+// Quality of every rule on every motion with correct and wrong Q and R. Figures are RMSE after the first
+// thousand samples relative to a Kalman filter with true Q and R, mean over seeds with the standard deviation
+// between seeds. In motion that filter lags, so values far below one are possible.
 //
 //   quality_bench [--seeds N] [--ratio Q/R] [--false-triggers SAMPLES]     prints markdown tables
 //
-// Rules are plain, as published, in the first columns; "irwe-akfg + following" is the daemon's default with
-// the cure for inertia and angle conservation.
+// The first columns are the rules as published; "irwe-akfg + following" is the daemon's default with
+// detection of manoeuvres and conservation of the angle.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -119,7 +118,7 @@ void study(double ratio, int seeds) {
   }
 }
 
-// Manoeuvres detected in noise at rest, where there are none.
+// Manoeuvres detected at rest, i.e. false ones.
 void false_triggers(double ratio, long samples) {
   constexpr long kRecord = 500'000;
   std::uint64_t manoeuvres = 0, gated = 0;
@@ -134,8 +133,7 @@ void false_triggers(double ratio, long samples) {
               static_cast<unsigned long long>(manoeuvres), static_cast<unsigned long long>(gated));
 }
 
-// The same in noise whose neighbouring samples are correlated, once the colour is learned, and what following
-// costs there.
+// The same with autocorrelated noise, after the colour is learned, and the cost of following there.
 void coloured(int samples) {
   constexpr std::size_t kLearned = 20'000;
   constexpr std::uint64_t kSeeds = 4;

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The denoised rate in every regime against the conventional Kalman filter told the true Q and R at rest.
+// The denoised rate in every regime, compared with the conventional Kalman filter with true Q and R at rest.
 //
 //   regime_bench [--seed FIRST] [--seeds N] [--qr Q/R]... [--regime NAME]... [--filter NAME] [--json F]
 //
-// Prints a markdown table. RMSE is over the judged samples against the true rate; "over CKF" is its ratio to
-// the RMSE of the conventional filter on the same record, median over seeds with least and most, and has the
-// limit. "Over the better" is the ratio to the better of that filter and the raw samples; where it is judged,
-// no seed may be above the limit, its five per cent included, as what is compared is chance in part. "Over
-// informed" is the ratio to a conventional filter that is also told the variance of each sample and when rest
-// came: nobody knows that, it shows what is left to gain, and at small Q/R, where the conventional filter is
-// still far off long after a motion or a loud stretch, how much of a good figure is that filter's weakness.
-// NEES is the mean of (estimate − truth)²/variance, mean over seeds with least and most; where it is judged
-// 0.8 … 1.25 is wanted, and the conventional filter's beside it shows how far chance alone goes. The table's
-// last column names what is missed. Exit: 0 all within their limits, 1 not, 2 wrong usage.
+// Prints a markdown table. RMSE is over the judged samples against the true rate. "Over CKF" is its ratio to
+// the RMSE of the conventional filter on the same record, median over seeds with least and most; the limit
+// applies to it. "Over the better" is the ratio to the better of that filter and the raw samples; where it is
+// judged, no seed may exceed the limit, which includes 5 % for chance. "Over informed" is the ratio to a
+// conventional filter that also knows each sample's variance and the start of rest. It shows the possible
+// gain, and how much of a good figure is a weakness of the conventional filter, which at small Q/R needs long
+// to recover from motion or strong noise. NEES is the mean of (estimate − truth)²/variance, mean over seeds
+// with least and most; where it is judged, 0.8 … 1.25 is required. The conventional filter's NEES shows the
+// influence of chance. The last column names failed limits. Exit: 0 all limits kept, 1 not, 2 wrong usage.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -39,7 +38,6 @@ struct Options {
   std::string filter = "default", json;
 };
 
-// Over seeds.
 struct Spread {
   std::vector<double> values;
   double median = 0.0, mean = 0.0, least = 0.0, most = 0.0;
@@ -135,7 +133,7 @@ Json json(const Row& row) {
   return out;
 }
 
-// A name, or the beginning of several: "sea" is every sea.
+// A name, or the beginning of several names: "sea" selects every sea.
 bool wanted(const Regime& regime, const std::vector<std::string>& names) {
   return names.empty() || std::any_of(names.begin(), names.end(),
                                       [&](const std::string& name) { return regime.name.starts_with(name); });

@@ -9,10 +9,9 @@
 namespace ifog::bench {
 namespace {
 
-// Samples: a filter of that ratio is five time constants old before anything is judged, and forty (at rest),
-// eighty (in motion) or ten (started in one) of them are judged, where that is more than the least. In motion
-// the variance is judged by its mean, and until a motion is suspected at all its beginning alone is worth as
-// much as six time constants of rest.
+// In samples. Judging starts after five time constants of the filter. It lasts forty (at rest), eighty (in
+// motion) or ten (started in motion) of them, but at least the minimum. In motion the mean of the variance is
+// judged; before a motion is suspected its beginning contributes as much as six time constants of rest.
 struct Lengths {
   std::size_t settle, rest, motion, started;
 };
@@ -30,7 +29,7 @@ Lengths lengths(double ratio) {
 
 enum Stream : std::uint32_t { kWalk, kNoise, kMotion };
 
-// Streams that have nothing in common for any two of (regime, ratio, seed, stream).
+// Independent streams for any (regime, ratio, seed, stream).
 class Streams {
  public:
   Streams(const std::string& regime, double ratio, std::uint64_t seed) : seed_(seed) {
@@ -84,7 +83,7 @@ Regime at_rest(const std::string& name, double limit, NoiseKind noise) {
           }};
 }
 
-// judged: samples; 0: by the time constant.
+// judged: samples; 0: from the time constant.
 Regime moving(const std::string& name, double limit, std::size_t judged, MotionKind motion) {
   return {.name = name,
           .limit = limit,
@@ -98,7 +97,7 @@ Regime moving(const std::string& name, double limit, std::size_t judged, MotionK
           }};
 }
 
-// A motion that the conventional filter and no filter at all both bear.
+// A motion that neither the conventional filter nor the raw rate distorts.
 Regime borne(const std::string& name, bool slow, MotionKind motion) {
   Regime regime = moving(name, 1.05, 0, std::move(motion));
   regime.judge_variance = slow;
@@ -106,8 +105,8 @@ Regime borne(const std::string& name, bool slow, MotionKind motion) {
   return regime;
 }
 
-// The level is between two steps of the converter, over consecutive seeds evenly everywhere: what the steps leave of
-// the mean depends on it.
+// The level between two steps of the converter is uniform over consecutive seeds, because the error of the
+// mean depends on it.
 Regime quantised_regime(const std::string& name, double limit, double step) {
   Regime regime = at_rest(name, limit, nullptr);
   regime.make = [name, step](double ratio, std::uint64_t seed) {
@@ -124,8 +123,8 @@ Regime quantised_regime(const std::string& name, double limit, double step) {
   return regime;
 }
 
-// At rest, then a drift of 1e-4 a sample until its lag has settled, then a step; judged from the step on
-// while the conventional filter recovers, as what is wrong afterwards is wrong there.
+// Rest, then a drift of 1e-4 per sample until its lag has settled, then a step. Judged from the step on,
+// while the conventional filter recovers.
 Regime drift_then_step() {
   const std::string name = "drift-then-step";
   Regime regime = borne(name, false, nullptr);
@@ -161,9 +160,9 @@ Regime started_moving(const std::string& name, bool told) {
           }};
 }
 
-// What is told neither Q nor R, as a sensor is that somebody just connects. What the record shows of a walk
-// in its first part is learned, so the limits are a tenth wider. Colour of 0.9 at 200 Hz is below 4 Hz and no
-// filter that is told nothing can tell it from a vehicle's motion.
+// Without given Q and R, as for a new sensor. A random walk is learned from the first part of the record, so
+// the limits are 10 % wider. Colour of 0.9 at 200 Hz is below 4 Hz and cannot be distinguished from a
+// vehicle's motion.
 void add_untold(std::vector<Regime>& all) {
   const std::size_t told = all.size();
   for (std::size_t i = 0; i < told; ++i) {
@@ -190,7 +189,7 @@ void add_rest(std::vector<Regime>& all) {
   all.push_back(at_rest("outliers-1%-20", 1.05, [](Random& random, std::size_t samples, std::size_t) {
     return outlier_noise(random, samples, 0.01, 20.0);
   }));
-  // Louder than is known: motion by default, so never worse than raw; smoothed where the settings say so.
+  // More noise than known is motion by default, so never worse than raw; smoothed if configured.
   for (const auto& [name, factor, limit] : {std::tuple{"noise-x5", 5.0, 1.5}, {"noise-x10", 10.0, 2.0}}) {
     all.push_back(at_rest(name, limit, [f = factor](Random& random, std::size_t samples, std::size_t from) {
       constexpr auto kTurn = static_cast<std::size_t>(40.0 * kSampleRate_hz);
@@ -214,7 +213,7 @@ void add_rest(std::vector<Regime>& all) {
   add_untold(all);
 }
 
-// Slow: no more than 0.02 σ a sample, the slope of a swing of 30 σ at 0.02 Hz.
+// Slow: at most 0.02 σ per sample, the slope of a swing of 30 σ at 0.02 Hz.
 void add_motion(std::vector<Regime>& all) {
   for (const auto& [name, slope] :
        {std::pair{"ramp-1e-4", 1e-4}, {"ramp-1e-3", 1e-3}, {"ramp-1e-2", 1e-2}, {"ramp-1e-1", 1e-1}})
@@ -238,8 +237,8 @@ void add_motion(std::vector<Regime>& all) {
 
 using Shaken = std::function<std::vector<double>(Random&, std::size_t samples, double per_hz)>;
 
-// Moves from the first sample to the last. per_hz: by which a frequency is multiplied for a record of another
-// sample rate than the motions are made at.
+// Motion from the first sample to the last. per_hz: factor on frequencies for a record whose sample rate
+// differs from that of the motions.
 void add_moving(std::vector<Regime>& all, const std::string& name, double sample_rate_hz, bool told,
                 const Shaken& motion) {
   constexpr std::size_t kBegins = 50, kSamples = 30'000;
@@ -257,7 +256,7 @@ void add_moving(std::vector<Regime>& all, const std::string& name, double sample
   all.push_back(std::move(regime));
 }
 
-// Vehicles and people, at three sample rates, and swings that the record begins in.
+// Vehicles and people at three sample rates, and records that begin in a swing.
 void add_carried(std::vector<Regime>& all) {
   const auto sum = [](std::vector<double> a, const std::vector<double>& b) {
     for (std::size_t i = 0; i < a.size(); ++i) a[i] += b[i];
@@ -290,7 +289,8 @@ void add_carried(std::vector<Regime>& all) {
                    kSampleRate_hz, told,
                    [a = amplitude, f = frequency](Random& random, std::size_t n, double) {
                      std::vector<double> rate = sway(random, n + n, 0, a, f);
-                     rate.erase(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(n));  // in full
+                     // At full amplitude
+                     rate.erase(rate.begin(), rate.begin() + static_cast<std::ptrdiff_t>(n));
                      return rate;
                    });
 }

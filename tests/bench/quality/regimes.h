@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The regimes in which the denoised rate is judged: a true rate that walks at random with variance Q a
-// sample, a motion on top, and measurement noise of variance R = 1 at rest, sampled at 200 Hz. In units of σ
-// = √R.
+// The regimes in which the denoised rate is judged: a true rate with a random walk of variance Q per sample,
+// a motion, and measurement noise of variance R = 1 at rest, sampled at 200 Hz. Units of σ = √R.
 #pragma once
 
 #include <cstddef>
@@ -18,21 +17,21 @@ namespace ifog::bench {
 struct RegimeRecord {
   std::vector<double> truth;     // σ
   std::vector<double> measured;  // σ; NaN: missing
-  std::size_t from = 0;          // first sample judged; all up to the end are
-  // What nobody tells the filter: the variance of each sample's noise (empty: 1), and from when on there is
-  // only the random walk.
+  std::size_t from = 0;          // first judged sample; all later ones are judged
+  // Not given to the filter: the variance of each sample's noise (empty: 1), and the time after which there
+  // is only the random walk.
   std::vector<double> noise_variance;
   std::optional<std::size_t> rest_from;
 };
 
 struct Regime {
   std::string name;
-  double limit = 0.0;              // on RMSE over the conventional filter's
+  double limit = 0.0;              // of RMSE relative to the conventional filter
   double limit_at_laboratory = 0;  // the same at Q/R ≥ 5e-4; 0: the same
-  bool judge_variance = false;     // the normalised square of the error is to be 0.8 … 1.25
-  bool judge_against_raw = false;  // the limit holds against the better of raw and conventional as well
-  bool judge_raw_only = false;     // the limit is on RMSE over the raw samples', of the worst seed
-  bool told = true;                // Q and R are given; else they are learned from the record
+  bool judge_variance = false;     // the normalised squared error must be 0.8 … 1.25
+  bool judge_against_raw = false;  // the limit also applies relative to the better of raw and conventional
+  bool judge_raw_only = false;     // the limit applies to RMSE relative to raw, of the worst seed
+  bool told = true;                // Q and R are given; otherwise learned from the record
   double sample_rate_hz = kSampleRate_hz;
   std::string wideband = "motion";  // FilterSettings::wideband
   std::function<RegimeRecord(double ratio, std::uint64_t seed)> make;
@@ -42,10 +41,10 @@ struct Regime {
   }
 };
 
-// In the order of the table. ratio: Q/R, > 0 and ≤ 1. Every record depends on regime, ratio and seed only.
+// In the order of the table. ratio: Q/R, > 0 and ≤ 1. Each record depends on regime, ratio and seed only.
 const std::vector<Regime>& regimes();
 
-// A multiple of `step`, values right in the middle of two go to the even one.
+// Rounds to a multiple of `step`, ties to even.
 double quantised(double value, double step);
 
 }  // namespace ifog::bench

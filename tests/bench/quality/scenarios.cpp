@@ -23,7 +23,7 @@ double small_sine(int i) {
   return i < kStart ? 0.0 : 5.0 * std::sin(2 * std::numbers::pi * (i - kStart) / 500.0);
 }
 
-// Dwells of 1000 samples, 50 samples from one to the next: a rate table has a finite acceleration.
+// Dwells of 1000 samples with transitions of 50 samples, because a rate table has finite acceleration.
 double table(int i) {
   constexpr std::array kLevels{0.0, 300.0, -300.0, 100.0, -50.0, 20.0, -20.0, 0.0};
   if (i < kStart) return 0.0;

@@ -20,13 +20,12 @@ struct Record {
   std::vector<double> truth, measured;
 };
 
-// A random walk of variance ratio a step in unit noise, plus the motion. correlation: of neighbouring samples
-// of the noise, an autoregressive process of first order.
+// A random walk of variance `ratio` per step in unit noise, plus the motion. correlation: lag-1
+// autocorrelation of the noise, an AR(1) process.
 Record make_record(const Scenario& scenario, std::uint64_t seed, int samples, double ratio,
                    double correlation = 0.0);
 
-// The scalar Kalman filter that knows both variances (but no motion), by hand: what every rule is measured
-// against.
+// The scalar Kalman filter with true Q and R, without motion, written by hand: the reference for every rule.
 std::vector<double> told_the_truth(const std::vector<double>& measured, double ratio);
 
 }  // namespace ifog::bench

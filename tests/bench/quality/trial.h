@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One record through one filter, and what came of it.
+// One record through one filter, and its errors.
 #pragma once
 
 #include <cstdint>
@@ -10,30 +10,29 @@
 
 namespace ifog::bench {
 
-// An estimate of every sample with the variance the filter itself gives for it.
+// Estimates with the filter's own variances.
 struct Filtered {
   std::vector<double> value, variance;  // σ, σ²
 };
 
-// The conventional Kalman filter of a random walk, scalar, by hand, told Q = `ratio` and R = 1: what
-// everything is measured against. informed: told the variance of each sample, and started afresh when rest
-// has come, too.
+// The conventional scalar Kalman filter of a random walk, written by hand, with Q = `ratio` and R = 1: the
+// reference. informed: it also knows each sample's variance and restarts at the start of rest.
 Filtered conventional(const RegimeRecord& record, double ratio, bool informed);
 
-// "default": the daemon's filter as it is without a model file. "irwe-akfg-plain": the paper's rule and
-// nothing else. "ckf": the project's conventional filter. told: of the true Q and R; else it learns them at
-// start-up. Throws std::invalid_argument naming the filter.
+// "default": the daemon's filter without a model file. "irwe-akfg-plain": the published rule. "ckf": the
+// project's conventional filter. told: true Q and R are given; otherwise learned at start-up. Throws
+// std::invalid_argument with the name of an unknown filter.
 Filtered denoised(const std::string& filter, const RegimeRecord& record, double ratio, const Regime& regime);
 const std::vector<std::string>& filter_names();
 
-// Over the samples judged. Of an estimate that is not finite, or has no positive variance, they are infinite.
+// Over the judged samples; infinite if an estimate is not finite or a variance is not positive.
 struct Figures {
-  double over_conventional = 0.0;  // RMSE over that of conventional()
+  double over_conventional = 0.0;  // RMSE relative to conventional()
   double over_raw = 0.0;
-  double over_better = 0.0;            // over the better of conventional and raw
-  double over_informed = 0.0;          // over that of the informed one; NaN: nothing to be told
+  double over_better = 0.0;            // relative to the better of conventional and raw
+  double over_informed = 0.0;          // relative to the informed one; NaN if it knows no more
   double nees = 0.0;                   // mean of (estimate − truth)²/variance
-  double nees_conventional = 0.0;      // the same of conventional()
+  double nees_conventional = 0.0;      // the same for conventional()
   std::size_t settle = 0, judged = 0;  // samples
 };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Throughput of the daemon's ring compared with Boost.Lockfree's spsc_queue and moodycamel's ReaderWriterQueue:
-// increments from one thread to another, interleaved runs, medians.  usage: ring_bench [MILLIONS [RUNS]]
+// Throughput of the daemon's ring compared with Boost.Lockfree's spsc_queue and moodycamel's
+// ReaderWriterQueue: increments between two threads, interleaved runs, medians.  usage: ring_bench [MILLIONS
+// [RUNS]]
 #include <readerwriterqueue/readerwriterqueue.h>
 #include <algorithm>
 #include <boost/lockfree/spsc_queue.hpp>
@@ -23,7 +24,7 @@ struct Small {
   double values[7]{};
 };
 
-// One way of writing and reading a queue: put() and take() answer false for full and empty.
+// Interface to a queue: put() and take() return false if it is full or empty.
 template <typename T>
 struct Ours {
   ifog::Ring<T> ring{kSlots};
@@ -52,7 +53,7 @@ struct Moodycamel {
     return queue.try_enqueue(item);
   }
   bool take(std::uint64_t& n) {
-    const T* const front = queue.peek();  // its in-place way
+    const T* const front = queue.peek();  // its in-place interface
     if (front == nullptr) return false;
     n = front->sequence;
     queue.pop();

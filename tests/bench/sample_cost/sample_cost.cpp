@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a sample costs, part by part: the daemon's own parts, called one after the other in one thread as the
-// reader calls them, with a clock between any two. A bare read of the same FIFO and a bare lcm_publish of a
-// message of the same size are timed in the same round. Run it by tests/bench/sample_cost/run, in a network
-// namespace of its own.
+// Time per sample, part by part: calls the daemon's parts in one thread as the reader does, with a clock in
+// between. In the same round it times a bare read of the same FIFO and a bare lcm_publish of a message of the
+// same size. Start it with tests/bench/sample_cost/run in its own network namespace.
 //
-// Times are of the thread's way, not of a processor that has slept: each sample is there when it is read, so
-// sleeping and waking are not in it (tests/bench/latency has them). With --pause samples are so far apart, as
-// from a sensor, and what others did in between is in the caches.
+// Each sample is available when it is read, so sleeping and waking are not included (see
+// tests/bench/latency). With --pause there is time between samples, as with a sensor, and other processes use
+// the caches.
 #include <fcntl.h>
 #include <lcm/lcm.h>
 #include <sys/stat.h>
@@ -46,11 +45,11 @@ constexpr const char* kUrl = "udpm://239.255.76.67:7667?ttl=0";
 constexpr double kRate_hz = 1000.0;
 constexpr std::size_t kFrame = 36;
 
-// `effects` is what a chain with a model takes longer than one without: samples go through the two in turns.
+// `effects`: additional time of a chain with a model; samples pass through both chains in turn.
 enum Part : std::size_t { kRead, kDecode, kIncrement, kRing, kEffects, kEstimate, kEncode, kSend, kParts };
 constexpr std::array<const char*, kParts> kNames{"read",    "decode",   "increment", "ring",
                                                  "effects", "estimate", "encode",    "send"};
-// As they are timed: the chain in one piece.
+// As timed: the chain is one part.
 enum Timed : std::size_t { kTimedChain = 4, kTimed = 7 };
 enum Bare : std::size_t { kBareRead, kBareSend, kBares };
 
@@ -71,7 +70,7 @@ std::vector<std::uint8_t> frames(std::size_t count) {
   return out;
 }
 
-// Of each axis what most gyros have: bias by temperature, its curvature, the Shupe effect, g-sensitivity.
+// Common effects on each axis: bias by temperature, its curvature, the Shupe effect, g-sensitivity.
 std::shared_ptr<const Model> model(const ifog_description& description) {
   auto made = std::make_shared<Model>();
   const auto add = [&](const char* form, const std::string& channel, const char* axis, double value,
@@ -120,7 +119,7 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
-// What reading the clock itself takes.
+// Time of reading the clock.
 double clock_cost_ns() {
   std::vector<double> taken(2001);
   for (double& each : taken) {
@@ -130,7 +129,7 @@ double clock_cost_ns() {
   return median(std::move(taken));
 }
 
-// The parts of one sensor, fed by a FIFO that it writes itself, and a bare reader and sender.
+// The parts of one sensor with a FIFO that it fills itself, and a bare reader and sender.
 class Sensor {
  public:
   Sensor(const std::string& path, const std::vector<std::uint8_t>& bytes)
@@ -152,7 +151,7 @@ class Sensor {
   Sensor(const Sensor&) = delete;
   Sensor& operator=(const Sensor&) = delete;
 
-  // Sample n on the daemon's way, with a model or without; ns of each part.
+  // Sample n through the daemon's parts, with or without a model; ns of each part.
   std::array<double, kTimed> take(std::size_t n, bool with_model) {
     put(n);
     std::array<std::int64_t, kTimed + 2> at{};
@@ -183,7 +182,7 @@ class Sensor {
     return {between(0), between(1), between(3), between(2) + between(4), between(5), between(6), between(7)};
   }
 
-  // The same sample by a bare read, and the same message by a bare send.
+  // The same sample with a bare read, and the same message with a bare send.
   std::array<double, kBares> take_bare(std::size_t n) {
     std::array<std::uint8_t, kFrame> bytes{};
     put(n);
@@ -218,7 +217,7 @@ class Sensor {
   const double clock_ns_ = clock_cost_ns();
 };
 
-// Median time of each part over all samples of a round.
+// Median time of each part over the samples of a round.
 template <std::size_t n>
 struct Taken {
   std::array<std::vector<double>, n> of;
@@ -253,7 +252,7 @@ void run_round(const std::string& path, const std::vector<std::uint8_t>& bytes,
   bare = bare_taken.medians();
 }
 
-// Median over rounds, and the least and the greatest of them.
+// Median, least and greatest over rounds.
 struct Figure {
   double middle, least, greatest;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time of a sample through the whole chain with a rebuilt feedback ramp in the model, as a multiple of the
-// same chain without a model: once the phase is known, and while it is being acquired (a record that has no
-// ramp, so that it never is).
+// Time of a sample through the whole chain with a feedback ramp in the model, relative to the chain without a
+// model: after the phase is known, and during acquisition (a record without a ramp).
 //
 //   chain_with_ramp_bench [rounds]    prints a markdown table
 #include <algorithm>
@@ -19,7 +18,7 @@ namespace {
 
 constexpr std::size_t kSamples = 40'000;
 constexpr double kStep_s = 0.005;
-constexpr double kCycles = 77e3;   // a radian
+constexpr double kCycles = 77e3;   // per radian
 constexpr double kRate = 5.4e-5;   // rad/s
 constexpr double kNoise = 4.4e-7;  // rad/s
 constexpr int kHarmonics = 96;
@@ -75,7 +74,7 @@ ifog::SignalChain chain(const std::shared_ptr<const ifog::Model>& model) {
 
 struct Timed {
   double seconds;
-  double corrected;  // share of the samples
+  double corrected;  // fraction of the samples
 };
 
 Timed run(const std::vector<double>& rate, const std::shared_ptr<const ifog::Model>& model) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The longest single step of what is learned besides the filter's steps: a gyro's noise at rest, and the
-// start-up estimate. Processor time of the thread, the least of seven runs for each step, so that other work
-// on the machine does not count. Usage: learning_bench
+// Longest single step of learning the noise at rest and of the start-up estimate. Processor time of the
+// thread, minimum of seven runs for each step, so that other work does not count. Usage: learning_bench
 #include <time.h>
 
 #include <algorithm>

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Time of one filter step as a multiple of a hand-written scalar Kalman step, and of plain Eigen of the same
-// size.
+// Time of one filter step relative to a hand-written scalar Kalman step, and to plain Eigen of the same size.
 //
-// Every candidate runs over the same record in the same process; one round runs them all in turn, and the
-// figure is the median over rounds of the ratio within the round, so that a slow spell of the machine hits
-// both sides.
+// Every candidate runs over the same record in the same process; one round runs all in turn. The figure is
+// the median over rounds of the ratio within a round, so that slow periods of the machine affect both.
 //
-//   step_bench [rounds]     prints a markdown table; exit 1 when a target of the first three rows is missed
+//   step_bench [rounds]     prints a markdown table; exit 1 if a target of the first three rows is missed
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -41,7 +39,7 @@ std::vector<double> record() {
   return z;
 }
 
-// What a candidate leaves, so that nothing is optimised away.
+// Result of a candidate, so that nothing is optimised away.
 volatile double sink = 0.0;
 
 void hand_written(const std::vector<double>& z) {
@@ -80,7 +78,7 @@ struct Matrices {
   }
 };
 
-// The textbook's equations as one writes them with Eigen's fixed sizes.
+// The textbook equations with Eigen's fixed sizes.
 template <int n>
 void plain_eigen(const std::vector<double>& z) {
   static const Matrices<n> m;
@@ -109,7 +107,7 @@ ifog::FilterSettings settings(const std::string& rule, const std::string& weight
   return s;
 }
 
-// Core and rule: the filter step itself, one axis.
+// Core and rule: the filter step of one axis.
 template <int n>
 void core_and_rule(const std::vector<double>& z, ifog::Rule& rule) {
   static const Matrices<n> m;
@@ -147,12 +145,12 @@ void estimator(const std::vector<double>& z, ifog::Estimator& filter, int axes) 
 struct Candidate {
   std::string name;
   std::function<void(const std::vector<double>&)> run;
-  std::size_t peer;     // index of the plain Eigen one of its size
-  double target = 0.0;  // multiple of the hand-written step; 0: none set
+  std::size_t peer;     // index of the plain Eigen candidate of this size
+  double target = 0.0;  // multiple of the hand-written step; 0: none
 };
 
 double seconds(const Candidate& candidate, const std::vector<double>& z) {
-  // Time of this thread: what other processes take is not the filter's.
+  // Processor time of this thread.
   const auto now = [] {
     timespec t{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -181,7 +179,7 @@ void add_size(std::vector<Candidate>& all) {
         Row{"irwe-akfg", "fresh", "irwe-akfg, fresh weights, N = 50", 25.0}, Row{"iae", "kept", "iae", 0.0},
         Row{"rae", "kept", "rae", 0.0}, Row{"sage-husa", "kept", "sage-husa", 0.0},
         Row{"vb", "kept", "vb", 0.0}}) {
-    if (n > 1 && row.target == 0.0) continue;  // what a rule itself takes does not depend on the states
+    if (n > 1 && row.target == 0.0) continue;  // the cost of a rule does not depend on the number of states
     const std::shared_ptr<ifog::Rule> rule = ifog::make_rule(settings<n>(row.rule, row.weights));
     all.push_back({std::string(row.label) + ", n = " + std::to_string(n),
                    [rule](const std::vector<double>& z) { core_and_rule<n>(z, *rule); }, peer,

@@ -14,7 +14,7 @@ class Source {
   explicit Source(std::uint64_t seed) : engine_(seed) {}
   double normal() { return normal_(engine_); }
   double between(double low, double high) { return std::uniform_real_distribution(low, high)(engine_); }
-  // On a logarithmic scale.
+  // Uniform on a logarithmic scale.
   double about(double low, double high) { return std::exp(between(std::log(low), std::log(high))); }
 
  private:
@@ -22,7 +22,7 @@ class Source {
   std::normal_distribution<double> normal_;
 };
 
-// 1 - c1 B - c2 B^2 … with its roots drawn inside the unit circle.
+// 1 - c1 B - c2 B^2 … with roots drawn inside the unit circle.
 std::vector<double> stable(Source& source, int order, double largest) {
   std::vector<std::complex<double>> poly{1.0};
   const auto times = [&poly](std::complex<double> root) {
@@ -46,7 +46,7 @@ std::vector<double> stable(Source& source, int order, double largest) {
   return c;
 }
 
-// Of this standard deviation, its past forgotten before it begins.
+// With this standard deviation; the start-up transient is dropped.
 std::vector<double> arma(Source& source, int p, int q, double sigma, std::size_t samples) {
   const std::vector<double> phi = stable(source, p, 0.98), theta = stable(source, q, 0.7);
   constexpr std::size_t kRunUp = 2000;

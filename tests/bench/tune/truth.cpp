@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `tune` is for, judged by what only a simulation knows: the level. A record is tuned on, another of the
-// same gyro denoised with each model that was fitted, with the one that was chosen and with none; the error
-// against the true level, over that of a Kalman filter given the truth. Usage:
-// tune_truth_bench [SEEDS [SAMPLES [FIRST [KIND]]]], 3 seeds of 60000 samples at 100 Hz.
+// Tests `tune` with the true level, known only in a simulation. Tunes on one record and denoises another one
+// of the same gyro with each fitted model, with the selected one and with none. Prints the error of the level
+// relative to a Kalman filter with true parameters. Usage: tune_truth_bench [SEEDS [SAMPLES [FIRST [KIND]]]],
+// 3 seeds of 60000 samples at 100 Hz.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -49,7 +49,8 @@ Record make(const Kind& kind, std::uint64_t seed, std::size_t samples) {
   std::normal_distribution<double> normal;
   Record out;
   double walk = kOffset, colour = kSigma * kind.colour * normal(engine);
-  // Flicker as a sum of processes an octave apart, of equal variance: 1/f from the whole record to a sample.
+  // Flicker as a sum of processes an octave apart with equal variance: 1/f from one sample to the whole
+  // record.
   std::vector<double> octaves(kind.flicker > 0.0 ? 22 : 0);
   for (double& o : octaves) o = normal(engine);
   for (std::size_t k = 0; k < samples; ++k) {
@@ -75,7 +76,7 @@ double rmse(const std::vector<double>& estimate, const std::vector<double>& leve
   return std::sqrt(sum / static_cast<double>(level.size() - from));
 }
 
-// Level and colour as two states, written out; white noise and walk alone with colour 0.
+// Level and colour as two states; white noise and random walk only if colour is 0.
 std::vector<double> kalman(const std::vector<double>& rate, double q, double r, double phi, double colour) {
   std::vector<double> out;
   double x = rate[0], c = 0.0, pxx = r + colour, pxc = 0.0, pcc = colour;
@@ -99,7 +100,7 @@ double best_error(const Kind& kind, const Record& record) {
   const double r = kSigma * kSigma;
   if (kind.flicker <= 0.0)
     return rmse(kalman(record.rate, kind.walk * r, r, kind.phi, kind.colour * kind.colour * r), record.level);
-  // No finite filter is given flicker: the best walk of all for this very record.
+  // Flicker has no finite exact filter: the best random walk for this record.
   double least = 1e300;
   for (double ln = -9.0; ln <= -1.0; ln += 0.25)
     least = std::min(least, rmse(kalman(record.rate, std::pow(10.0, ln) * r, r, 0.0, 0.0), record.level));
@@ -128,7 +129,7 @@ double error_of(const ifog::FilterSettings& settings, const Record& record, doub
   return rmse(published, record.level);
 }
 
-// Of the chain without any setting, as denoise without a model.
+// Of the chain without settings, like denoise without a model.
 double error_of_none(const Record& record) {
   ifog::ChainSettings settings;
   settings.facts.nominal_rate_hz = 1.0 / kPeriod;

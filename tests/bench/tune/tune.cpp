@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does `tune` find the maximum? On simulated records, the likelihood it ends with against the best of fifty
-// searches from starts that know nothing of the spectrum; and whether BIC then picks the model that made the
-// record. Usage: tune_bench [RECORDS [SAMPLES [SEED]]], 200 of 3000 from seed 1.
+// Tests if `tune` finds the maximum: compares its likelihood on simulated records with the best of fifty
+// searches from random starts, and checks if BIC selects the model that made the record. Usage: tune_bench
+// [RECORDS [SAMPLES [SEED]]], 200 of 3000 from seed 1.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -49,8 +49,7 @@ double scale_of(const std::vector<double>& rate) {
   return std::sqrt(sum / static_cast<double>(rate.size() - 1));
 }
 
-// Largest ln L of fifty bounded searches (BOBYQA, the derivative-free one), starts even over what is
-// plausible.
+// Largest ln L of fifty bounded searches (BOBYQA, derivative-free) from uniformly distributed starts.
 double best_of_many(const ifog::bench::MadeRecord& made, std::uint64_t seed) {
   const ifog::ModelCandidate candidate(made.state, 1.0);
   const std::span<const double> axes[] = {made.rate};

@@ -24,8 +24,8 @@ double rms_of_means(const Capture& capture, const Series& error) {
   return std::sqrt(square / static_cast<double>(means.size()));
 }
 
-// Rate less the model's effects, less the reference where there is one; as the capture stands, uncorrected,
-// with a model of nothing.
+// Rate minus the model's effects and the reference if there is one; an empty model leaves the capture
+// uncorrected.
 Series left_by(const Model& model, const Capture& capture) {
   Compensator compensator(model, {""}, std::numeric_limits<double>::infinity(), 0.0);
   SeriesToCompensate series{capture.time_s, {capture.rate_radps[0]}, {}};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a report says against itself, or against what the model it writes does to the capture it was made of.
+// Finds contradictions within a report, and between a report and the effect of its model on the capture.
 #pragma once
 
 #include <string>
@@ -10,13 +10,10 @@
 
 namespace ifog::undeclared {
 
-// One line each:
-// - an RMS that grows by more than a fiftieth with the effects that are claimed, of single samples or of a
-//   hundred means or more; of fewer, where the report has no word of it;
-// - all unexplained, with effects that explain a third;
-// - the RMS of 10 s means of the first capture, corrected by the model as anyone can, a fifth above the
-//   promise;
-// - a channel said to be dropped that an effect uses.
+// One line each: - an RMS that grows by more than 2 % with the claimed effects, of single samples or of 100
+// means or more; of fewer means if the report does not mention it; - everything unexplained, although effects
+// explain a third; - the RMS of 10 s means of the first capture, corrected by the model, 20 % above the
+// promised value; - a channel that is reported as dropped but used by an effect.
 std::vector<std::string> contradictions(const Diagnosis& diagnosis, const std::vector<Capture>& captures);
 
 }  // namespace ifog::undeclared

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draws of the scenario maker: a stream is a function of (seed, stream), so that a sensor can be made again
-// from its seed alone and its noise does not change when its environment is drawn differently.
+// Random draws of the scenario maker: a stream is a function of (seed, stream), so that a sensor is
+// reproducible from its seed, and its noise does not depend on the environment's draws.
 #pragma once
 
 #include <cmath>

@@ -12,7 +12,7 @@ namespace {
 using Series = std::vector<double>;
 constexpr double kGravity = 9.80665;
 
-// Any shape, moved and stretched onto [low, high].
+// Moves and scales any shape to [low, high].
 void fit_into(Series& x, double low, double high) {
   const auto [least, most] = std::minmax_element(x.begin(), x.end());
   const double bottom = *least, span = std::max(*most - *least, 1e-30);
@@ -63,7 +63,7 @@ Series temperature(const OperatingRange& range, std::size_t n, double dt_s, Draw
                         phase);
       break;
     }
-    case 2:  // a chamber's set points through its thermal mass
+    case 2:  // set points of a chamber with its thermal mass
       x = low_passed(dwells(n, record_s / draw.uniform(4.0, 10.0), dt_s, draw), draw.uniform(200.0, 600.0),
                      dt_s);
       break;
@@ -94,7 +94,7 @@ Series record_temperature(const Series& truth, double step, Draw& draw) {
   return out;
 }
 
-// A slow movable quantity about `centre`: standing still, dwelling at levels, wandering or swinging.
+// A slow quantity about `centre`: constant, dwelling at levels, wandering or oscillating.
 Series slow_channel(std::size_t n, double dt_s, bool lively, double centre, double amplitude, Draw& draw) {
   const double record_s = static_cast<double>(n) * dt_s;
   Series x(n, 0.0);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What surrounds a sensor during one capture: every channel as the physics sees it and as it was recorded.
+// Environment of a sensor during one capture: true and recorded values of every channel.
 #pragma once
 
 #include <string>
@@ -10,15 +10,14 @@
 
 namespace ifog::undeclared {
 
-// Limits the sensor lives between. The captures diagnosed go through all of them, as a calibration does; any
-// other capture stays within, so that what is judged is the effect and not the hold at the edge of the fitted
-// range.
+// Operating limits of the sensor. The diagnosed captures cover all of them, like a calibration; other
+// captures stay within, so that the effect is judged without extrapolation.
 struct OperatingRange {
   double temperature_low = 15.0, temperature_high = 45.0;  // degC
   double temperature_step = 0.0;                           // of the recorded channel, degC; 0: hundredths
-  double margin = 0.0;  // of the temperature span, left out at each end by up to this share
+  double margin = 0.0;  // largest fraction of the temperature span that is not reached at each end
   bool has_reference = false;
-  double rate_max = 1.0;  // rad/s, of the motion under the reference
+  double rate_max = 1.0;  // rad/s, of the motion measured by the reference
 };
 
 struct Channel {
@@ -35,13 +34,13 @@ struct Environment {
   [[nodiscard]] const Channel& channel(const std::string& name) const;
 };
 
-// `lively` names the channels that must move in this capture; the others may as well stand still.
+// `lively`: channels that must vary in this capture; others may be constant.
 Environment draw_environment(const OperatingRange& range, std::size_t samples, double dt_s,
                              const std::vector<std::string>& lively, Draw& draw);
 
 const std::vector<std::string>& channel_names();
 
-// First-order low-pass, time constant tau_s, that starts settled at the first value.
+// First-order low-pass with time constant tau_s, settled at the first value.
 std::vector<double> low_passed(const std::vector<double>& x, double tau_s, double dt_s);
 
 }  // namespace ifog::undeclared

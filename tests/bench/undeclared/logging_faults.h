@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What loggers do to a capture: the sensor and its effects are as they were, the record of them is not.
+// Faults of loggers: the sensor and its effects are unchanged, but not their record.
 #pragma once
 
 #include <string>
@@ -10,15 +10,15 @@
 
 namespace ifog::undeclared {
 
-// "hole": 300 s of rows are missing; "sentinel": every thermometer says 85 or -127 °C three times for some
-// seconds; "stuck": the sensor's thermometer stands still for a fifth of the record; "glitch": one value of
-// each channel is a thousand times its size.
+// "hole": 300 s of rows are missing. "sentinel": every thermometer reads 85 or -127 °C three times for some
+// seconds. "stuck": the sensor's thermometer is constant for a fifth of the record. "glitch": one value of
+// each channel is 1000 times too large.
 const std::vector<std::string>& logging_faults();
 
 // Throws std::invalid_argument for an unknown fault.
 std::vector<Capture> spoilt(const std::string& fault, std::vector<Capture> captures);
 
-// `inner` with every capture that it is given spoilt so.
+// Applies the fault to every capture before `inner`.
 Diagnose logged_with(const std::string& fault, Diagnose inner);
 
 }  // namespace ifog::undeclared

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes captures of a sensor with undeclared effects, and what was hidden into a folder of its own, so that
-// whoever reads the captures cannot see it.
+// Writes captures of a sensor with undeclared effects, and the hidden effects in a separate folder that a
+// reader of the captures cannot see.
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -12,7 +12,7 @@
 #include "drivers/capture/files/output_file.h"
 #include "tests/bench/undeclared/sensor.h"
 
-// Of one axis, as all that is made here.
+// All captures here have one axis.
 static void write(const ifog::Capture& capture, const std::string& path) {
   std::vector<std::string> names{"time_s", "rate_radps"};
   std::vector<std::span<const double>> columns{capture.time_s, capture.rate_radps[0]};

@@ -99,7 +99,7 @@ double Visibility::of(const Column& column, const std::vector<Column>& others) c
     return sum;
   };
   const auto project_out = [&](std::vector<double>& w) {
-    for (int twice = 0; twice < 2; ++twice)  // once more, for what rounding left
+    for (int twice = 0; twice < 2; ++twice)  // again, because of rounding errors
       for (const auto& b : basis) {
         const double along = dot(w, b);
         for (std::size_t i = 0; i < w.size(); ++i) w[i] -= along * b[i];
@@ -110,7 +110,7 @@ double Visibility::of(const Column& column, const std::vector<Column>& others) c
     const double before = std::sqrt(dot(w, w));
     project_out(w);
     const double norm = std::sqrt(dot(w, w));
-    if (norm <= 1e-7 * before || norm == 0.0) return;  // lies in the span already
+    if (norm <= 1e-7 * before || norm == 0.0) return;  // linearly dependent
     for (double& value : w) value /= norm;
     basis.push_back(std::move(w));
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sensor's own noise with its exact state space, so that what an effect is worth against it can be
-// computed by an oracle that knows the truth and shares no code with the diagnosis.
+// The sensor's noise with its exact state space, so that an oracle with the truth, which shares no code with
+// the diagnosis, can compute the visibility of an effect.
 #pragma once
 
 #include <cstddef>
@@ -17,18 +17,18 @@ struct NoiseTruth {
   double N = 0.0, B = 0.0, K = 0.0;
 };
 
-// White, random walk and 1/f, the last as a sum of Gauss-Markov processes a factor of 2.5 apart in time
-// constant, from one sample to ten records: the one-sided density B^2 / (2 pi f) within 5 % up to a sixtieth
-// of the sample rate. Above that the white noise hides it.
+// White noise, random walk and 1/f noise. The latter is a sum of Gauss-Markov processes with time constants
+// from one sample to ten records at a ratio of 2.5: one-sided density B^2 / (2 pi f) within 5 % up to a
+// sixtieth of the sample rate. Above, white noise dominates.
 class NoiseModel {
  public:
   NoiseModel(const NoiseTruth& truth, std::size_t samples, double dt_s);
 
-  // n samples that begin at a random-walk state of zero (the switch-on bias is added elsewhere).
+  // n samples; the random walk begins at zero, because the switch-on bias is added elsewhere.
   [[nodiscard]] std::vector<double> draw(Draw& draw) const;
 
-  // The innovations of a column, each over its own standard deviation: unit white noise when the column is
-  // this noise.
+  // Innovations of a column divided by their standard deviations: unit white noise if the column is this
+  // noise.
   [[nodiscard]] std::vector<double> whiten(const std::vector<double>& column) const;
   [[nodiscard]] double log_determinant() const;  // of the covariance of all samples
 
@@ -40,9 +40,9 @@ class NoiseModel {
   std::vector<double> innovation_sigma_;
 };
 
-// The generalised-least-squares visibility of a column in sigma: the norm of what is left of the whitened
-// column once the constant and the `others` are projected out. An effect of this size moves its coefficient
-// this many standard errors away from zero. Segments (several captures) have a constant each.
+// Generalised-least-squares visibility of a column in sigma: the norm of the whitened column after projecting
+// out the constant and the `others`. An effect of this size has a coefficient of so many standard errors.
+// Each capture has its own constant.
 class Visibility {
  public:
   Visibility(std::shared_ptr<const NoiseModel> noise, int captures)

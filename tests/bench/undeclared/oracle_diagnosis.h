@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The best that any diagnosis could do: given the names, the shapes and the true noise, it estimates only the
-// sizes, by generalised least squares. What it scores is what the captures allow; and it shows the scoring
-// itself to be right.
+// The best possible diagnosis: it knows names, shapes and the true noise, and estimates only the sizes by
+// generalised least squares. Its score is the limit of the captures, and tests the scoring.
 #pragma once
 
 #include "tests/bench/undeclared/scoring.h"
@@ -10,7 +9,7 @@ namespace ifog::undeclared {
 
 Diagnose oracle_diagnosis(const Sensor& sensor);
 
-// Finds nothing, ever: the floor.
+// Never finds anything.
 Diagnose blind_diagnosis();
 
 }  // namespace ifog::undeclared

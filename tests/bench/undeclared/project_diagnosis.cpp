@@ -29,7 +29,7 @@ Series correction(const Model& model, const Capture& capture) {
   return subtracted;
 }
 
-// A line's phase and a step's moment belong to the captures diagnosed; the daemon has no use for them.
+// A line's phase and the time of a step belong to the diagnosed captures; the daemon does not use them.
 Series event(const Effect& effect, const Capture& capture) {
   Series out(capture.size(), 0.0);
   for (std::size_t k = 0; k < out.size(); ++k) {
@@ -48,7 +48,7 @@ Series event(const Effect& effect, const Capture& capture) {
   return out;
 }
 
-// The prediction is not shown the rate: where there is no reference, zero.
+// The prediction does not see the rate: zero if there is no reference.
 HeadingPrediction predicted(const Diagnosis& diagnosis, const Capture& next) {
   ifog::Record record = record_of(next, "next", 0);
   const Series none(next.size(), 0.0);
@@ -95,10 +95,9 @@ Diagnose project_diagnosis() {
     finding.contradictions = contradictions(diagnosis, captures);
     finding.heading = [diagnosis](const Capture& next) { return predicted(diagnosis, next); };
     for (const FoundEffect& found : diagnosis.effects) {
-      if (found.effect.form == "bias")
-        continue;  // the sensors have one, and what is scored is about the mean
+      if (found.effect.form == "bias") continue;  // the sensors have one; the scores are about the mean
       const std::optional<Form> form = form_named(found.effect.form);
-      if (form && describes_noise(*form)) continue;  // a word about the noise, not an effect
+      if (form && describes_noise(*form)) continue;  // describes the noise, not an effect
       finding.effects.push_back(claim_of(found.effect, diagnosis.ranges, captures));
     }
     return finding;

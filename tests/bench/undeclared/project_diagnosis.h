@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The project's own diagnosis, seeing captures only.
+// The project's diagnosis, which sees only captures.
 #pragma once
 
 #include "tests/bench/undeclared/scoring.h"
@@ -8,10 +8,10 @@ namespace ifog::undeclared {
 
 Diagnose project_diagnosis();
 
-// A capture as the diagnosis takes it; the capture stays with the caller.
+// A record for the diagnosis; it refers to the capture.
 ifog::Record record_of(const Capture& capture, const std::string& name, std::size_t axis = 0);
 
-// A found effect with its correction, by the compensator that the daemon runs.
+// A found effect with its correction by the daemon's compensator.
 Claim claim_of(const Effect& effect, const std::vector<ChannelRange>& ranges,
                const std::vector<Capture>& diagnosed);
 

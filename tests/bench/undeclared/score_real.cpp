@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Real noise instead of simulated: negative controls, with channels borrowed from other captures, where every
-// effect traced to a channel is a false alarm; and effects implanted in it, which are to be found.
+// Scores with real noise: negative controls with channels of other captures, in which every traced effect is
+// a false alarm; and implanted effects, which should be found.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -34,7 +34,7 @@ Series resampled(const ifog::Capture& c, const Series& x) {
   return out;
 }
 
-// A piece of a foreign column, from anywhere, stretched to `samples`.
+// A random part of another capture's column, resampled to `samples`.
 Series borrowed(const Series& column, std::size_t samples, Draw& draw) {
   const double length = static_cast<double>(column.size()) * draw.uniform(0.3, 1.0);
   const double start = draw.uniform(0.0, static_cast<double>(column.size()) - length);
@@ -74,7 +74,7 @@ NoiseTruth fitted_noise(const Series& rate) {
   return best;
 }
 
-// Of another capture than the noise: its own channels may well know what happened to it.
+// True for a channel of another capture, because a capture's own channels may be correlated with its noise.
 bool foreign(const std::string& channel, const std::string& source) {
   if (source.starts_with("blueseis")) return channel != "other_gyro";
   return !source.starts_with("rlg") || !channel.starts_with("pressure_");
@@ -96,8 +96,8 @@ void print_row(const std::string& name, const Count& count) {
 }
 
 struct Recordings {
-  std::vector<Source> sources;                          // whose noise is real
-  std::vector<std::pair<std::string, Series>> columns;  // to borrow from
+  std::vector<Source> sources;                          // with real noise
+  std::vector<std::pair<std::string, Series>> columns;  // to take channels from
 };
 
 Recordings recordings(const std::string& folder) {
@@ -116,8 +116,8 @@ Recordings recordings(const std::string& folder) {
   }
   for (std::size_t a = 0; a < 3; ++a)
     out.columns.emplace_back("flow_" + turned.axes[a] + "_lpm", resampled(turned, turned.rate_radps[a]));
-  // Without a reference nothing is traced to what senses motion: accelerations are borrowed as pressures, and
-  // rates of turn as flows.
+  // Without a reference nothing is traced to channels of motion, so accelerations are used as pressures and
+  // rates as flows.
   for (const ifog::CaptureColumn& c : vehicle.channels)
     out.columns.emplace_back(
         c.name.starts_with("accel_") ? "pressure_" + c.name.substr(6, 1) + "_Pa" : c.name,
@@ -128,7 +128,7 @@ Recordings recordings(const std::string& folder) {
   return out;
 }
 
-// A piece of one source's noise with borrowed channels.
+// Part of one source's noise with channels of other captures.
 ifog::Capture piece(const Source& source, const Recordings& from, Draw& draw) {
   const std::size_t samples = std::min<std::size_t>(source.rate.size(), 5000);
   const auto start =
@@ -144,8 +144,8 @@ ifog::Capture piece(const Source& source, const Recordings& from, Draw& draw) {
   return c;
 }
 
-// What lags the channel and is settled when the record begins: at what the channel was, not at the noise of
-// its first reading, whose decay would be a warm-up.
+// A lag that is settled at the beginning of the record, at the channel's level; the noise of its first value
+// would decay like a warm-up.
 Series settled_low_pass(const Series& channel, double tau_s) {
   const auto first = std::min(channel.size(), static_cast<std::size_t>(tau_s / kStep_s));
   double mean = 0.0;
@@ -156,7 +156,8 @@ Series settled_low_pass(const Series& channel, double tau_s) {
   return {out.begin() + 1, out.end()};
 }
 
-// Adds an effect of `form` of the channel, 12 to 80 times its error in this noise; returns how many times.
+// Adds an effect of `form` of the channel, 12 to 80 times its standard error in this noise; returns the
+// multiple.
 double implant_effect(ifog::Capture& c, const Series& channel, const std::string& form, Draw& draw) {
   const std::size_t samples = channel.size();
   Series effect(channel);
@@ -175,7 +176,7 @@ double implant_effect(ifog::Capture& c, const Series& channel, const std::string
 }
 
 struct Trial {
-  std::string source, form, channel;  // form and channel of what was implanted, or empty
+  std::string source, form, channel;  // implanted form and channel, or empty
   double sigma = 0.0;
   bool hit = false, named = false;
   int others = 0;      // claims of another channel
@@ -202,7 +203,7 @@ Trial one_trial(int number, bool implant, const Recordings& from) {
   const Finding finding = project_diagnosis()({c});
   for (const Claim& claim : finding.effects) {
     trial.claims += " " + name_of(claim.effect);
-    if (claim.effect.channel.empty()) continue;  // lines and jumps of the sensor's own
+    if (claim.effect.channel.empty()) continue;  // lines and jumps of the sensor itself
     const bool here = implant && claim.effect.channel == trial.channel && claim.effect.with_channel.empty();
     trial.hit = trial.hit || here;
     trial.named = trial.named || (here && claim.effect.form == form);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scores the diagnosis on sensors whose effects it does not know. Without arguments: 1000 sensors with
-// effects of 12 to 80 sigma and 1000 without any. Every sensor can be made again from its seed.
+// Scores the diagnosis on sensors with unknown effects. Without arguments: 1000 sensors with effects of 12 to
+// 80 sigma and 1000 without. Every sensor is reproducible from its seed.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <atomic>
@@ -41,7 +41,7 @@ bool wanted(const Options& o, std::uint64_t seed) {
   return o.only.empty() || std::find(o.only.begin(), o.only.end(), seed) != o.only.end();
 }
 
-// The next sensor of the series; `place` walks through the kinds so that every size meets every kind.
+// The next sensor of the series; `place` cycles through the kinds so that every size occurs with every kind.
 Sensor sensor_at(const Options& o, int place, bool with_effect) {
   const std::uint64_t seed = seed_at(o, place, with_effect);
   Draw draw(seed, 999);
@@ -86,7 +86,7 @@ struct Place {
   bool with_effect;
 };
 
-// With and without in turn, so that a run cut short has seen both.
+// Alternately with and without effects, so that an interrupted run has both.
 std::vector<Place> places_of(const Options& o) {
   std::vector<Place> places;
   for (int i = 0; i < std::max(o.with, o.without); ++i)
@@ -106,7 +106,7 @@ Score score_at(const Options& o, const Place& place) {
   return score(sensor, method);
 }
 
-// Sensors are independent of each other; each score stands at its place, whichever thread makes it.
+// Sensors are independent; a score's place does not depend on the thread.
 std::vector<std::optional<Score>> scored(const Options& o, const std::vector<Place>& places) {
   std::vector<std::optional<Score>> made(places.size());
   const auto start = std::chrono::steady_clock::now();

@@ -10,7 +10,7 @@ namespace {
 
 using Series = std::vector<double>;
 constexpr double kInvisible = 3.0;  // sigma
-constexpr int kNextCapture = 50;    // any number above the captures diagnosed
+constexpr int kNextCapture = 50;    // any number above those of the diagnosed captures
 
 double mean(const Series& x) {
   double sum = 0.0;
@@ -35,7 +35,7 @@ const char* shape_name(const TrueEffect& truth) {
   if (truth.form == "line") return "frequency_hz";
   if (truth.form == "warm_up") return "time_constant_s";
   if (truth.form == "step") return "time_s";
-  return nullptr;  // a rate's bandwidth is the search's choice, not a property the data fix
+  return nullptr;  // a rate's bandwidth is chosen by the search, not determined by the data
 }
 
 bool same_names(const TrueEffect& truth, const Effect& found) {
@@ -51,7 +51,7 @@ bool same_names(const TrueEffect& truth, const Effect& found) {
   return straight || crossed;
 }
 
-// A line elsewhere or a step at another time is another effect.
+// A line at another frequency or a step at another time is another effect.
 bool same_place(const TrueEffect& truth, const Effect& found, double record_s) {
   const char* name = shape_name(truth);
   const ModelParameter* p = name == nullptr ? nullptr : parameter_named(found, name);
@@ -61,7 +61,7 @@ bool same_place(const TrueEffect& truth, const Effect& found, double record_s) {
   return true;
 }
 
-// The hidden parabola lies about its channel's reference: its straight line is none.
+// The hidden parabola is about its channel's reference and has no linear term there.
 bool places_turning_point(const TrueEffect& truth, const Effect& found) {
   if (truth.form != "quadratic" || !truth.with_channel.empty() || found.form != "linear" ||
       found.channel != truth.channel)
@@ -93,7 +93,7 @@ void score_names(Score& s, const Sensor& sensor, const std::vector<Record>& reco
         add_parameter(s, name, found, "coefficient", truth.size, std::abs(truth.size) / truth.sigma);
       if (const char* shape = shape_name(truth)) add_parameter(s, name, found, shape, truth.shape);
     }
-  // Every capture has a line with its phase and a step of its own: each may be named.
+  // Each capture may have its own phase of a line and its own step.
   for (const TrueEffect& truth : sensor.effects) {
     if (truth.form != "line" && truth.form != "step") continue;
     std::size_t again = records.size();
@@ -139,12 +139,12 @@ void score_names(Score& s, const Sensor& sensor, const std::vector<Record>& reco
     without.erase(without.begin() + static_cast<std::ptrdiff_t>(f));
     if (oracle.of(hidden, without) < kInvisible) {
       ++s.extra;
-      found[f].assign(records.size(), Series(sensor.samples, 0.0));  // and do without it from here on
+      found[f].assign(records.size(), Series(sensor.samples, 0.0));  // not used from here on
     }
   }
 }
 
-// Hysteresis is right when it is called unexplained; effects in its own channel describe a part of it.
+// Hysteresis should be reported as unexplained; effects in its own channel describe a part of it.
 void score_uncovered(Score& s, const Sensor& sensor, const Finding& finding) {
   for (const Claim& f : finding.effects)
     if (f.effect.channel != sensor.effects[0].channel || !f.effect.with_channel.empty()) ++s.extra;
@@ -152,7 +152,7 @@ void score_uncovered(Score& s, const Sensor& sensor, const Finding& finding) {
   s.missed = 1 - s.exact;
 }
 
-// Of the longest time predicted that the capture holds, the bias taken at its start.
+// For the longest predicted time within the capture, with the bias from its beginning.
 std::optional<double> heading_square(const HeadingPrediction& predicted, const Series& noise,
                                      const Series& difference, double dt_s) {
   const auto align = static_cast<std::size_t>(std::lround(predicted.aligned_s / dt_s));

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a diagnosis said against what was hidden, by names first and by an oracle second.
+// Compares a diagnosis with the hidden effects, first by names and then with an oracle.
 //
-// A true effect is found *exactly* when form and channel (and the partner of a product) are named as hidden.
-// It is found *equivalently* when other names were given, but their waveforms reproduce the hidden ones so
-// well that what is left would be visible below 3 sigma in the captures diagnosed: with the true noise known,
-// nobody could have distinguished them. Both count as right; they are reported separately. Every found effect that is
-// neither is extra; an equivalent explanation must also be free of parts that it could do without. A parabola
-// is claimed with the straight line that places its turning point: within 3 sigma of where the hidden one is
-// that is the hidden law's own term, counted as completed.
+// A true effect is found *exactly* if form and channel (and the partner of a product) have the hidden names.
+// It is found *equivalently* if other names reproduce the hidden waveforms so well that the difference is
+// below 3 sigma in the diagnosed captures: then nobody could distinguish them, even with the true noise
+// known. Both count as right and are reported separately. Every other found effect is extra; an equivalent
+// explanation must not have superfluous parts. A parabola is claimed with a linear term that places its
+// turning point: within 3 sigma of the hidden one this is part of the law and counts as completed.
 #pragma once
 
 #include <functional>
@@ -23,8 +22,8 @@ namespace ifog::undeclared {
 
 struct Claim {
   Effect effect;
-  // rad/s over a capture, causal, as the daemon would subtract it; over those diagnosed also what only those
-  // had.
+  // rad/s over a capture, causal, as the daemon would subtract it; for the diagnosed captures including what
+  // only they have.
   std::function<std::vector<double>(const Capture&)> waveform;
 };
 
@@ -32,7 +31,7 @@ struct Finding {
   std::vector<Claim> effects;
   bool unexplained = false;                 // "something is left that no form describes"
   std::vector<std::string> contradictions;  // of the report with itself
-  // Of another capture of the sensor, from its times and channels alone; empty when none is made.
+  // Prediction for another capture of the sensor from its times and channels; empty if there is none.
   std::function<HeadingPrediction(const Capture& next)> heading;
 };
 
@@ -41,7 +40,7 @@ using Diagnose = std::function<Finding(const std::vector<Capture>&)>;
 struct Parameter {
   std::string name;  // "linear temperature_degC coefficient"
   double error_in_sigma = 0.0;
-  // Standard error over that of the oracle, which knows the noise and every shape; 0 where there is none.
+  // Standard error relative to the oracle, which knows the noise and all shapes; 0 if there is none.
   double width = 0.0;
 };
 
@@ -51,16 +50,16 @@ struct Score {
   double sigma = 0.0;
   int hidden = 0, exact = 0, equivalent = 0, missed = 0, extra = 0, completed = 0;
   bool unexplained = false;
-  // On another capture: RMS of 10 s means of (estimated - true effect) and of the true effect, over the RMS
-  // of 10 s means of the sensor's own noise about its mean. `shape_error` leaves the mean out, which a
+  // On another capture: RMS of 10 s means of (estimated - true effect), and of the true effect, divided by
+  // the RMS of 10 s means of the sensor's noise about its mean. `shape_error` excludes the mean, which a
   // switch-on bias hides.
   double effect_error = 0.0, shape_error = 0.0, effect_size = 0.0;
-  bool transferable = true;  // false: a step, or a line, whose phase in another capture nothing can tell
+  bool transferable = true;  // false: a step, or a line whose phase in another capture is unknown
   std::vector<Parameter> parameters;
-  // (heading error found / predicted)^2 on another capture, at the longest time predicted that it holds.
+  // (heading error found / predicted)^2 on another capture, at the longest predicted time within it.
   std::optional<double> heading_square;
-  std::string names;                        // what was found, for the log
-  std::vector<std::string> contradictions;  // as Finding has them
+  std::string names;                        // found effects, for the log
+  std::vector<std::string> contradictions;  // as in Finding
   double seconds = 0.0;
 
   [[nodiscard]] bool right() const { return missed == 0; }
@@ -68,7 +67,7 @@ struct Score {
 
 Score score(const Sensor& sensor, const Diagnose& diagnose);
 
-// Means of consecutive blocks of `seconds`; the incomplete last one is dropped.
+// Means of consecutive blocks of `seconds`; an incomplete last one is dropped.
 std::vector<double> block_means(const std::vector<double>& x, double dt_s, double seconds);
 
 std::string name_of(const Effect& effect);

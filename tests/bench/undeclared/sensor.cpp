@@ -15,7 +15,7 @@ using Series = std::vector<double>;
 constexpr const char* kTemperature = "temperature_degC";
 constexpr const char* kReference = "reference_rate_radps";
 
-// What is drawn separately for each capture has a stream of its own, and so has each attempt at the sensor.
+// Each kind of draw per capture, and each attempt at a sensor, has its own stream.
 enum Stream : std::uint32_t {
   kSensorStream,
   kEnvironmentStream,
@@ -82,7 +82,7 @@ bool needs_reference(Kind kind) {
   return kind == Kind::kScaleFactor || kind == Kind::kScaleNonlinearity || kind == Kind::kScaleTemperature;
 }
 
-// Two effects of one channel's kind twice would be one effect.
+// Distinct kinds, because two effects of the same kind in one channel would be one effect.
 std::vector<Kind> parts_of(Kind kind, Draw& draw) {
   if (kind == Kind::kNothing || kind == Kind::kLookalike) return {};
   if (kind != Kind::kTwo) return {kind};
@@ -95,8 +95,8 @@ std::vector<Kind> parts_of(Kind kind, Draw& draw) {
   return {singles[static_cast<std::size_t>(first)], singles[static_cast<std::size_t>(second)]};
 }
 
-// The part of a hysteresis loop that depends on where the temperature came from: play minus the temperature
-// itself, so that it is not a linear effect by another name.
+// Part of a hysteresis loop that depends on the direction of the temperature: play minus the temperature, so
+// that it is not a linear effect.
 Series backlash(const Series& temperature, double half_width) {
   Series out(temperature.size());
   double play = temperature.front();
@@ -113,7 +113,7 @@ Series waveform(const TrueEffect& e, const Environment& env, bool diagnosed, dou
   if (e.form == "line") {
     for (std::size_t k = 0; k < n; ++k)
       out[k] = std::sin(2.0 * std::numbers::pi * e.shape * env.time_s[k] + phase);
-  } else if (e.form == "step") {  // an event of the captures diagnosed; it does not happen again
+  } else if (e.form == "step") {  // an event of the diagnosed captures only
     for (std::size_t k = 0; k < n; ++k) out[k] = diagnosed && env.time_s[k] >= e.shape ? 1.0 : 0.0;
   } else if (e.form == "warm_up") {
     for (std::size_t k = 0; k < n; ++k) out[k] = std::exp(-env.time_s[k] / e.shape);
@@ -186,7 +186,7 @@ void draw_character(Sensor& s, Draw& draw) {
 
   s.noise.N = draw.log_uniform(5e-4, 0.1) * kDegreePerRootHour;
   if (draw.chance(0.7)) s.noise.B = s.noise.N / (0.664 * std::sqrt(draw.log_uniform(100.0, 1e4)));
-  // Where the walk overtakes the white noise in the Allan deviation: N^2 / tau = K^2 tau / 3.
+  // Where random walk and white noise are equal in the Allan deviation: N^2 / tau = K^2 tau / 3.
   const bool lookalike = s.kind == Kind::kLookalike;
   const double crossing_s = lookalike ? draw.log_uniform(30.0, 1000.0) : draw.log_uniform(100.0, 3e4);
   if (lookalike || draw.chance(0.7)) s.noise.K = std::sqrt(3.0) * s.noise.N / crossing_s;
@@ -209,7 +209,7 @@ void draw_effects(Sensor& s, Draw& draw) {
   }
 }
 
-// False when two effects look so much alike in this environment that nobody could tell them apart.
+// False if two effects cannot be distinguished in this environment.
 bool size_effects(Sensor& s, double sigma, Draw& draw) {
   if (s.effects.empty()) return true;
   const Visibility oracle = visibility(s);
@@ -312,7 +312,7 @@ Record record(const Sensor& s, int capture) {
   const Environment env = environment(s, capture);
   Record r;
   r.noise = draw_noise(s, env, capture);
-  // Switch-on biases are far above what the noise could hide.
+  // Switch-on biases are far above the noise.
   r.bias = 20.0 * kDegreePerHour * Draw(s.seed, stream(s, kBiasStream, capture)).normal();
   r.capture.time_s = env.time_s;
   r.capture.axes = {""};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A simulated gyro with hidden effects: drawn from its seed, sized in GLS sigma against its own true noise,
-// and recorded as often as wanted, each time in another environment and with another switch-on bias.
+// A simulated gyro with hidden effects: drawn from its seed, scaled in GLS sigma of its true noise, and
+// recorded several times with different environments and switch-on biases.
 #pragma once
 
 #include <memory>
@@ -15,7 +15,7 @@ namespace ifog::undeclared {
 
 enum class Kind {
   kNothing,
-  kLookalike,  // nothing but a random walk, the one of many that follows the temperature best
+  kLookalike,  // only a random walk, selected for its correlation with the temperature
   kTemperatureLinear,
   kTemperatureQuadratic,
   kTemperatureRate,
@@ -36,8 +36,7 @@ enum class Kind {
 const char* name_of(Kind kind);
 const std::vector<Kind>& kinds_with_effect();
 
-// In the model file's terms, so that what was found can be compared by name. `backlash` is in no list of
-// forms.
+// With the model file's names, for comparison. `backlash` is not a form.
 struct TrueEffect {
   std::string form, channel, with_form, with_channel;
   double reference = 0.0;  // channel value at which the effect is zero
@@ -50,14 +49,14 @@ struct TrueEffect {
 
 struct Sensor {
   std::uint64_t seed = 0;
-  std::uint32_t attempt = 0;  // of drawing effects that can be told apart
+  std::uint32_t attempt = 0;  // number of draws until the effects can be distinguished
   Kind kind = Kind::kNothing;
   NoiseTruth noise;
   std::shared_ptr<const NoiseModel> noise_model;  // of one capture
   OperatingRange range;
   std::size_t samples = 0;  // of each capture
   double dt_s = 1.0;
-  int captures = 1;  // to be diagnosed together
+  int captures = 1;  // diagnosed together
   std::vector<TrueEffect> effects;
   std::vector<std::string> lively;
 };
@@ -69,16 +68,16 @@ struct Record {
   double bias = 0.0;
 };
 
-// sigma: visibility of each effect; for kTwo of both. The same arguments give the same sensor.
+// sigma: visibility of each effect; for kTwo of both. Reproducible.
 Sensor draw_sensor(std::uint64_t seed, Kind kind, double sigma, int captures = 1);
 
-// capture 0 … captures-1 are for the diagnosis; any higher number is another capture of the same sensor.
+// capture 0 … captures-1 are for the diagnosis; higher numbers are other captures of the same sensor.
 Record record(const Sensor& sensor, int capture);
 
 // The visibility oracle over the captures for the diagnosis.
 Visibility visibility(const Sensor& sensor);
 
-// JSON of everything the diagnosis must not see.
+// JSON of everything that the diagnosis must not see.
 std::string truth_text(const Sensor& sensor);
 
 }  // namespace ifog::undeclared

@@ -15,13 +15,13 @@ namespace {
 constexpr double kTower_hz = 0.54;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-// The order of two draws in one expression is the compiler's, and another one's on aarch64.
+// In one expression the compiler chooses the order of two draws, which differs on aarch64.
 std::complex<double> deviate(Draw& draw) {
   const double imaginary = draw.normal(), real = draw.normal();
   return {real, imaginary};
 }
 
-// The angle is a damped oscillator's driven by white noise, a sample what it turns in its time.
+// The angle is that of a damped oscillator driven by white noise; a sample is its increment.
 void sway(const Capture& c, double rms, double quality, Draw& draw, std::vector<double>& rate) {
   const double angle = rms / (kTurn * kTower_hz);
   std::complex<double> state = angle * deviate(draw);
@@ -36,7 +36,7 @@ void sway(const Capture& c, double rms, double quality, Draw& draw, std::vector<
   }
 }
 
-// Its frequency never comes back in step: what did would be a family of lines that stand still.
+// The frequency drifts without repetition, because repetition would give a family of constant lines.
 void wander(const Capture& c, double amplitude, Draw& draw, std::vector<double>& rate) {
   const double span_s = c.time_s.back() - c.time_s.front();
   const double sample_s = span_s / static_cast<double>(c.size() - 1);
@@ -67,7 +67,7 @@ std::vector<Capture> standing_on(const std::string& structure, const Sensor& sen
     std::vector<double> motion(capture.size(), 0.0);
     sway(capture, draw.log_uniform(10.0, 50.0) * sensor.noise.N, draw.uniform(20.0, 40.0), draw, motion);
     if (structure == "machine") wander(capture, draw.log_uniform(3.0, 30.0) * sensor.noise.N, draw, motion);
-    // A capture is known by its first value.
+    // A capture is identified by its first value.
     for (std::size_t k = 0; k < motion.size(); ++k) capture.rate_radps[0][k] += motion[k] - motion[0];
   }
   return captures;
