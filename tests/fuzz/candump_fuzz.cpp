@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any line: no crash, and a frame that is read writes and reads as the same frame.
+// Any line: no crash, and a frame that is read is equal after writing and reading.
 #include <cstdlib>
 #include <cstring>
 

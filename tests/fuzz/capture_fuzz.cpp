@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text as a capture, by its own header and with columns chosen: refused with one line, or read with
-// columns of one length and time that advances.
+// Any text as a capture, with its own header and with selected columns: rejected with one line, or read into
+// columns of one length with increasing time.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Any configuration of an environment channel, and any message on its LCM channel: the field is read or
-// refused in one line, and what goes on to the sensor is within the limits, has not jumped, or has jumped
-// twice alike.
+// rejected with one line. A value for the sensor is within the limits and has not jumped, or has jumped twice
+// alike.
 //
-// 24 bytes: minimum, maximum, max_step; the field's name as configured, up to a line feed; then messages,
-// each with a byte for its type (0 … 2: the type's hash is put before it) and one for its length.
+// 24 bytes: minimum, maximum, max_step; the field's name as configured, until a line feed; then messages,
+// each with a byte for its type (0 … 2: with the type's hash in front) and one for its length.
 #include <ifog/decode.h>
 #include <algorithm>
 #include <array>
@@ -37,7 +37,7 @@ std::optional<ifog::LcmField> field(const std::string& text) {
   }
 }
 
-// As read_limits() of the configuration lets them through.
+// As accepted by read_limits() of the configuration.
 ifog::Limits limits(const std::uint8_t* data) {
   std::array<double, 3> number{};
   std::memcpy(number.data(), data, sizeof number);
@@ -83,7 +83,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
              (before && std::abs(value - *before) <= allowed.max_step));
       held = value;
     }
-    // What is beyond the limits is no witness for or against a jump.
+    // Values beyond the limits neither confirm nor reject a jump.
     if (std::abs(value) <= ifog::kMostChannel && value >= allowed.minimum && value <= allowed.maximum)
       before = value;
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text as a daemon configuration: read, or refused with lines that each name the file.
+// Any text as a daemon configuration: read, or rejected with lines that contain the file's name.
 #include <cstdint>
 #include <cstdlib>
 #include <stdexcept>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text as a DBC file: refused with one line, or read with warnings of one printable line each; and then
-// every signal that fits its message decodes and encodes any frame without touching a byte that is not there.
+// Any text as a DBC file: rejected with one line, or read with warnings of one printable line each. Then
+// every signal that fits its message decodes and encodes any frame within its bytes.
 #include <algorithm>
 #include <array>
 #include <cstdlib>
@@ -32,7 +32,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       } catch (const std::runtime_error&) {
         continue;
       }
-      // On the heap and exactly as long as the message, so that the sanitizer sees one byte too many.
+      // On the heap with the message's exact length, so that the sanitizer detects one byte too many.
       std::vector<std::uint8_t> frame(message.length, 0xA5);
       if (bytes_needed(signal) > frame.size()) std::abort();
       const std::uint64_t bits = raw_bits(signal, frame);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any frames to the dbc driver's decoder, on a bus with multiplexed axes, long frames and several frames a
-// sample.
+// Any frames for the dbc driver, on a bus with multiplexed axes, long frames and several frames per sample.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -38,7 +37,7 @@ const ifog::dbc::Picks& picks() {
 
 }  // namespace
 
-// Each frame is taken as: id, flags, length, then that many bytes.
+// Each frame is read as id, flags, length and that many bytes.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   ifog::dbc::Decoder decoder(picks());
   std::size_t samples = 0;

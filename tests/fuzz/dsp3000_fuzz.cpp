@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes: no crash, every byte accounted for, and what is read writes and reads as the same value.
+// Any bytes: no crash, every byte counted, and a value that is read is equal after writing and reading.
 #include <cstdlib>
 
 #include "drivers/plugins/dsp3000/line_finder.h"

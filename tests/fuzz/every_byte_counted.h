@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every finder of frames owes to any bytes: none is lost or counted twice, and the frames are the same
-// however the stream is cut into portions. For fuzzers: aborts where that does not hold.
+// For fuzzers of frame finders: aborts if a byte is lost or counted twice, or if the frames depend on how the
+// stream is divided into reads.
 #pragma once
 
 #include <algorithm>

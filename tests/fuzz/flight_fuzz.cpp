@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as a flight recording, as the entries of a good block, and as the text of a good header: no
-// crash, no payload that reaches beyond what there is, and every byte of a file without blocks accounted for.
+// Any bytes as a flight recording, as entries of a valid block, and as text of a valid header: no crash, no
+// payload beyond its data, and every byte of a file without blocks counted.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -28,7 +28,7 @@ void read_all(std::span<const std::uint8_t> recording) {
       if (frame_of(reader.entry(), frame) && frame.length > sizeof frame.data) std::abort();
     }
   } catch (const std::runtime_error&) {
-    return;  // no recording, or of another version
+    return;  // not a recording, or another version
   }
   const FlightCounts& counts = reader.counts();
   if (entries > counts.entries ||
@@ -53,7 +53,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::vector<std::uint8_t> recording = header_block(rest);
     try {
       const FlightHeader header = parse_header(std::span(recording).subspan(kBlockHead, rest.size() + 10));
-      // What is understood is written as it was.
+      // Parsed content is written unchanged.
       if (!(parse_header(header_payload(header)) == header)) std::abort();
     } catch (const std::runtime_error&) {
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as an HDF5 file, read by Debian's library in a process of its own: refused with one line, or columns
-// of one length and time that advances. What the library does to its own process must not be seen here. The text
-// that comes from there is read as capture_fuzz.cpp tries it.
+// Any bytes as an HDF5 file, read by Debian's library in a separate process: rejected with one line, or
+// columns of one length with increasing time. Faults of the library in its own process do not count. Its text
+// output is read as in capture_fuzz.cpp.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

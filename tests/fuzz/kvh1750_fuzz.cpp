@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes: every one accounted for, and frames that pack to the bytes they came from.
+// Any bytes: every one counted, and frames that pack to the same bytes.
 #include <array>
 
 #include "drivers/plugins/kvh1750/frame_finder.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes as an LCM message of every type: a message, which the generated encoder gives back as it came, or
-// refused. The first byte says whether the type's hash is put before the rest, so that the fuzzer gets past
-// it.
+// Any bytes as an LCM message of every type: rejected, or a message that the generated encoder writes
+// unchanged. The first byte says if the type's hash is put in front, so that the fuzzer passes its check.
 #include <ifog/decode.h>
 #include <array>
 #include <cstdint>
@@ -20,7 +19,7 @@ void attempt(const std::uint8_t* data, std::size_t size, bool hashed) {
   bytes.insert(bytes.end(), data, data + size);
   Message message{};
   if (ifog::decode_message(bytes, message)) {
-    // Strings with a 0 inside are the only ones that a message of the same meaning may hold differently.
+    // Only strings that contain a 0 may be encoded differently.
     if (static_cast<std::size_t>(message.getEncodedSize()) != bytes.size()) std::abort();
     std::vector<std::uint8_t> again(bytes.size());
     if (message.encode(again.data(), 0, static_cast<int>(again.size())) < 0) std::abort();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text as the manifest of a fleet: refused with one line, or gyros whose serials name one folder each,
-// within the folder of results, and whose captures are files to be opened by name.
+// Any text as the manifest of a fleet: rejected with one line, or gyros whose serials are names of one folder
+// each within the results folder, and whose captures are file names.
 #include <cctype>
 #include <cstdint>
 #include <cstdlib>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text as a model file: read, or refused with one line.
+// Any text as a model file: read, or rejected with one line.
 #include <cstdint>
 #include <cstdlib>
 #include <stdexcept>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes: every one accounted for, and IMU_SHORT messages whose numbers survive being packed again.
+// Any bytes: every one counted, and IMU_SHORT messages with the same numbers after packing.
 #include <array>
 
 #include "drivers/plugins/sbgecom/message.h"
@@ -15,7 +15,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const std::size_t length = pack(imu, packed);
     if (!unpack(std::span(packed).first(length), again)) std::abort();
     for (std::size_t i = 0; i < 3; ++i) {
-      // A device may use the high scale where the encoder does not: then to half a count of the finer one.
+      // A device may use the high scale where the encoder does not: then equal to half a count of the finer
+      // scale.
       const double off = again.rate_radps[i] - imu.rate_radps[i];
       if (off > 1e-8 || off < -1e-8 || again.acceleration_mps2[i] != imu.acceleration_mps2[i]) std::abort();
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any text as JSON of the state folder: refused with one line, or a value that can be written again.
+// Any text as JSON of the state folder: rejected with one line, or a value that can be written.
 #include <cstdint>
 #include <cstdlib>
 #include <stdexcept>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes: every one accounted for, and telegrams whose blocks survive being packed again.
+// Any bytes: every one counted, and telegrams with the same blocks after packing.
 #include <array>
 #include <bit>
 
@@ -8,7 +8,7 @@
 
 namespace {
 
-// Bit by bit: what is no number is one, too.
+// Compares bits, so that NaN is equal to itself.
 bool same(const std::optional<ifog::stdbin::Triad>& a, const std::optional<ifog::stdbin::Triad>& b) {
   if (a.has_value() != b.has_value()) return false;
   for (std::size_t i = 0; a && i < a->size(); ++i)

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Any bytes, the first choosing the termination: every one accounted for, and datagrams that pack to the
-// bytes they came from.
+// Any bytes, the first selects the termination: every one counted, and datagrams that pack to the same bytes.
 #include <array>
 
 #include "drivers/plugins/stim300/datagram.h"
