@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long a program takes to have a device open again after the kernel has it back.
+// Time from a device's return to its use by a program.
 //   usage: device_return DEVICE PROGRAM
 //
-// Until it is ended: waits for the device's node to go and to come, then for the program's process to hold it
-// open, and prints the seconds between the last two. It looks every millisecond, as far as it gets a
-// processor.
+// Runs until ended: waits for the device's node to disappear and reappear, then for the program to have it
+// open, and prints the seconds between both. Checks every millisecond.
 #include <dirent.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -30,7 +29,7 @@ bool exists(const std::string& path) {
   return stat(path.c_str(), &info) == 0;
 }
 
-// Calls with each name in a folder until one answers true.
+// Calls `found` with each name in a folder until it returns true.
 bool any_in(const std::string& folder, const std::function<bool(const std::string&)>& found) {
   DIR* const listing = opendir(folder.c_str());
   if (listing == nullptr) return false;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// A subscriber as an INS would be: counts what arrives on IFOG_<NAME> channels, and whether each message
-// follows the one before it.  usage: lcm_count SECONDS CHANNEL...
+// A subscriber like an INS: counts messages on IFOG_<NAME> channels and checks their sequence.  usage:
+// lcm_count SECONDS CHANNEL...
 //
-// Prints one JSON object when the time is over, or on SIGTERM or SIGINT: by channel the messages, the first
-// and last sequence number, and every way in which a message did not follow.
+// Prints one JSON object at the end, or on SIGTERM or SIGINT: by channel the messages, first and last
+// sequence number, and all deviations from the sequence.
 #include <unistd.h>
 
 #include <chrono>
@@ -22,13 +22,13 @@ volatile std::sig_atomic_t stop = 0;
 
 struct Count {
   std::int64_t messages = 0, first = 0, last = 0;
-  std::int64_t missing = 0;         // sequence numbers passed over
-  std::int64_t out_of_order = 0;    // a sequence number not above the one before
-  std::int64_t merged = 0;          // messages that stand for several samples
-  std::int64_t gap_flags = 0;       // messages the daemon flagged as following a gap
-  std::int64_t time_backwards = 0;  // utime not above the one before
-  std::int64_t clock_steps = 0;     // messages the daemon flagged as following a set of the wall clock
-  double angle_error = 0.0;         // largest |running angle - sum of increments|, rad: they may never part
+  std::int64_t missing = 0;         // missing sequence numbers
+  std::int64_t out_of_order = 0;    // sequence numbers that do not increase
+  std::int64_t merged = 0;          // messages of several merged samples
+  std::int64_t gap_flags = 0;       // messages that the daemon flagged as following a gap
+  std::int64_t time_backwards = 0;  // utime does not increase
+  std::int64_t clock_steps = 0;     // messages that the daemon flagged as following a set of the wall clock
+  double angle_error = 0.0;         // largest |running angle - sum of increments|, rad; should be 0
   std::int64_t last_utime = 0;
   double angle = 0.0;
 };
@@ -86,7 +86,7 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: lcm_count SECONDS CHANNEL...\n");
     return 2;
   }
-  // The queue of the LCM library drops silently when full; with room for a minute no message is lost here.
+  // LCM's queue drops silently if full; this one holds a minute of messages.
   lcm::LCM lcm;
   if (!lcm.good()) {
     std::fprintf(stderr, "lcm_count: LCM cannot be opened (is there a route for multicast?)\n");

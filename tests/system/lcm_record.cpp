@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records what is published into an LCM log, as lcm-logger does, and keeps every message: lcm-logger 1.3.1
-// leaves the library's queue at its 30 messages, so that it loses some whenever its thread is kept waiting
-// for longer than those take (20 ms at 1.5 kHz). The queue here has no limit.
+// Records messages into an LCM log, as lcm-logger does, without losses: lcm-logger 1.3.1 has a queue of 30
+// messages, so it loses some if its thread waits longer than they last (20 ms at 1.5 kHz). This queue has no
+// limit.
 //
-// usage: lcm_record URL CHANNEL LOG      ends with SIGTERM or SIGINT and says how many messages it wrote
+// usage: lcm_record URL CHANNEL LOG      ends with SIGTERM or SIGINT and prints the number of messages
 #include <csignal>
 #include <cstdio>
 #include <lcm/lcm-cpp.hpp>

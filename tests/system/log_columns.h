@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the comparisons of recorded messages with computed columns read.
+// Input of the comparisons of recorded messages with computed columns.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,7 @@
 #include <string>
 #include <vector>
 
-// A plain CSV reader of the test's own, so that a mistake in the project's reader cannot cancel out.
+// An independent CSV reader, so that an error in the project's reader cannot cancel out.
 inline std::map<std::string, std::vector<double>> read_columns(const std::string& path) {
   std::ifstream file(path);
   if (!file) throw std::runtime_error(path + ": cannot be read");

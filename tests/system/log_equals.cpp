@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Compares what the daemon published, as it was recorded, with what `ifog denoise` computed of the
-// same frames: bit for bit, sample by sample.
+// Compares recorded messages of the daemon with the output of `ifog denoise` for the same frames: bit for
+// bit, sample by sample.
 //
-// usage: log_equals LOG CHANNEL DENOISED.csv [CAPTURE.csv RESOLUTION_RADPS]
-// With a capture also: raw equals the capture's rate within half of the frame format's resolution.
+// usage: log_equals LOG CHANNEL DENOISED.csv [CAPTURE.csv RESOLUTION_RADPS] With a capture also: raw equals
+// the capture's rate within half of the frame format's resolution.
 #include <cstdio>
 #include <cstdlib>
 
@@ -50,7 +50,7 @@ int compare(int argc, char** argv) {
       if (row >= rate.size()) throw std::runtime_error("more samples in the log than in the capture");
       const double apart = std::abs(messages[i].raw.at(0) - rate[row]);
       furthest = std::max(furthest, apart);
-      // The last digits of value / resolution round too.
+      // value / resolution is rounded too.
       if (!(apart <= 0.5 * resolution * (1 + 1e-9) + 1e-15 * std::abs(rate[row])))
         differs("raw against the capture", i, messages[i].raw.at(0), rate[row]);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A model exchanged while the daemon runs, from the messages recorded: every sample is there, the model
-// changes once, and on either side of that the compensated rate is, bit for bit, what `ifog denoise` computes
-// with that side's model. The published angle is, to 1e-12 rad, the sum of the published increments.
+// Checks recorded messages of a reload with a new model: every sample is there, the model changes once, and
+// before and after the change the compensated rate is bit for bit that of `ifog denoise` with the respective
+// model. The published angle is the sum of the increments to 1e-12 rad.
 //
 // usage: log_reload LOG CHANNEL BEFORE.csv AFTER.csv
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A subscriber as other programs on LCM are: of types that lcm-gen made from their own definitions, and of nothing else of ours.
-// Prints each message as a line. peers.py builds it.     usage: peer_subscriber URL SECONDS
+// A subscriber like other programs on LCM, with types that lcm-gen made from their own definitions and no
+// other code of this project. Prints each message as a line. peers.py builds it.     usage: peer_subscriber
+// URL SECONDS
 #include <algorithm>
 #include <bot_core/ins_t.hpp>
 #include <bot_core/kvh_raw_imu_batch_t.hpp>
@@ -43,7 +44,7 @@ int main(int, char** argv) {
   lcm.subscribe("MICROSTRAIN", &Printer::ins<microstrain::ins_t>, &printer)->setQueueCapacity(100000);
   lcm.subscribe("BATCH", &Printer::batch, &printer)->setQueueCapacity(100000);
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(std::atoi(argv[2]));
-  // Until nothing has come for two seconds, or nothing comes at all.
+  // Until there is no message for two seconds, or none at all.
   int heard = 0;
   for (int got = 1; got > 0 || (heard == 0 && std::chrono::steady_clock::now() < end); heard += got)
     got = std::max(0, lcm.handleTimeout(2000));

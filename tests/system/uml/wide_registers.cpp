@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lets Debian's user-mode Linux run on processors with AMX. That kernel keeps a process's floating-point
-// registers in a buffer of fixed size; the state of such a processor is longer (tiles), and the host's kernel
-// refuses to write part of it (EFAULT, xstateregs_set). This shim, preloaded, puts the short state over the
-// whole one before it is written.
+// Lets Debian's user-mode Linux run on processors with AMX. That kernel stores floating-point registers in a
+// buffer of fixed size, shorter than the state of such a processor, and the host's kernel rejects a partial
+// write (EFAULT, xstateregs_set). This preloaded shim copies the short state over the whole one before
+// writing.
 #include <dlfcn.h>
 #include <elf.h>
 #include <sys/ptrace.h>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::size_t kLongest = 1 << 16;
 constexpr std::size_t kHeaderAt = 512;  // XSTATE_BV, Intel SDM vol. 1, 13.4.2
-// The state components the short buffer (2696 bytes) holds: all but the tiles.
+// State components in the short buffer (2696 bytes): all except the tiles.
 constexpr std::uint64_t kKept = 0x2ff;
 
 using Ptrace = long (*)(int, long, void*, void*);
