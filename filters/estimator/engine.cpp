@@ -57,9 +57,9 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
          in.averaged_s > 0.0 ? period_s_ / in.averaged_s : 1.0,
          {}};
   screen(s);
-  const double before = rest_->variance();
+  const double before = rest_->rate().variance;
   rest_->predict(s.dt_s);
-  const double grown = std::max(0.0, rest_->variance() - before);
+  const double grown = std::max(0.0, rest_->rate().variance - before);
   begin_axes(s);
   if (settings_.follow_manoeuvres) {
     follow_.trackers.predict(s.dt_s / period_s_);
@@ -117,7 +117,7 @@ void Engine::begin_axes(const Step& s) noexcept {
     f.since_moved = 0.0;
     f.moving = true;
     f.trackers.begin();
-    f.trackers.seed(rest_->rate(), Lanes::Ones());
+    f.trackers.seed(rest_->rate().value, Lanes::Ones());
     f.mix.begin(0);
     f.change.begin();
   }
@@ -126,10 +126,10 @@ void Engine::begin_axes(const Step& s) noexcept {
 
 void Engine::weigh(Step& s) noexcept {
   Sample& m = s.sample;
-  m.rest_factor = noise_.white() + rest_->measurement_variance() / (noise_.mean_known() * s.noise_scale);
+  m.rest_factor = noise_.white() + rest_->measured().variance / (noise_.mean_known() * s.noise_scale);
   m.scale = noise_.each(&Noise::tested) * s.noise_scale;
   if (smooths_) m.scale *= noise_.each(&Noise::excess);
-  m.innovation = m.mask * (m.rate - rest_->measurement());
+  m.innovation = m.mask * (m.rate - rest_->measured().value);
   m.inverse = m.mask / m.scale;
   const Lanes covered = to_lanes(s.in.covered_s);
   m.covered_s = (covered > 0.0).select(covered, s.dt_s);
@@ -268,7 +268,7 @@ void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
   rest_->shift_to(rate, started_);
   const double of_all = noise_.mean(variance / noise_.share());
   // A larger model keeps what it knows of colour and lines.
-  if (rest_->rate_alone() || of_all > rest_->variance()) rest_->set_variance(of_all);
+  if (rest_->rate_alone() || of_all > rest_->rate().variance) rest_->set_variance(of_all);
   follow_.since_moved = 0.0;
 }
 
@@ -286,9 +286,9 @@ void Engine::guard(Step& s) noexcept {
 
 // Half of the variance is due to measurement noise (more if coloured), half due to the walk.
 void Engine::publish_rest(Step& s) noexcept {
-  s.rate = rest_->rate();
-  s.gain = rest_->gain();
-  s.variance.setConstant(rest_->variance());
+  s.rate = rest_->rate().value;
+  s.gain = rest_->rate().gain;
+  s.variance.setConstant(rest_->rate().variance);
   if (!settings_.follow_manoeuvres) return;
   const double rule = rest_->rule().measurement_noise() / settings_.measurement_noise;
   const Lanes wide = follow_.change.wide(follow_.trackers, follow_.lag(), rule);
@@ -300,11 +300,11 @@ void Engine::publish_mix(Step& s) noexcept {
   // Present variance of a measurement; an excess may be noise.
   const Lanes level = noise_.each(&Noise::known) * noise_.each(&Noise::significant_excess) * s.noise_scale;
   const Mix::Published mix =
-      follow_.mix.publish(follow_.trackers, rest_->rate(), rest_->variance() * noise_.share(),
+      follow_.mix.publish(follow_.trackers, rest_->rate().value, rest_->rate().variance * noise_.share(),
                           s.sample.scale.max(level), follow_.lag());
   s.rate = mix.rate;
   s.variance = mix.variance;
-  s.gain = mix.gain + follow_.mix.rest_weight() * rest_->gain();
+  s.gain = mix.gain + follow_.mix.rest_weight() * rest_->rate().gain;
 }
 
 // Books the rate's shortfall and adds this sample's payment.
@@ -317,7 +317,7 @@ void Engine::pay(Step& s) noexcept {
   f.at_rest_for = f.moving ? 0.0 : f.at_rest_for + 1.0;
   if (!s.outlier) {
     const bool settled =
-        follows && f.at_rest_for >= kYoungLags * std::max(f.settled_lag, 1.0 / rest_->gain());
+        follows && f.at_rest_for >= kYoungLags * std::max(f.settled_lag, 1.0 / rest_->rate().gain);
     if (settled && !f.settled) f.change.forget_angle();
     f.settled = settled;
   }
@@ -330,7 +330,7 @@ void Engine::pay(Step& s) noexcept {
   // Angle in a gap is unknown and not booked.
   const Lanes dt_s = (s.sample.mask > 0.0).select(s.sample.covered_s, Lanes::Constant(s.dt_s));
   Lanes most = Lanes::Constant(1e300);
-  if (follows) most = kMostPaid * (rest_->variance() * noise_.share()).sqrt();
+  if (follows) most = kMostPaid * (rest_->rate().variance * noise_.share()).sqrt();
   const Lanes paid = ledger.pay(most, f.lag(), dt_s);
   s.rate += paid;
   if (follows) s.variance = s.variance.max(paid * paid);
@@ -340,7 +340,7 @@ bool Engine::rests(const Step& s) const noexcept {
   if (!settings_.follow_manoeuvres || follow_.moving || s.outlier || s.sample.valid == 0 ||
       follow_.since_moved < kRestMemory || follow_.change.suspected())
     return false;
-  return (rest_->rate().abs() * mask_of(started_) <= kMostRestRate).all();
+  return (rest_->rate().value.abs() * mask_of(started_) <= kMostRestRate).all();
 }
 
 void Engine::learn(const Step& s) noexcept {

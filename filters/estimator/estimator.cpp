@@ -3,22 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
 #include "filters/estimator/engine.h"
 #include "filters/settings/filter_table.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
 
 template <class Value>
 void require(bool good, const char* setting, Value value, const char* expected) {
-  if (good) return;
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", static_cast<double>(value));
-  throw std::invalid_argument(std::string(setting) + ": " + text + ", expected " + expected);
+  if (!good)
+    throw std::invalid_argument(
+        formatted("%s: %.9g, expected %s", setting, static_cast<double>(value), expected));
 }
 
 void check(const FilterSettings& settings, int axes, double nominal_period_s) {

@@ -3,10 +3,8 @@
 // at rest.
 //
 // Criterion: the unbiased estimate of a linear filter's risk (Mallows' Cp; Stein, Annals of Statistics 9,
-// 1981), i.e. squared residual plus 2 R times the gain. It needs R but no knowledge of the motion. Motion
-// that a tracker does not follow raises the residual, so the mixture is never worse than the raw measurement
-// beyond chance. Neighbouring trackers are compared over the shorter one's horizon, by axis; the axis with
-// most motion decides, since all axes share one gain.
+// 1981), i.e. squared residual plus 2 R times the gain. Neighbouring trackers are compared over the shorter
+// one's horizon, by axis; the axis with most motion decides, since all axes share one gain.
 #pragma once
 
 #include <array>

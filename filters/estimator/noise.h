@@ -2,9 +2,7 @@
 // Noise of one axis (known R and third differences) and of all axes of a sensor.
 //
 // R is configured or learned at rest; only walk.h changes it, with stretches that are white in every octave.
-// Third differences cancel a parabola. For white noise they give R in any smooth motion; for broadband motion
-// an upper bound of R; for coloured noise less than R. They are used only for the present variance of a
-// measurement, the colour of the known noise, and the converter's step.
+// README.md says what third differences are used for.
 #pragma once
 
 #include <algorithm>

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Outlier test: a measurement that neither the filter at rest nor any tracker predicts waits for the next
-// ones.
-//
-// Consecutive outliers are a jump if chance does not explain them, given the frequency of outliers so far. If
-// outliers are frequent, the measurements of a jump must also be closer to each other than noise would be.
+// ones. Consecutive ones are a jump if chance does not explain them, given the frequency of outliers so far.
 #pragma once
 
 #include <algorithm>

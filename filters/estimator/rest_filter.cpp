@@ -52,15 +52,12 @@ RestFilter::RestFilter(std::unique_ptr<StateModel> model, std::unique_ptr<Rule> 
             model->measurement(),
             model->level(),
             model->rate(),
-            model->measurement(),
-            FewStatesVector::Ones(n) - model->colour(),
+            {},
+            (model->colour().diagonal().array() == 0.0).cast<double>(),
             process_noise * model->stationary(),
-            process_noise * model->stationary(),
-            model->rate() == model->measurement(),
-            0.0};
+            process_noise * model->colour(),
+            model->rate() == model->measurement()};
   model_.clean = model_.h.cwiseProduct(model_.kept);
-  model_.colour -= model_.kept.asDiagonal() * model_.colour * model_.kept.asDiagonal();
-  model_.colour_variance = model_.h.dot(model_.colour * model_.h);
   model_.start.diagonal() += kDiffuse * measurement_noise * model->start();
   model_.form = std::move(model);
   transition_.resize(n, n);
@@ -142,7 +139,7 @@ void RestFilter::shift_to(const Lanes& rate, std::uint32_t which) noexcept {
       if ((which >> static_cast<unsigned>(axis) & 1U) != 0)
         core.x.col(axis) =
             model_.kept.cwiseProduct(core.x.col(axis)) + model_.level * (rate[axis] - now[axis]);
-    if (model_.colour_variance > 0.0)
+    if (!model_.rate_alone)
       core.p = model_.kept.asDiagonal() * core.p * model_.kept.asDiagonal() + model_.colour;
   }
   refresh();

@@ -52,25 +52,21 @@ class RestFilter {
   // False if the covariance is invalid or the state is not finite.
   [[nodiscard]] bool sound() const noexcept;
 
-  // Results of the last call. Rate, variance and gain are those of StateModel::rate(), which is published;
-  // measurement() includes the noise's colour and lines.
-  [[nodiscard]] const Lanes& rate() const noexcept { return rate_.value; }
-  [[nodiscard]] double variance() const noexcept { return rate_.variance; }
-  [[nodiscard]] double gain() const noexcept { return rate_.gain; }
-  [[nodiscard]] const Lanes& measurement() const noexcept { return measured().value; }
-  [[nodiscard]] double measurement_variance() const noexcept { return measured().variance; }
-  // True if the model has no coloured noise or lines, so measurement() equals rate().
-  [[nodiscard]] bool rate_alone() const noexcept { return model_.rate_alone; }
   struct Reading {
     Lanes value = Lanes::Zero();
     double variance = 0.0, gain = 0.0;
   };
-  // The rate and the lines of the model, but not its coloured noise.
+  // Results of the last call: the rate that is published; with the model's lines; and with its coloured noise as
+  // well, as it is measured.
+  [[nodiscard]] const Reading& rate() const noexcept { return rate_; }
   [[nodiscard]] Reading without_colour() const noexcept {
     return model_.rate_alone ? rate_ : read(model_.clean);
   }
+  [[nodiscard]] const Reading& measured() const noexcept { return model_.rate_alone ? rate_ : measured_; }
+  // True if the model has no coloured noise or lines, so the three are equal.
+  [[nodiscard]] bool rate_alone() const noexcept { return model_.rate_alone; }
   // Variance of the model's coloured noise, (rad/s)^2.
-  [[nodiscard]] double colour_variance() const noexcept { return model_.colour_variance; }
+  [[nodiscard]] double colour_variance() const noexcept { return model_.h.dot(model_.colour * model_.h); }
   [[nodiscard]] double covariance() const noexcept { return covariance_; }  // of the innovation, as used
   [[nodiscard]] Rule& rule() noexcept { return *rule_; }
   [[nodiscard]] const Rule& rule() const noexcept { return *rule_; }
@@ -83,7 +79,6 @@ class RestFilter {
     FewStatesVector clean, kept;    // h without the colour; 0 for the colour's states, else 1
     FewStatesMatrix start, colour;  // covariance at the start, and of the colour in steady state
     bool rate_alone;
-    double colour_variance;
   };
   // State of KalmanCore<n>: one column per axis, and the parts common to all axes.
   struct Core {
@@ -95,7 +90,6 @@ class RestFilter {
   // Value, variance and gain of `of`'x in one core, and in the weighted mean.
   [[nodiscard]] Reading read(const FewStatesVector& of, const Core& core) const noexcept;
   [[nodiscard]] Reading read(const FewStatesVector& of) const noexcept;
-  [[nodiscard]] const Reading& measured() const noexcept { return model_.rate_alone ? rate_ : measured_; }
   void refresh() noexcept;
   [[nodiscard]] double apart(const Lanes& one, const Lanes& mean) const noexcept;
 

@@ -7,8 +7,7 @@
 // mistaken for noise.
 //
 // The walk is the ratio q dt / R, on a grid, with the largest likelihood of the long octaves over a million
-// samples; R is free. Of nearly equally likely ratios the largest is used: a filter that is slightly too fast
-// is slightly noisier, but one that is too slow mistakes the walk for motion.
+// samples; R is free.
 #pragma once
 
 #include <array>

@@ -22,12 +22,10 @@ constexpr double kDwell_s = 1.0;     // with references, slower samples may be d
 constexpr double kAround_s = 10.0;   // either side, of the running median
 constexpr double kTurned = 20.0;     // times the usual step of quiet windows
 constexpr double kLeastTurn = 1e-3;  // rad/s
-constexpr double kMostStep = 10.0 * kMostNoise_radps;  // of the means of a sensor at rest
 constexpr double kShaken = 4.0;
-constexpr double kQuieter = 0.3;                              // share of windows assumed quiet
-constexpr std::size_t kShortestRest = 8;                      // windows between two moving ones
-constexpr double kEnoughOfRecord = 0.5;                       // of the record
-constexpr std::size_t kWorthThreads = std::size_t{1} << 20U;  // samples
+constexpr double kQuieter = 0.3;          // share of windows assumed quiet
+constexpr std::size_t kShortestRest = 8;  // windows between two moving ones
+constexpr double kEnoughOfRecord = 0.5;   // of the record
 
 enum class State : unsigned char { kResting, kShaking, kTurning };
 
@@ -104,7 +102,7 @@ void mark_axis(const std::vector<Window>& windows, double period_s, std::vector<
   }
   // Quantile of the quieter windows, so that rest is found in a record that mostly moves. A normal variable
   // is within 0.385 standard deviations in 30 % of cases.
-  const double usual = quantile(steps, kQuieter) / 0.385;
+  const double usual = std::min(quantile(steps, kQuieter) / 0.385, kMostNoise_radps);
   const double quiet = std::min(quantile(scatters, kQuieter), kMostNoise_radps / std::sqrt(period_s));
   const double window_s = static_cast<double>(samples_of_window(period_s)) * period_s;
   const auto around = static_cast<std::size_t>(std::lround(kAround_s / window_s));
@@ -116,7 +114,7 @@ void mark_axis(const std::vector<Window>& windows, double period_s, std::vector<
     const double across = between ? std::abs(windows[i + 1].mean - windows[i - 1].mean) : 0.0;
     const double away = std::abs(windows[i].mean - level[i]);
     const double most = std::max(away, std::isfinite(across) ? across : 0.0);
-    if (most > std::max(kLeastTurn, std::min(kTurned * usual, kMostStep)))
+    if (most > std::max(kLeastTurn, kTurned * usual))
       state[i] = State::kTurning;
     else if (usual > 0.0 && most > kTurned * usual)
       leap[i] = std::max(leap[i], most);
@@ -274,8 +272,7 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
     return rest;
   }
   std::vector<std::vector<Window>> windows(axes.size());
-  share_out(axes.size(), samples < kWorthThreads ? 1 : 0,
-            [&](std::size_t a) { windows[a] = rest_windows(axes[a], period_s); });
+  share_out(axes.size(), 0, [&](std::size_t a) { windows[a] = rest_windows(axes[a], period_s); });
   std::vector<double> leap(count);
   for (const std::vector<Window>& of_axis : windows) mark_axis(of_axis, period_s, state, leap);
   widen(state);

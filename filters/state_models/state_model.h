@@ -47,8 +47,8 @@ class StateModel {
   [[nodiscard]] virtual bool carries_level() const noexcept { return false; }
   // Stationary covariance for unit q, with zero rows for states that have none (see diffuse()).
   [[nodiscard]] virtual Eigen::MatrixXd stationary() const = 0;
-  // 1 for the states of stationary noise that is not part of the rate (the colour), 0 for the others.
-  [[nodiscard]] virtual Eigen::VectorXd colour() const { return Eigen::VectorXd::Zero(states()); }
+  // The same of stationary noise that is not part of the rate (the colour), with zero rows for other states.
+  [[nodiscard]] virtual Eigen::MatrixXd colour() const { return Eigen::MatrixXd::Zero(states(), states()); }
   // For each non-stationary state its variance before the first measurement, as a multiple of the rate's;
   // zero for the others.
   [[nodiscard]] virtual Eigen::VectorXd diffuse() const = 0;

@@ -42,12 +42,12 @@ Eigen::VectorXd Sum::rate() const {
   return all;
 }
 
-Eigen::VectorXd Sum::colour() const {
-  Eigen::VectorXd all = Eigen::VectorXd::Zero(states_);
+Eigen::MatrixXd Sum::colour() const {
+  Eigen::MatrixXd all = stationary();
   int first = 0;
   for (const Term& term : terms_) {
     const int n = term.model->states();
-    if (!is_rate(term, first) && term.model->stationary().trace() > 0.0) all.segment(first, n).setOnes();
+    if (is_rate(term, first)) all.block(first, first, n, n).setZero();
     first += n;
   }
   return all;

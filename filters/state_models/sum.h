@@ -24,7 +24,7 @@ class Sum final : public StateModel {
   [[nodiscard]] Eigen::VectorXd level() const override;
   [[nodiscard]] bool carries_level() const noexcept override;
   [[nodiscard]] Eigen::MatrixXd stationary() const override;
-  [[nodiscard]] Eigen::VectorXd colour() const override;
+  [[nodiscard]] Eigen::MatrixXd colour() const override;
   [[nodiscard]] Eigen::VectorXd diffuse() const override;
   [[nodiscard]] Eigen::VectorXd start() const override;
 
