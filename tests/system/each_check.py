@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The methods check_SOMETHING of an object, one after the other: a line each, `ok` or `FAILED` and why."""
+"""Runs the methods check_SOMETHING of an object; prints one line each, `ok` or `FAILED` with the reason."""
 
 
 def failures_of(checks):

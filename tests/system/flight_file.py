@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Flight recordings read by what drivers/flight/format.md says of them, and by nothing of the project's own."""
+"""Reads flight recordings according to drivers/flight/format.md, without the project's code."""
 import struct
 import zlib
 
@@ -8,7 +8,7 @@ BYTES, CAN = 1, 2
 
 
 def blocks(content):
-    """(type, payload) of each block of one closed file; ValueError where a byte is not as the format has it."""
+    """(type, payload) of each block of a closed file; ValueError if a byte contradicts the format."""
     coding, size = content[5], struct.unpack_from("<I", content, 8)[0]
     first = content[16:16 + size]
     number = struct.unpack_from("<Q", zlib.decompress(first) if coding == 1 else first)[0]
@@ -29,7 +29,7 @@ def blocks(content):
 
 
 def deliveries(content):
-    """(time in ns, kind, payload) of what came by the sensor's line or bus, in order; ValueError where the file is not whole."""
+    """(time in ns, kind, payload) of the sensor's data in order; ValueError if the file is damaged."""
     counted = ended = 0
     for kind, payload in blocks(content):
         if kind == END:
@@ -46,7 +46,7 @@ def deliveries(content):
 
 
 def rewritten(content, change):
-    """The file with change(kind, payload) in place of each block's payload."""
+    """The file with change(kind, payload) instead of each block's payload."""
     out, number = b"", None
     for kind, payload in blocks(content):
         number = struct.unpack_from("<Q", payload)[0] if kind == HEADER else number
@@ -59,7 +59,7 @@ def rewritten(content, change):
 
 
 def shifted(content, by_ns):
-    """The file as it would be had its arrival clock, and the wall clock behind it, been set by so much."""
+    """The file as if its arrival clock and wall clock had been set by this offset."""
     def shift(kind, payload):
         at, moved = 0, bytearray(payload)
         while kind == DATA and at < len(payload):
@@ -72,12 +72,12 @@ def shifted(content, by_ns):
 
 
 def with_header(content, edit):
-    """The file with edit(text) in place of its header's text, behind the file's number and the format's version."""
+    """The file with edit(text) instead of its header's text, with the same number and version."""
     return rewritten(content, lambda kind, payload: payload[:10] + edit(payload[10:]) if kind == HEADER else payload)
 
 
 def frame_text(payload):
-    """A recorded CAN frame as candump writes it."""
+    """A recorded CAN frame in candump's format."""
     can_id, flags, length = struct.unpack_from("<IBB", payload)
     data = payload[6:6 + length].hex().upper()
     name = f"{can_id:08X}" if flags & 1 else f"{can_id:03X}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Logs of lcm-logger, as its own description has them, without any code of ours."""
+"""Reads logs of lcm-logger according to their description, without the project's code."""
 import struct
 
 SYNC = 0xEDA1DA01

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A network namespace of one's own, where LCM may send and nothing leaves this machine; with mounts of one's own where asked for."""
+"""A separate network namespace, in which LCM may send and nothing leaves this computer; with its own mounts if requested."""
 import os
 import subprocess
 import sys
@@ -8,7 +8,7 @@ INSIDE = "IFOG_PRIVATE_NETWORK"
 
 
 def enter(mounts=False):
-    """This process again, in such a namespace; returns in there. What is started from in there stays there."""
+    """Restarts this process in such a namespace and returns there. Its children stay there."""
     if os.environ.get(INSIDE) == "1":
         subprocess.run("ip link set lo up multicast on && ip route replace 224.0.0.0/4 dev lo", shell=True, check=True)
         return

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A flight recording sent again onto a serial line: what comes out at the other end is what was recorded, each delivery at its time,
-and a daemon that reads it there publishes the angle of the first. Checks of the box (run.py)."""
+"""Replays a flight recording to a serial line: the output is the recorded data, each delivery at its time, and a daemon that
+reads it publishes the angle of the first run. Checks of the box (run.py)."""
 import json
 import os
 import sys
@@ -13,9 +13,9 @@ from machine import Failure
 sys.path.append(os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."))
 import flight_file  # noqa: E402
 
-HERTZ, COUNT = 50, 425  # and no whole number of the motion's periods, whose angle is none
+HERTZ, COUNT = 50, 425  # not a whole number of the motion's periods, whose angle would be zero
 ANGLE_RAD = 1e-12
-# The emulated processor takes milliseconds where another takes microseconds, and the host holds it up for a while at times, which
+# The emulated processor is slower by a factor of 1000, and the host sometimes stops it for a while; the share allows for that.
 # the share allows.
 ON_TIME_S, ON_TIME_SHARE, MEDIAN_S = 0.02, 0.95, 0.01
 
@@ -28,7 +28,7 @@ def sensor(name, device, baud, record):
 
 
 class Again:
-    """Needs of the box: machine, lines, counting(), until()."""
+    """Used by the box: machine, lines, counting(), until()."""
 
     def of_one_line(self, name, text):
         self.machine.run("systemctl stop ifogd; cat >/etc/ifogd/ifogd.toml <<'END'\n" + text + "END\nsystemctl start ifogd", 60)
@@ -36,7 +36,7 @@ class Again:
         self.until(lambda: self.machine.run(f"ls -l /proc/$(pidof ifogd)/fd | grep -c {device} || true").strip() == "1", "the line is open", 20)
 
     def relay(self, stop, came):
-        """What comes out of the USB line goes into the other one, and is noted with its time."""
+        """Copies the output of the USB line to the other line and records the times."""
         self.lines["usb"].link.settimeout(0.2)
         try:
             while not stop.is_set():
@@ -57,7 +57,7 @@ class Again:
             self.lines["usb"].link.sendall(frame)
 
     def check_recording_sent_again_onto_a_serial_line(self):
-        # First life: recorded from the USB line.
+        # First run: recorded from the USB line.
         self.machine.run("systemctl stop ifogd; rm -rf /var/lib/ifogd/record /tmp/again")
         self.of_one_line("usb", sensor("usb", "/dev/ttyUSB0", 921600, True))
         counts, line = self.counting("usb"), self.lines["usb"]
@@ -75,7 +75,7 @@ class Again:
         if b"".join(payload for _, payload in recorded) != sent:
             raise Failure(f"{sum(len(payload) for _, payload in recorded)} bytes in the recording are not the {len(sent)} sent")
 
-        # Second life: out of the USB line, and into a daemon at the other one.
+        # Second run: sent on the USB line, and received by a daemon on the other one.
         self.of_one_line("serial", sensor("serial", "/dev/ttyS1", 115200, False))
         counts, stop, came = self.counting("serial"), threading.Event(), []
         relaying = threading.Thread(target=self.relay, args=(stop, came), daemon=True)
@@ -105,7 +105,7 @@ class Again:
 
     @staticmethod
     def arrivals(recorded, came):
-        """When the last byte of each delivery was here."""
+        """Arrival time of the last byte of each delivery."""
         end = here = 0
         pieces = iter(came)
         for _, payload in recorded:

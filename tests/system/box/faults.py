@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What befalls a navigation computer at sea: clocks that are set, interfaces and cables that go, sensors that babble, a full
-disk, a process that is stuck. Checks of the box (run.py), after those that set it up."""
+"""Faults of a navigation computer: clocks are set, interfaces and cables removed, sensors send garbage, the disk is full, a
+process hangs. Checks of the box (run.py), after those that set it up."""
 import random
 import re
 import threading
@@ -9,12 +9,12 @@ import time
 import frames
 from machine import Failure
 
-# The largest difference of an angle from what was sent: float64 sums of some thousand increments.
+# Largest error of an angle: float64 sums of some thousand increments.
 ANGLE_RAD = 1e-9
 
 
 def complaints(sent, got):
-    """What is wrong with a count, or nothing."""
+    """The error in a count, or nothing."""
     wrong = []
     if got["messages"] != sent:
         wrong.append(f"{got['messages']} messages of {sent} sent")
@@ -23,9 +23,9 @@ def complaints(sent, got):
 
 
 class Faults:
-    """Needs of the box: machine, lines, counting(), send_can(), configure(), kills, pulls."""
+    """Used by the box: machine, lines, counting(), send_can(), configure(), kills, pulls."""
 
-    # --- what the checks are made of -----------------------------------------------------------------------------
+    # --- helpers of the checks ---
 
     def journal_since(self, unit="ifogd"):
         """Returns a function that gives the service's log lines from now on."""
@@ -44,7 +44,7 @@ class Faults:
             time.sleep(0.3)
 
     def counts(self, lines, counter, expected, seconds=10):
-        """Waits until the counter has moved by so much, told in a line or, over the end of a second, in two."""
+        """Waits until the counter has increased by this amount, logged in one line or, at the end of a second, in two."""
         deadline = time.monotonic() + seconds
         while (moved := sum(map(int, re.findall(re.escape(counter) + r" \+(\d+)", said := lines())))) < expected and time.monotonic() < deadline:
             time.sleep(0.3)
@@ -59,14 +59,14 @@ class Faults:
     def same_process(self, pid):
         now = self.machine.run("systemctl show -P MainPID ifogd").strip()
         if now != pid:
-            # Why, in one line and in systemd's own words; then what the daemon said last.
+            # The reason in one line from systemd; then the daemon's last lines.
             why = self.machine.run("{ journalctl -u ifogd _PID=1 -n 8 -o cat --no-pager; journalctl -u ifogd _PID=%s -p crit -o cat --no-pager; }" % pid)
             why = why.strip().replace("\n", "; ")
             raise Failure(f"process {pid} has become {now}: {why}\n{self.machine.run('journalctl -u ifogd -n 20 -o cat --no-pager')}")
 
     def all_come(self, name, count, hertz=100, paused=False):
-        """Sends some samples to one sensor: each must be published. paused: the daemon had samples of it before, and the gyro has
-        measured on since then, although nobody sent."""
+        """Sends some samples to one sensor: each must be published. paused: the gyro has measured since the daemon's last sample,
+        although nothing was sent."""
         counts = self.counting(name)
         if paused:
             self.lines[name].goes_on(count, hertz)
@@ -82,14 +82,14 @@ class Faults:
             raise Failure(f"{name}: {complaints(count, got)}")
 
     def end_of_rubbish(self):
-        """It may end with what looks like the beginning of a frame: some samples let the daemon find that it is none."""
+        """The data may end with a possible beginning of a frame; further samples show the daemon that it is none."""
         self.lines["usb"].send(5, 100).join(10)
         time.sleep(1)
 
-    # --- the checks, in order ------------------------------------------------------------------------------------
+    # --- the checks, in order ---
 
     def check_date_set_both_ways(self):
-        """The angle is what was sent, nothing is missing, the times of day follow, and the step is told."""
+        """The angle is correct, nothing is missing, the times of day follow the clock, and the step is logged."""
         self.configure(200)
         self.restart()
         lines, counts = self.journal_since(), self.counting("serial")
@@ -119,15 +119,15 @@ class Faults:
             self.machine.run(gone)
             self.says(lines, ("Network is down", "No such device")[number])
             self.machine.run(back)
-            # The kernel tells when the daemon listens again.
+            # The kernel shows when the daemon listens again.
             self.machine.run("for i in $(seq 100); do grep -q 'vcan0 *120' /proc/net/can/rcvlist_* && break; sleep 0.1; done; sleep 0.2; grep -q 120 /proc/net/can/rcvlist_*")
         self.all_come("can", 200)
         self.same_process(pid)
         return "every sample before, between and after, the same process"
 
     def check_bus_off(self):
-        """vcan has no bus that could be off; what a controller's driver then sends to every socket is an error frame, and
-        that can be sent: CAN_ERR_FLAG with CAN_ERR_BUSOFF, and with CAN_ERR_RESTARTED after it."""
+        """vcan cannot be bus-off, so the error frame of a controller's driver is sent instead: CAN_ERR_FLAG with CAN_ERR_BUSOFF,
+        followed by CAN_ERR_RESTARTED."""
         pid, lines = self.restart(), self.journal_since()
         self.machine.run("cansend vcan0 20000040#0000000000000000; cansend vcan0 20000100#0000000000000000")
         self.counts(lines, "can_error_frames", 2)
@@ -136,8 +136,8 @@ class Faults:
         return "2 error frames counted, every sample afterwards"
 
     def check_babbling_sensors(self):
-        """Rubbish on the USB line and a flood of its own id on the CAN bus, each as fast as it goes: the third sensor loses
-        nothing, and the two are themselves again afterwards."""
+        """Garbage on the USB line and a flood of its own id on the CAN bus, both at full speed: the third sensor loses nothing,
+        and the two recover afterwards."""
         pid, lines = self.restart(), self.journal_since()
         rubbish = random.Random(3).randbytes(1 << 16)
         stop = time.monotonic() + 8
@@ -152,7 +152,7 @@ class Faults:
         self.lines["serial"].send(600, 100).join(60)
         babbling.join(60)
         self.says(lines, "bytes_skipped +", 15)
-        # Both emulated processors were busy with it: until the last of it is through.
+        # Both emulated processors were busy; wait until all is processed.
         said = None
         while said != (said := lines()):
             time.sleep(3)
@@ -162,7 +162,7 @@ class Faults:
         self.says(lines, "sequence_missing +")
         self.all_come("can", 200)
         self.same_process(pid)
-        # Not by the messages: the flood's own fill the subscriber's socket.
+        # Not from the messages, because those of the flood fill the subscriber's socket.
         self.machine.run("systemctl stop ifogd", 30)
         self.says(lines, "serial: 600 samples read, 600 published, 0 missing")
         self.restart()
@@ -170,7 +170,7 @@ class Faults:
         return f"600 of 600 samples of the sensor beside a flood of {flood} frames, and every one of the two afterwards"
 
     def check_wrong_baud_rate(self):
-        """QEMU's lines have no speed, so the bytes are made here that a UART reads at half the sender's and at twice."""
+        """QEMU's lines have no speed, so this makes the bytes that a UART reads at half and twice the sender's speed."""
         pid, lines = self.restart(), self.journal_since()
         line = self.lines["usb"]
         good = b"".join(frames.kvh1750(n, 100) for n in range(300))
@@ -192,14 +192,14 @@ class Faults:
         return "no sample made of misread bytes, which are counted; every one afterwards"
 
     def check_disk_full(self):
-        """The daemon writes its log: with the journal's disk full, which is its own folder's, too, it goes on."""
+        """The daemon logs to a full journal disk, which also contains its own folder, and continues."""
         pid = self.restart()
         self.machine.run("dd if=/dev/zero of=/run/ballast bs=1M 2>/dev/null; dd if=/dev/zero of=/run/ballast2 bs=1k 2>/dev/null; true", 300)
         try:
             left = int(self.machine.run("df --output=avail /run | tail -n 1"))
             if left > 64:
                 raise Failure(f"/run still has {left} kB")
-            # Something to complain of, to a journal that cannot keep it.
+            # Causes a message that the journal cannot store.
             self.lines["usb"].link.sendall(bytes(5000))
             self.end_of_rubbish()
             for name in ("serial", "usb", "can"):
@@ -223,7 +223,7 @@ class Faults:
         return f"stopped process {pid}: result=watchdog, {now} reads on"
 
     def check_killed_again_and_again(self):
-        """--kills: each time the service must be back and read on."""
+        """--kills: after each kill the service must restart and read."""
         took = []
         for number in range(self.kills):
             before = self.machine.run("systemctl show -P MainPID ifogd").strip()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Frames as the makers describe them, packed here by hand: nothing of the project's own encoders is used."""
+"""Frames according to the makers' descriptions, packed here without the project's encoders."""
 import math
 import struct
 import time
@@ -29,7 +29,7 @@ assert crc32_mpeg2(b"123456789") == 0x0376E6E7
 
 
 def rate(sample, hertz):
-    """Something that turns, 0.1 rad/s at 0.5 Hz, with a noise of 3e-5 rad/s (Knuth's multiplicative hash)."""
+    """A rotation of 0.1 rad/s at 0.5 Hz with a noise of 3e-5 rad/s (Knuth's multiplicative hash)."""
     noise = (sample * 2654435761 % 2**32 / 2**32 - 0.5) * 1e-4
     return 0.1 * math.sin(math.pi * sample / hertz) + noise
 
@@ -42,13 +42,13 @@ def kvh1750(sample, hertz):
 
 
 def angle(begin, count, hertz):
-    """What `count` samples from number `begin` on turn, about axis x, each rate as its float32."""
+    """Angle about axis x of `count` samples from number `begin` on, each rate as float32."""
     return sum(struct.unpack(">f", struct.pack(">f", rate(n, hertz)))[0] / hertz for n in range(begin, begin + count))
 
 
 def misread(sent, sent_baud, read_baud):
-    """The bytes that a UART at read_baud makes of what another sends at sent_baud, 8N1: the line is looked at in the middle of
-    each of its bits. A byte whose stop bit is low has a framing error and is handed on all the same, as the 8250 does."""
+    """Bytes that a UART reads at read_baud from data sent at sent_baud, 8N1: it samples in the middle of each bit. A byte with a
+    low stop bit has a framing error and is passed on, as in the 8250."""
     line = bytearray()
     for byte in sent:
         line += bytes([0] + [byte >> bit & 1 for bit in range(8)] + [1])
@@ -76,13 +76,13 @@ def candump(samples, hertz, interface, start=1_700_000_000.0):
 
 
 def late_by(sample, period):
-    """How much later than evenly a sample comes, s: a hash's worth, and every 500th holds up all behind it for ten periods."""
+    """Delay of a sample relative to an even clock, s: pseudo-random, and every 500th delays the following ones for ten periods."""
     wait = (sample * 2654435761 % 2**32 / 2**32) * 0.4 * period
     return max(wait, (10 - sample % 500) * period)
 
 
 def unevenly(log):
-    """A candump log whose frames are held up by late_by(); the order stays."""
+    """A candump log whose frames are delayed by late_by(), in the same order."""
     lines = log.splitlines()
     stamps = [float(line[1:line.index(")")]) for line in lines]
     period = (stamps[-1] - stamps[0]) / (len(stamps) - 1)
@@ -90,15 +90,15 @@ def unevenly(log):
 
 
 def heard(path):
-    """(time in s, frame as text) of each line of a log of candump."""
+    """(time in s, frame as text) of each line of a candump log."""
     with open(path) as file:
         return [(float(stamp.strip("()")), frame) for stamp, _, frame in (line.split() for line in file)]
 
 
 def off_time(recorded, again, stops=()):
-    """How far each came from its recorded time, s, (time, ...) lists of one length. What the clocks are apart a tenth of them says, those
-    that came earliest: whatever hinders makes late. Left out is what was due while the machine was stopped, (from, to), and as long
-    again, while it catches up."""
+    """Delay of each arrival relative to its recorded time, s, from (time, ...) lists of equal length. The earliest tenth
+    determines the offset of the clocks, because disturbances only delay. Ignores the times when the machine was stopped,
+    (from, to), and the same duration afterwards."""
     apart = [b[0] - a[0] for a, b in zip(recorded, again)]
     shift = sorted(apart)[len(apart) // 10]
     kept, stops = [], sorted(stops)
@@ -111,7 +111,7 @@ def off_time(recorded, again, stops=()):
 
 
 def send_paced(link, frames, hertz):
-    """Sends each frame at its own time, against absolute deadlines."""
+    """Sends each frame at its own time with absolute deadlines."""
     begin = time.monotonic()
     for index, frame in enumerate(frames):
         ahead = begin + index / hertz - time.monotonic()

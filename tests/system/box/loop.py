@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The loop in the field, in the box: a gyro whose temperature effect nobody declared is recorded for two accelerated days.
-ifogd-diagnose.timer fires by itself when its clock comes to half past two, the first night proposes, a person adopts while
-the second day runs, and that day is better by what was promised. Checks of the box (run.py).
+"""Improvement of a model during operation, in the box: a gyro with an undeclared temperature effect is recorded for two accelerated
+days. ifogd-diagnose.timer fires at 02:30, the first night proposes a model, it is adopted during the second day, and the gain of
+that day agrees with the promise. Checks of the box (run.py).
 
-The days are made before the machine starts; a day's samples carry the times they were made with, so that the daemon sees a
-slow day however fast they come.
+The days are generated before the machine starts. Samples carry their times, so that the daemon sees a slow day at any speed.
 """
 import csv
 import io
@@ -26,9 +25,9 @@ HZ = 2
 ROWS = 1 << 15  # of a day, 4.6 h
 MEANS_S = 100
 PER_HOUR = 180 / math.pi * 3600
-# Times faster: 2000 rows a second, which an emulated processor carries; half as many where a receiver of every message has to.
+# Speed factor: 2000 rows per second, which the emulated processor can process; half as many with a receiver of every message.
 SPEED = {1: 1000, 2: 500}
-# How good a ratio of two errors is known: by some 49 means that promise it, and 163 that find it, of noise that is not white.
+# Accuracy of a ratio of two errors, from some 49 means in the promise and 163 in the measurement, of coloured noise.
 RATIO_WITHIN = 0.45
 
 
@@ -37,7 +36,7 @@ def options(dbc):
 
 
 def configuration():
-    """On one processor: what is sent from two, Linux may deliver on the loopback in another order."""
+    """On one processor, because Linux may exchange the order on the loopback of data sent from two."""
     words = "\n".join(f"{key} = {json.dumps(value)}" for key, value in options("/opt/test/slow_gyro.dbc").items())
     return f"""[daemon]
 [[sensor]]
@@ -65,7 +64,7 @@ file_s = 3
 
 
 def make_days(build, folder):
-    """Two days of one gyro, one after the other, as CAN frames with their times."""
+    """Two successive days of one gyro as CAN frames with times."""
     ifog = os.path.join(build, "tools/ifog/ifog")
     here = os.path.dirname(os.path.abspath(__file__))
     dbc = os.path.abspath(os.path.join(here, "../../../drivers/dbc/examples/ifogd_gyro.dbc"))
@@ -88,7 +87,7 @@ def make_days(build, folder):
 
 
 def rms_of_means(text):
-    """Of the compensated rate in what `ifog denoise` wrote: the RMS of means about their own mean, rad/s."""
+    """RMS of means of the compensated rate about their mean in the output of `ifog denoise`, rad/s."""
     rows = csv.DictReader(line for line in io.StringIO(text) if not line.startswith("#"))
     values = [float(row["compensated_radps"]) for row in rows]
     width = MEANS_S * HZ
@@ -98,7 +97,7 @@ def rms_of_means(text):
 
 
 class Loop:
-    """Needs of the box: machine, lines, journal_since(), says()."""
+    """Used by the box: machine, lines, journal_since(), says()."""
 
     def json_of(self, command):
         self.machine.run(f"rm -f /tmp/loop.json; ifog {command} --json /tmp/loop.json", 120)
@@ -116,7 +115,7 @@ class Loop:
             time.sleep(0.5)
 
     def feed(self, day):
-        """Sends a day into the FIFO; ends are seen by /tmp/fed."""
+        """Sends a day into the FIFO; /tmp/fed shows the end."""
         self.machine.run(f"rm -f /tmp/fed; (ifog replay /opt/test/day{day}.log --speed {SPEED[day]} --to fifo:/run/ifog-test/gyro; echo $? >/tmp/fed) "
                          "</dev/null >/tmp/feeder 2>&1 &")
 
@@ -127,7 +126,7 @@ class Loop:
         self.machine.run("for i in $(seq 100); do ls /var/lib/ifogd/record/nose/*.open >/dev/null 2>&1 || exit 0; sleep 0.2; done; exit 1")
 
     def night(self):
-        """The clock comes to half past two, and nobody starts anything: what the night said of the sensor."""
+        """Sets the clock to 02:30; the timer starts the night. Returns its result for the sensor."""
         before = self.machine.run("systemctl show -P ExecMainStartTimestampMonotonic ifogd-diagnose.service").strip()
         lines = self.journal_since("ifogd-diagnose")
         self.machine.run("date -s \"$(date -d 'tomorrow 02:29:57' '+%F %T')\"")
@@ -143,11 +142,11 @@ class Loop:
         return said
 
     def check_recorded_to_the_last_second_through_a_kill(self):
-        """A gyro on the USB line, recorded under the unit; the service is killed while frames come, and what was recorded is what
-        was sent, bit for bit, up to the last second."""
+        """Records a gyro on the USB line under systemd and kills the service during transmission. The recording has the sent data
+        bit for bit, except the last second."""
         hertz, count, flushed_s = 200, 1600, 1.5
         self.machine.run("rm -rf /tmp/kept /var/lib/ifogd/record; "
-                         # Time to look at what a kill leaves, before the next start closes the file.
+                         # Time to look at the files before the next start closes them.
                          "mkdir -p /run/systemd/system/ifogd.service.d; printf '[Service]\\nRestartSec=5\\n' >/run/systemd/system/ifogd.service.d/late.conf; "
                          "systemctl daemon-reload; cat >/etc/ifogd/ifogd.toml <<'END'\n"
                          '[[sensor]]\nname = "usb"\ndriver = "kvh1750"\n[sensor.transport]\ntype = "serial"\ndevice = "/dev/ttyUSB0"\nbaud = 921600\n'
@@ -193,16 +192,16 @@ class Loop:
                 f"{(36 * len(sent) - len(kept)) / 36 / hertz:.2f} s of the line not on the disk yet")
 
     def check_loop_closes_in_the_field(self):
-        """The product's story."""
+        """Two days with an adoption."""
         self.machine.run("systemctl stop ifogd; date -s 12:00; "
-                         # After the host held it up all that was due comes at once.
+                         # After the host stopped the machine, all pending data arrives at once.
                          "sysctl -q net.core.netdev_max_backlog=100000; rm -rf /var/lib/ifogd/* /run/ifog-test; mkdir -p /run/ifog-test; mkfifo -m 644 /run/ifog-test/gyro; "
                          f"cat >/etc/ifogd/ifogd.toml <<'END'\n{configuration()}END\n"
-                         # The shipped timer, but for the half hour of chance.
+                         # The installed timer without its random delay of half an hour.
                          "mkdir -p /etc/systemd/system/ifogd-diagnose.timer.d; "
                          "printf '[Timer]\\nRandomizedDelaySec=0\\nAccuracySec=1s\\n' >/etc/systemd/system/ifogd-diagnose.timer.d/at-once.conf; "
                          "systemctl daemon-reload; systemctl start ifogd; systemctl enable --now ifogd-diagnose.timer 2>&1", 120)
-        # The end that keeps the FIFO open between the days.
+        # Keeps the FIFO open between the days.
         self.machine.run("sleep 3600 <>/run/ifog-test/gyro >/dev/null 2>&1 & echo $! >/tmp/holder")
         try:
             return self.two_days()
@@ -245,7 +244,7 @@ class Loop:
                 "adopted while the second day ran, the promise came true")
 
     def better(self, proposal):
-        """The second day by what the first night promised: computed here, of what the daemon's own chain makes of the frames."""
+        """Gain on the second day compared with the promise, computed here from the output of the daemon's chain."""
         before, after = (rms_of_means(self.machine.run(f"cut -d, -f3 /tmp/{which}.csv", 60)) for which in ("without", "with"))
         promised = next(each for each in proposal["gain"][0]["errors"] if each["averaging_s"] == MEANS_S)
         expected = promised["after_radps"] / promised["before_radps"]

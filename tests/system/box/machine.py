@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-"""An emulated navigation computer: Debian's kernel and systemd under QEMU, driven from the host.
+"""An emulated navigation computer: Debian's kernel and systemd in QEMU, controlled from the host.
 
-The host runs commands through a virtio port, holds the other end of the serial lines as unix sockets, and pulls and
-plugs devices through QEMU's monitor (QMP).
+The host runs commands through a virtio port, connects to the serial lines as unix sockets, and removes and adds devices through
+QEMU's monitor (QMP).
 """
 import base64
 import json
@@ -14,7 +14,7 @@ import time
 
 
 class Failure(Exception):
-    """A check that did not hold; its text says what was seen and what was expected."""
+    """A failed check; the text has the observed and the expected value."""
 
 
 def connect(path, seconds):
@@ -57,7 +57,7 @@ class Lines:
 
 
 class Machine:
-    """image: folder made by make_image. overlay: folder of files laid over the machine's root. work: for sockets, logs."""
+    """image: folder made by make_image. overlay: files copied over the machine's root. work: for sockets and logs."""
 
     def __init__(self, image, overlay, work):
         os.makedirs(work, exist_ok=True)
@@ -67,19 +67,19 @@ class Machine:
                 os.unlink(self.path(name))
         initrd = self.path("initrd")
         shutil.copyfile(os.path.join(image, "root.cpio"), initrd)
-        # The kernel unpacks archives that follow each other, later files over earlier ones.
+        # The kernel unpacks successive archives; later files replace earlier ones.
         with open(initrd, "ab") as archive:
             names = subprocess.run(["find", ".", "-print0"], cwd=overlay, check=True, stdout=subprocess.PIPE).stdout
             subprocess.run(["cpio", "--null", "--quiet", "-o", "-H", "newc", "-R", "0:0"], cwd=overlay, input=names, stdout=archive, check=True)
-        # Ahead of the host's other work, where that is allowed: its load is not the service's lateness.
-        # Where the kernel groups processes by session, the group's niceness is what counts.
+        # Higher priority than the host's other work if allowed, so that its load does not delay the service.
+        # If the kernel groups processes by session, the group's niceness counts.
         ahead = ["nice", "-n", "-10", "sh", "-c", "echo -10 2>/dev/null >/proc/self/autogroup; exec \"$@\"", "sh"] if os.geteuid() == 0 else []
         self.process = subprocess.Popen(
             ahead + ["qemu-system-x86_64", "-accel", "tcg,thread=multi", "-cpu", "max", "-smp", "2", "-m", "1536",
              "-nodefaults", "-display", "none", "-no-reboot", "-kernel", os.path.join(image, "vmlinuz"), "-initrd", initrd,
              "-append", "rdinit=/lib/systemd/systemd console=ttyS0 panic=1 quiet systemd.show_status=0 net.ifnames=0 mitigations=off",
              "-serial", "file:" + self.path("console.log"),
-             # The sensor's lines: an emulated 8250 and a USB converter that the monitor can pull out.
+             # The sensor's lines: an emulated 8250 and a removable USB converter.
              "-serial", f"unix:{self.path('ttyS1')},server=on,wait=off",
              "-device", "piix3-usb-uhci,id=usb",
              "-chardev", f"socket,id=usbline,path={self.path('ttyUSB0')},server=on,wait=off",
@@ -98,7 +98,7 @@ class Machine:
         return os.path.join(self.work, name)
 
     def qmp(self, command, **arguments):
-        """Runs a monitor command; returns the events that came before its answer."""
+        """Runs a monitor command; returns the events before its answer."""
         self.monitor.link.sendall(json.dumps({"execute": command, "arguments": arguments}).encode() + b"\n")
         events = []
         while True:
@@ -111,7 +111,7 @@ class Machine:
                 return events
 
     def pull(self, device):
-        """Pulls the cable, and waits until the machine has let go of it."""
+        """Removes the device and waits until the machine has released it."""
         events = self.qmp("device_del", id=device)
         deadline = time.monotonic() + 30
         while not any(e["event"] == "DEVICE_DELETED" and e["data"].get("device") == device for e in events):
@@ -125,7 +125,7 @@ class Machine:
         self.qmp("device_add", driver=device, **properties)
 
     def run(self, command, seconds=180, check=True):
-        """Runs a shell command in the machine: its output, or a Failure when it fails and check is set."""
+        """Runs a shell command in the machine and returns its output. Raises Failure if it fails and check is set."""
         self.shell.link.sendall(base64.b64encode(command.encode()) + b"\n")
         status, _, output = self.shell.read(seconds).decode().partition(" ")
         output = base64.b64decode(output).decode(errors="replace")

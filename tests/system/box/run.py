@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The Debian package under its real unit in an emulated navigation computer: kernel, systemd, SocketCAN, serial lines.
+"""Tests the Debian package under systemd in an emulated navigation computer: kernel, SocketCAN, serial lines.
 
 usage: run.py BUILD PACKAGES WORK [--pulls N] [--kills N] [--seconds S] [--only WORD]...
 
-Prints one line for each check: `ok`, `FAILED` or `skipped`, its name, and what was seen. --pulls: how often the USB cable is
-pulled (5; 100 is the promise's number and takes some ten minutes); --kills: how often the service is killed (3; the promise
-is 20); --seconds: how long the sensors run (60); --only: beside what every check needs, those whose name has this word.
+Prints one line for each check: `ok`, `FAILED` or `skipped`, its name, and the result. --pulls: how often the USB cable is pulled
+(5; the promised 100 take some ten minutes). --kills: how often the service is killed (3; promised 20). --seconds: run time of the
+sensors (60). --only: checks with this word in their name, besides the necessary ones.
 """
 import argparse
 import glob
@@ -28,21 +28,20 @@ from machine import Failure, Machine, connect
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 CHANNELS = {"serial": "IFOG_SERIAL", "usb": "IFOG_USB", "can": "IFOG_CAN"}
-# From the moment the kernel has the device again until the daemon holds it open.
+# From the kernel's detection of the device until the daemon has it open.
 SLOWEST_RETURN_S = 1.0
 # 36 bytes of 10 bits each at 115200 baud make 320 frames a second at most.
 SERIAL_LIMIT = 300
 RATES = (200, 300, 400, 500, 700, 1000)
 HIGHEST_EXPOSURE = {"ifogd": 1.8, "ifogd-diagnose": 2.0}
-# Checks that set up what the others need.
+# Checks that prepare others.
 NEEDED = ("check_systemd_comes_up", "check_package_installs", "check_virtual_can_by_networkd", "check_service_starts")
 
 
 def configuration(hertz):
-    """Three gyros at once. The ring is longer than a computer of its own needs: the host may stop this whole machine for a
-    second, and then all that was due comes at once. Each sender stays on one processor: Linux may deliver on
-    the loopback in another order what was sent from two. The noise is given, as by `ifog tune`: to find it from the first
-    seconds would take an emulated processor as long again."""
+    """Three gyros at once. The ring is longer than on a real computer, because the host may stop this machine for a second and
+    then all pending data arrives at once. Each sender is on one processor, because Linux may exchange the order of data sent
+    from two. The noise is given, as by `ifog tune`, because learning it would take too long here."""
     def sensor(name, transport, options):
         return f'[[sensor]]\nname = "{name}"\ndriver = "{"dbc" if name == "can" else "kvh1750"}"\n' \
                f'[sensor.transport]\n{transport}\n[sensor.options]\n{options}\n' \
@@ -56,9 +55,8 @@ def configuration(hertz):
 
 
 class Line:
-    """The host's end of a serial line; a sequence that goes on from one sending to the next. A silence that fits whole rounds of that
-    sequence at the stated rate is one in which they were lost, for all that anybody can tell, and the daemon says so: between two
-    sendings half a round is over."""
+    """The host's end of a serial line, with a continuous sequence. A pause of whole rollovers at the stated rate cannot be
+    distinguished from their loss, and the daemon reports one. Therefore half a rollover passes between two transmissions."""
 
     def __init__(self, path):
         self.link, self.next = connect(path, 10), 0
@@ -85,7 +83,7 @@ class Line:
         return packed
 
     def goes_on(self, count, hertz):
-        """Sends as a gyro that has measured all the while, whoever listened; returns how many samples nobody got."""
+        """Sends like a gyro that has measured all the time; returns the number of samples that were not received."""
         unheard = round((time.monotonic() - self.ended) * hertz) if self.ended is not None else 0
         self.next += unheard
         frames.send_paced(self.link, self.pack(count, hertz), hertz)
@@ -101,7 +99,7 @@ class Box(Faults, Again, Loop):
         self.hertz = RATES[0]
 
     def overlay(self):
-        """What is laid over the image: the way in, the package, and what feeds and watches it."""
+        """Files added to the image: the command port, the package, and the programs that send data and observe."""
         root = os.path.join(self.work, "overlay")
         shutil.rmtree(root, ignore_errors=True)
 
@@ -135,7 +133,7 @@ class Box(Faults, Again, Loop):
         self.machine.run(f"cat >/etc/ifogd/ifogd.toml <<'END'\n{configuration(hertz)}\nEND")
 
     def counting(self, *names, seconds=600):
-        """Starts the subscriber in the machine; the returned function ends it and gives its counts."""
+        """Starts the subscriber in the machine; the returned function ends it and returns its counts."""
         channels = " ".join(CHANNELS[name] for name in names)
         self.machine.run(f"rm -f /tmp/count; (/opt/test/lcm_count {seconds} {channels} >/tmp/count.part 2>&1; mv /tmp/count.part /tmp/count) "
                          "</dev/null >/dev/null 2>&1 &\nfor i in $(seq 50); do pgrep -x lcm_count >/dev/null && break; sleep 0.1; done; sleep 0.5")
@@ -148,12 +146,12 @@ class Box(Faults, Again, Loop):
         return counts
 
     def send_can(self, count, hertz, player):
-        """Frames onto vcan0 by `canplayer` or by `ifog replay`; returns a function that waits for the end."""
+        """Sends frames to vcan0 with `canplayer` or `ifog replay`; returns a function that waits for the end."""
         self.machine.run(f"cat >/tmp/can.log <<'END'\n{frames.candump(count, hertz, 'vcan0')}END", 120)
         command = {"canplayer": "canplayer -I /tmp/can.log", "ifog replay": "ifog replay /tmp/can.log --to can:vcan0"}[player]
 
         def started():
-            # On one processor: what a player sends from two, vcan may hand over in another order.
+            # On one processor, because vcan may exchange frames sent from two.
             self.machine.run(f"rm -f /tmp/played; (taskset -c 0 chrt -f 60 {command}; echo $? >/tmp/played) </dev/null >/tmp/player 2>&1 &")
 
         def ended():
@@ -163,7 +161,7 @@ class Box(Faults, Again, Loop):
         return started, ended
 
     def all_sensors(self, seconds, hertz, player):
-        """Sends for some seconds on every line; returns by sensor what was sent and what the subscriber counted."""
+        """Sends for some seconds on every line; returns the sent and received counts by sensor."""
         slow = min(hertz, SERIAL_LIMIT)
         counts = self.counting(*CHANNELS)
         start, ended = self.send_can(int(seconds * hertz), hertz, player)
@@ -172,12 +170,12 @@ class Box(Faults, Again, Loop):
         ended()
         for thread in sending:
             thread.join(300)
-        # What the machine has still to read: the host may have run ahead of it.
+        # Data that the machine has not read yet; the host may be faster.
         time.sleep(5)
         sent = {"serial": int(seconds * slow), "usb": int(seconds * hertz), "can": int(seconds * hertz)}
         return {name: (sent[name], got) for name, got in counts().items()}
 
-    # --- the checks, in order ------------------------------------------------------------------------------------
+    # --- the checks, in order ---
 
     def check_systemd_comes_up(self):
         state = self.machine.run("systemctl is-system-running --wait", 400, check=False).strip()
@@ -192,7 +190,7 @@ class Box(Faults, Again, Loop):
     def check_package_installs(self):
         names = "ifogd ifog ifogd-dev ifog-drivers"
         self.machine.run("dpkg -i /opt/test/*.deb", 300)
-        # Not enabled before it is configured; and gone without a trace but the user, to come again as for the first time.
+        # The service is not enabled before it is configured. Removal leaves only the user, and installation works again.
         self.machine.run("! systemctl is-enabled --quiet ifogd && systemctl enable --quiet ifogd && systemctl is-enabled --quiet ifogd")
         self.machine.run(f"dpkg -P {names} && ! systemctl cat ifogd >/dev/null 2>&1 && ! find /usr/lib /usr/bin /usr/share /etc/systemd -name '*ifog*' "
                          "! -path '/usr/local/*' ! -name 'ifog-shell*' | grep .", 300)
@@ -206,7 +204,7 @@ class Box(Faults, Again, Loop):
         return self.machine.run("(sleep 5; cansend vcan0 123#1122334455667788) & timeout 30 candump -n 1 vcan0").strip()
 
     def check_unit_verifies(self):
-        # The image has no man; that every page is there the test of the packages sees.
+        # The image has no man; the package test checks the pages.
         said = self.machine.run("systemd-analyze verify --man=no ifogd.service ifogd-diagnose.timer ifogd-diagnose.service 2>&1", 60).strip()
         if said:
             raise Failure(said)
@@ -241,7 +239,7 @@ class Box(Faults, Again, Loop):
         return f"Type=notify, user {properties['User']}, {threads} threads under SCHED_FIFO, watchdog {properties['WatchdogUSec']}"
 
     def complains(self, hertz):
-        """What a short run at this rate has to complain of, by sensor; nothing when every sample came."""
+        """Errors of a short run at this rate, by sensor; empty if every sample was received."""
         self.configure(hertz)
         self.machine.run("systemctl restart ifogd", 200)
         time.sleep(1)
@@ -249,20 +247,20 @@ class Box(Faults, Again, Loop):
         return "; ".join(f"{name}: {wrong}" for name, each in result.items() if (wrong := complaints(*each)))
 
     def check_highest_rate(self):
-        """Not judged beyond 200 Hz: finds the rate at which the long runs are made, from above."""
+        """Not checked above 200 Hz: finds the rate of the long runs, from above."""
         wrong = self.complains(RATES[0])
         if wrong:
             raise Failure(wrong)
         carried = next((hertz for hertz in reversed(RATES[1:]) if not self.complains(hertz)), RATES[0])
-        # The long runs are made one step below, for the host has other things to do at times.
+        # The long runs use the next lower rate, because of the host's other work.
         self.hertz = max((rate for rate in RATES if rate < carried), default=RATES[0])
         self.configure(self.hertz)
         self.machine.run("systemctl restart ifogd", 200)
         return f"{carried} Hz on USB and CAN, {min(carried, SERIAL_LIMIT)} Hz on the 8250"
 
     def long_run(self, player):
-        """The highest rate that the machine carries all the way, from the one the probes suggest down to 200 Hz: what runs
-        beside it on the host decides, and what was lost on the way is said."""
+        """The highest rate without losses, from the one that the probes suggest down to 200 Hz. It depends on other work of the
+        host; losses are printed."""
         lost = []
         for hertz in sorted((rate for rate in RATES if rate <= self.hertz), reverse=True):
             if lost:
@@ -301,10 +299,10 @@ class Box(Faults, Again, Loop):
 
     def check_pulled_cable_is_back(self):
         self.machine.run("/opt/test/device_return /dev/ttyUSB0 ifogd </dev/null >/tmp/returns 2>&1 & echo $! >/tmp/returns.pid")
-        # At the rate that is stated: of a sensor that sends at another, rounds of its counter are of another length.
-        # One subscriber for all pulls: whole rounds are told only when what follows has shown that nothing was held up.
+        # At the stated rate, because at another one the duration of a rollover is wrong.
+        # One subscriber for all pulls: whole rollovers are reported only after the following data has excluded a delay.
         counts, unheard = self.counting("usb", seconds=3600), 0
-        self.lines["usb"].send(200, self.hertz).join(60)  # what the first pull interrupts
+        self.lines["usb"].send(200, self.hertz).join(60)  # interrupted by the first pull
         for _ in range(self.pulls):
             self.machine.pull("usbserial")
             self.machine.run("for i in $(seq 100); do [ -e /dev/ttyUSB0 ] || break; sleep 0.1; done; [ ! -e /dev/ttyUSB0 ]")
@@ -312,8 +310,8 @@ class Box(Faults, Again, Loop):
             # The daemon has the line again when the kernel counts its open file.
             self.machine.run("for i in $(seq 300); do ls -l /proc/$(pidof ifogd)/fd | grep -q /dev/ttyUSB0 && break; sleep 0.1; done")
             unheard += self.lines["usb"].goes_on(200, self.hertz)
-            time.sleep(0.5)  # QEMU 7.2 ends with a segmentation fault when bytes still wait for a device that is pulled
-        # Left alone, for as long as it takes to see that nothing drains.
+            time.sleep(0.5)  # QEMU 7.2 crashes if bytes wait for a device that is removed
+        # Idle until it is certain that no resource is leaking.
         unheard += self.lines["usb"].goes_on(1000, self.hertz)
         time.sleep(1)
         got = counts()["usb"]

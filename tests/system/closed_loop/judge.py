@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The error of the next capture before and after the model, beside what the sensor's own noise leaves.
+"""Error of the next capture before and after correction, compared with the sensor's own noise.
 
 usage: judge.py KIND FOLDER
 """

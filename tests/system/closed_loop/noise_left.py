@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the filter is told of the noise fits the rate that it is given, in whichever order `tune` and `diagnose` are run.
+"""The filter's noise fits its input rate, in either order of `tune` and `diagnose`.
 
-A gyro whose bias follows its temperature, and its twin without that: the same white noise, number by number. The twin, tuned, is
-the oracle: what the corrected gyro publishes may be little louder than what the twin does.
+A gyro whose bias follows its temperature, and its twin without that effect, with identical white noise. The tuned twin is the
+oracle: the corrected gyro's output may be only little noisier than the twin's.
 
 usage: noise_left.py PATH_OF_IFOG
 """
@@ -71,7 +71,7 @@ def check(folder):
     ifog("tune", folder / "fit.csv", *walk, "--write-model", folder / "tuned.toml")
     said = ifog("diagnose", folder / "fit.csv", "--model", folder / "tuned.toml", "--write-model", folder / "both.toml")
     assert "fitted to the corrected rate" in said, said
-    # First diagnosed, then tuned on what is left.
+    # First diagnosed, then tuned on the corrected rate.
     ifog("diagnose", folder / "fit.csv", "--write-model", folder / "found.toml")
     ifog("tune", folder / "fit.csv", *walk, "--model", folder / "found.toml", "--write-model", folder / "then.toml")
     assert effects_of(folder / "found.toml") == effects_of(folder / "then.toml"), "tune changed the effects"
@@ -86,12 +86,12 @@ def check(folder):
         print(f"{name}: error {error:.3g} rad/s, the twin's {twin:.3g}")
         assert error < 1.5 * twin, f"{name}: {error} rad/s RMS, the twin without the effect {twin}"
 
-    # One in which nothing new is found keeps what it had.
+    # A model is unchanged if nothing new is found.
     said = ifog("diagnose", folder / "twin-fit.csv", "--model", folder / "twin.toml", "--write-model", folder / "same.toml")
     assert "fitted to the corrected rate" not in said, said
     assert told(folder / "same.toml", "process_noise") == told(folder / "twin.toml", "process_noise")
 
-    # A file's channel that is not there is a line with both names.
+    # A missing channel of a file gives one line with both names.
     (folder / "bare.csv").write_text("time_s,rate_radps\n" + "".join(f"{i / 20},{i % 7 * 1e-6}\n" for i in range(400)))
     done = subprocess.run([IFOG, "tune", folder / "bare.csv", "--model", folder / "found.toml"], capture_output=True, text=True)
     assert done.returncode == 1 and "found.toml" in done.stderr and "temperature_degC" in done.stderr, done.stderr

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The first file of a new user: logs as phones, autopilots, ROS, MATLAB, spreadsheets and makers' programs write them, each with
-noise of a known density. A file is read as it is, or every line of options that the refusal prints is typed as it stands; one of
-them gives the density. Oracle: the density that was put in; the header lines are those of public logs.
+"""Logs as new users have them, written by phones, autopilots, ROS, MATLAB, spreadsheets and makers' programs, each with noise of a
+known density. A file is read directly, or the options printed in the error message are used; one of them gives the density.
+Oracle: the true density; the header lines are from public logs.
 
 usage: first_file.py PATH_OF_IFOG SOURCE_DIR
 """
@@ -27,7 +27,7 @@ CASES = pathlib.Path(sys.argv[2]).resolve().parent / "shared/cases"
 
 
 def typed(path, *options, hz=None):
-    """N by axis of `ifog allan`, with what it said; or its refusal."""
+    """N by axis from `ifog allan` with its output, or its error message."""
     output = path.with_suffix(".json")
     result = ran("allan", path, "--json", output, *[o.replace("HZ", str(hz)) if hz else o for o in options])
     if result.returncode != 0:
@@ -38,7 +38,7 @@ def typed(path, *options, hz=None):
 
 
 def by_hand(path, hz=None):
-    """As a user who types what is printed: the readings of the file, one, or those of each line of options."""
+    """Uses the printed options: the result of the file, or of each line of options."""
     densities, said = typed(path, hz=hz)
     if densities is not None:
         return [densities], said
@@ -69,7 +69,7 @@ class Checks:
         return path
 
     def rows(self, form, separator=","):
-        """A line for each sample; form(i, x, y, z) in °/s gives its cells."""
+        """One line per sample; form(i, x, y, z) in °/s gives its cells."""
         return [separator.join(map(str, form(i, *(self.noise[a][i] for a in "xyz")))) for i in range(ROWS)]
 
     def reads(self, name, lines, axes="xyz", hz=None, unasked=None, says=()):
@@ -136,7 +136,7 @@ class Checks:
         self.reads("rates.csv", ["time_s,p,q,r", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, y, z))], unasked=False)
 
     def check_lines_as_sketches_print_them(self):
-        """Names before the values, a terminal's time before the line or above it; what else is printed is passed over."""
+        """Names before the values, a terminal's time before or above the line; other text is ignored."""
         self.reads("colon.txt", self.rows(lambda i, x, y, z: (f"gx:{x} gy:{y} gz:{z}",)), hz=RATE_HZ, says=("--sample-rate HZ",))
         self.reads("equals.log", ["\x1b[0;32mI (24) boot: 0x68 found\x1b[0m", *self.rows(lambda i, x, y, z: (f"RAW 0x68: acc=(1, 2, -9) gyro=({x}, {y}, {z}) T=25.5",))], hz=RATE_HZ)
         self.reads("json_lines.txt", self.rows(lambda i, x, y, z: (f'{{"time": {i / RATE_HZ}, "gyro_x_dps": {x}, "gyro_y_dps": {y}, "gyro_z_dps": {z}}}',)), unasked=True)
@@ -150,7 +150,7 @@ class Checks:
         self.reads("other_separator.txt", ["A_Z [mg] G_X [dps] G_Y [dps] G_Z [dps] ", *self.rows(lambda i, x, y, z: (1000, x, y, z), "\t")], hz=RATE_HZ, says=("G_X [dps]",))
 
     def check_dates_as_people_write_them(self):
-        """Spreadsheets in German and American, MATLAB, a maker's program; each begins just before noon."""
+        """Spreadsheets in German and American format, MATLAB, a maker's program; each begins just before noon."""
         def rows(stamp):
             at = lambda i: datetime.datetime(2026, 11, 27, 11, 59, 50) + datetime.timedelta(seconds=i / RATE_HZ)
             return lambda i, x, y, z: (at(i).strftime(stamp).lstrip("0").replace(" 0", " "), z)
@@ -172,7 +172,7 @@ class Checks:
         assert "iconv -f UTF-16" in typed(path)[1], typed(path)[1]
 
     def check_rest_is_judged_on_axes_nobody_named(self):
-        """An IMU that is turned about y for two seconds, of which x has a part."""
+        """An IMU that is turned about y for two seconds; a part of the turn is in x."""
         turned = [300 if 2000 <= i < 2400 else 0 for i in range(ROWS)]
         lines = ["t_s,gyro_x_dps,gyro_y_dps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x + 1e-3 * turned[i], y + turned[i] if i % 997 else "n/a-text"))]
         path = self.file("turned.csv", lines)
@@ -187,7 +187,7 @@ class Checks:
         assert "more than one column may be the rate" in said, said
 
     def check_several_sensors_in_one_table(self):
-        """As public repositories hold them: accelerations in front of nameless rates, a quaternion with its w, two sensors' rows in one table."""
+        """As in public repositories: accelerations before unnamed rates, a quaternion with w, rows of two sensors in one table."""
         shape = self.rows(lambda i, x, y, z: (672705976809250 + 5_000_000 * i, -0.12 + 1e-3 * (i % 7), 0.19 + 1e-3 * (i % 5), 9.699 - 1e-3 * (i % 3), x * RAD, y * RAD, z * RAD))
         self.reads("nameless.csv", shape)
         _, said = typed(self.folder / "nameless.csv")
@@ -225,7 +225,7 @@ class Checks:
         option = re.search(r"--only sensor_id=\S+", said)
         assert option, said
         densities, _ = typed(path, *shlex.split(option.group(0)))
-        assert abs(densities["x"] / N * math.sqrt(0.5) - 1) < 0.07, densities  # half of the samples a second
+        assert abs(densities["x"] / N * math.sqrt(0.5) - 1) < 0.07, densities  # half of the samples per second
 
     def check_what_the_values_say(self):
         def findings(name, rates, unit=RAD, rate_hz=RATE_HZ):
@@ -253,7 +253,7 @@ class Checks:
         assert abs(densities["x"] / N - 1) < 0.05, densities
 
     def check_tune_says_what_the_values_say(self):
-        """No model is fitted to a flight: its motion is no noise."""
+        """No model is fitted to a flight, because motion is not noise."""
         dice, rate, rows = random.Random(8), 0.0, []
         for i in range(ROWS):
             rate = 0.999 * rate + dice.gauss(0, 0.3)
@@ -268,7 +268,8 @@ class Checks:
         assert quiet.returncode == 0 and "moving" not in quiet.stdout, quiet.stdout
 
     def check_slow_noise_that_is_a_channels_effect(self):
-        """Twenty minutes in which 0.008 °/h/°C pass for a rate random walk that is not there; next to a temperature that it does not follow nothing is said."""
+        """Twenty minutes in which 0.008 °/h/°C looks like a rate random walk. With a temperature that is not correlated, nothing
+        is reported."""
         def found(name, temperature):
             dice, rows = random.Random(4), []
             for i in range(12_000):
@@ -286,7 +287,7 @@ class Checks:
         assert k["present"] and said == [] and k["std_error"] < 0.5 * k["value"], (k, said)
 
     def check_real_sensors_at_rest_are_no_fault_of_a_logger(self):
-        """Dithered ring lasers among them, whose samples alternate."""
+        """Includes dithered ring lasers, whose samples alternate."""
         for name in ("ln100_x_up", "rlg_vehicle", "adis16405_imu3_1hz", "blueseis_bs1_ramp"):
             capture, to = CASES.parent / f"data/{name}.csv.gz", self.folder / "real.json"
             if not capture.exists():
@@ -297,7 +298,8 @@ class Checks:
             assert found == [], f"{name}: {found}"
 
     def check_ranges_of_a_dbc_file_are_information(self):
-        """A signed rate with [0|100], as in public files: half of all motion is beyond, kept, counted and said once with both numbers."""
+        """A signed rate with the range [0|100], as in public files: half of the values are outside, kept, counted and reported
+        once with both numbers."""
         dbc, log, out = self.folder / "range.dbc", self.folder / "range.log", self.folder / "range.csv"
         dbc.write_text('VERSION ""\nBU_: A\nBO_ 291 M: 8 A\n SG_ Rate : 0|16@1- (0.01,0) [0|100] "deg/s" A\n SG_ Count : 16|8@1+ (1,0) [0|255] "" A\n')
         log.write_text("".join(f"({i * 0.01:.6f}) can0 123#{struct.pack('<hB', 5 * i - 500, i).hex()}0000000000\n" for i in range(200)))

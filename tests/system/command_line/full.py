@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every command that writes, and every word that a program says, on a disk that is full and where standard output is: exit 1, one line that
-names what could not be written, and under the final name what was there before, or nothing.
+"""On a full disk or with full standard output, every command gives exit status 1 and one line with the failed output; the final name
+has its previous content or does not exist.
 
 usage: full.py PATH_OF_IFOG SOURCE_DIR PATH_OF_IFOGD PATH_OF_LCM_RECORD
 
-On a disk of its own, in a mount namespace. Which commands and outputs there are the program says; one without a case here is a failure. Exit 77
-where mounts are not allowed.
+On a separate disk in a mount namespace. The program lists its commands and outputs; one without a case here is a failure. Exit 77
+if mounts are not allowed.
 """
 import json
 import os
@@ -93,14 +93,14 @@ class Checks:
                               check=False)
 
     def fill(self, pages):
-        """All of the disk but so much."""
+        """Fills the disk except for this space."""
         ballast = self.disk / "ballast"
         ballast.unlink(missing_ok=True)
         disk = os.statvfs(self.disk)
         ballast.write_bytes(bytes(disk.f_bavail * disk.f_frsize - pages * PAGE))
 
     def commands(self):
-        """Of each command words that are quick, and its outputs: an option, or the place of a bare name; and the name's ending."""
+        """For each command: quick arguments and its outputs, which are an option or an argument, with the name's ending."""
         capture, one = [self.capture], ["--config", self.folder / "one.toml"]
         tune = [*capture, "--samples", "2000", "--state", "random-walk"]
         heard = ["--seconds", "0.6", "--lcm-url", URL]
@@ -126,7 +126,7 @@ class Checks:
         }
 
     def cases(self):
-        """(words, the output's option or None, the name's ending), one for each output of each command."""
+        """(arguments, the output's option or None, the name's ending), one for each output of each command."""
         for command, (words, outputs) in self.commands().items():
             for option, endings in outputs.items() if words is not None else ():
                 for ending in (endings,) if isinstance(endings, str) else endings:
@@ -172,12 +172,12 @@ class Checks:
         before = sorted(os.listdir(self.disk))
         result = self.ran([*words, *self.written(option, target)])
         said, what = result.stderr.decode(), f"{words[0]} {option} *{ending}, {pages} pages left{', over an old one' if old else ''}"
-        if result.returncode == 0:  # there was room for it
+        if result.returncode == 0:  # there was enough space
             assert pages > 0 and target.exists(), f"{what}: exit 0: {said}"
             assert ending == "" or not old or target.read_bytes() != b"old\n", f"{what}: exit 0 and nothing written"
             return
         assert result.returncode == 1, f"{what}: exit {result.returncode}: {said}"
-        # A lot of gyros says it of each; a recorder, which waits for room, when it comes to that and at its end.
+        # A fleet reports it for each gyro; a recorder, which waits for space, at the first time and at its end.
         lines, most = said.splitlines(), {"fleet": 3, "record": 2}.get(words[0], 1)
         told = [line for line in lines if "No space left on device" in line and str(self.disk) in line]
         assert 1 <= len(told) <= most and (most == 1 or lines == told), f"{what}: {said}"
@@ -186,7 +186,7 @@ class Checks:
             assert not old or target.read_text() == "old\n", f"{what}: what was there is gone"
 
     def words_said(self):
-        """All that goes to standard output: a command's text, its data, its help."""
+        """Everything on standard output: a command's text, its data, its help."""
         for words, option, ending in self.cases():
             if option == "--to" or ending in ("", ".h5", ".csv.gz", ".png", ".kvh"):
                 continue
@@ -207,7 +207,7 @@ class Checks:
         for program, words in self.words_said():
             for where in ("/dev/full", self.disk / "said", None) if len(words) < 3 else ("/dev/full",):
                 if where is None and program == IFOGD:
-                    continue  # a daemon goes on without its streams
+                    continue  # a daemon continues without its streams
                 if where is None:  # closed
                     result = subprocess.run(["bash", "-c", '"$@" >&-', "bash", program, *map(str, words)], cwd=self.folder, stdin=subprocess.DEVNULL,
                                             stderr=subprocess.PIPE, timeout=120, check=False)

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Captures in HDF5: what `ifog` writes, read by h5py and h5dump; what h5py writes, read by `ifog`; foreign, damaged and
-hostile files, each refused with one line.
+"""Captures in HDF5: files of `ifog` read by h5py and h5dump, files of h5py read by `ifog`; foreign, damaged and hostile files, each
+rejected with one line.
 
-usage: hdf5.py PATH_OF_IFOG SOURCE_DIR       Exit 77 without h5py or h5dump.
+usage: hdf5.py PATH_OF_IFOG SOURCE_DIR Exit 77 without h5py or h5dump.
 """
 import gzip
 import hashlib
@@ -41,7 +41,7 @@ def bits(values):
 
 
 def random_columns(rows, seed):
-    """Doubles of all sizes that a rate may have, and times that go on."""
+    """Doubles of all magnitudes of a rate, and increasing times."""
     draw = numpy.random.default_rng(seed)
     time = numpy.cumsum(draw.uniform(1e-9, 1e-3, rows))
     rate = draw.standard_normal(rows) * 10.0 ** draw.integers(-300, -5, rows)
@@ -101,7 +101,7 @@ class Checks:
             assert part in said, part
 
     def check_there_and_back_is_the_same_text(self):
-        """Also in many chunks, of many sizes, and the columns in their order."""
+        """Also in many chunks of several sizes, and the columns in order."""
         columns = random_columns(200_001, 2)
         text = "# one\n" + ",".join(columns) + "\n" + "".join(
             ",".join("nan" if v != v else repr(float(v)) for v in row) + "\n" for row in zip(*columns.values()))
@@ -177,13 +177,13 @@ class Checks:
         ifog("replay", capture, "--driver", "kvh1750", "--option", "format=b", "--speed", "0", "--to", f"file:{self.folder / 'sent.kvh'}")
 
     def check_a_large_file_is_hashed_in_pieces(self):
-        """Of which only some columns are read; in less memory than it has bytes."""
+        """Only some columns are read, in less memory than the file's size."""
         draw = numpy.random.default_rng(3)
         path, model = self.folder / "large.h5", self.folder / "large.toml"
         write(path, {"time_s": numpy.arange(20000) / 100, "rate_radps": 1e-5 * draw.standard_normal(20000)}, group="/imu")
         with h5py.File(path, "a") as file:
             blob = file.create_dataset("elsewhere", shape=(600 << 20,), dtype="u1")
-            blob[-1] = 1  # written, and yet mostly a hole of the file
+            blob[-1] = 1  # written, but mostly a hole of the file
         assert path.stat().st_size > 600 << 20
         limit = 500 << 20
         done = subprocess.run([IFOG, "diagnose", "--quiet", path, "--group", "/imu", "--write-model", model], capture_output=True, text=True,
@@ -228,7 +228,7 @@ class Checks:
         assert self.converted(file)["rate_radps"] == [1, 2, 3]
 
     def check_tables_of_records(self):
-        """As PyTables and pandas (format='table') write them."""
+        """As written by PyTables and pandas (format='table')."""
         records = numpy.zeros(5000, dtype=[("index", "<i8"), ("gyro_z", "<f4"), ("name", "S4"), ("T", "<f8")])
         records["index"] = 1_700_000_000_000_000_000 + numpy.arange(5000) * 10_000_000
         records["gyro_z"] = numpy.arange(5000) % 7
@@ -298,7 +298,7 @@ class Checks:
         self.refused(file, "is packed by filter 32000 (lzf), which is not here, expected gzip")
 
     def check_columns_that_stay_as_they_are_come_back(self):
-        """More than 256 MiB of text or numbers that pack into less than a hundredth or a thousandth of it: no bomb, and whole."""
+        """More than 256 MiB of text or numbers that compress to less than a hundredth or a thousandth: accepted completely."""
         rows, columns = 120_000, 120
         still = {f"c{i}_counts": 1.2345678901234567e-05 * (i + 1) for i in range(columns)}
         text, first, packed, again = (self.folder / name for name in ("still.csv", "still.h5", "still.csv.gz", "again.h5"))
@@ -317,7 +317,7 @@ class Checks:
                 assert file[name].shape == (rows,) and numpy.all(file[name][:] == value), name
         for file in (text, first, packed, again):
             file.unlink()
-        # Bytes that stay as they are grow eightfold once more, as numbers.
+        # Bytes that do not compress become eight times larger as numbers.
         flags = {"time_s": numpy.arange(4_000_000, dtype="<i4"), "rate_radps": numpy.zeros(4_000_000, dtype="<i1")}
         flags.update({f"flag_{i}_counts": numpy.full(4_000_000, i, dtype="<u1") for i in range(9)})
         file = write(self.folder / "flags.h5", flags, compression="gzip", compression_opts=9, shuffle=True, chunks=(65536,))
@@ -327,7 +327,7 @@ class Checks:
             assert all(numpy.array_equal(back[name][:], values) for name, values in flags.items())
 
     def check_reads_tables_of_one_chunk(self):
-        """Larger than what is kept of a dataset unless it is all in one chunk."""
+        """Larger than the buffer of a dataset unless it is all in one chunk."""
         rows = 700_000
         expected = random_columns(rows, 7)
         records = numpy.rec.fromarrays(list(expected.values()), names=list(expected))
@@ -339,25 +339,25 @@ class Checks:
         with h5py.File(out) as back:
             for name, values in expected.items():
                 assert back[name][:].tobytes() == values.tobytes(), name
-        with h5py.File(file, "w") as inside:  # and more than is kept of all columns: 512 MiB
+        with h5py.File(file, "w") as inside:  # more than is kept of all columns: 512 MiB
             for name in ("time_s", "rate_radps"):
                 inside.create_dataset(name, data=numpy.arange(4.0), maxshape=(None,), chunks=(2**27,), compression="gzip")
         self.refused(file, "is packed in chunks of 1024 MiB, expected at most 512 MiB in all columns; 'h5repack -l CHUNK=65536'")
 
     def check_more_than_there_is_is_not_believed(self):
-        """A file of a few kilobytes that says it holds a thousand million rows."""
+        """A file of a few kilobytes that claims a thousand million rows."""
         file = self.folder / "bomb.h5"
         with h5py.File(file, "w") as inside:
             for name in ("time_s", "rate_radps"):
                 inside.create_dataset(name, shape=(2**40,), dtype="f8", chunks=(1024,))
         self.refused(file, "grows to more than 256 MiB")
-        with h5py.File(file, "w") as inside:  # a chunk that unpacks to more than there may be of memory
+        with h5py.File(file, "w") as inside:  # a chunk that unpacks to more than the memory limit
             for name in ("time_s", "rate_radps"):
                 inside.create_dataset(name, data=numpy.zeros(2**24), chunks=(2**24,), compression="gzip", compression_opts=9)
-        assert self.converted(file)["time_s"] == [0]  # a row, and what repeats it
+        assert self.converted(file)["time_s"] == [0]  # a row and its repetitions
 
     def check_damaged_files_are_refused_or_read(self):
-        """Cut off at any place; single bytes and runs of bytes changed. Never a crash, never two lines, never a wait."""
+        """Truncated at any place; single bytes and runs of bytes changed. Never a crash, never two lines, never a hang."""
         small = write(self.folder / "small.h5", random_columns(300, 5), compression="gzip", shuffle=True, chunks=(100,))
         grouped = self.folder / "grouped.h5"
         ifog("convert", self.csv, grouped)

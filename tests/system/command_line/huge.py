@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""One cell among thousands that no sensor measures, in every column and through every command that reads: each comes to its end in time, every number
-that it gives is finite, and it is what is found where that cell is empty. Oracle: the same capture without the cell.
+"""One impossible value among thousands, in every column and for every command that reads: each command ends in time, all its numbers
+are finite, and the result is that of a missing cell. Oracle: the same capture without the cell.
 
 usage: huge.py PATH_OF_IFOG SOURCE_DIR
 """
@@ -20,7 +20,7 @@ WHERE = (0, 7, 1999, ROWS - 1)
 
 
 def numbers_of(value, path=""):
-    """Every number of a document, by where it stands."""
+    """Every number of a document with its path."""
     if isinstance(value, dict):
         return {k: v for key, each in value.items() if key not in ("capture", "captures", "created", "sha256") for k, v in numbers_of(each, f"{path}.{key}").items()}
     if isinstance(value, list):
@@ -65,7 +65,7 @@ class Checks:
             assert math.isclose(found[path], value, rel_tol=1e-9, abs_tol=1e-300), f"{command}, {text} in {column}: {path} is {found[path]}, expected {value}"
 
     def check_one_cell(self):
-        """Where it is huge as where it is empty."""
+        """A huge value has the effect of an empty cell."""
         empty = {column: self.write(f"{column}_empty.csv", [(1999, column, "")]) for column in COLUMNS}
         for column in COLUMNS:
             for command in ("allan", "tune", "compare", "diagnose", "denoise"):
@@ -79,7 +79,7 @@ class Checks:
                 self.answers(command, self.write("huge.csv", [(row, column, "1e200") for column in COLUMNS]))
 
     def check_a_column_of_them(self):
-        """A rate of which more than a hundredth cannot be is refused; a channel of which nothing is left is none."""
+        """A rate with more than 1 % of impossible values is rejected; a channel without valid values is dropped."""
         for column in COLUMNS:
             path = self.write("column.csv", [(row, column, "1e200") for row in range(0, ROWS, 2)])
             for command in ("diagnose", "denoise"):

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the command line says of a sensor's noise: the same from every command, of the parts at rest, up to the τ there is.
+"""Statements about a sensor's noise: equal in every command, for the parts at rest, up to the available τ.
 
 usage: noise.py PATH_OF_IFOG SOURCE_DIR
 """
@@ -41,7 +41,7 @@ class Noise:
         return document
 
     def turned(self, name, first_s, last_s):
-        """The same with a turn of half a radian a second, eight seconds on and four off."""
+        """The same with a turn of 0.5 rad/s, eight seconds on and four off."""
         rate = columns(self.capture)["rate_radps"]
         lines = [f"{i / RATE_HZ},{r + (0.5 if first_s <= i / RATE_HZ < last_s and i / RATE_HZ % 12 < 8 else 0.0)}"
                  for i, r in enumerate(rate)]
@@ -50,7 +50,7 @@ class Noise:
         return path
 
     def check_hourly_rates_are_asked_about(self):
-        """10.3 °/h of the Earth in a column of rad/s, and read as what it is."""
+        """10.3 °/h of Earth's rate in a column of rad/s is interpreted correctly."""
         hourly = self.folder / "hourly.csv"
         hourly.write_text("time_s,rate_radps\n" + "".join(f"{i / 100},{10.3 + 0.1 * math.sin(7919 * i)}\n" for i in range(3000)))
         asked = "more than the bias of any gyro: is it at rest, and is the unit right (deg/h by --column)?"
@@ -62,7 +62,7 @@ class Noise:
             assert asked not in said(hourly, "--column", "rate_radps=rate_radps:deg/h") + said(self.capture)
 
     def check_a_figure_that_grows_stands_in_the_table(self):
-        """Slow noise that runs against an effect in the part that is fitted, whose figures the part kept back replaces."""
+        """Slow noise that opposes an effect in the fitted part; the figures of the held-out part are used."""
         path = self.folder / "slow.csv"
         for seed in (7, 9, 15, 36):
             throw, walk, rows = random.Random(seed), 0.0, []
@@ -88,7 +88,7 @@ class Noise:
         assert not allan["B"]["present"] and noise.get("B_radps") is None
 
     def check_a_glitch_is_said_and_left_out(self):
-        """One sample of a radian a second, which no gyro has turned: the figures are those without it."""
+        """One sample of 1 rad/s, an impossible turn: the figures are those without it."""
         lines = self.capture.read_text().splitlines()
         row = next(i for i, line in enumerate(lines) if line.startswith("100,") or line.startswith("100.0"))
         lines[row] = lines[row].split(",")[0] + ",1.0"
@@ -109,7 +109,7 @@ class Noise:
         refused(1, "allan", self.capture, "--estimator", "hadamard", "--tau", math.ceil(third) + 1,
                 says=["Hadamard deviation", f"to {math.floor(third * RATE_HZ) / RATE_HZ:.6g} s"])
         refused(1, "allan", self.capture, "--tau", SECONDS / 2 + 1, says=["overlapping deviation", f"to {SECONDS // 2} s"])
-        for tau in ("1e20", "1e-20", "1e308"):  # of more samples than a number of them can be
+        for tau in ("1e20", "1e-20", "1e308"):  # the number of samples exceeds the range of the number type
             refused(1, "allan", self.capture, "--tau", tau, says=["outside what the overlapping deviation", f"to {SECONDS // 2} s"])
         for estimator in ("overlapping", "modified", "hadamard"):
             found = self.json("allan", self.capture, "--estimator", estimator, "--tau", math.floor(third))["axes"][0]
@@ -145,7 +145,7 @@ class Noise:
         assert self.json("allan", path, "--moving", "keep")["axes"][0]["samples"] == SECONDS * RATE_HZ
 
     def check_slow_turns_are_said(self):
-        """Slower than what is surely a turn: all of it is analysed, and told of."""
+        """Slower than the limit of a turn: all of it is analysed, with a note."""
         lines = self.capture.read_text().splitlines()
         start = next(i for i, line in enumerate(lines) if line[:1].isdigit())
         for i in range(start + 100 * RATE_HZ, start + 148 * RATE_HZ):
@@ -168,7 +168,7 @@ class Noise:
         assert "ifog diagnose" in ifog("allan", path, "--minus-reference")
 
     def check_compare_says_what_moved_and_leaves_it_out_as_allan_does(self):
-        """A turn in the middle: which part it was is said, and std and deviation are those of allan's rest."""
+        """A turn in the middle: its time is printed, and std and deviation are those of allan's rest."""
         path = self.turned("turned.csv", 100, 148)
         found, allan = self.json("compare", path), self.json("allan", path, "--tau", "0.1,1,10")["axes"][0]
         assert "moving in" in found["motion"] and "at rest alone" in found["motion"], found["motion"]
@@ -184,7 +184,7 @@ class Noise:
         table = said[said.rindex("lowest deviation"):]
         assert "walk.csv" in table and "other.csv" in table, table
         picture = (self.folder / "both.svg").read_text()
-        # Whose terms are whose stands in the legend, not among the curves; those of a curve on top of another stand once.
+        # Assignments of terms are in the legend, not among the curves; for equal curves they appear once.
         assert re.search(r">walk\.csv: [QNBKR] = ", picture), picture[-2000:]
 
 

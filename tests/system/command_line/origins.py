@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The same series with its times begun at 0 and at any other moment, in any unit and format: what every command says of it is
-the same, to the last bit of what is no time, and times are those of the file to the last digit. Then times that do not go on as
-those of one recording do: each is refused with its line or said.
+"""The same series with times that begin at 0 and at any other moment, in any unit and format: the output of every command is the
+same to the last bit, except times, which have all digits of the file. Times that do not increase like those of one recording are
+rejected with the line or reported.
 
-usage: origins.py PATH_OF_IFOG SOURCE_DIR       The HDF5 part is left out, and said, without h5py.
+usage: origins.py PATH_OF_IFOG SOURCE_DIR The HDF5 part is skipped, with a message, without h5py.
 """
 import json
 import math
@@ -32,7 +32,7 @@ NUMBER = re.compile(r"(?<![\w.])-?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?![\w.])")
 
 
 def stamp(ns, of_second=1):
-    """A time in plain digits, all that a ns has in the unit."""
+    """A time in plain digits, to 1 ns in its unit."""
     a_unit = S // of_second
     whole, rest = divmod(abs(ns), a_unit)
     digits = len(str(a_unit)) - 1
@@ -40,7 +40,8 @@ def stamp(ns, of_second=1):
 
 
 def series(kind):
-    """ns since its start, rates, temperatures as cells: with a step, a glitch and cells that are missing, so that times are told."""
+    """ns since the start, rates and temperatures as cells, with a step, a glitch and missing cells, so that messages contain
+    times."""
     draw = random.Random(7)
     ns, rate, temperature, walk = [], [], [], 0.0
     for i in range(ROWS):
@@ -56,7 +57,7 @@ def series(kind):
 
 
 def same_text(before, after, start_s):
-    """Word for word, but that a number may be a time, which is start_s later, as far as people are told it."""
+    """Equal texts, except for numbers that are times and differ by start_s within the printed digits."""
     numbers = NUMBER.findall(before), NUMBER.findall(after)
     if NUMBER.sub("#", before) != NUMBER.sub("#", after) or len(numbers[0]) != len(numbers[1]):
         return False
@@ -64,7 +65,7 @@ def same_text(before, after, start_s):
 
 
 def differences(before, after, start_s, key=""):
-    """Places where two documents differ by more than the times that they tell."""
+    """Places where two documents differ by more than their times."""
     if isinstance(before, dict) and isinstance(after, dict) and set(before) == set(after):
         return [d for k in before for d in differences(before[k], after[k], start_s, key if k == "value" and key in TOLD else k)]
     if isinstance(before, list) and isinstance(after, list) and len(before) == len(after):
@@ -92,7 +93,7 @@ class Checks:
         return path, [] if unit == "s" else ["--time", f"t:{unit}", *COLUMNS]
 
     def hdf5(self, name, times, kind, dtype):
-        """As others write it: the times as integers."""
+        """As in other programs: times as integers."""
         path = self.folder / name
         _, rate, temperature = self.series[kind]
         with h5py.File(path, "w") as file:
@@ -102,7 +103,7 @@ class Checks:
         return path, ["--time", "t:ns", *COLUMNS]
 
     def answer(self, command, path, options):
-        """What the command says, with the file's name taken out: its JSON, its words."""
+        """Output of the command without the file's name: its JSON and text."""
         out = self.folder / "answer.json"
         more = {"denoise": ["--output", self.folder / "denoised.csv"], "diagnose": ["--write-model", self.folder / "model.toml"]}.get(command, [])
         words = ifog(command, path, *options, *more, "--json", out)
@@ -125,7 +126,7 @@ class Checks:
         assert not found, (command, kind, path.name, len(found), found[:3])
 
     def require_times(self, path, times):
-        """To the digit, as the column says them."""
+        """To the digit, as in the column."""
         lines = [line for line in path.read_text().splitlines() if not line.startswith("#")][1:]
         found = [Decimal(line.partition(",")[0]) for line in lines]
         wrong = [i for i, (a, b) in enumerate(zip(found, times)) if a != Decimal(b).scaleb(-9)]
@@ -153,7 +154,7 @@ class Checks:
             self.require_same(command, kind, STARTS[start], path, options)
 
     def check_a_fleet_of_them_is_of_one_kind(self):
-        """Three gyros whose captures differ in nothing but when they began."""
+        """Three gyros whose captures differ only in their start times."""
         ns = self.series["even"][0]
         starts = {"A": 0, "B": STARTS["1970"], "C": STARTS["before"]}
         lot = 'type = "demo"\n'
@@ -178,7 +179,7 @@ class Checks:
         for first, last in ((1000, 2000), (1, 2999), (1701, 1702)):
             ifog("denoise", path, "--output", out, "--from", stamp(times[first]), "--to", stamp(times[last]))
             self.require_times(out, times[first:last])
-            # A ns later the first row is out, and the last one in.
+            # 1 ns later the first row is outside, and the last one inside.
             ifog("denoise", path, "--output", out, "--from", stamp(times[first] + 1), "--to", stamp(times[last] + 1))
             self.require_times(out, times[first + 1:last + 1])
         result = ran("allan", path, "--from", stamp(start + 100 * S))
@@ -193,7 +194,7 @@ class Checks:
         refused(1, "diagnose", whole, part, says=["part_of_it.csv: holds the same samples as", "from 1700000010.11", "expected each record once"])
 
     def check_frames_carry_the_times(self):
-        """Format B of the KVH 1750 has its time in µs of 32 bits."""
+        """Format B of the KVH 1750 has its time in µs with 32 bits."""
         times = [STARTS["1970"] + t for t in self.series["uneven"][0]]
         path, _ = self.csv("sent.csv", times, "uneven")
         driver = ["--driver", "kvh1750", "--option", "format=b"]
@@ -208,11 +209,11 @@ class Checks:
             assert found == expected, (command[0], found[:3], expected[:3])
 
     def check_one_part_of_every_source_has_the_same_samples(self):
-        """--from and --to mean the times that the command prints for the source, the first included, the last not."""
+        """--from and --to refer to the printed times of the source; the first is inclusive, the last exclusive."""
         kvh, still = ["--driver", "kvh1750", "--option", "rate_hz=100"], ["--driver", "dsp3000", "--option", "output=rate"]
         can = ["--dbc", SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc", "--option", "signal=Rate_x"]
         counted = [*can, "--option", "counter=Counter", "--option", "rate_hz=100"]
-        # What the source makes of a series that begins then: 32 bits of µs, a counter or nothing from 0, a log's own stamps.
+        # Times of a source for a series that begins then: 32 bits of µs, a counter or none from 0, the stamps of a log.
         us = 2**32 * 1000
         sources = (("clock.kvh", [*kvh, "--option", "format=b"], lambda t: t % us), ("count.kvh", [*kvh, "--option", "format=a"], lambda t: t - start),
                    ("none.bin", [*still, "--option", "rate_hz=100"], lambda t: t - start), ("stamps.log", can, lambda t: t), ("counter.log", counted, lambda t: t))
@@ -237,7 +238,7 @@ class Checks:
                     assert found == 2200, (command, name, start, found)
 
     def check_logs_with_short_times_and_without(self):
-        """candump -t z, -t d, and no times at all."""
+        """candump -t z, -t d, and no times."""
         dbc = ["--dbc", SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc", "--option", "signal=Rate_x"]
         times = [i * S // RATE_HZ for i in range(200)]
         def line(front, i):
@@ -279,7 +280,7 @@ class Checks:
             self.require_times(out, times)
             self.require_same("allan", kind, start, path, options)
             self.require_same("denoise", kind, start, path, options)
-            # Ours has them as doubles, for whoever wants no more, and whole.
+            # Our files have them as doubles for simple readers, and exactly.
             ours = self.folder / "ours.h5"
             ifog("convert", path, ours, *options)
             with h5py.File(ours) as file:
@@ -325,7 +326,7 @@ class Checks:
             assert not (self.folder / "never.csv").exists(), what
 
     def check_holes_are_counted(self):
-        """A leap second forward and recordings put behind one another, against steps that are whole periods."""
+        """A leap second forward, and concatenated recordings, compared with steps of whole periods."""
         ns, half = self.series["even"][0], ROWS // 2
         for later_s, start in ((1, STARTS["1970"]), (7200, STARTS["GPS"]), (1, 0)):
             path, _ = self.csv("hole.csv", [start + t + (later_s * S if i >= half else 0) for i, t in enumerate(ns)])
@@ -338,11 +339,11 @@ class Checks:
             assert abs(told - start / S - ns[half - 1] / S) < 1e-5, (place, told)
             if later_s == 1 and start != 0:
                 moved = axis
-        # The Allan deviation of the two halves does not know when they were.
+        # The Allan deviation of both halves is independent of their times.
         assert moved["adev_radps"] == axis["adev_radps"]
 
     def check_a_clock_that_is_set_is_said(self):
-        """From seconds since power came to those since 1970."""
+        """From seconds since power-up to seconds since 1970."""
         ns, half = self.series["even"][0], ROWS // 2
         path, _ = self.csv("set.csv", [t + (STARTS["1970"] if i >= half else 0) for i, t in enumerate(ns)])
         for command in (["allan"], ["convert", self.folder / "out.csv"], ["denoise", "--output", self.folder / "out.csv"]):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The command line as other programs use it: JSON and CSV as promised, exit codes, one clear line for bad input.
+"""The command line as used by other programs: JSON and CSV, exit codes, one clear line for bad input.
 
 usage: run.py PATH_OF_IFOG SOURCE_DIR
 
-What the numbers must be comes from the scenario that was simulated and from closed forms, not from the program.
+Expected numbers come from the simulated scenario and from closed forms, not from the program.
 """
 import csv
 import json
@@ -53,7 +53,7 @@ def ifog(*arguments):
 
 
 def refused(code, *says_and_arguments, says):
-    """One line on standard error that has every part of `says`."""
+    """One line on standard error that contains all parts of `says`."""
     result = ran(*says_and_arguments)
     said = result.stderr.strip()
     assert result.returncode == code, f"{says_and_arguments}: exit {result.returncode}, expected {code}: {said}"
@@ -105,7 +105,7 @@ class Checks:
         assert len(columns(self.capture)["time_s"]) == RATE_HZ * SECONDS
 
     def check_simulate_writes_frames(self):
-        """The same capture as the bytes of each driver and as a candump log, to the precision of a float32 or half a count."""
+        """The same capture as bytes of each driver and as candump log, to the precision of float32 or half a count."""
         rate = columns(self.capture)["rate_radps"]
         for name, half_a_count, options in (
                 ("rest.kvh", 0, ["--driver", "kvh1750"]), ("rest.stdbin", 0, ["--driver", "stdbin"]),
@@ -122,7 +122,7 @@ class Checks:
             assert worst <= 1.2e-7 * max(map(abs, rate)) + half_a_count, f"{name}: differs by {worst}"
 
     def check_any_csv(self):
-        """Another maker's file: other names, units, separator, decimal commas, byte-order mark; and the same in the end."""
+        """A file of another maker: other names, units, separator, decimal commas, byte-order mark; with the same result."""
         theirs, ours = self.folder / "theirs.txt", self.folder / "ours.csv"
         rows = [(20 * i, math.sin(0.1 * i), 68 + 0.1 * i) for i in range(500)]
         cells = "".join(f"{t};{rate};{degf:.1f};ok\n".replace(".", ",") for t, rate, degf in rows)
@@ -143,7 +143,7 @@ class Checks:
         assert refused.returncode == 2 and "degC, degF, K" in refused.stderr, refused
 
     def check_allan(self):
-        """White noise alone: sigma(tau) = N / sqrt(tau), and no other term."""
+        """White noise only: sigma(tau) = N / sqrt(tau), and no other term."""
         (self.folder / "white.toml").write_text(SCENARIO.split("[[channel]]")[0])
         ifog("simulate", self.folder / "white.toml", "--output", self.folder / "white.csv")
         found = self.json("allan", self.folder / "white.csv", "--tau", "0.1,1,10")
@@ -163,7 +163,7 @@ class Checks:
         near(axis["coefficients"]["N"]["value"], N, 4 * axis["coefficients"]["N"]["std_error"], "N")
 
     def check_allan_with_holes(self):
-        """A gap and a missing value: said, and analysed in stretches; or refused by line when so asked."""
+        """A gap and a missing value: reported and analysed in stretches, or rejected with the line if requested."""
         lines = (self.folder / "white.csv").read_text().splitlines()
         header = next(i for i, line in enumerate(lines) if line.startswith("time_s"))
         del lines[header + 5001:header + 5101]
@@ -186,7 +186,7 @@ class Checks:
         assert picture.read_text().rstrip().endswith("</svg>")
 
     def check_allan_leaves_out_the_start_of_a_filter(self):
-        """Loud as the sensor for 4 s, and then a hundredth of it: the figures are those of the filter that runs."""
+        """As noisy as the sensor for 4 s, then a hundredth of it: the figures are those of the running filter."""
         random.seed(11)
         path = self.folder / "started.csv"
         rows = []
@@ -204,7 +204,7 @@ class Checks:
         near(found["compensated"]["adev_radps"][0], 1e-5, 3e-7, "deviation of what it is given")
 
     def sequence_of_a_part(self):
-        """Cut out and told where it was, a part draws the whole's weights, and has its bits once its beginning is forgotten."""
+        """A part has its own times, draws the weights of the whole, and has its bits after the start-up."""
         random.seed(5)
         rows = [f"{i / 100},{random.gauss(0.0, 1e-4):.9g}\n" for i in range(6000)]
         whole, cut, out = (self.folder / name for name in ("whole.csv", "cut.csv", "cut_out.csv"))
@@ -220,7 +220,7 @@ class Checks:
 
     def check_denoise(self):
         out = self.folder / "denoised.csv"
-        noise = ["--process-noise", 1e-14, "--measurement-noise", N * N * RATE_HZ]  # the temperature swings: no rest to learn it from
+        noise = ["--process-noise", 1e-14, "--measurement-noise", N * N * RATE_HZ]  # the temperature varies: no rest to learn from
         ifog("denoise", self.capture, "--filter", "ckf", *noise, "--output", out)
         found = columns(out)
         assert list(found)[:5] == ["time_s", "raw_radps", "compensated_radps", "denoised_radps", "variance_rad2ps2"], list(found)
@@ -228,11 +228,11 @@ class Checks:
         second_half = slice(len(found["raw_radps"]) // 2, None)
         raw, denoised = found["raw_radps"][second_half], found["denoised_radps"][second_half]
         assert rms([a - b for a, b in zip(denoised, denoised[1:])]) < 0.5 * rms([a - b for a, b in zip(raw, raw[1:])])
-        # No variance before the noise is known from the first seconds; then always one.
+        # No variance before the noise is known from the first seconds; afterwards always.
         variance = found["variance_rad2ps2"]
         known = next(i for i, v in enumerate(variance) if v == v)
         assert known < len(variance) / 4 and min(variance[known:]) > 0
-        # A part of the whole is the whole's lines.
+        # The lines of a part are those of the whole.
         part, text = self.folder / "part.csv", out.read_text().splitlines()
         ifog("denoise", self.capture, "--filter", "ckf", *noise, "--output", part, "--from", text[101].split(",")[0], "--to", text[301].split(",")[0])
         assert part.read_text().splitlines() == text[:1] + text[101:301]
@@ -246,7 +246,7 @@ class Checks:
         has(columns(self.folder / "three_out.csv"), *(f"{what}_{axis}_radps" for what in ("raw", "compensated", "denoised") for axis in "xyz"))
 
     def check_tune(self):
-        """The model it writes is what `denoise` runs."""
+        """`denoise` runs the written model."""
         model = self.folder / "tuned.toml"
         found = self.json("tune", self.folder / "white.csv", "--write-model", model)
         assert found["schema"] == "ifog.tune/1", found["schema"]
@@ -265,7 +265,7 @@ class Checks:
             has(row, "rule", "settings", "rmse_radps", "std_radps", "adev_radps")
             has(row["adev_radps"], "0.1", "1", "10", "100")
             assert row["rmse_radps"] is None, "no reference was given"
-        # The verdict, against the table's own figures; and the picture shows what the others differ.
+        # The verdict agrees with the table; the picture shows the differences of the others.
         best = min(found["rows"], key=lambda row: row["adev_radps"]["1"])
         verdict, = found["verdict"]
         assert verdict["figure"] == "adev_radps 1" and verdict["best"] == best["rule"] and verdict["best_radps"] == best["adev_radps"]["1"], verdict
@@ -277,7 +277,7 @@ class Checks:
         assert all(f">{row['rule']}</text>" in picture.read_text() for row in found["rows"]), "a curve for each rule"
 
     def check_diagnose_and_correct(self):
-        """Found, written, and gone from the capture's own residual: through `denoise --model`, causally."""
+        """The effect is found, written, and removed from the capture by `denoise --model`, causally."""
         model, report = self.folder / "model.toml", self.folder / "report.html"
         found = self.json("diagnose", self.capture, "--quiet", "--write-model", model, "--report", report)
         has(found, "schema", "samples", "sample_rate_hz", "noise", "effects", "before", "after", "indistinguishable", "unexplained")
@@ -293,12 +293,13 @@ class Checks:
         corrected = columns(self.folder / "corrected.csv")["compensated_radps"]
         mean = sum(corrected) / len(corrected)
         near(rms([v - mean for v in corrected]), N * math.sqrt(RATE_HZ), 0.05 * N * math.sqrt(RATE_HZ), "RMS of the corrected rate")
-        # With that model nothing is left to find.
+        # With that model nothing else is found.
         again = self.json("diagnose", self.capture, "--quiet", "--model", model)
         assert again["effects"] == [], again["effects"]
 
     def check_a_column_that_reads_as_a_difference(self):
-        """A model names a difference of two columns "A - B": a column of that name is dropped and said, and the model it writes is one."""
+        """A model names a difference of two columns "A - B": a column with such a name is dropped with a message, and the written
+        model has a difference."""
         odd, model = self.folder / "odd.csv", self.folder / "odd.toml"
         odd.write_text(self.capture.read_text().replace("temperature_degC", "inlet - outlet_degC", 1))
         said = ifog("diagnose", odd, "--write-model", model)
@@ -313,7 +314,7 @@ class Checks:
             assert complaint == f"ifog: {one}: 1 samples, expected two at least", complaint
 
     def check_diagnose_reads_frames(self):
-        """The same answer from a candump log through the driver as from the CSV, where no channel is in the frames: nothing."""
+        """The same result from a candump log through the driver as from the CSV, if the frames have no channels: no findings."""
         options = ["--dbc", SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc", "--option", "signal=Rate_x", "--option", "counter=Counter",
                    "--option", f"rate_hz={RATE_HZ}"]
         ifog("simulate", self.folder / "white.toml", "--output", self.folder / "white.log", *options)
@@ -353,7 +354,7 @@ class Checks:
         refused(2, "allan", self.capture, "--nonsense", says=["--nonsense"])
         refused(2, "nonsense", says=["unknown command 'nonsense'", "diagnose"])
         refused(2, "dignose", self.capture, says=["did you mean 'diagnose'?"])
-        # The parser itself says only that --output is missing.
+        # The parser only reports that --output is missing.
         refused(2, "denoise", self.capture, "--outptu=a.csv", says=["unknown option '--outptu'", "'--output'"])
         refused(2, says=["expected one of", "allan"])
         refused(2, "allan", self.capture, "--estimator", "hadamar", says=["overlapping, modified, hadamard; did you mean 'hadamard'?"])
@@ -372,7 +373,7 @@ class Checks:
 
 
 def main_of(kind):
-    """Runs every check of the class, each told in a line."""
+    """Runs every check of the class and prints one line each."""
     failed = 0
     with tempfile.TemporaryDirectory() as folder:
         checks = kind(pathlib.Path(folder))

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What commands say instead of ending in a fault, losing a file or passing over a value: samples without a time, one file under
-two names, rates that cannot be used, and values on the command line that are none.
+"""Messages instead of faults, lost files or ignored values: samples without a time, one file under two names, unusable rates, and
+invalid values on the command line.
 
 usage: said.py PATH_OF_IFOG SOURCE_DIR
 """
@@ -22,7 +22,7 @@ READERS = ("allan", "tune", "compare", "diagnose")
 
 
 def said(*arguments):
-    """What is told beside the result of a command that must succeed."""
+    """Messages of a command that must succeed."""
     result = ran(*arguments)
     assert result.returncode == 0, f"ifog {' '.join(map(str, arguments))}: exit {result.returncode}: {result.stderr.strip()}"
     return result.stdout + result.stderr
@@ -52,9 +52,9 @@ class Checks:
         return path
 
     def check_samples_without_a_time_are_one_line(self):
-        """What a sink throws must not reach the plugin's C functions: every command that reads, every kind of bytes."""
+        """An exception of a sink must not reach the plugin's C functions: every command that reads, every kind of bytes."""
         log, trigger = self.folder / "untimed.log", self.folder / "trigger.bin"
-        # As candump shows frames on a screen.
+        # As candump prints frames on a screen.
         log.write_text("  vcan0  100   [8]  00 00 00 00 00 00 00 00\n  vcan0  100   [8]  00 00 00 00 00 01 00 00\n")
         ifog("convert", self.one, trigger, "--driver", "stim300", "--option", "rate_hz=125")
         for source, options in ((log, DBC), (trigger, ["--driver", "stim300", "--option", "rate_hz=trigger"])):
@@ -65,7 +65,7 @@ class Checks:
         assert not (self.folder / "never.csv").exists()
 
     def check_no_output_is_another_file_of_the_run(self):
-        """By device and inode, so through links and hard links as well; and also a file that is not there yet."""
+        """By device and inode, so also through symbolic and hard links, and for a file that does not exist yet."""
         before = self.one.read_bytes()
         link, hard, new = self.folder / "link.csv", self.folder / "hard.csv", self.folder / "new"
         link.symlink_to(self.one)
@@ -91,12 +91,12 @@ class Checks:
             refused(2, "diagnose", self.one, "--write-model", new, "--report", other, says=["--report", "--write-model"])
         refused(2, "simulate", scenario, "--output", scenario, says=["SCENARIO", "--output"])
         refused(2, "replay", self.one, "--to", f"file:{self.one}", "--speed", "0", *DBC, says=["--to", "capture"])
-        # What a shell has opened is a file as well.
+        # A file opened by the shell counts as well.
         with open(self.one, "rb") as opened:
             done = subprocess.run([IFOG, "denoise", "-", "--output", str(self.one)], stdin=opened, capture_output=True, text=True, check=False)
         assert done.returncode == 2, done
         assert self.one.read_bytes() == before and not new.exists()
-        # A device is no file that could be lost.
+        # A device cannot be lost.
         ifog("denoise", self.one, "--output", "/dev/null", "--json", "/dev/null")
 
     def check_a_rate_that_is_missing_is_said_by_every_command(self):
@@ -116,7 +116,7 @@ class Checks:
         assert not (self.folder / "never.csv").exists()
 
     def check_an_axis_without_a_value_is_left_out(self):
-        """The others are treated as they are alone, and the dead one has no figures."""
+        """The other axes are treated as if alone, and the dead one has no figures."""
         other = [self.random.gauss(0, SIGMA) for _ in range(ROWS)]
         path = self.write("dead_y.csv", {"rate_x_radps": self.noise, "rate_y_radps": [math.nan] * ROWS, "rate_z_radps": other})
         alone = self.write("without_y.csv", {"rate_x_radps": self.noise, "rate_z_radps": other})
@@ -134,7 +134,7 @@ class Checks:
         assert "raw_y_radps" not in columns(self.folder / "axes.csv")
 
     def check_an_axis_that_repeats_one_value_is_left_out_of_fits(self):
-        """The others are fitted as they are alone; also where a correction that is alive would make it move."""
+        """The other axes are fitted as if alone, even if a correction would make the stuck one vary."""
         other = [self.random.gauss(0, SIGMA) for _ in range(ROWS)]
         warm = {"temperature_degC": [20 + 0.4 * math.sin(i / 100) for i in range(ROWS)]}
         rates = {"rate_x_radps": self.noise, "rate_y_radps": [1e-4] * ROWS, "rate_z_radps": other}
@@ -159,7 +159,7 @@ class Checks:
             assert [axis["stuck"] for axis in document["axes"]] == ([0, ROWS - 100, 0] if capture == path else [0, 0])
             noise.append(document["filter"]["measurement_noise"])
         assert noise[0] == noise[1], f"the noise of a start-up with a stuck axis is {noise[0]}, without {noise[1]}"
-        # Where no other is left, the rates are refused for what they are.
+        # If no other axis is left, the error message describes the rates.
         for command in (tune, ["diagnose"]):
             refused(1, *command, self.write("still.csv", {"rate_radps": [1e-4] * ROWS}), says=["still.csv"])
 
@@ -180,7 +180,7 @@ class Checks:
         refused(1, "denoise", alone, "--model", model, "--output", self.folder / "never.csv", says=[str(model), "no axis 'y'"])
 
     def check_figures_are_of_the_part_that_is_wanted(self):
-        """Noise is known after 4096 samples; values are missing from 50 to 53 s."""
+        """The noise is known after 4096 samples; values are missing from 50 to 53 s."""
         rows = [self.random.gauss(0, SIGMA) for _ in range(10000)]
         part = [math.nan if 5000 <= i < 5300 else v for i, v in enumerate(rows)]
         holed, out, to = self.write("parts.csv", {"rate_radps": part}), self.folder / "parts.out.csv", self.folder / "parts.json"
@@ -204,7 +204,7 @@ class Checks:
             assert result.returncode == 0, result
 
     def check_what_a_configuration_names_is_read(self):
-        """Relative to it, whatever else the command line says, and no output of the run."""
+        """Relative to it, regardless of other options, and not an output of the run."""
         place = self.folder / "configured"
         place.mkdir()
         dbc, model, config = place / "bus.dbc", self.model("configured/model.toml"), place / "ifogd.toml"
@@ -241,7 +241,8 @@ class Checks:
         assert not any(math.isnan(value) for value in found["denoised_x_radps"])
 
     def check_full_scale_is_the_same_everywhere(self):
-        """What the daemon takes for missing by the driver's full scale, convert and allan take for missing, too, and say so."""
+        """convert and allan treat the values that the daemon treats as missing, by the driver's full scale, as missing too, and
+        report it."""
         fast = [12.0 if 1000 <= i < 1100 else v for i, v in enumerate(self.noise)]
         options = ["--driver", "kvh1750", "--option", "rate_hz=100"]
         path, frames, back = self.write("fast.csv", {"rate_radps": fast}), self.folder / "fast.kvh", self.folder / "fast.back.csv"
@@ -255,7 +256,7 @@ class Checks:
             assert missing == list(range(1000, 1100)), f"{file}: {missing[:3]} … {len(missing)}"
 
     def check_what_makes_bytes_of_a_flight_recording_is_named(self):
-        """And does: what comes out is the samples of the recording."""
+        """The output has the samples of the recording."""
         recording, to = SOURCE / "tests/stable/0.2.0/recording.ifr", self.folder / "flight.bin"
         result = ran("convert", recording, to)
         assert result.returncode == 2, f"exit {result.returncode}: {result.stderr}"
@@ -275,7 +276,7 @@ class Checks:
             part = self.write(name, {"rate_radps": self.noise[begin:end]}, times[begin:end])
             whole = self.write("front.csv", {"rate_radps": self.noise[:2000]}, times[:2000])
             refused(1, "diagnose", whole, part, says=[str(part), f"from {said_from} to {said_to} s", "expected each record once"])
-        # Records of their own may begin at the same time.
+        # Different records may begin at the same time.
         ifog("diagnose", "--quiet", self.one, self.write("another.csv", {"rate_radps": [self.random.gauss(0, SIGMA) for _ in range(ROWS)]}))
 
     def check_a_model_of_one_axis_for_several_is_said(self):
@@ -290,7 +291,7 @@ class Checks:
         assert "each of" not in said("denoise", one, "--model", self.model("one_axis.toml"), *out)
 
     def check_what_was_not_filtered_is_not_said_to_be(self):
-        """As many samples as the start-up takes: the noise is known only behind the last one."""
+        """As many samples as the start-up needs: the noise is known only after the last one."""
         fast = self.write("second.csv", {"rate_radps": [self.random.gauss(0, SIGMA) for _ in range(4000)]}, [i / 20000 for i in range(4000)])
         short = self.write("short.csv", {"rate_radps": self.noise[:350]})
         for path in (fast, short):
@@ -303,7 +304,7 @@ class Checks:
         assert "from the first seconds" in said("denoise", long, "--output", self.folder / "filtered.csv")
 
     def check_a_correction_that_is_not_there_is_said(self):
-        """At rest; of what the model corrects `share` is there. On a table that swings the rate is no error."""
+        """At rest; `share` of the model's correction is in the data. On an oscillating table the rate is not an error."""
         times = [float(i) for i in range(1200)]
         swing = [0.25 * math.sin(t / 30) for t in times]
         model, out = self.model("share.toml"), self.folder / "share.json"
@@ -324,7 +325,7 @@ class Checks:
         assert "the model" not in said("denoise", path, *out)
 
     def check_every_number_is_finite(self):
-        """Of every command, by what it says of itself: an option whose value is a number takes nothing else."""
+        """For every command, from its own description: an option with a numeric value accepts nothing else."""
         numbers, words = {"NUMBER", "SECONDS", "S", "TIME"}, {"N", "INDEX"}
         texts = {"FILE", "NAME", "FOLDER", "WHERE", "URL", "PATH", "C", "KEY=VALUE", "HEADER[:UNIT]", "NAME=HEADER[:UNIT]", "HEADER=VALUE", "WHAT", "[ADDRESS:]PORT"}
         tried = 0
@@ -369,7 +370,7 @@ class Checks:
         refused(1, "simulate", tiny, "--output", self.folder / "never.csv", says=["tiny.toml", "duration_s", "1.0", "expected 2"])
 
     def check_tune_counts_rows(self):
-        """A hole of a day between two runs: what is not there is no row."""
+        """A gap of a day between two runs does not produce rows."""
         day = self.write("day.csv", {"rate_radps": self.noise[:2000]}, [i / RATE_HZ + (86400 if i >= 1000 else 0) for i in range(2000)])
         for most, left in ((2000, 0), (1500, 500)):
             to = self.folder / "day.json"

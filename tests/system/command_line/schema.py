@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the commands write as JSON, held to the schemas that are installed for others.
+"""Validates the JSON of the commands with the installed schemas.
 
-A schema lets others add keys, as later versions may; here it does not, so that a key that no schema knows fails.
+The schemas allow additional keys for later versions; this test does not, so that a key without a schema fails.
 """
 import json
 import pathlib
@@ -16,7 +16,7 @@ FOLDER = pathlib.Path(__file__).resolve().parents[3] / "tools/ifog/schemas"
 
 
 def strict(node):
-    """The schema with every object closed that names its properties."""
+    """The schema with all objects closed that list properties."""
     if isinstance(node, dict):
         node = {key: strict(value) for key, value in node.items()}
         if isinstance(node.get("properties"), dict):
@@ -33,9 +33,9 @@ def of(name):
 
 
 def check(document):
-    """AssertionError with the place and the reason where a document is not what its own schema says."""
+    """AssertionError with place and reason if a document does not agree with its schema."""
     if jsonschema is None:
-        return  # the test of the schemas says so
+        return  # the test of the schemas reports that
     schema = of(document["schema"])
     jsonschema.Draft202012Validator.check_schema(schema)
     errors = [f"{'.'.join(map(str, error.absolute_path)) or 'the document'}: {error.message[:200]}"

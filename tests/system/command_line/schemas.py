@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Every --json against its schema, with captures that make it say all that it can: several axes, holes, a reference, a model.
+"""Every --json against its schema, with captures that produce all parts: several axes, gaps, a reference, a model.
 
-usage: schemas.py PATH_OF_IFOG SOURCE_DIR       Exit 77 without python3-jsonschema.
+usage: schemas.py PATH_OF_IFOG SOURCE_DIR Exit 77 without python3-jsonschema.
 """
 import json
 import pathlib
@@ -17,7 +17,7 @@ sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
 import each_check  # noqa: E402
 
 IFOG, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
-# Three axes, an effect for each kind of table, a temperature, steps and motion: long enough for a diagnosis, short enough for a test.
+# Three axes, an effect for each kind of table, a temperature, steps and motion; as short as a diagnosis allows.
 SCENARIO = """
 seed = 5
 sample_rate_hz = 50
@@ -87,7 +87,7 @@ class Checks:
         assert "fraction" in self.held("diagnose", single, "--quiet")["unexplained"]
 
     def check_fleet(self):
-        """Every file of a lot's results; three axes' effects on one of them, and a gyro that fails."""
+        """All result files of a fleet with effects on three axes of one gyro, and a gyro that fails."""
         (self.folder / "lot.toml").write_text('type = "T"\n' + "".join(f'[[gyro]]\nserial = "G{i}"\ncaptures = ["lot-{i}.csv"]\n' for i in range(7)))
         for i in range(6):
             ran("simulate", self.folder / "three.toml", "--seed", i, "--output", self.folder / f"lot-{i}.csv")
@@ -112,7 +112,7 @@ class Checks:
         found = self.held("drivers")
         assert {"kvh1750", "dbc"} <= {driver["name"] for driver in found["drivers"]}
         assert [driver["name"] for driver in self.held("drivers", "dsp3000")["drivers"]] == ["dsp3000"]
-        # A plugin that is none is refused, and the list says why.
+        # An invalid plugin is rejected, and the list has the reason.
         (self.folder / "plugins").mkdir()
         (self.folder / "plugins" / "broken.so").write_text("no object\n")
         said = subprocess.run([IFOG, "drivers", "--json", "-"], capture_output=True, text=True, check=True, env={"IFOG_PLUGIN_PATH": str(self.folder / "plugins")})
@@ -137,7 +137,7 @@ class Checks:
         assert files == written, f"schemas that nobody writes, or the other way round: {files ^ written}"
 
     def check_the_check(self):
-        """A key that went, one that came, another type: each fails."""
+        """A removed key, an added one, another type: each fails."""
         good = json.loads(self.truth.read_text())
         for spoil in (lambda d: d.pop("seed"), lambda d: d.update(news=1), lambda d: d["noise"].update(N="loud"), lambda d: d["noise"].update(M=1)):
             bad = json.loads(json.dumps(good))

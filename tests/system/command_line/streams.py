@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What `ifog` reads and writes, attacked: pipes and standard streams in place of files, devices, links, full disks, closed
-pipes, interrupts, and names that a shell, a terminal or a picture could take for more than a name.
+"""Inputs and outputs of `ifog` under attack: pipes and standard streams instead of files, devices, links, full disks, closed pipes,
+interrupts, and names with a meaning for a shell, a terminal or a picture.
 
 usage: streams.py PATH_OF_IFOG SOURCE_DIR
 """
@@ -47,7 +47,7 @@ class Checks:
         ifog("simulate", folder / "rest.toml", "--output", self.capture)
 
     def fresh(self, name):
-        """An empty folder: what is in it afterwards is what the command left."""
+        """An empty folder; afterwards it contains what the command left."""
         folder = self.folder / name
         folder.mkdir()
         return folder
@@ -63,7 +63,7 @@ class Checks:
         return {"--plot": ".svg", "--output": ".csv", "": ".csv"}.get(option, "")
 
     def outputs(self):
-        """Every option that names a file to write, in a command that is quick."""
+        """Every option with an output file, in a quick command."""
         model = self.folder / "m.toml"
         if not model.exists():
             ifog("tune", self.capture, "--samples", "2000", "--state", "random-walk", "--write-model", model)
@@ -87,7 +87,7 @@ class Checks:
     # --- reading ---
 
     def check_standard_input_for_every_capture(self):
-        """The same answer as from the file, plain and packed."""
+        """The same result as from the file, plain and packed."""
         text = self.capture.read_bytes()
         for command in (["allan"], ["tune", "--samples", "2000", "--state", "random-walk"], ["compare"], ["diagnose"]):
             path = self.folder / "in.json"
@@ -132,7 +132,7 @@ class Checks:
         del lines[header + 2002:header + 2102]
         result = piped(("\n".join(lines) + "\n").encode(), "allan", "-", "--gaps", "refuse")
         assert result.returncode == 1
-        # Data row 2000, counted from one, stands a line lower for the remark.
+        # Data row 2000, counted from one, is one line lower because of the comment.
         one_line(result.stderr.decode(), f"-:{header + 2002}: 1 gap")
 
     def check_standard_input_is_read_once(self):
@@ -143,7 +143,7 @@ class Checks:
     # --- writing ---
 
     def check_standard_output_for_every_output(self):
-        """Nothing but the data there, and no file of that name."""
+        """Only data there, and no file of that name."""
         folder = self.fresh("standard_output")
         for command, option in self.outputs():
             result = subprocess.run([IFOG, *map(str, command), *self.target(option, "-")], cwd=folder, stdin=subprocess.DEVNULL,
@@ -166,7 +166,7 @@ class Checks:
         refused(2, "denoise", self.capture, "--output", "-", "--json", self.link("stdout", "/proc/self/fd/1"), says=["--json", "--output", "only one"])
 
     def check_a_link_to_standard_output(self):
-        """As /dev/stdout is one; a program that replaced it must not replace the machine's."""
+        """Like /dev/stdout; a program that replaced it must not replace the system's."""
         stdout = self.link("out", "/proc/self/fd/1")
         expected = self.folder / "expected.csv"
         ifog("denoise", self.capture, "--output", expected)
@@ -195,7 +195,7 @@ class Checks:
         for command in ('allan "$capture"', "drivers", 'compare "$capture"'):
             result = shell(f'set -o pipefail; "$ifog" {command} | true', capture=self.capture)
             assert result.returncode == 141 and not result.stderr, f"{command} | true: exit {result.returncode}: {result.stderr}"
-        # What has no end is ended by who reads it, though nothing is heard.
+        # An endless output ends when its reader closes it, even without data.
         result = shell('set -o pipefail; timeout 20 "$ifog" monitor --json - --seconds 15 --lcm-url memq:// | true')
         assert result.returncode == 141 and not result.stderr, f"monitor | true: exit {result.returncode}: {result.stderr}"
         folder = self.fresh("limit")
@@ -206,7 +206,7 @@ class Checks:
     def check_devices_and_links_stay(self):
         folder = self.fresh("devices")
         for command, option in self.outputs():
-            # A device of its own, where one can be made: the machine's is needed.
+            # A separate device if possible, because the system's is needed.
             null = folder / ("null" + self.ending(option))
             if os.geteuid() == 0 and not null.exists():
                 os.mknod(null, 0o666 | stat.S_IFCHR, os.makedev(1, 3))
@@ -245,17 +245,17 @@ class Checks:
         refused(1, "allan", self.capture, "--plot", folder / "no" / "p.svg", says=["No such file"])
         assert not os.listdir(folder), os.listdir(folder)
 
-    # --- a computer that has no room for another thread ---
+    # --- no further threads available ---
 
     def check_no_thread_to_be_had(self):
-        """What is worked on side by side elsewhere is done by the one thread there is, to the same bytes."""
+        """Parallel work is done by one thread, with the same bytes."""
         folder = self.fresh("alone")
         program = shutil.copy(IFOG, folder)
-        long = folder / "long.csv"  # read in more pieces than one
+        long = folder / "long.csv"  # read in several blocks
         long.write_text("time_s,rate_radps\n" + "".join(f"{i / 100},{(i * 2654435761 % 1000003) / 1e9}\n" for i in range(40000)))
         for path in (self.folder, folder, program):
             os.chmod(path, 0o755)
-        other = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}  # to root the limit is none
+        other = {"user": 65534, "group": 65534, "extra_groups": []} if os.geteuid() == 0 else {}  # root has no limit
 
         def alone(words):
             return subprocess.run(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.PIPE, timeout=120, check=False, **other,
@@ -273,10 +273,10 @@ class Checks:
         assert result.returncode == 1
         one_line(result.stderr.decode(), str(packed), "no process to read it")
 
-    # --- names that are more than names ---
+    # --- names with a special meaning ---
 
     def check_no_name_is_a_command(self):
-        """To a shell, to a terminal, or to what reads a picture."""
+        """For a shell, a terminal, or a reader of a picture."""
         folder = self.fresh("names")
         text = self.capture.read_text()
         names = ["x`touch PWNED`.csv", "$(touch PWNED).csv", "\x1b]0;owned\x07\x1b[31m.csv", "<b>&amp;\"'.csv", "\x9b31m\u202e.csv", "line\nend.csv"]

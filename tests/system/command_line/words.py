@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What a person is told, and does with it: names of files that say another format than what is written, commands printed to be
-copied, files that lack what was asked for, and what is counted.
+"""Texts for people and their use: file names of another format than the output, commands printed to be copied, files without the
+requested content, and counts.
 
 usage: words.py PATH_OF_IFOG SOURCE_DIR
 """
@@ -34,14 +34,14 @@ class Checks:
         return path
 
     def check_a_name_says_what_is_written(self):
-        """Of a format that nobody writes, or that this command does not, nothing is."""
+        """For a format that is not written, or not by this command, no file is created."""
         folder = self.folder / "endings"
         folder.mkdir()
         scenario, kvh = SOURCE / "tools/simulate/scenarios/rest.toml", ["--driver", "kvh1750"]
         for ending in (".mat", ".npz", ".ifr", ".lcm"):
             to = folder / ("out" + ending)
             commands = [["denoise", self.one, "--output", to], ["convert", self.one, to], ["simulate", scenario, "--output", to]]
-            # A device's bytes may have any name that is no other format's.
+            # A device's bytes may have any name that does not belong to another format.
             if ending in (".ifr", ".lcm"):
                 commands += [[*command, *kvh] for command in commands[1:]]
             for command in commands:
@@ -71,7 +71,7 @@ class Checks:
             for ending in others:
                 refused(2, *command, option, folder / ("out" + ending), says=[f"{option}: is '{folder / ('out' + ending)}', expected a name ending in {good}"])
             assert not list(folder.iterdir()), list(folder.iterdir())
-            for ending in (good, good.upper(), "", ".2026-11-23", "." + "aB3xYz"):  # mktemp's names say nothing
+            for ending in (good, good.upper(), "", ".2026-11-23", "." + "aB3xYz"):  # mktemp's names have no format
                 ifog(*command, option, folder / ("out" + ending))
                 (folder / ("out" + ending)).unlink()
         kvh = ["--driver", "kvh1750"]
@@ -81,7 +81,7 @@ class Checks:
         assert [each.name for each in folder.iterdir()] == ["sent.out"]
 
     def check_a_capture_is_known_by_what_it_holds(self):
-        """A CSV that is called .txt or nothing, and one in capitals."""
+        """A CSV named .txt or without ending, and one in capitals."""
         def figures(capture):
             axes = json.loads(ifog("allan", capture, "--json", "-", "--tau", "1"))["axes"]
             return [{key: value for key, value in axis.items() if key != "capture"} for axis in axes]
@@ -98,7 +98,7 @@ class Checks:
         ifog("allan", self.folder / "bytes.txt", "--driver", "kvh1750", "--option", "rate_hz=100", "--axis", "x")
 
     def copied(self, line, folder):
-        """A line that was printed, typed into a shell in that folder."""
+        """Runs a printed command line in a shell in that folder."""
         assert line.startswith("ifog "), line
         there = self.folder / "bin"
         if not there.exists():
@@ -109,7 +109,7 @@ class Checks:
         assert done.returncode == 0, f"{line}: exit {done.returncode}: {done.stderr}"
 
     def check_a_container_of_another_program_says_what_makes_columns(self):
-        """The first bytes as the formats' own descriptions have them."""
+        """The first bytes according to the formats' descriptions."""
         for name, head, words in (("a.xlsx", b"PK\x03\x04", "spreadsheet"), ("a.mat", b"MATLAB 5.0 MAT-file, Platform: GLNXA64", "save -v7.3"),
                                   ("a.bag", b"#ROSBAG V2.0\n", "rostopic echo"), ("a.mcap", b"\x89MCAP0\r\n", "ros2 topic echo --csv"),
                                   ("a.db3", b"SQLite format 3\0", "ros2 topic echo --csv"), ("a.ulg", b"ULog\x01\x12\x35\x01", "ulog2csv"),
@@ -121,7 +121,7 @@ class Checks:
                 refused(1, command[0], path, *command[1:], says=[words, name])
 
     def check_commands_to_be_copied_run_as_they_stand(self):
-        """With blanks and quotes in every name, and with the options that the capture was read with."""
+        """With blanks and quotes in every name, and with the options used for reading the capture."""
         folder = self.folder / "it's a folder"
         folder.mkdir()
         capture, model, report = folder / 'a "b" $c.csv', folder / "the model.toml", folder / "report.html"
@@ -150,7 +150,7 @@ class Checks:
         assert (folder / "flight 1.bin").stat().st_size > 0
 
     def check_columns_without_a_header_are_one_line(self):
-        """By every command that reads them, whatever stands between the numbers."""
+        """For every command that reads them, with any separator."""
         says = ["no header line", "--time '#1:s'", "rate_radps=#2:rad/s"]
         plain = self.write("plain.csv", "")
         packed = self.folder / "packed.csv.gz"
@@ -163,7 +163,7 @@ class Checks:
             refused(1, "replay", file, "--to", "-", "--driver", "kvh1750", says=says)
         refused(1, "allan", plain, "--time", "t:s", "--column", "rate_radps=w:rad/s", says=["no column 't', the header has '#1', '#2'"])
         ifog("allan", plain, "--time", "#1:s", "--column", "rate_radps=#2:rad/s")
-        # Numbers that are names: of a table that was written with its columns counted.
+        # Numbers as names: a table that was written with numbered columns.
         ifog("allan", self.write("counted.csv", "0,1"), "--time", "0:s", "--column", "rate_radps=1:rad/s")
         assert not (self.folder / "never.csv").exists() and not (self.folder / "never.h5").exists()
 
@@ -194,7 +194,7 @@ class Checks:
                 says=[f"{self.folder / 'channel.toml'}:3: ", "temperature_degC"])
 
     def check_a_name_with_control_characters_is_shown_and_can_be_copied(self):
-        """Nothing of it reaches the terminal as it is; the command that is printed still means the file."""
+        """Escaped on the terminal; the printed command still refers to the file."""
         folder = self.folder / "seen"
         folder.mkdir()
         capture, model = folder / "a\x1b[31m b\n.csv", folder / "m\x07 it's.toml"
@@ -211,7 +211,7 @@ class Checks:
             assert said and not [c for c in said if c != "\n" and not c.isprintable()], repr(said)
 
     def check_a_value_that_says_nothing_is_none(self):
-        """What a script's variable that was never set leaves behind: the run without it is not what was meant."""
+        """An unset variable of a script: the run without it would not be intended."""
         out = self.folder / "nothing.csv"
         for option in ("--model", "--json", "--config", "--noise", "--driver", "--dbc", "--time", "--separator", "--group", "--channel", "--sensor"):
             refused(2, "denoise", self.one, "--output", out, option, "", says=[f"ifog denoise: {option}: is '', expected "])
@@ -229,7 +229,7 @@ class Checks:
         assert not out.exists() and not (self.folder / "heard").exists()
 
     def check_what_cannot_be_written_is_known_before_the_work(self):
-        """No first output beside a second one that fails."""
+        """No first output together with a second one that fails."""
         place = self.folder / "place"
         place.mkdir()
         (place / "folder.json").mkdir()
@@ -249,7 +249,7 @@ class Checks:
         refused(2, "help", "alan", says=["unknown command 'alan'", "'allan'"])
 
     def check_help_is_laid_out(self):
-        """No line that a terminal would break within a word, no hole of two empty lines."""
+        """No line that a terminal would break within a word, no two empty lines."""
         for command in ["", *re.findall(r"^  ([a-z]+) ", ifog("--help").split("Subcommands:")[1], re.M)]:
             text = ifog(*filter(None, [command, "--help"]))
             assert "\n\n\n" not in text, command
@@ -257,7 +257,7 @@ class Checks:
                 assert len(line) <= 100 or line.startswith("  ifog "), f"{command}: {line}"
 
     def check_the_demo_refuses_before_it_builds(self):
-        """A file of no use, or none: one line in the first second, and nothing is installed or built."""
+        """An unusable or missing file: one line in the first second, and nothing is installed or built."""
         still = self.folder / "still.csv"
         still.write_text("time_s,rate_radps\n1,0\n1,0\n")
         for words, code, says in ((["--help"], 0, "tools/demo CAPTURE"), (["--fast"], 2, "'--fast'"), ([self.folder / "none.csv"], 2, "none.csv: no such file"),

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A second decoder, in another language and by the definitions, against `ifog convert`.
+"""An independent decoder in another language, written from the definitions, compared with `ifog convert`.
 
-Packs CAN frames here, one bit at a time, from a DBC file as people write it by hand, in both formats of candump, and
-compares what `ifog convert` reads from them. Takes a made-up capture through `ifog convert` to KVH bytes and to candump logs, decodes those here (the KVH manual's
-table, CRC by long division, DBC signals one bit at a time), and compares with the capture and with what `ifog convert`
-makes of the same files.   usage: run.py PATH_OF_IFOG SOURCE_DIR
+Packs CAN frames bit by bit from a handwritten DBC file, in both formats of candump, and compares the result of `ifog convert`.
+Converts a generated capture with `ifog convert` to KVH bytes and to candump logs, decodes them here (the KVH manual's table, CRC
+by long division, DBC signals bit by bit), and compares with the capture and with the result of `ifog convert` for the same files.
+usage: run.py PATH_OF_IFOG SOURCE_DIR
 """
 import csv
 import math
@@ -169,7 +169,8 @@ def check_dbc(name, options, axes, temperature, counter, scale):
         same(f"{name} {column} by ifog", found[key], back[column], 1e-15)
 
 
-# A bus described as people write it by hand: comments, several signals on a line, nodes and receivers on further lines,
+# A bus in handwritten form: comments, several signals per line, nodes and receivers on further lines, statements without ';', a
+# half float, an unreadable line, a name by attribute.
 # statements without their ';', a half float, a line that cannot be read, a name by attribute.
 BY_HAND = """// a bench
 VERSION "1"
@@ -191,7 +192,7 @@ SIG_VALTYPE_ 291 Yaw_Rate_0001 : 1"""
 
 
 def pack(data, start, length, little, value):
-    """Writes the low bits of value into a bytearray, one at a time."""
+    """Writes the low bits of value into a bytearray."""
     at = start
     for i in range(length):
         bit = value >> i & 1 if little else value >> (length - 1 - i) & 1
@@ -200,7 +201,7 @@ def pack(data, start, length, little, value):
 
 
 def screen_line(stamp, can_id, data, characters):
-    """As candump prints it: sprintf in can-utils' lib.c."""
+    """As printed by candump: sprintf in can-utils' lib.c."""
     text = "".join(chr(byte) if 0x20 < byte < 0x7F else "." for byte in data)
     return (f" ({stamp:010.6f})" if stamp is not None else "") + f"  can0  {can_id:03X}   [{len(data)}]  " + \
         " ".join(f"{byte:02X}" for byte in data) + (f"   '{text}'" if characters else "") + "\n"
@@ -245,7 +246,7 @@ def check_by_hand():
         same(f"{kind} yaw", yaw, back["rate_x_radps"], 1e-15)
         same(f"{kind} pitch", pitch, back["rate_y_radps"], 1e-15)
         same(f"{kind} temperature", temperature, back["temperature_degC"], 1e-15)
-        # Without the counter the lines' own times show: from the first sample's last frame on.
+        # Without the counter the lines' times are used, from the first sample's last frame on.
         timed = [option for pair in zip(arguments[::2], arguments[1::2]) if pair[1] not in
                  ("counter=Count", f"rate_hz={RATE_HZ}") for option in pair]
         if kind != "none":

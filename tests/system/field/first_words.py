@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What `status -c` says next to the JSON of the same sensor, and a night when no recording is closed yet."""
+"""Output of `status -c` compared with the JSON of the same sensor, and a night before the first recording is closed."""
 import csv
 import os
 

@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The loop in the field as nobody plans it: two sensors, one with a model of its own, nights that are killed, adopting twice and taking
-back twice, without a daemon, on a disk that is full or read-only, of a sensor that is no longer configured, and with a clock that was
-set back between two days.
+"""Improvement of a model with faults: two sensors, one with its own model, killed nights, adopting and reverting twice, without a
+daemon, on a full or read-only disk, for a sensor that is no longer configured, and with a clock that was set back between two
+days.
 
 usage: odd.py BUILD
 
-In a network namespace of its own. One line for each check, `ok` or `FAILED`. Exit 77, with the reason, where something to
-run it is missing.
+In its own network namespace. One line per check, `ok` or `FAILED`. Exit 77, with the reason, if something required is missing.
 """
 import json
 import os
@@ -27,7 +26,7 @@ import schema  # noqa: E402
 import slow_gyro  # noqa: E402
 
 HZ, DAY_S = 2, 16384
-# A page of such a disk, and room on it for all that the state folder comes to hold.
+# Page size of such a disk, and space for the whole state folder.
 PAGE, ROOM = 4096, 1 << 20
 MODEL = """version = 1
 [[effect]]
@@ -71,7 +70,7 @@ class Odd:
         print(("ok      " if good else "FAILED  ") + what, flush=True)
 
     def ran(self, *arguments, code=0, config="two.toml"):
-        """What is said; one line, where it failed."""
+        """The output; one line on failure."""
         done = subprocess.run([self.ifog, *arguments, *(["--config", config] if config else [])], stdin=subprocess.DEVNULL, capture_output=True,
                               text=True, timeout=280, check=False)
         said = (done.stdout + done.stderr).strip()
@@ -107,7 +106,7 @@ class Odd:
                 file.write(DAEMON + "".join(SENSOR.format(**sensor, day=f"day{day}") for sensor, day in sensors))
 
     def day(self, config):
-        """The daemon over a day, as fast as it goes."""
+        """The daemon processes a day at full speed."""
         done = subprocess.run([os.path.join(self.build, "daemon/ifogd"), "--config", config], stdin=subprocess.DEVNULL, capture_output=True, text=True,
                               timeout=200, check=False)
         self.check(done.returncode == 0 and done.stderr.count(f"{HZ * DAY_S} published, 0 missing") == 2, f"a day of two sensors, {config}")
@@ -152,9 +151,9 @@ class Odd:
         self.check((back["model"], back["replaced"], back["running"]) == ("", self.proposed, False), "taken back, and its JSON says what")
         self.check("nothing was adopted" in self.ran("revert", "nose", code=1), "taking back twice is refused")
         self.check("nothing was adopted" in self.ran("revert", "ta-il_2", code=1), "and of a sensor of which nothing was adopted")
-        # The same proposal once more: it was made against no model, and none is in use.
+        # The same proposal again: it was made against no model, and none is in use.
         self.propose_again()
-        # What it did stands, and that nobody could be told has failed.
+        # The change is done, but the failed report makes the command fail.
         self.check("cannot write" in self.ran("adopt", "nose", "--json", "/dev/full", code=1) and self.model_in_use()["nose"] == self.proposed,
                    "adopted, and its --json had no room")
         self.check("cannot write" in self.ran("revert", "nose", "--json", "/dev/full", code=1) and self.model_in_use()["nose"] == "",
@@ -165,7 +164,7 @@ class Odd:
         self.check(self.model_in_use()["nose"] == "", "adopted and taken back once more")
 
     def full_disk(self):
-        """With room for 0, 1, 2 … pages more: it is adopted or it is not, and what is there says which."""
+        """With space for 0, 1, 2 … more pages: the model is adopted or not, and the files agree."""
         shutil.move("state", "kept")
         os.mkdir("state")
         if subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={ROOM}", "none", "state"], capture_output=True, check=False).returncode != 0:
@@ -194,7 +193,7 @@ class Odd:
         self.check(0 < refused < 8, f"{refused} of 8 found too little room")
 
         self.propose_again()
-        # A new night has something to do, and nowhere to write it.
+        # A new night has work, but no space to write.
         os.remove("state/nose.night.json")
         subprocess.run(["mount", "-o", "remount,ro", "state"], check=True)
         self.check("Read-only file system" in self.ran("adopt", "nose", code=1), "a state folder that is read-only: adopting is refused")
@@ -209,7 +208,7 @@ class Odd:
         shutil.move("kept", "state")
 
     def clock_set_back(self):
-        """The second day is recorded with what was adopted, and by a clock that was set back by a year."""
+        """The second day is recorded with the adopted model, with a clock that was set back by a year."""
         self.propose_again()
         self.ran("adopt", "nose")
         self.day("second.toml")
@@ -226,7 +225,7 @@ class Odd:
         self.check(report["sensors"][0]["promise"].startswith("the promise came true"), "the night judges the adoption on a day before it by the clock: "
                    + report["sensors"][0]["promise"])
         self.check(self.json("status", "--wait", "0.1")[1]["sensors"][0]["last_change"]["outcome"].count("the promise came true") == 1, "and the status has it")
-        # Both days at once, as the first night of a new state folder sees them.
+        # Both days at once, as in the first night of a new state folder.
         self.ran("revert", "nose", config="second.toml")
         os.remove("state/nose.night.json")
         said, report = self.json("night", "--sensor", "nose", config="second.toml")

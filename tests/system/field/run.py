@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The loop in the field, with the real programs: a gyro whose temperature effect nobody declared runs for two accelerated
-days. The first night proposes a model, a person adopts it while the second day runs, and that day's error is smaller by
-what was promised; the published angle is exact over the adoption. A promise that is broken is said. A sensor that is switched on with the computer says so in its
-recordings.
+"""Improvement of a model during operation, with the real programs: a gyro with an undeclared temperature effect runs for two
+accelerated days. The first night proposes a model, it is adopted during the second day, and the error of that day decreases as
+promised. The published angle is exact over the adoption. A broken promise is reported. Recordings of a sensor that is powered
+with the computer contain the time of power-up.
 
 usage: run.py BUILD [FOLDER to keep]
 
-In a network namespace of its own. One line for each check, `ok` or `FAILED`. Exit 77, with the reason, where something to
-run it is missing.
+In its own network namespace. One line per check, `ok` or `FAILED`. Exit 77, with the reason, if something required is missing.
 """
 import csv
 import glob
@@ -31,25 +30,25 @@ import first_words  # noqa: E402
 import slow_gyro  # noqa: E402
 
 HZ = 10
-ROWS = 2 << 16  # of a day, 3.6 h: the frames' counter, of 16 bits, goes on from one to the next
+ROWS = 2 << 16  # of a day, 3.6 h: the 16-bit counter of the frames continues from one day to the next
 DAY_S = ROWS / HZ
 SPEED = 300
 URL = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4000000"
 PER_HOUR = 180 / math.pi * 3600
-TURNED_OVER = 4  # the day on which the effect of the temperature is another
-# An adoption is watched for so long of the gyro's own time: ten minutes and more, and over a cycle of the temperature.
+TURNED_OVER = 4  # on this day the temperature effect is different
+# Duration of the watch in the gyro's time: more than ten minutes and more than one temperature cycle.
 WATCH_S = {"kept": 6000, "broken": 3000}
 
 
 def document(path):
-    """JSON of the programs, as its schema has it."""
+    """JSON of the programs, validated with its schema."""
     with open(path) as file:
         out = json.load(file)
     schema.check(out)
     return out
 
 
-# Of a sensor that is switched on with the computer: long past where this runs, so the time constant is long, too.
+# For a sensor powered with the computer: this is long after power-up, so the time constant is long.
 WARM_UP = """version = 1
 [[effect]]
 form = "warm_up"
@@ -81,7 +80,7 @@ class Field:
         return said
 
     def of(self, command, *arguments, **more):
-        """A command that looks after the daemon, and the JSON it writes."""
+        """A command for the running daemon, and its JSON."""
         out = self.path("out.json")
         if os.path.exists(out):
             os.remove(out)
@@ -134,7 +133,7 @@ file_s = 3
     def start(self):
         self.log = open(self.path("log"), "a")
         self.daemon = subprocess.Popen([os.path.join(self.build, "daemon/ifogd"), "--config", self.config], stderr=self.log)
-        # The writing end that keeps the FIFO open between the days.
+        # Keeps the FIFO open between the days.
         self.fifo = os.open(self.path("gyro"), os.O_RDWR)
         self.await_(lambda: "reading" in open(self.path("log")).read(), "the daemon to begin")
 
@@ -234,7 +233,7 @@ file_s = 3
         ratio, expected = error["with"] / error["without"], promised["after_radps"] / promised["before_radps"]
         print(f"        RMS of 100 s means, °/h: promised {promised['before_radps'] * PER_HOUR:.4f} -> {promised['after_radps'] * PER_HOUR:.4f}, "
               f"second day {error['without'] * PER_HOUR:.4f} -> {error['with'] * PER_HOUR:.4f}")
-        # What is left is noise: some 30 means promise it, and 108 find it, so that their ratio is known to 15 %.
+        # The rest is noise: with some 30 means in the promise and 108 in the measurement the ratio is accurate to 15 %.
         self.check(ratio < 0.3 and abs(ratio / expected - 1.0) < 0.45, f"smaller by what was promised: to {ratio:.3f}, promised {expected:.3f}")
         self.await_(lambda: not glob.glob(self.path("record/nose/*.open")), "the recordings to be closed")
         said = self.run("night", "--config", self.config)
@@ -265,10 +264,10 @@ file_s = 3
         feeder.wait()
 
     def a_promise_that_is_broken(self):
-        """The same proposal, and a gyro that has turned over since: the watch says so, and the way back is the one it says."""
+        """The same proposal with a gyro whose effect has changed sign: the watch reports it, and the printed command reverts it."""
         for name in glob.glob(self.path("as-proposed/nose.proposal*")):
             shutil.copy(name, self.state)
-        # The sensor has just stopped: whether the daemon has seen it yet or not.
+        # The sensor has just stopped; the daemon may not have noticed yet.
         said = self.run("adopt", "nose", "--config", self.config, code=1)
         self.check('in state "no data"' in said and "used from the next sample on" in said and "\n" not in said and self.sensor()["model"] == "",
                    "of a sensor that is silent: one line that says so, and nothing is changed")
@@ -301,8 +300,8 @@ file_s = 3
 
 
     def switched_on_with_the_computer(self):
-        """A recording says when its sensor was switched on: what was published comes out of it to the bit, a warm-up by the time
-        since then included, and the night can judge it."""
+        """A recording contains the time of power-up of its sensor: denoise reproduces the published values to the bit, including
+        a warm-up by that time, and the night can evaluate it."""
         rows = 1 << 15
         with open("/proc/uptime") as file:
             up_s = float(file.read().split()[0])
@@ -316,7 +315,7 @@ file_s = 3
         os.mkdir(self.state)
         with open(self.config, "w") as file:
             file.write(text.replace(self.path("state"), self.state).replace('"record"', '"record3"'))
-        # As if it were now: what comes before power-up is nobody's warm-up.
+        # Without data before power-up, which has no warm-up.
         now = time.time()
         with open(self.path("day1.log")) as file, open(self.path("day3.log"), "w") as out:
             for number, line in enumerate(file):
@@ -335,7 +334,7 @@ file_s = 3
         with open(self.path("again.csv")) as file:
             first = next(csv.DictReader(line for line in file if not line.startswith("#")))
         corrected = float(first["raw_radps"]) - float(first["compensated_radps"])
-        # Some seconds passed since up_s was read, and not a minute; the kernel's own clock is slewed against the daemon's.
+        # Less than a minute has passed since up_s was read; the kernel's clock is slewed relative to the daemon's.
         self.check(1e-6 * math.exp(-(up_s + 60) / tau_s) < corrected <= 1e-6 * math.exp(-up_s * (1 - 1e-4) / tau_s), "its warm-up counts from boot")
         done = subprocess.run([os.path.join(self.build, "tests/system/log_reload"), self.path("day3.lcm"), "IFOG_NOSE",
                                self.path("again.csv"), self.path("again.csv")], capture_output=True, text=True)

@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""One folder of recordings, two runs of the daemon between which the driver's options were changed, as the device was: each run is
-filtered from its beginning, by what it was recorded with. The device sent the same rates both times, so the second half is the first.
+"""One folder of recordings from two runs of the daemon with different driver options, as the device was changed: each run is
+filtered from its beginning with its own options. The device sent the same rates both times, so both halves are equal.
 
 usage: runs.py BUILD
 
-In a network namespace of its own. One line for each check, `ok` or `FAILED`. Exit 77, with the reason, where something to
-run it is missing.
+In its own network namespace. One line per check, `ok` or `FAILED`. Exit 77, with the reason, if something required is missing.
 """
 import csv
 import os
@@ -92,7 +91,7 @@ def main():
         check(max(abs(a - b) for a, b in zip(rates[:ROWS], rates[ROWS:])) < 1e-9, "also for commands that want columns")
         said = run(ifog, "denoise", "record/nose", "--window", "40", "--output", "other.csv")
         check("each as it was, but for what the command line says" in said, "what is said on the command line is not said to have been so")
-        # As configured: in radians, both. The second run begins anew, so its first value is its own.
+        # As configured, both in radians. The second run restarts, so its first value differs.
         said = run(ifog, "denoise", "record/nose", "--config", "radians.toml", "--output", "configured.csv")
         found = columns("configured.csv")
         check("each run from its beginning, as configured" in said, "with a configuration each run begins anew")

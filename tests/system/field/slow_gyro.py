@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The gyro of the loop in the field, whose temperature effect nobody declared."""
+"""A gyro with an undeclared temperature effect."""
 
 CYCLE_S = 2700  # of the temperature
 

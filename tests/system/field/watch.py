@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The watch of `ifog adopt` as it is by default: ten minutes of real time, on a gyro that sends in real time. One whose
-proposal holds, and one that has turned over since.
+"""The watch of `ifog adopt` with its defaults: ten minutes of real time with a gyro in real time. Once the promise is kept, and once
+the gyro's effect has changed sign.
 
 usage: watch.py BUILD [FOLDER to keep]
 
-By name: half an hour, nearly all of it waiting. In a network namespace of its own. One line for each check, `ok` or
-`FAILED`; exit 77, with the reason, where something to run it is missing.
+By name only: half an hour, mostly waiting. In its own network namespace. One line per check, `ok` or `FAILED`; exit 77, with the
+reason, if something required is missing.
 """
 import os
 import shutil
@@ -18,12 +18,12 @@ sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
 import run  # noqa: E402
 import slow_gyro  # noqa: E402
 
-# The watch sees more than one cycle of the temperature, which it needs to judge the mean of an effect.
+# The watch covers more than one temperature cycle, which is necessary to evaluate the mean of an effect.
 slow_gyro.CYCLE_S = 400
 
 
 def watched(field, day, verdict, code):
-    """The proposal adopted, with no word of how long to watch, while `day` comes in real time."""
+    """Adopts the proposal with the default watch while `day` arrives in real time."""
     seen = field.published()
     feeder = field.feed(day, 1)
     field.await_(lambda: field.published() > seen + 10 * run.HZ, "the gyro to begin")
@@ -35,7 +35,7 @@ def watched(field, day, verdict, code):
     field.check(adopted is not None and 590 < adopted["watched_s"] < 630 and took > 590, f"after ten minutes: {took:.0f} s")
     sensor = field.sensor()
     field.check(sensor["books"]["balanced"] and not any(sensor["losses"].values()), "nothing was lost")
-    # Under way: a model is taken with the next sample.
+    # While running: a model is used from the next sample on.
     said = field.run("revert", "nose", "--config", field.config)
     field.check("model none is in place again" in said, "and back")
     feeder.terminate()

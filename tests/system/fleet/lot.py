@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A lot of simulated gyros of one type: most are sensitive to the temperature, at about five standard errors, some are not."""
+"""Simulated gyros of one type: most are sensitive to the temperature, with about five standard errors, some are not."""
 import subprocess
 
 COEFFICIENT = 6.0e-9  # rad/s per degC

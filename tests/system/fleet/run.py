@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A lot of simulated gyros through `ifog fleet` on this machine's processors: results, restart, failures, the type's effect.
+"""Simulated gyros with `ifog fleet` on this computer: results, restart, failures, the type's effect.
 
 usage: run.py PATH_OF_IFOG SOURCE_DIR
 """
@@ -68,7 +68,7 @@ def check_the_daemons_code_takes_the_model(folder):
 
 
 def check_a_scale_factor_counts_from_the_bias(folder):
-    """The measured rate, which the daemon has, is the true one and the bias: what it corrects must not leave scale times bias."""
+    """The measured rate, which the daemon has, is the true one plus the bias: its correction must not leave scale times bias."""
     bias, scale = 5.0e-2, 3.0e-4
     (folder / "table.scenario").write_text(f"""
 seed = 1
@@ -116,7 +116,7 @@ def check_restart_takes_up_what_is_missing(folder):
     after = stamps(folder)
     changed = {path for path in after if after[path] != before.get(path)}
     assert {path.parent.name for path in changed} == {"G03"}, changed
-    # A capture that is another now is diagnosed anew; one half-written result is none.
+    # A changed capture is diagnosed again; a partial result does not count.
     os.utime(folder / "G04.csv")
     (folder / "lot.results/gyros/G05/gyro.json").write_text('{"schema": "ifog.gy')
     fleet(folder)
@@ -155,7 +155,7 @@ def check_a_damaged_result_is_made_again(folder):
 
 
 def check_a_measurement_of_other_inputs_is_none(folder):
-    """One that failed, of other captures: neither this run's failure nor its measurement."""
+    """A failure for other captures is neither this run's failure nor its measurement."""
     (path,) = [each for each in (folder / "lot.results/gyros/G09").glob("measured-*.json")
                if json.loads((folder / "lot.results/type.json").read_text())["id"] in each.name]
     kept = json.loads(path.read_text())
@@ -166,7 +166,7 @@ def check_a_measurement_of_other_inputs_is_none(folder):
 
 
 def one_gyro(folder, name, *arguments, captures=("G01.csv",), expect=0, environment=None):
-    """Of a manifest of its own."""
+    """With its own manifest."""
     (folder / name).write_text(f'type = "T"\n[[gyro]]\nserial = "A"\ncaptures = {json.dumps(captures)}\n')
     result = subprocess.run([IFOG, "fleet", *arguments], cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=100, check=False,
                             env=environment)
@@ -187,7 +187,7 @@ def check_nothing_of_an_earlier_run_stays_when_none_is_diagnosed(folder):
 
 
 def check_another_option_is_another_diagnosis(folder):
-    """How the columns of a file are read, and what a bus description of the same name says."""
+    """Options of the file's columns, and the content of a bus description with the same name."""
     bus = (SOURCE / "drivers/dbc/examples/ifogd_gyro.dbc").read_text()
     (folder / "bus.dbc").write_text(bus)
     options = ["--dbc", "bus.dbc", "--option", "signal=Rate_x", "--option", "counter=Counter", "--option", "rate_hz=10"]
@@ -218,14 +218,14 @@ def check_options_end_where_they_are_said_to(folder):
 def check_a_link_in_a_path_is_followed(folder):
     (folder / "far/inside").mkdir(parents=True)
     (folder / "near").symlink_to("far/inside")
-    shutil.copy(folder / "G01.csv", folder / "far/there.csv")  # near/../there.csv is no ./there.csv
+    shutil.copy(folder / "G01.csv", folder / "far/there.csv")  # near/../there.csv is not ./there.csv
     one_gyro(folder, "linked.toml", "linked.toml", "--engine", "local", captures=("near/../there.csv",))
 
 
 def check_what_squeue_warns_of_is_no_job(folder):
     programs = folder / "programs"
     programs.mkdir()
-    # As if it had run the job before it answers.
+    # As if the job ran before Slurm answers.
     (programs / "sbatch").write_text("#!/bin/sh\ncat >script; SLURM_ARRAY_TASK_ID=0 sh script >/dev/null; echo 7\n")
     (programs / "squeue").write_text("#!/bin/sh\necho 'squeue: warning: 12 jobs, 3_4 more' >&2\necho\n")
     for each in programs.iterdir():
@@ -280,7 +280,7 @@ def check_bad_manifests(folder):
 
 
 def check_no_shell_reads_the_manifest(folder):
-    """A capture's name that a shell would run, and the script for Slurm: its index is all that stands there."""
+    """A capture's name that a shell would execute, and the script for Slurm, which contains only the index."""
     name = "a'; touch pwned; $(touch pwned) `touch pwned` .csv"
     shutil.copy(folder / "G01.csv", folder / name)
     (folder / "hostile.toml").write_text(f"type = \"T'; touch pwned\"\n[[gyro]]\nserial = \"H\"\ncaptures = [{json.dumps(name)}]\n")
@@ -288,7 +288,7 @@ def check_no_shell_reads_the_manifest(folder):
     script = subprocess.run([IFOG, "fleet", "hostile.toml", "--engine", "slurm", "--results", "another ' one", "--dry-run"], cwd=folder, check=True,
                             capture_output=True, text=True, timeout=60).stdout
     assert "touch" not in script and "#SBATCH --array=0\n" in script and subprocess.run(["sh", "-n"], input=script, text=True, check=False).returncode == 0, script
-    # Run by hand it does what Slurm would do.
+    # Run manually, it does what Slurm would do.
     subprocess.run(["sh"], input=script, text=True, cwd=folder, env={**os.environ, "SLURM_ARRAY_TASK_ID": "0"}, check=True, timeout=100)
     assert (folder / "another ' one/gyros/H/gyro.json").is_file()
     assert not list(folder.rglob("pwned"))

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`ifog fleet --engine slurm` with a real slurmctld and two slurmd on this machine, one of which is killed under way.
+"""`ifog fleet --engine slurm` with a real slurmctld and two slurmd on this computer, one of which is killed.
 
-usage: slurm.py PATH_OF_IFOG SOURCE_DIR      Exit 77 where slurm-wlm, munge or a network namespace are missing.
+usage: slurm.py PATH_OF_IFOG SOURCE_DIR Exit 77 if slurm-wlm, munge or a network namespace is missing.
 
-Everything lies in a temporary folder and listens in a network namespace of its own; processes are ended by their ids.
+All files are in a temporary folder, all sockets in a separate network namespace; processes are ended by their ids.
 """
 import contextlib
 import getpass
@@ -101,7 +101,7 @@ class Cluster:
         return subprocess.run(words, env=self.environment, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=check, timeout=60)
 
     def processes_of(self, name):
-        """Of the node: its daemon, what that started and the tasks in it, by the environment that they carry."""
+        """Processes of the node: its daemon, their children and its tasks, identified by their environment."""
         found = []
         for entry in pathlib.Path("/proc").iterdir():
             if not entry.name.isdigit() or int(entry.name) == os.getpid():
@@ -116,7 +116,7 @@ class Cluster:
         return found
 
     def kill_node(self, name):
-        """As if its power went: nothing of it says goodbye."""
+        """Like a power failure: no process can clean up."""
         for _ in range(3):
             for process in self.processes_of(name):
                 with contextlib.suppress(ProcessLookupError):
@@ -160,7 +160,7 @@ def check_a_node_dies(cluster):
     results = cluster.folder / "lot/lot.results"
     had = len(list(results.glob("gyros/*/gyro.json")))
     assert had < len(GYROS), "the lot was done before the node died"
-    # What was on the node waits for two minutes, in case the node is only slow to end it; this one is known to be dead.
+    # Slurm waits two minutes for a slow node; this one is known to be dead.
     wait_for("the task is queued again", lambda: "BeginTime" in cluster.ran("squeue", "-h", "-t", "PD", "-j", task, "-o", "%r").stdout, seconds=120)
     cluster.ran("scontrol", "update", f"JobId={task}", "StartTime=now")
     assert run.wait(timeout=500) == 0, (cluster.folder / "said").read_text()
@@ -191,7 +191,7 @@ def check_restart(cluster):
 
 
 def check_an_interrupted_run_is_taken_up(cluster):
-    """The array outlives who submitted it, and is not submitted twice."""
+    """The array continues after its submitting process ends, and is not submitted twice."""
     shutil.rmtree(cluster.folder / "lot/lot.results")
     words, options = fleet(cluster)
     run = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, **options)
@@ -209,12 +209,12 @@ def inside():
     with tempfile.TemporaryDirectory(prefix="fleet") as name:
         folder = pathlib.Path(name)
         (folder / "lot").mkdir()
-        # So many samples that a task lasts long enough to be killed in.
+        # Enough samples that a task lasts long enough to be killed.
         lot.make(IFOG, folder / "lot", gyros=GYROS, hertz=400)
         cluster = None
         try:
             cluster = Cluster(folder)
-            cluster.bring_up()  # what it has started is ended, however far it came
+            cluster.bring_up()  # its processes are ended in any case
             for check in (check_a_node_dies, check_the_same_as_on_this_machine, check_restart, check_an_interrupted_run_is_taken_up):
                 try:
                     check(cluster)
@@ -236,7 +236,7 @@ def inside():
 def main():
     if os.environ.get(INSIDE):
         subprocess.run(["ip", "link", "set", "lo", "up"], check=True)
-        # Slurm looks for an address to listen on among those that are not the loopback's; one of documentation (RFC 5737).
+        # Slurm needs an address that is not on the loopback; one for documentation (RFC 5737).
         subprocess.run(["ip", "address", "add", "192.0.2.1/32", "dev", "lo"], check=True)
         return inside()
     for program in ("slurmctld", "slurmd", "sbatch", "munged", "unshare", "ip"):

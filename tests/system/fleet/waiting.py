@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
-"""For what another process does in its own time."""
+"""Waiting for another process."""
 import time
 
 
 def wait_for(what, ready, seconds=60):
-    """What `ready` gives once it is true of anything."""
+    """Returns the result of `ready` when it is true."""
     until = time.monotonic() + seconds
     while time.monotonic() < until:
         value = ready()

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Files far larger or deeper than any that is meant: each ends in seconds with a clear line. And whoever asks a program to end while
-it still reads is obeyed at once.
+"""Files far larger or deeper than intended: each is rejected in seconds with a clear line. A program can be ended at once while it
+reads.
 
 usage: costs.py BUILD
 
-One line for each check, `ok` or `FAILED`.
+One line per check, `ok` or `FAILED`.
 """
 import json
 import signal
@@ -16,7 +16,7 @@ import time
 from place import CONFIG, main_of
 
 MANY = 50_000
-SECONDS = 15  # an idle processor needs 1 to 3 for the largest of them
+SECONDS = 15  # an idle processor needs 1 to 3 for the largest file
 SENSOR = '[[sensor]]\nname = "s{0}"\ndriver = "kvh1750"\n[sensor.transport]\ntype = "file"\npath = "a{0}"\n'
 
 
@@ -26,7 +26,7 @@ def write(name, text):
 
 
 def chain():
-    """A DBC file of multiplexors, each chosen by the one before it."""
+    """A DBC file of nested multiplexors."""
     lines = ['VERSION ""', "BU_: A", "BO_ 291 M: 64 A", ' SG_ S0 M : 0|8@1+ (1,0) [0|0] "" A']
     lines += [f' SG_ S{i} m1M : 0|8@1+ (1,0) [0|0] "" A' for i in range(1, MANY)]
     lines += [' SG_ Rate m1 : 8|16@1- (0.001,0) [0|0] "deg/s" A']
@@ -100,7 +100,7 @@ def signals(place):
 
 
 def other_ports(place):
-    """Datagrams of another program of the sensor's host do not mix in."""
+    """Datagrams of another program on the sensor's host are not accepted."""
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as free:
         free.bind(("127.0.0.1", 0))
         port = free.getsockname()[1]
@@ -111,7 +111,7 @@ def other_ports(place):
         write("udp.toml", CONFIG.replace('type = "file"\npath = "gyro"\n', f'type = "udp"\nport = {port}\nhost = "127.0.0.1"\n{key}')
               .replace('"ifogd.toml"', '"udp.toml"'))
         daemon = place.start("udp.toml", "udp.log")
-        # What begins a line's first counts from the line end behind it.
+        # The first part of a line counts from the previous line end.
         first.sendto(b"\r\n", ("127.0.0.1", port))
         gyro.sendto(b"\r\n", ("127.0.0.1", port))
         time.sleep(0.1)

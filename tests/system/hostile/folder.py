@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What somebody who may write into the state folder can make root do there: nothing outside of it, and no file that he may not
-read is shown. Root against the user nobody.
+"""A user who may write into the state folder cannot make root write outside of it or print a file that he may not read. Root against
+the user nobody.
 
 usage: folder.py BUILD
 
-One line for each check, `ok` or `FAILED`; `skipped` where not root. Exit 77 where nothing could be run.
+One line per check, `ok` or `FAILED`; `skipped` if not root. Exit 77 if nothing could be run.
 """
 import os
 import shutil
@@ -36,7 +36,7 @@ def link(name, to="../secret"):
 
 
 def adopting(place):
-    """A model through a link that nobody put in its place, by adopt and by revert."""
+    """A model replaced by a link, for adopt and revert."""
     clear(place)
     name = place.propose("2e-08")
     link("nose.model.toml")
@@ -50,7 +50,7 @@ def adopting(place):
     link("nose.model.toml")
     said = place.of("revert", "nose")
     place.check(SECRET in content("secret") and SECRET not in said, "nor does revert: " + said)
-    # With another model kept, which revert would write.
+    # With another model stored, which revert would write.
     clear(place)
     place.propose("2e-08")
     place.of("adopt", "nose", code=0)
@@ -65,7 +65,7 @@ def adopting(place):
 
 
 def reading(place):
-    """Everything that is read there, as a link and as a second name of what nobody may not read."""
+    """Every file that is read there, as symbolic and hard link to a file that nobody may not read."""
     for how in ("link", "second name"):
         for name, commands in (("nose.proposal.json", ("proposals", "status", "adopt")), ("nose.history.json", ("status", "revert", "adopt")),
                                ("nose.model.toml", ("status", "proposals", "adopt")), ("nose.night.json", ("night",)),
@@ -95,7 +95,7 @@ def reading(place):
 
 
 def quoting(place):
-    """Files of the folder whose content is none of ours: their kind is said, not what they hold."""
+    """Files with foreign content: the message gives their kind, not their content."""
     for name, text in (("nose.proposal.json", '{"schema": "%s"}'), ("nose.proposal.json", '{"schema": {"%s": 1}}'), ("nose.history.json", '{"schema": "%s"}'),
                        ("nose.history.json", "%s"), ("nose.model.toml", "%s = 1\n"), ("nose.model.toml", 'version = 1\n[[effect]]\nform = "%s"\n'),
                        ("nose.model.toml", 'version = "\\q%s"\n'), ("nose.noise.toml", 'version = "%s"\n')):
@@ -134,11 +134,11 @@ for at in range(1 << 40):
 
 
 def races(place):
-    """A file that is swapped with a link all the while, more than 200 times, while root writes it."""
+    """A file that is exchanged with a link more than 200 times while root writes it."""
     clear(place)
     with open("mine", "w") as file:
         file.write("mine")
-    # Who loses a race with root goes on.
+    # A lost race does not stop root.
     swapper = subprocess.Popen([PYTHON, "-c", SWAPS.replace("    os.", "    with __import__('contextlib').suppress(OSError): os.")],
                                user=NOBODY, group=NOBODY, extra_groups=[], stdout=subprocess.PIPE)
     swapped = swapper.stdout.readline()

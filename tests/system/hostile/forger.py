@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Somebody on the multicast group who says what the daemon does not: he can neither keep a model from being adopted nor have one
-pass for adopted that the daemon did not take. What the commands ask is the process that has the state folder, by its socket, and
-they see when another one sits there.
+"""A forger on the multicast group can neither prevent the adoption of a model nor simulate one: the commands ask the process that
+has locked the state folder, through its socket, and detect another process there.
 
 usage: forger.py BUILD
 
-In a network namespace of its own. One line for each check, `ok` or `FAILED`; `skipped` where not root.
+In its own network namespace. One line per check, `ok` or `FAILED`; `skipped` if not root.
 """
 import json
 import os
@@ -33,8 +32,7 @@ def group_socket():
 
 
 class Forger:
-    """Sends a status that was once right again and again, far more often than the daemon sends its own; behind a model that is put
-    in place, another one."""
+    """Repeats an old status much more often than the daemon sends its own; after an exchange of the model, with another model."""
 
     def __init__(self, packet, behind=None):
         self.going, self.packet, self.behind = True, packet, behind or packet
@@ -56,7 +54,7 @@ class Forger:
 
 
 def status_of(model):
-    """A packet in which a sensor called nose runs with the model of this name."""
+    """A packet in which a sensor named nose runs with the model of this name."""
     with group_socket() as group:
         for _ in range(2000):
             packet = group.recv(65536)
@@ -66,7 +64,7 @@ def status_of(model):
 
 
 def other_daemon(place, value):
-    """Another daemon's words, of a sensor of the same name that runs with this model already: kept, and the daemon ended."""
+    """Messages of another daemon with a sensor of the same name that already runs with this model; then the daemon is ended."""
     os.mkdir("other")
     with open("ifogd.toml") as file:
         text = file.read().replace('"state"', '"other"').replace('"gyro"', '"gyro2"')
@@ -88,7 +86,7 @@ def other_daemon(place, value):
 
 
 def vetoed(place, packet):
-    """He says that another model is in use."""
+    """Claims that another model is in use."""
     place.run_daemon()
     place.await_(place.running, "the sensor to run")
     forger = Forger(packet)
@@ -104,7 +102,7 @@ def vetoed(place, packet):
 
 
 def satisfied(place, packet, value):
-    """He says that the model was taken, while the daemon answers nothing."""
+    """Claims that the model is in use, while the daemon does not answer."""
     forger = Forger(status_of(""), packet)
     try:
         place.propose(value)
@@ -118,7 +116,7 @@ def satisfied(place, packet, value):
 
 
 def who_sits_there(place):
-    """Another process in place of the daemon's socket, and another user at it."""
+    """Another process, and another user, at the daemon's socket."""
     os.rename("state/ifogd.socket", "state/mine")
     fake = subprocess.Popen([PYTHON, "-c", "import socket, time\ns = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)\n"
                              "s.bind('state/ifogd.socket')\ns.listen()\nprint('there', flush=True)\ntime.sleep(60)"],
@@ -134,7 +132,7 @@ def who_sits_there(place):
     said = place.of("adopt", "nose", code=1)
     place.check("is no socket" in said and "\n" not in said, "and a link is not followed: " + said)
     os.rename("state/mine", "state/ifogd.socket")
-    # The daemon was stopped a moment ago, and its sensor has no data until a second later.
+    # The daemon was stopped a moment ago; its sensor has no data until a second later.
     deadline = time.monotonic() + 20
     while place.status()["sensors"][0]["state"] != "running" and time.monotonic() < deadline:
         time.sleep(0.2)
@@ -143,7 +141,7 @@ def who_sits_there(place):
                               check=False)
         place.check("ifogd runs" in done.stdout and ("running" in done.stdout) == told and ("cannot be asked" in done.stderr) != told,
                     f"a user {'of' if told else 'outside'} the folder's group is told {'all' if told else 'nothing: ' + done.stderr.strip()}")
-    # Who asks and never listens holds nothing up.
+    # A client that does not read does not block anything.
     deaf = []
     for _ in range(40):
         asking = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""A daemon of one gyro in a folder of its own, and what a lesser user puts in its way."""
+"""A daemon with one gyro in its own folder, and obstacles of an unprivileged user."""
 import hashlib
 import json
 import os
@@ -15,10 +15,10 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 import private_network  # noqa: E402
 
 NOBODY = 65534
-PYTHON = shutil.which("python3", path="/usr/bin:/bin") or "python3"  # one that anybody may run
+PYTHON = shutil.which("python3", path="/usr/bin:/bin") or "python3"  # executable by anybody
 URL = "udpm://239.255.76.67:7667?ttl=0"
 SECRET = "swordfish-4711"
-# As the programs write one: its hash is its name.
+# In the programs' format: its hash is its name.
 MODEL = """version = 1
 sensor = "nose"
 
@@ -56,7 +56,7 @@ path = "temperature"
 
 
 def as_nobody(*words):
-    """What a member of nothing does."""
+    """Actions of a user without groups."""
     return subprocess.run(words, user=NOBODY, group=NOBODY, extra_groups=[], capture_output=True, text=True, check=False)
 
 
@@ -70,7 +70,7 @@ class Place:
         os.chmod(work, 0o755)
         os.mkdir("state")
         if os.geteuid() == 0:
-            # As the service has it: the folder is the daemon's user's.
+            # As in the service: the folder belongs to the daemon's user.
             os.chown("state", NOBODY, NOBODY)
         os.chmod("state", 0o2775)
         with open("temperature", "w") as file:
@@ -106,7 +106,7 @@ class Place:
         return text, {"identity": hashlib.sha256(text.encode()).hexdigest()[:12], "sha256": hashlib.sha256(text.encode()).hexdigest()}
 
     def propose(self, value, against=None):
-        """A proposal as a night leaves it; its model's name."""
+        """A proposal of a night; returns its model's name."""
         text, name = self.model(value)
         with open(f"state/nose.proposal-{name['identity']}.toml", "w") as file:
             file.write(text)
@@ -128,7 +128,7 @@ class Place:
         self.feed(self.fifo)
 
     def feed(self, fifo):
-        """100 samples a second, until the end."""
+        """100 samples per second until the end."""
         self.feeding = True
 
         def send():
@@ -165,7 +165,7 @@ class Place:
 
 
 def main_of(usage, *parts, root_for="", after=lambda place: None):
-    """Each part with a place of its own making. root_for: what a user without its rights cannot try."""
+    """Runs each part in its own place. root_for: parts that need root."""
     if len(sys.argv) != 2:
         sys.exit(usage)
     build = os.path.abspath(sys.argv[1])

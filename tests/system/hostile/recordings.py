@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A stranger's recording names files of the computer on which it is read: none of them is opened, and the user names what the
-recording does not carry. And links in a spool, read by who may read what they lead to.
+"""A foreign recording names files of the computer on which it is read: none of them is opened, and the user must name missing ones.
+Also links in a spool that lead to files that only the reader may read.
 
 usage: recordings.py BUILD
 
-One line for each check, `ok` or `FAILED`.
+One line per check, `ok` or `FAILED`.
 """
 import json
 import os
@@ -46,7 +46,7 @@ folder = "record"
 
 
 def record(place):
-    """As the daemon makes one."""
+    """As written by the daemon."""
     shutil.copy(DBC, "gyro.dbc")
     with open("own.toml", "w") as file:
         file.write(place.model("2e-08")[0])
@@ -79,7 +79,7 @@ def a_file_of_this_computer(place, recording):
     for name, text in (("secret.dbc", f'VERSION ""\nBO_ {SECRET} x\n'), ("secret.toml", f'version = 1\n[[effect]]\nform = "{SECRET}"\n')):
         with open(name, "w") as file:
             file.write(text)
-    # An old recording, or one that is made to look so.
+    # An old recording, or one made to look old.
     whole = os.path.abspath("gyro.dbc")
     changed(recording, "old.ifr", (f"file.{whole}", ""))
     changed(recording, "foreign.ifr", (f"file.{whole}", ""), ("option.dbc", f"option.dbc={os.path.abspath('secret.dbc')}"))
@@ -102,7 +102,7 @@ def a_file_of_this_computer(place, recording):
 
 
 def a_spool_with_links(place, recording):
-    """By who may read what the links lead to, into the history and the night's bookmark, too."""
+    """Read with rights on the links' targets, also into the history and the night's bookmark."""
     shutil.copy(recording, "kept.ifr")
     os.symlink(os.path.abspath("secret.dbc"), "record/nose/000000000009-20260101T000000.000Z.ifr")
     said = place.ran("night", "--config", "dbc.toml") + place.ran("denoise", "record/nose", "--output", "x.csv") + place.ran("allan", "record/nose")
@@ -114,13 +114,13 @@ def a_spool_with_links(place, recording):
     kept = "".join(open(os.path.join("state", name)).read() for name in os.listdir("state") if name.endswith("json"))
     place.check(SECRET not in said + kept and "one name" in said, "nor what has another name")
     os.remove("record/nose/000000000009-20260101T000000.000Z.ifr")
-    # A header that says what it likes, into what the night keeps.
+    # A header with arbitrary content, and the night's files.
     changed("gone.ifr", "record/nose/000000000010-20260101T000000.000Z.ifr", ("carries=", f"carries={SECRET}"))
     place.ran("night", "--config", "dbc.toml")
     kept = "".join(open(os.path.join("state", name)).read() for name in os.listdir("state") if name.endswith("json"))
     place.check(SECRET not in kept and "night.json" in "".join(os.listdir("state")), "the night keeps nothing of what a recording holds")
     os.remove("record/nose/000000000010-20260101T000000.000Z.ifr")
-    # Without what it would need of the header, the configuration of this computer says it.
+    # Missing parts of the header are taken from this computer's configuration.
     changed("gone.ifr", "record/nose/000000000011-20260101T000000.000Z.ifr", (f"file.{os.path.abspath('gyro.dbc')}", ""))
     said = place.ran("night", "--config", "dbc.toml")
     place.check("at rest for" in said, "an old recording in the spool is read by the configuration: " + said)

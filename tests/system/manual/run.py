@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The manual against the programs, and read by the programs that read manuals; and the shell's completion, typed at.
+"""The manual compared with the programs and read by `man` and `mandoc`, and the shell completion.
 
 usage: run.py PATH_OF_IFOG PATH_OF_IFOGD SOURCE_DIR MANUAL_DIR
 
-What must be in a page is asked of `--help`, of `ifog drivers` and of the sources, not of what the pages are made from. Exit 77 where
-mandoc, man or bash-completion is missing.
+Expected content comes from `--help`, `ifog drivers` and the sources, not from the input of the pages. Exit 77 if mandoc, man or
+bash-completion is missing.
 """
 import gzip
 import os
@@ -31,7 +31,7 @@ def said(*command):
 
 
 def page(name):
-    """As a person reads it, in one line: words that were broken at a line's end are whole again."""
+    """As read by a person, in one line, with hyphenated words joined."""
     text = subprocess.run(["man", "-l", str(MANUAL / f"man{name[-1]}" / (name + ".gz"))], capture_output=True, text=True, timeout=60,
                           check=True, env={**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "1000", "MANPAGER": "cat", "MANROFFOPT": "-rHY=0"}).stdout
     return " ".join(text.split())
@@ -61,12 +61,12 @@ class Checks:
                                    env={**os.environ, "LC_ALL": "C.UTF-8", "MANWIDTH": "80"})
             assert groff.returncode == 0 and not groff.stderr, f"{path.name}: {groff.stderr}"
             assert gzip.decompress(path.read_bytes()).count(b"\n") > 20, path
-            # What apropos(1) and whatis(1) will know it by.
+            # Entries of apropos(1) and whatis(1).
             known = subprocess.run(["lexgrog", "-m", str(path)], capture_output=True, text=True, check=False)
             assert known.returncode == 0 and path.name.split(".")[0] in known.stdout, f"{path.name}: {known.stdout}{known.stderr}"
 
     def check_options_are_told_in_plain_words(self):
-        """No type of a programming language, no name of a check, in help, manual and completion."""
+        """No type of a programming language and no name of a check in help, manual and completion."""
         foreign = re.compile(r"\b(TEXT|FLOAT|UINT|INT|BOOLEAN|NONNEGATIVE|POSITIVE)\b|:\{|:FILE\b| in \[")
         for command in [[], *([name] for name in commands())]:
             found = foreign.search(said(IFOG, *command, "--help"))
@@ -85,7 +85,7 @@ class Checks:
         assert listed == {"ifog.1.gz"} | {f"ifog-{command}.1.gz" for command in commands()}, listed
 
     def check_what_help_says_is_in_the_page(self):
-        """Not only the names: each option's own words."""
+        """Each option's text, not only its name."""
         for command in ("allan", "denoise", "replay"):
             text = page(f"ifog-{command}.1").lower()
             told = re.findall(r"^  -\S+.*?(?: {2,}|\n {20,})(\S.*)$", said(IFOG, command, "--help"), re.M)
@@ -94,7 +94,7 @@ class Checks:
                 assert " ".join(words.lower().split()) in text, f"ifog-{command}(1) lacks '{words}'"
 
     def check_what_is_told_is_of_an_installed_program(self):
-        """No place in the source, no variable of a script that is not there; files that are read were installed, or an example makes them."""
+        """No paths of the sources and no variables of a script; files that are read are installed or made by an example."""
         for path in sorted(MANUAL.glob("man?/*.gz")):
             text = page(path.name.removesuffix(".gz"))
             found = re.search(r"\w+/\w+\.(?:h|cpp|py|md)\b|\btests/|tools/|drivers/|\.\./", text)
@@ -107,7 +107,7 @@ class Checks:
                     assert (SOURCE / {"scenarios": "tools/simulate/scenarios", "dbc": "drivers/dbc/examples"}[kind] / name).exists(), line
 
     def check_examples_run_as_they_are_printed(self):
-        """Of ifog-simulate(1), in an empty folder; what the package installs is looked for in the sources."""
+        """Of ifog-simulate(1), in an empty folder; installed files are taken from the sources."""
         lines = gzip.decompress((MANUAL / "man1/ifog-simulate.1.gz").read_bytes()).decode().split('.SH "EXAMPLES"')[1].split(".SH")[0]
         printed = [re.sub(r"\\[&-]", lambda each: each.group()[1].replace("&", ""), line) for line in lines.splitlines()]
         wanted = [line for line in printed if line.startswith("ifog simulate ")]
@@ -123,7 +123,7 @@ class Checks:
 
     def check_the_daemon(self):
         holds(page("ifogd.8"), options_of_help(IFOGD), "ifogd(8)")
-        # States and faults stand in daemon/README.md; a sample of what only that says.
+        # States and faults are described in daemon/README.md; samples from there.
         holds(page("ifogd.8"), ["device gone", "SIGHUP", "buffer_bytes", "noise.toml"], "ifogd(8)")
 
     def check_the_configuration_has_every_key_that_is_read(self):
@@ -151,7 +151,7 @@ class Checks:
         holds(model, read | {"second_rate", "band_power"}, "ifog-model(5)")
 
     def check_scenarios(self):
-        """Every key that the reader knows and every kind, key and list of the parts."""
+        """Every key of the reader, and every kind, key and list of the parts."""
         text = page("ifog-scenario.5")
         parts = (SOURCE / "tools/simulate/recipe.cpp").read_text().split("complete_numbers")[0]
         reader = (SOURCE / "tools/simulate/scenario.cpp").read_text()
@@ -160,12 +160,12 @@ class Checks:
         holds(text, words, "ifog-scenario(5)")
 
     def typed(self, *words):
-        """What is offered for the last of the words."""
+        """The completions of the last word."""
         script = f"""source {COMPLETION}; source {MANUAL}/completion/ifog; source {MANUAL}/completion/ifogd
           COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); COMP_LINE="$*"; COMP_POINT=${{#COMP_LINE}}; COMP_TYPE=9
           compopt() {{ :; }}
           _$(basename "$1"); printf '%s\\n' "${{COMPREPLY[@]}}" """
-        # The test's own name for the program, so that drivers are asked of the one that was built.
+        # A separate name for the program, so that drivers are listed by the built one.
         link = MANUAL / "completion" / "path"
         link.mkdir(exist_ok=True)
         for name, program in (("ifog", IFOG), ("ifogd", IFOGD)):
@@ -195,7 +195,7 @@ class Checks:
 
 
     def check_other_shells(self):
-        """fish completes a line by itself; of zsh the syntax, and that each command and option stands there."""
+        """fish completes a line itself; for zsh the syntax and the presence of each command and option."""
         if not shutil.which("fish") or not shutil.which("zsh"):
             print("skipped  other shells: no fish or zsh; tools/install-packages test installs them")
             return

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Many sensors in one daemon: every sample published, memory locked, and how much of it a sensor takes.
+"""Many sensors in one daemon: every sample is published, memory is locked; measures the locked memory per sensor.
 
-usage: run.py BUILD [--sensors N] [--hertz R] [--seconds S] [--json F]      24 sensors at 1000 Hz and 64 at 100 Hz unless said
+usage: run.py BUILD [--sensors N] [--hertz R] [--seconds S] [--json F] default: 24 sensors at 1000 Hz and 64 at 100 Hz
 
-In a network namespace of its own. FIFOs bring the frames of KVH 1750s, each at its time. The daemon runs with SCHED_FIFO
-where it may, and locks its memory; what a sensor adds to that is the slope between two sensors and all of them. Prints one
-line for each check, `ok` or `FAILED`. Exit 0 good, 1 not, 77 where memory cannot be locked.
+In its own network namespace. FIFOs deliver frames of KVH 1750s at their times. The daemon uses SCHED_FIFO if allowed and locks
+its memory; the memory per sensor is the slope between two sensors and all. Prints one line per check, `ok` or `FAILED`. Exit 0
+success, 1 failure, 77 if memory cannot be locked.
 """
 import argparse
 import json
@@ -25,8 +25,8 @@ sys.path[:0] = [os.path.join(HERE, "..", "box"), os.path.join(HERE, "..")]
 import frames  # noqa: E402
 import private_network  # noqa: E402
 
-ROUND = 128  # frames until the counter of a KVH 1750 begins anew
-MOST_LOCKED_KIB = 2048  # a sensor
+ROUND = 128  # rollover of the KVH 1750's counter, frames
+MOST_LOCKED_KIB = 2048  # per sensor
 FEW = 2
 
 
@@ -83,7 +83,7 @@ class Many:
         return self.said.read()
 
     def feed(self, seconds):
-        """Frame n of every sensor at n over the rate after the first."""
+        """Frame n of every sensor at n / rate after the first."""
         block = [frames.kvh1750(n, self.hertz) for n in range(ROUND)]
         begin = time.monotonic() + 0.2
         for n in range(round(seconds * self.hertz)):
@@ -102,7 +102,7 @@ class Many:
 
 
 def locked(build, sensors, hertz):
-    """KiB of a daemon that has published for a second; None where memory cannot be locked."""
+    """KiB of a daemon that has published for a second; None if memory cannot be locked."""
     with Many(build, sensors, hertz) as many:
         many.feed(1.0)
         found = memory_kib(many.daemon.pid)

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the subscribers printed: the same of the same message, and what was sent.   usage: judge.py COUNT FILE..."""
+"""Compares the output of the subscribers with each other and with the sent data. usage: judge.py COUNT FILE..."""
 import pathlib
 import sys
 
@@ -25,7 +25,7 @@ def main():
             sys.exit(f"FAILED: message {number}: {values} {gap}")
         for axis, sent in enumerate(SENT):
             increment, rate = float(values[2 * axis]), float(values[2 * axis + 1])
-            # The increment covers a period of the fitted clock; the rate is a float32 on the wire.
+            # The increment is over a period of the fitted clock; the rate is a float32 on the wire.
             if abs(rate - sent) > 1e-6 or (int(number) > 0 and abs(increment - sent / RATE_HZ) > 0.2 * abs(sent / RATE_HZ)):
                 sys.exit(f"FAILED: message {number} axis {axis}: {increment} rad, {rate} rad/s, sent {sent} at {RATE_HZ} Hz")
     print(f"ok       {len(files)} subscribers print the same of {len(common)} messages, and what was sent")

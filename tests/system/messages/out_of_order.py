@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""LCM promises no order: what a real daemon published is logged, and heard again with neighbours that changed places, and next to a
-second publisher. Readers of the log and of the network lose nothing of the first and say the second. Oracle: the log as it was.
+"""LCM does not guarantee order: messages of a real daemon are logged and repeated with exchanged neighbours, and together with a
+second publisher. Readers of the log and of the network lose nothing of the first and report the second. Oracle: the original log.
 
 usage: out_of_order.py BUILD
 """
@@ -46,7 +46,7 @@ speed = 40
 
 
 def in_order(events):
-    """Stamped in the order in which they come."""
+    """With stamps in the order of arrival."""
     return [(channel, utime, data) for (channel, _, data), utime in zip(events, sorted(event[1] for event in events))]
 
 
@@ -64,7 +64,7 @@ class Books:
         return done.returncode, done.stdout + done.stderr
 
     def logged(self, name, seed):
-        """What the daemon publishes of a capture, as lcm-logger has it."""
+        """Messages of the daemon for a capture, as logged by lcm-logger."""
         dice = random.Random(seed)
         with open("gyro.csv", "w") as file:
             file.write("time_s,rate_radps\n" + "".join(f"{i / 200},{dice.gauss(0, 1e-4)!r}\n" for i in range(ROWS)))
@@ -82,13 +82,13 @@ class Books:
         return events
 
     def converted(self, name):
-        """The rows of the log, and what is said of them."""
+        """The rows of the log, and the messages."""
         code, said = self.ran("convert", name, name + ".csv")
         with open(name + ".csv") as file:
             return code, said, [line for line in file if not line.startswith("#")]
 
     def recorded(self, events):
-        """What `ifog record` keeps of the messages, sent as fast as a gyro of 2 kHz would."""
+        """Messages stored by `ifog record` at the speed of a gyro of 2 kHz."""
         shutil.rmtree("kept", ignore_errors=True)
         recorder = subprocess.Popen([self.ifog, "record", "--output", "kept", "--lcm-url", URL], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                     stderr=subprocess.STDOUT, text=True)

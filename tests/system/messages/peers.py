@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Types of other programs on LCM. Ours have the hashes of the public definitions, whose members stand here; a subscriber that is
-built from those hears what a real daemon publishes: values, units, times; and logs of them are captures to every reader. Oracle: what
-was sent, and lcm-gen's code of the public members.
+"""Types of other programs on LCM. Ours have the hashes of the public definitions, whose members are listed here. A subscriber built
+from those receives the messages of a real daemon with correct values, units and times, and their logs are captures for every
+command. Oracle: the sent data, and lcm-gen's code for the public members.
 
 usage: peers.py BUILD
 """
@@ -25,7 +25,7 @@ from lcm_log import read_log, write_log  # noqa: E402
 URL = "udpm://239.255.76.67:7667?ttl=0&recv_buf_size=4000000"
 ROWS, RATE_HZ, EPOCH_us, G = 3000, 500, 1_700_000_000_000_000, 9.80665
 INS = "double gyro[3]; double mag[3]; double accel[3]; double quat[4]; double pressure; double rel_alt;"
-# ipab-slmc/lcm_catkin bot_core_lcmtypes, openhumanoids/microstrain, USYD-RowBot/acfr-lcm lcmdefs/senlcm: the members, nothing else.
+# ipab-slmc/lcm_catkin bot_core_lcmtypes, openhumanoids/microstrain, USYD-RowBot/acfr-lcm lcmdefs/senlcm: only the members.
 PUBLIC = {
     "bot_core.ins_t": "int64_t utime; int64_t device_time; " + INS,
     "bot_core.kvh_raw_imu_t": "int64_t utime; int64_t packet_count; double delta_rotation[3]; double linear_acceleration[3];",
@@ -37,7 +37,7 @@ PUBLIC = {
     "senlcm.raw_t": "int64_t utime; int32_t length; byte data[length];",
     "senlcm.raw_ascii_t": "int64_t utime; string msg;",
 }
-# JuliaRobotics/BotCoreLCMTypes.jl (test/runtests.jl) holds its own to these, as the bytes of the hash read backwards.
+# JuliaRobotics/BotCoreLCMTypes.jl (test/runtests.jl) checks its types with these, as the bytes of the hash in reverse order.
 JULIA = {"bot_core.ins_t": 4613985382350956424, "bot_core.kvh_raw_imu_t": 2860203241911737633, "bot_core.kvh_raw_imu_batch_t": 8667107086997737736}
 CONFIG = f"""[daemon]
 lock_memory = false
@@ -92,7 +92,7 @@ def near(got, sent, part=1e-6):
 
 
 def types_of(texts, folder):
-    """The module of each package, by lcm-gen, and the hash of each type."""
+    """The module of each package from lcm-gen, and the hash of each type."""
     os.makedirs(folder)
     for name, text in texts.items():
         with open(f"{folder}/{name}.lcm", "w") as file:
@@ -114,7 +114,7 @@ def ran(build, *words):
 
 
 def capture(build, log, *words):
-    """Exit status, what is said, the header, the rows."""
+    """Exit status, output, header and rows."""
     code, said = ran(build, "convert", log, log + ".csv", *words)
     if code != 0:
         return code, said, [], []
@@ -166,7 +166,7 @@ def published(build):
 def judge_ins(channel, second, messages, began, ended):
     check(len(messages) >= ROWS - 1, f"{channel}: a peer hears {len(messages)} of {ROWS} samples")
     behind = ROWS - len(messages)
-    # What the first sample covers is not known to the daemon before the second.
+    # The daemon does not know the duration of the first sample before the second.
     good = [near(m[2:5], rates(n + behind)) and near(m[5:8], forces(n + behind)) for n, m in enumerate(messages)]
     check(sum(good) == len(good) > 0, f"{channel}: rates in rad/s and specific force in m/s² of {sum(good)} are those that were sent")
     check(all(value == 0 for m in messages for value in m[8:]), f"{channel}: what a gyro does not know is 0")
@@ -193,7 +193,7 @@ def judge_capture(what, found, expected_rows, columns, part, first=0, length=ROW
         return check(False, f"{what}: {said.strip()}")
     check(header == ["time_s"] + columns, f"{what}: {','.join(header)}")
     check(len(rows) == expected_rows, f"{what}: {len(rows)} samples, expected {expected_rows}")
-    # Times are the daemon's fit of what came when: on a busy machine it is off by up to a second.
+    # Times are the daemon's fit of arrival times: on a busy machine they are off by up to a second.
     def wrong(shift, some):
         numbers = [round(row[0] * RATE_HZ) + first + shift for row in some]
         return [n for n, row in zip(numbers, some) if not 0 <= n < length or not near(row[1:4], rates(n), part) or not near(row[4:7], forces(n), 1e-5)]
@@ -207,7 +207,7 @@ COLUMNS = ["rate_x_radps", "rate_y_radps", "rate_z_radps", "accel_x_mps2", "acce
 
 
 def logged(build):
-    """What the daemon published, out of a log; a batch log that loses datagrams."""
+    """Messages of the daemon from a log; a batch log that loses datagrams."""
     events = read_log("all.lcm")
     first = ROWS - len([1 for channel, _, _ in events if channel == "INS"])
     for channel, part in (("INS", 1e-6), ("MICROSTRAIN", 1e-6), ("BATCH", 1e-4)):
@@ -231,7 +231,7 @@ def logged(build):
 
 
 def foreign(build, modules):
-    """Logs of acfr-lcm, made with lcm-gen's code of the public members."""
+    """Logs of acfr-lcm, made with lcm-gen's code for the public members."""
     senlcm = modules["senlcm"]
     frames, lines, deltas, imus = [], [], [], []
     for row in range(ROWS):
@@ -291,7 +291,7 @@ def foreign(build, modules):
 
 
 def raw_bytes(build, modules):
-    """What a device sent, published by another program in pieces that end anywhere, through a driver of ours."""
+    """Bytes of a device, published by another program in pieces that end anywhere, through one of our drivers."""
     with open("sent.kvh", "rb") as file:
         sent = file.read()
     dice, pieces, at = random.Random(3), [], 0
@@ -313,7 +313,7 @@ def raw_bytes(build, modules):
     judge_capture("senlcm.raw_t through kvh1750", capture(build, "raw.lcm", *driver), ROWS, COLUMNS + ["temperature_degC"], 1e-6)
     judge_capture("one channel of two", capture(build, "both.lcm", "--channel", "KVH_RAW", *driver), ROWS, COLUMNS + ["temperature_degC"], 1e-6)
     code, said, header, rows = capture(build, "lines.lcm", "--driver", "dsp3000", "--option", "output=rate", "--option", "rate_hz=100")
-    # The first line may be the end of one that was cut off: the driver waits for the next.
+    # The first line may be truncated, so the driver waits for the next.
     check(code == 0 and header == ["time_s", "rate_radps"] and len(rows) == ROWS - 1 and all(near([row[1]], [rates(n + 1)[0]], 1e-5) for n, row in enumerate(rows)),
           f"senlcm.raw_ascii_t through dsp3000, with and without ends of lines: {len(rows)} rates {said.strip()}")
     check(len(rows) == ROWS - 1 and abs(rows[-1][0] - (ROWS - 2) / 100) < 0.02, "their times are those of their arrival")

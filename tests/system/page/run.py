@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`ifog monitor --web`: the real daemon plays a capture whose figures are known, the page's data is held to them, clients that mean
-no good are let at it, and Chromium shows the page at two widths, light and dark.
+"""`ifog monitor --web`: the real daemon plays a capture with known figures, which are compared with the page's data; hostile
+clients; Chromium shows the page at two widths, light and dark.
 
 usage: run.py BINARY_DIR [FOLDER for the pictures]
 """
@@ -58,7 +58,7 @@ def require(holds, what):
 
 
 def capture(path):
-    """Each axis is its mean ± SWING by the throw of a coin: standard deviation SWING, Allan deviation of one sample likewise."""
+    """Each axis is its mean ± SWING at random: standard deviation SWING, and Allan deviation of one sample likewise."""
     coin = random.Random(1)
     rows = [",".join([f"{i / RATE_HZ:.3f}", *(f"{mean + coin.choice((-SWING, SWING)):.9e}" for mean in MEANS.values()), "25"]) for i in range(120 * RATE_HZ)]
     pathlib.Path(path).write_text("time_s,rate_x_radps,rate_y_radps,rate_z_radps,temperature_degC\n" + "\n".join(rows) + "\n", encoding="utf-8")
@@ -78,14 +78,14 @@ def wait_for(judge, what, seconds=20):
             if judge(seen := json.loads(ask("/data")[2])):
                 print(f"ok: {what}")
                 return seen
-        except (ConnectionError, KeyError, IndexError):  # it does not listen yet, or shows no sensor
+        except (ConnectionError, KeyError, IndexError):  # not listening yet, or without a sensor
             pass
         time.sleep(0.2)
     return sys.exit(f"FAILED: {what}; last {json.dumps(seen)[:2000]}")
 
 
 def figures():
-    """Against the capture's own numbers."""
+    """Compared with the capture's own numbers."""
     near = lambda value, wanted, within: value is not None and abs(value - wanted) < within
     seen = wait_for(lambda d: len(d["sensor"]["axes"][2]["allan"]) > 3 and len(d["sensor"]["axes"][0]["seconds"]) > 3, "three axes")["sensor"]
     text = "\n".join(line for _, line in seen["lines"])
@@ -106,7 +106,7 @@ def figures():
 
 
 def strangers(monitor):
-    """Read only, for few, and never in the way."""
+    """Read only, for a limited number of clients, and never blocking."""
     require("default-src 'none'" in ask("/")[1]["Content-Security-Policy"], "the page may load nothing from elsewhere")
     parts = ask("/page.js")[2] + ask("/page.css")[2] + ask("/")[2]
     require("innerHTML" not in parts and not re.search(r"https?:|@import|url\(", parts), "no innerHTML, nothing of the network")
@@ -139,7 +139,7 @@ setTimeout(() => { for (const f of frames) { const d = f.contentDocument, box = 
 
 
 class Stand(http.server.BaseHTTPRequestHandler):
-    """The monitor's own page in frames, with its data or with other."""
+    """The monitor's page in frames, with its data or other data."""
     data = None
 
     def do_GET(self):  # pylint: disable=invalid-name

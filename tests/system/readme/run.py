@@ -1,13 +1,13 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The commands of a README, run as printed: every block of them in its order, in one shell, from the project's root.
+"""Runs the commands of a README as printed: every block in order, in one shell, from the project's root.
 
 usage: run.py README SOURCE_DIR BUILD_DIR [SCENES]
 
-The build folder stands in for the one that is printed. What the reader of a block has and a test has not (a gyro's recording, a
-service manager, installed packages) is in SCENES, a bash file beside this one: it says how many `blocks` there are, sets the scene
-of the N-th in before_N(), looks at what came of it in after_N(), or names in elsewhere_N what runs it. LCM, mounts and processes
-stay in namespaces of their own. Exit 77 where there can be none. A block that fails is told with its line and what it said.
+The build folder replaces the printed one. SCENES is a bash file in this folder that supplies what only a user has (a gyro's
+recording, a service manager, installed packages): it states the number of `blocks`, prepares the N-th one in before_N(), checks
+its result in after_N(), or names in elsewhere_N the test that runs it. LCM, mounts and processes are in their own namespaces.
+Exit 77 if that is not possible. A failing block is printed with its line and output.
 """
 import os
 import pathlib
@@ -23,13 +23,13 @@ NOT_POSSIBLE = 77
 
 
 def blocks(text):
-    """Each block's first line and its commands; a block of a list stands as far in as its item."""
+    """Each block's first line and its commands; a block in a list is indented like its item."""
     return [(text[:found.start(2)].count("\n") + 1, textwrap.dedent(found.group(2)))
             for found in re.finditer(r"^( *)```sh\n(.*?)^\1```$", text, re.M | re.S)]
 
 
 def watched(commands):
-    """A list a && b that ends at a leaves bash going on, -e or not: its status is looked at. Not where a text begins on the line."""
+    """A list a && b that ends at a does not stop bash, even with -e, so its status is checked. Not inside a text."""
     return re.sub(r"^((?!.*<<).* && .*[^\\\n])\n", r"\1\n[ $? = 0 ]\n", commands, flags=re.M)
 
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Progress and the time left, as a person at a terminal sees them: pyte keeps the screen that `ifog` draws on standard error;
-and that nothing of it is written where standard error is no terminal.
+"""Progress and time left on a terminal: pyte emulates the screen that `ifog` draws on standard error. Without a terminal nothing is
+drawn.
 
-usage: progress.py PATH_OF_IFOG       Exit 77 without pyte.
+usage: progress.py PATH_OF_IFOG Exit 77 without pyte.
 """
 import os
 import pathlib
@@ -27,7 +27,7 @@ BAR = re.compile(r"^(?P<what>.+?) \[(?P<bar>[#.]{30})\] (?P<percent>\d+) %, (?P<
 
 
 def at_a_terminal(*arguments):
-    """Exit status, every line that stood on the screen while the command ran, and the screen at its end."""
+    """Exit status, every line on the screen while the command ran, and the final screen."""
     screen = pyte.Screen(100, 24)
     stream = pyte.ByteStream(screen)
     main, terminal = pty.openpty()
@@ -74,7 +74,7 @@ def main():
                 check(f"{command[0]} ends well at a terminal", status == 0, at_end)
                 check(f"{command[0]} leaves no bar", not any("[#" in line or "so far" in line for line in at_end), at_end)
             lines = [line for line in seen if line.startswith(what)]
-            # A machine that is quick enough shows nothing: what shows must be right.
+            # A fast machine shows nothing; what is shown must be right.
             wrong = [line for line in lines if not BAR.match(line) and not re.match(r"[^\[]+, \d+ s so far$", line)]
             check(f"{what}: {len(lines)} lines", not wrong, wrong[:3])
             counted = [int(BAR.match(line)["percent"]) for line in lines if BAR.match(line) and BAR.match(line)["what"] == what]

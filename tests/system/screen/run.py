@@ -1,9 +1,9 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""`ifog monitor` at a terminal, as a person sees it: pyte, a terminal emulator that is not ours, keeps the screen that the
-program draws, while the real daemon plays a recording of three axes in a network namespace.
+"""`ifog monitor` on a terminal: pyte, an independent terminal emulator, shows the screen while the real daemon plays a recording of
+three axes in a network namespace.
 
-usage: run.py BINARY_DIR          exit 77, with the reason, where something to run it is missing
+usage: run.py BINARY_DIR exit 77, with the reason, if something required is missing
 """
 import fcntl
 import json
@@ -42,7 +42,7 @@ def enter_namespace():
 
 
 class Terminal:
-    """A program on a pseudo-terminal, and what stands on its screen."""
+    """A program on a pseudo-terminal, and its screen."""
 
     def __init__(self, arguments, columns=80, rows=24):
         self.screen = pyte.Screen(columns, rows)
@@ -91,7 +91,7 @@ class Terminal:
         end = time.monotonic() + 20
         while time.monotonic() < end:
             self.read(0.1)
-            time.sleep(0.02)  # the terminal is closed a moment before the program is gone
+            time.sleep(0.02)  # the terminal closes a moment before the program ends
             pid, status = os.waitpid(self.pid, os.WNOHANG)
             if pid:
                 return os.waitstatus_to_exitcode(status)
@@ -183,7 +183,7 @@ def see_no_colour(ifog):
 
 
 def see_lines(ifog):
-    """To programs: JSON, and to a pipe lines."""
+    """For programs: JSON, and lines in a pipe."""
     told = subprocess.run([ifog, "monitor", "--seconds", "2.5", "--json", "-"], capture_output=True, text=True, check=True).stdout
     messages = [json.loads(line) for line in told.splitlines()]
     for message in messages:

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The daemon for many hours of a gyro's time, as fast as this machine carries them: a day at 1 kHz is some minutes.
+"""The daemon for many hours of a gyro's time at full speed: a day at 1 kHz takes some minutes.
 
-usage: run.py BUILD [--hours H] [--hertz R]      24 hours at 1000 Hz unless said
+usage: run.py BUILD [--hours H] [--hertz R] default: 24 hours at 1000 Hz
 
-In a network namespace of its own. A FIFO brings the frames of a KVH 1750 from one block that is repeated; SIGHUP reloads the
-filter every two seconds. Prints one line for each check, `ok`, `FAILED` or `skipped`: every sample published, the angle that
-of what was sent, memory and descriptors no more in the last tenth than after the first.
+In its own network namespace. A FIFO delivers frames of a KVH 1750 from a repeated block; SIGHUP reloads the filter every two
+seconds. Prints one line per check, `ok`, `FAILED` or `skipped`: every sample is published, the angle is correct, memory and
+descriptors do not increase from the first to the last tenth.
 """
 import argparse
 import json
@@ -26,9 +26,9 @@ sys.path[:0] = [os.path.join(HERE, "..", "box"), os.path.join(HERE, "..")]
 import frames  # noqa: E402
 import private_network  # noqa: E402
 
-BLOCK = 12800  # samples: a hundred rounds of the frame's counter, so that blocks follow each other
+BLOCK = 12800  # samples: a hundred rollovers of the frame's counter, so that blocks follow each other
 LAST = 36 * 100  # bytes
-# What may come and go with the moment: a log line's buffer, a page of the allocator's.
+# Normal variation: a log line's buffer, a page of the allocator.
 LEEWAY_KB = 1024
 
 
@@ -64,7 +64,8 @@ class Soak:
         block = b"".join(frames.kvh1750(n, self.hertz) for n in range(BLOCK))
         with open(fifo, "wb", buffering=0) as line:
             for _ in range(self.blocks):
-                # The subscriber does not keep up with all of it: the last samples come when it has done with what it got, and
+                # The subscriber is slower: the last samples are sent when it has processed the others, before the daemon treats
+                # the silence as a loss (2 s).
                 # before the daemon takes the silence for a loss (2 s).
                 last = self.fed == self.blocks - 1
                 parts = (block[:-LAST], block[-LAST:]) if last else (block,)
@@ -101,7 +102,7 @@ class Soak:
         want = f"{samples} samples read, {samples} published, 0 missing, 0 merged"
         yield "every sample", self.daemon.returncode == 0 and want in self.log, f"{want}; {self.log.count('reloaded')} reloads" if want in self.log else self.log[-600:]
         expected = self.blocks * frames.angle(0, BLOCK, self.hertz)
-        # Beside the rounding of this sum itself.
+        # Besides the rounding of this sum itself.
         good = abs(self.count["angle"] - expected) < 1e-9
         yield "angle", good, f"{self.count['angle']!r} rad, sent {expected!r}"
         warm = [look for look in self.looks if look[0] > self.blocks / 10] or self.looks

@@ -4,8 +4,8 @@
 
 usage: run.py BUILD WORK [FOLDER_WITH_REAL_CAPTURES [WORD]]
 
-Prints one line for each check: `ok`, `FAILED` or `skipped`, its name, and what was seen. IFOG_UML_SECONDS (20) says how
-long each player sends at 1 kHz. WORD: only the checks whose name has it.
+Prints one line for each check: `ok`, `FAILED` or `skipped`, its name, and the result. IFOG_UML_SECONDS (20): duration of each
+transmission at 1 kHz. WORD: only checks with it in their name.
 """
 import csv
 import gzip
@@ -25,21 +25,22 @@ import frames  # noqa: E402
 
 HERTZ = 1000
 SECONDS = float(os.environ.get("IFOG_UML_SECONDS", "20"))
-# What one count of the DBC's Rate below stands for, how much of a recording is sent, how much faster than it was made.
+# Value of one count of the DBC's Rate below, used part of a recording, and its speed factor.
 RESOLUTION = 1e-11
 CAPTURE_SAMPLES = 12000
 SPEED = 2
-# A recording that is sent again: nearly each frame comes when it came, but for so much, and half of them but for MEDIAN_S, where the
+# Replay of a recording: nearly all frames are on time within the limit, and half of them within MEDIAN_S, unless the host stopped
+# the machine; on a busy host at least this share.
 # host did not stop the whole machine; on a busy one that must be for this share of them at least.
 ON_TIME_S, ON_TIME_SHARE, MEDIAN_S, LEAST_JUDGED = 0.005, 0.99, 0.001, 0.1
 
 
 class Failure(Exception):
-    """A check that did not hold."""
+    """A failed check."""
 
 
 class Skipped(Exception):
-    """A check that could not be made here; the text says what would make it run."""
+    """A skipped check; the text names the missing requirement."""
 
 
 def dbc(factor, limit):
@@ -64,7 +65,8 @@ class Bus:
         lines = [f'[daemon]\nplugin_folder = "{self.build}/plugins"', '[[sensor]]\nname = "gyro"\ndriver = "dbc"',
                  '[sensor.transport]\ntype = "can"\ninterface = "vcan0"', "[sensor.options]"]
         lines += [f'{key} = "{value}"' for key, value in options(path, hertz).items()]
-        # The host may stop this whole machine for seconds, then all that was due comes at once: a longer ring than a
+        # The host may stop this machine for seconds, and then all pending data arrives at once: a longer ring than on a real
+        # computer (1024).
         # computer of its own needs (1024).
         lines += ["[sensor.realtime]", "reader_priority = 50", "filter_priority = 49", "ring_slots = 16384"]
         with open(os.path.join(path, "ifogd.toml"), "w") as file:
@@ -79,7 +81,7 @@ class Bus:
         return ran.stdout
 
     def stream_all(self, folder, seconds, want, *player):
-        """What was counted of each sensor, by its LCM channel."""
+        """Counts of each sensor, by LCM channel."""
         self.boot(4 * seconds + 240, os.path.join(HERE, "stream"), self.build, folder, want, *player)
         with open(os.path.join(folder, "count.json")) as file:
             return json.load(file)
@@ -100,7 +102,7 @@ class Bus:
         return f"{sent} of {sent} at {HERTZ} Hz, in order"
 
     def check_can_transport_tests(self):
-        """The unit tests that skip where there is no CAN."""
+        """The unit tests that are skipped without CAN."""
         said = self.boot(200, os.path.join(self.build, "tests/unit/transport/transport_test"), "--gtest_filter=Vcan.*", "--gtest_color=no")
         passed = re.search(r"\[  PASSED  \] (\d+) test", said)
         if not passed or int(passed.group(1)) == 0 or "SKIPPED" in said:
@@ -114,7 +116,7 @@ class Bus:
         return self.every_sample("replay", self.ifog, "replay", "LOG", "--to", "can:vcan0")
 
     def check_sixty_four_sensors(self):
-        """64 gyros on one bus at 100 Hz, each a pipeline of its own: every sample of each."""
+        """64 gyros on one bus at 100 Hz, each with its own pipeline: every sample of each."""
         sensors, hertz, seconds = 64, 100, 10
         folder = self.folder("many", 1e-9, 2, hertz)
         ids = [0x200 + number for number in range(sensors)]
@@ -141,7 +143,7 @@ class Bus:
         return f"{sensors} sensors, {seconds * hertz} of {seconds * hertz} samples of each at {hertz} Hz"
 
     def check_a_channel_from_another_can_frame(self):
-        """A temperature that another unit on the bus sends, as the sensor's status tells it."""
+        """A temperature from another unit on the bus, in the sensor's status."""
         folder = self.folder("channel", 1e-9, 2, 100)
         with open(os.path.join(folder, "coil.dbc"), "w") as file:
             file.write('VERSION ""\nBS_:\nBU_: UNIT\nBO_ 801 Coil: 2 UNIT\n SG_ Temperature : 7|16@0- (0.01,0) [-100|100] "degC" UNIT\n')
@@ -164,15 +166,15 @@ class Bus:
         return "coil_degC -12.34 in the sensor's status"
 
     def recorded(self, folder, name):
-        """The frames of a folder of recordings, as words of a candump log, and what was said of them."""
+        """The frames of a folder of recordings as words of a candump log, and the messages."""
         log = os.path.join(folder, name + ".log")
         said = self.tool("replay", os.path.join(folder, name), "--speed", "0", "--to", "file:" + log)
         with open(log) as file:
             return [line.split()[2] for line in file], said
 
     def check_recorded_to_the_last_second_through_a_kill(self):
-        """The recorder at full rate: the daemon is killed while frames come. What it had recorded is what was sent, frame for frame, up
-        to the last second; the next start closes that file, and records what comes then to the end."""
+        """The recorder at full rate: the daemon is killed during transmission. The recording has the sent frames except those of
+        the last second; the next start closes that file and records until the end."""
         folder = self.folder("killed", 1e-9, 2, HERTZ)
         with open(os.path.join(folder, "ifogd.toml"), "a") as file:
             file.write('[sensor.record]\nfolder = "record"\n')
@@ -205,9 +207,9 @@ class Bus:
                 f"then the last {len(second)} of {len(sent)}")
 
     def check_recording_sent_again_as_it_came(self):
-        """`ifog replay` of a flight recording onto a real bus: candump hears the frames that it heard the first time, each at its time,
-        and a second daemon publishes of them what the recording says, to the last bit and with the angle of the first."""
-        hertz = 200  # what so many listeners leave of one processor that turns at every system call
+        """`ifog replay` of a flight recording to a real bus: candump receives the same frames at their times, and a second daemon
+        publishes the values of the recording to the last bit, with the same angle."""
+        hertz = 200  # the rest of one processor with so many listeners and system calls
         folder = self.folder("again", 1e-9, 2, hertz)
         config = os.path.join(folder, "ifogd.toml")
         shutil.copy(config, os.path.join(folder, "again.toml"))
@@ -246,7 +248,7 @@ class Bus:
         return text
 
     def check_published_equals_offline_bit_for_bit(self):
-        """capture → frames → vcan → daemon → LCM → a log of all of it, against `ifog denoise` of the same frames."""
+        """capture → frames → vcan → daemon → LCM → log, compared with `ifog denoise` of the same frames."""
         folder = self.folder("bits", RESOLUTION, 0.02, 200)
         name, capture = self.capture(folder)
         log = os.path.join(folder, "can.log")
@@ -270,7 +272,7 @@ class Bus:
         return ran.stdout.strip()
 
     def capture(self, folder):
-        """A real gyro's capture where there is one, else a simulated one; the rate column alone, on an even clock."""
+        """A capture of a real gyro if available, otherwise a simulated one; only the rate column, with an even clock."""
         target = os.path.join(folder, "capture.csv")
         real = os.path.join(self.captures or "", "blueseis_bs1_ramp.csv.gz")
         rates = []
