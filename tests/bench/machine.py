@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a figure was measured on."""
+"""Description of the machine of a measurement."""
 import os
 import platform
 import subprocess
@@ -22,6 +22,6 @@ def commit():
 
 
 def real_time():
-    """Words that run a program as the service runs: with SCHED_FIFO; none where that is not allowed."""
+    """Command prefix to run a program with SCHED_FIFO, as the service does; empty if not allowed."""
     words = ["chrt", "-f", "10"]
     return words if subprocess.run([*words, "true"], capture_output=True).returncode == 0 else []

@@ -1,16 +1,17 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Kills the daemon at random moments while it records, and holds the recording to the bytes that were sent.
+"""Kills the daemon at random times while it records, and compares the recording with the sent bytes.
 
 usage: tests/bench/kills/run.py [--kills 1000] [--jobs 4] [--seed 1] [BUILD_FOLDER]
 
-Each job is one daemon, started anew after each kill into the same folder, that reads a FIFO at some 500 frames a second.
-After each kill `ifog replay --to file:` gives what was recorded since the start, and that must be:
-  - a prefix of what was sent to this run, bit for bit;
-  - no shorter than what had been sent 1.2 s before the kill, if the daemon was reading by then (it is written three quarters of a second
-    after it came);
-  - with no damage told, and no loss.
-Prints one line a job and the sum; exit 1 at the first recording that is not so.
+Each job is one daemon, restarted after each kill with the same folder, that reads a FIFO at some 500 frames per second. After
+each kill `ifog replay --to file:` reads the recording since the start, which must be:
+
+  - a prefix of the data sent to this run, bit for bit;
+  - complete up to 1.2 s before the kill, if the daemon was already reading (it writes within three quarters of a second);
+  - free of reported damage and losses.
+
+Prints one line per job and the total; exit 1 at the first wrong recording.
 """
 
 import argparse
@@ -49,7 +50,7 @@ file_bytes = 100_000
 
 
 def frames(ifog, folder, count):
-    """The bytes of `count` samples as the device would send them."""
+    """Bytes of `count` samples in the device's format."""
     csv = os.path.join(folder, "sent.csv")
     with open(csv, "w") as out:
         out.write("time_s,rate_x_radps,rate_y_radps,rate_z_radps\n")
@@ -98,7 +99,7 @@ class Job:
         sent, history, reading = 0, [], None
         end = time.monotonic() + self.random.uniform(0.05, 4.0)
         while time.monotonic() < end:
-            # In pieces that are no frames.
+            # In pieces that are not frames.
             piece = self.data[sent:sent + self.random.randint(1, 2 * FRAME)]
             try:
                 n = os.write(line, piece)
@@ -114,8 +115,8 @@ class Job:
         process.wait()
         os.close(line)
         log.close()
-        # The FIFO keeps what the daemon had not read: its last reader and writer are gone, and so is that.
-        # What was sent while the daemon was still starting, which on a busy machine takes seconds, came when it began to read.
+        # The FIFO loses the unread data when its last reader and writer close it.
+        # Data sent while the daemon was starting, which takes seconds on a busy machine, arrives when it begins to read.
         begun = reading is not None and reading < killed - FLUSHED_S
         self.judge(before, sent, max([n for at, n in history if begun and at < killed - FLUSHED_S], default=0))
 

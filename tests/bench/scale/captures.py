@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The captures that are measured, from fixed seeds: each made once in a folder, by its number of rows."""
+"""Captures for measurements from fixed seeds, each made once in a folder, by its number of rows."""
 import math
 import os
 import random
@@ -11,12 +11,12 @@ from pathlib import Path
 HEADER = ("time_s,rate_x_radps,rate_y_radps,rate_z_radps,temperature_degC,temperature_board_degC,accel_x_mps2,"
           "accel_y_mps2,accel_z_mps2,supply_V,field_x_uT,field_y_uT")
 MESSAGES = Path(__file__).resolve().parents[3] / "msgs"
-POOL = 1 << 16        # rows that are drawn from
-SHIFTED = 0.05        # K a kilosecond of temperature
+POOL = 1 << 16        # pool of random rows
+SHIFTED = 0.05        # K per 1000 s of temperature
 
 
 def apart(make):
-    """In a process of its own: what a child is charged for as its peak begins with the memory of who started it."""
+    """In a separate process, because the peak memory of a child begins with that of its parent."""
     def made_apart(folder, rows):
         child = os.fork()
         if child == 0:
@@ -36,7 +36,7 @@ def capture_of(make, folder, rows):
 
 @apart
 def made(folder, rows):
-    """A capture of so many rows; the first rows of a longer one are those of a shorter."""
+    """A capture with this number of rows; the first rows of a longer one are equal."""
     capture = folder / f"gyro_{rows}.csv"
     if capture.exists():
         return
@@ -59,7 +59,7 @@ def made(folder, rows):
 
 @apart
 def narrow(folder, rows):
-    """One axis and a temperature, for what is read as text only."""
+    """One axis and a temperature, for inputs that are only read as text."""
     capture = folder / f"narrow_{rows}.csv"
     draw = random.Random(21)
     pool = [f",{draw.gauss(7.3e-5, 2e-5):.6e},{draw.gauss(30, 0.01):.3f}\n" for _ in range(POOL)]
@@ -73,7 +73,7 @@ def narrow(folder, rows):
 
 @apart
 def lcm_log(folder, rows):
-    """One axis and a temperature that its own message brings now and then, as lcm-logger writes it."""
+    """One axis and a temperature in a separate message at intervals, as written by lcm-logger."""
     subprocess.run(["lcm-gen", "-p", "--ppath", folder, *(MESSAGES / name for name in ("rate_t.lcm", "channel_t.lcm"))], check=True)
     sys.path.insert(0, str(folder))
     import ifog
@@ -82,7 +82,7 @@ def lcm_log(folder, rows):
     channel.name = "hull_degC"
     for name in ("raw", "compensated", "denoised", "variance", "delta_theta", "covered", "angle", "innovation", "innovation_variance", "gain"):
         setattr(rate, name, [0.0])
-    body, raw_at = bytearray(rate.encode()), 8 + 4 * 8 + 8 + 3 * 4 + 1  # behind hash, times, dt, whole numbers, axes
+    body, raw_at = bytearray(rate.encode()), 8 + 4 * 8 + 8 + 3 * 4 + 1  # after hash, times, dt, integers, axes
     draw = random.Random(22)
 
     def event(number, name, content):
