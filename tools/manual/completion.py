@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What bash, zsh and fish complete of `ifog` and `ifogd`, from what they say of themselves.
+"""Generates the completion of `ifog` and `ifogd` for bash, zsh and fish from their own descriptions.
 
 usage: completion.py OUTPUT_DIR COMMAND_LINE.json IFOGD_HELP
 
-Commands, options and the words that an option may have are fixed here; drivers, their options and the sensors' names are asked of
-the installed programs and of the configuration at the time. Everything else is a file.
+Commands, options and choices are fixed here; drivers, their options and the sensors' names are read from the installed programs
+and the configuration at run time. Everything else completes to files.
 """
 import json
 import pathlib
@@ -119,7 +119,7 @@ def names(options):
 
 
 def words_of(option):
-    """The words that an option may have: its choices, or those that its help lists ("adaptation rule: ckf, irwe-akfg, … or vb")."""
+    """The choices of an option, from its description or its help ("adaptation rule: ckf, irwe-akfg, … or vb")."""
     if option["choices"] or not {"--filter", "--state", "--weights", "--wideband"} & set(option["names"]):
         return option["choices"]
     listed = option["help"].split(";")[-1 if "expected" in option["help"] else 0].split(":")[-1].split(", or a ")[0]
@@ -130,7 +130,7 @@ def is_file(option):
     return option["value"] == "FILE" or option["value"].endswith("FOLDER")
 
 
-ASKED = {"--driver", "--sensor", "--option"}  # of the installed programs and of the configuration
+ASKED = {"--driver", "--sensor", "--option"}  # from the installed programs and the configuration
 
 
 def bash(line):
