@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Size is a promise: how many lines, files and named numeric constants of C++ a folder may have (tests/layout/budgets.txt).
-Budgets only fall: whoever makes a folder smaller lowers its line.
+"""Limits the number of lines, files and named numeric constants of C++ per folder (tests/layout/budgets.txt). Budgets only decrease:
+after making a folder smaller, lower its line.
 
-usage: tests/layout/check_budgets.py             one line a violation; exit 1 when there is one
-       tests/layout/check_budgets.py --lower     writes what is there now where that is less, and adds no folder
+usage: tests/layout/check_budgets.py one line per violation; exit 1 if there is one tests/layout/check_budgets.py --lower writes
+the present values if they are lower, and adds no folder
 """
 import pathlib
 import re
@@ -18,7 +18,7 @@ COLUMNS = ("lines", "files", "constants")
 
 
 def sizes(folders):
-    """Of each folder: lines, files and constants of the C++ in it and below."""
+    """Lines, files and constants of the C++ in each folder and below."""
     listed = subprocess.run(["git", "ls-files", "*.cpp", "*.h"], cwd=TREE, capture_output=True, text=True, check=True).stdout.split()
     found = {folder: [0, 0, 0] for folder in folders}
     for name in listed:

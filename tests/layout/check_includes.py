@@ -13,35 +13,37 @@ import re
 
 from tree_check import main_of, proved
 
-# The map. A folder may include itself, what lies within it, and these; the longest entry that fits a file counts.
-# A file named here may be included where its folder may not.
+# The map. A folder may include itself, its subfolders, and these; the longest matching entry counts.
+# A file named here may be included even if its folder may not.
 ALLOWED = {
     "msgs": [],
     "drivers": [],
-    # The interface that is installed for plugins stands below everything: what includes one of its headers gets that alone.
+    # The installed interface for plugins is below everything; its users get only it.
     "drivers/ifog": [],
-    # The one rule for quoting foreign text and for guessing what was meant, which plugins keep, too; for counting what a
+    # Shared rules: quoting foreign text and suggestions, also for plugins; counts of accepted device data, equal in captures and
+    # the daemon; memory in files.
     # device has taken, which captures and the daemon must find alike; and room beyond memory.
     "filters": ["drivers/ifog/nearest.h", "drivers/ifog/quoted.h", "drivers/system", "drivers/timeline", "drivers/units/turn.h"],
     "daemon": ["drivers", "filters", "msgs"],
-    # Pictures are written and foreign names quoted by the one rule for each.
+    # Pictures and quoting of foreign names.
     "tools/report": ["drivers/capture/files/file_kind.h", "drivers/capture/files/output_file.h", "drivers/ifog/quoted.h", "drivers/system/shell_word.h", "filters"],
     "tools/simulate": ["drivers", "filters"],
     "tools/ifog": ["daemon/config", "daemon/sensor", "daemon/state", "drivers", "filters", "msgs", "tools/report", "tools/simulate"],
     "tests": ["daemon", "drivers", "filters", "msgs", "tools"],
 }
 
-# Rooms that stand in an order: each may include those before it in its list, never one behind it. Last, what lies in
+# Folders with an order: each may include those before it in its list. The last entry is the files in the folder itself, under its
+# own name.
 # the folder itself, under its own name.
 ORDERED = {
     "filters/diagnosis": ["record", "channels", "ramp", "cleaning", "regression", "checks", "search", "residual", "report", "."],
 }
 
-# Headers that every room of their folder may include, the data they share or the list that they are entered in: they
+# Headers that all subfolders may include, e.g. shared data or a list of entries; they do not count for cycles.
 # make no circle.
 EVERYWHERE = {"filters/diagnosis/record.h", "filters/diagnosis/diagnosis.h", "tools/ifog/commands.h"}
 
-# Libraries of devices and the network have no place in what must run without any.
+# Libraries of devices and networks are not allowed in code that must run without them.
 NOT_FROM_OUTSIDE = {
     "filters": r"lcm/|spdlog/|systemd/|libserialport|linux/|sys/socket|termios",
     "drivers": r"lcm/|spdlog/|systemd/|Eigen/",
@@ -65,7 +67,7 @@ def sources(tree):
 
 
 def target(tree, file, bracket, name):
-    """The included file as a path from the root, or None where it is none of ours."""
+    """The included file as a path from the root; None if it is not in the project."""
     if re.fullmatch(r"ifog/\w+_t\.hpp", name):
         return "msgs/" + name[len("ifog/"):]
     for path in (name, "drivers/" + name, os.path.join(os.path.dirname(file), name)):
@@ -80,7 +82,7 @@ def room(path, folder, rooms):
 
 
 def wrong(file, used):
-    """Why `file` may not include `used`; None where it may."""
+    """Reason why `file` may not include `used`; None if it may."""
     if used in EVERYWHERE and any(within(file, folder) and within(used, folder) for folder in ORDERED):
         return None
     home = max((entry for entry in ALLOWED if within(file, entry)), key=len, default=None)
@@ -96,7 +98,7 @@ def wrong(file, used):
 
 
 def circles(edges):
-    """The circles between folders, each a list of folders that reach one another (Tarjan's components)."""
+    """Cycles between folders, each a list of folders (Tarjan's strongly connected components)."""
     index, low, stack, found = {}, {}, [], []
 
     def visit(node):
@@ -140,7 +142,7 @@ def check(tree):
             if reason:
                 complaints.append(f"{where}: {reason}")
             mine, its = os.path.dirname(file), os.path.dirname(used)
-            # A folder's own files are above its rooms, so that they make no circle with them.
+            # A folder's own files are above its subfolders, so that they make no cycle with them.
             if mine != its and used not in EVERYWHERE and not within(file, "tests"):
                 edges.setdefault(mine, {}).setdefault(its, where)
     for circle in circles(edges):
@@ -150,7 +152,7 @@ def check(tree):
 
 
 def self_test():
-    """A tree that is good, and then with one wrong line at a time."""
+    """A correct tree, then with one wrong line at a time."""
     good = {
         "filters/rules/rule.h": '#include "filters/settings/axes.h"\n',
         "filters/settings/axes.h": "#include <array>\n",

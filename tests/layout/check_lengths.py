@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""No source file is longer than a sitting, no function of a script longer than a screen, no folder has more files of C++ than a
-reader looks through, and no class more members and methods than a reader keeps in mind. (Functions in C++: clang-tidy,
-readability-function-size.)
+"""Limits the lines of a source file and of a script's function, the C++ files of a folder, and the members and methods of a class.
+(Functions in C++: clang-tidy, readability-function-size.)
 
-usage: tests/layout/check_lengths.py [TREE]      the tree's root; default: this one
+usage: tests/layout/check_lengths.py [TREE] the tree's root; default: this one
 
-One line a violation, FILE or FOLDER: what; exit 1 when there is one.
+One line per violation, FILE or FOLDER: what; exit 1 if there is one.
 """
 import ast
 import collections
@@ -38,7 +37,7 @@ def sources(tree):
 
 
 def classes(text):
-    """Name and own statements of each class: without comments, texts, and all that stands in inner braces."""
+    """Name and own statements of each class: without comments, strings and inner braces."""
     text = re.sub(r'//[^\n]*|"(?:[^"\\\n]|\\.)*"', "", text)
     for begin in re.finditer(r"\bclass (\w+)[^;{}()]*\{", text):
         own, depth = [], 1

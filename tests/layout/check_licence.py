@@ -14,12 +14,12 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 TAG = "SPDX-License-Identifier: Apache-2.0"
 SLASHES = {".cpp", ".h", ".c", ".java", ".lcm"}
 HASHES = {".py", ".cmake", ".yml"}
-# Not to label: what a version wrote, the seeds of the fuzzers, and what others run the project with.
+# Not labelled: files of released versions, seeds of the fuzzers, and files for other programs.
 LEFT_OUT = re.compile(r"^(tests/(stable/[0-9]|fuzz/seeds/)|\.ci/)")
 
 
 def sources():
-    """(file, how its comments begin)."""
+    """(file, beginning of its comments)."""
     listed = subprocess.run(["git", "ls-files", "--cached", "--others", "--exclude-standard"], cwd=ROOT, capture_output=True, text=True, check=False)
     names = listed.stdout.splitlines() if listed.returncode == 0 else [
         str(path.relative_to(ROOT)) for path in ROOT.rglob("*") if path.is_file() and path.relative_to(ROOT).parts[0] not in ("build", ".git")]

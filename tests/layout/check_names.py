@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""No two headers give one namespace's type the same name. Where both are linked into one program the linker keeps one of
-their destructors, and one of each std::vector's functions, for both; no compiler sees it.
+"""No two headers may define types of the same name in one namespace. If both are linked into one program, the linker uses one
+destructor, and one set of functions of std::vector, for both; no compiler reports that.
 
-usage: tests/layout/check_names.py [TREE]      the tree's root; default: this one
+usage: tests/layout/check_names.py [TREE] the tree's root; default: this one
 
-One line a violation; exit 1 when there is one.
+One line per violation; exit 1 if there is one.
 """
 import collections
 import pathlib

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The front page stays one that is read: at most 120 lines, 1500 words, and no sentence above 35 words.
+"""Keeps the main README short: at most 120 lines, 1500 words, and 35 words per sentence.
 
-usage: tests/layout/check_readme.py [README]     default: that of this tree
+usage: tests/layout/check_readme.py [README] default: that of this tree
 
-One line a violation; exit 1 when there is one.
+One line per violation; exit 1 if there is one.
 """
 import pathlib
 import re
@@ -14,7 +14,7 @@ MOST_LINES, MOST_WORDS, MOST_IN_A_SENTENCE = 120, 1500, 35
 
 
 def sentences(text):
-    """Of prose: without blocks of code, tables, headings and pictures."""
+    """Sentences of prose: without code blocks, tables, headings and pictures."""
     prose = re.sub(r"```.*?```", "", text, flags=re.S)
     prose = re.sub(r"\]\([^)]*\)", "]", re.sub(r"^(\||#|!).*$", "", prose, flags=re.M))
     for paragraph in re.split(r"\n\s*\n", prose):

@@ -1,31 +1,30 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""Holds what is done with files of the state folder and the spool, which others may write, to their home: daemon/state/, and
-drivers/flight/folder.cpp for what the recorder writes. Who knows the name of such a file opens it there and nowhere else.
+"""Files of the state folder and the spool, which others may write, are opened only in daemon/state/, and in
+drivers/flight/folder.cpp for the recorder.
 
-usage: tests/layout/check_state_paths.py [TREE]
-       tests/layout/check_state_paths.py --self-test
+usage: tests/layout/check_state_paths.py [TREE] tests/layout/check_state_paths.py --self-test
 
-One line a violation, FILE:LINE: what; exit 1 when there is one.
+One line per violation, FILE:LINE: what; exit 1 if there is one.
 """
 import pathlib
 import re
 
 from tree_check import main_of, proved
 
-# Rooms that work with such files and no others, and single files that do.
+# Folders and files that use such files, and no others.
 ROOMS = ("tools/ifog/field/", "daemon/sensor/noise_memory.", "daemon/recorder/", "daemon/housekeeping/")
 HOMES = ("daemon/state/", "drivers/flight/folder.")
-# What such files are called: who writes this in a program builds their paths.
+# Names of such files: a program that contains one builds their paths.
 NAMES = re.compile(r'"[^"]*(\.proposal|\.history\.json|\.night\.json|\.kept-|\.model\.toml|\.noise\.toml|ifogd\.lock|ifogd\.socket)[^"]*"')
-# Builds a name and opens nothing.
+# Builds a name without opening it.
 NAMED_ELSEWHERE = {"filters/model_file/kept_noise.h", "filters/model_file/kept_noise.cpp", "tools/ifog/denoise/denoise.cpp"}
 OPENS = re.compile(r"(?<![\w.>])(?:::|std::)?(?:open|openat|fopen|creat|rename|renameat|unlink|unlinkat|link|symlink|chmod|chown|truncate|mkfifo|opendir)\s*\(|"
                    r"\b(?:i|o)?fstream\b|\b(?:fs|filesystem)::(?:exists|remove|remove_all|rename|copy|copy_file|directory_iterator|recursive_directory_iterator|"
                    r"file_size|is_regular_file|permissions|resize_file|create_symlink|read_symlink|last_write_time|canonical|weakly_canonical)\b|"
                    r"\b(?:read_model|read_kept_noise|read_toml_text|read_text_file|read_bytes_file|write_text_file|write_file|TextOutput|OutputFile)\s*[({]|"
                    r"\bInputFile\s+\w+\s*\(\s*[^,()]+\s*\)")
-# What of it is not about such files, or is their listing with no link followed, each by the text of its line.
+# Exceptions, by the text of the line: other files, or a listing without following links.
 ALLOWED = {
     "tools/ifog/field/field.cpp": ("std::filesystem::exists(config_path_", "read_toml_text(config_path_)", "::open(folder.c_str(), O_RDONLY | O_DIRECTORY"),
     "tools/ifog/field/recorded.cpp": ("fs::directory_iterator(folder, error)",),

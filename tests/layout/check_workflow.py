@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The forge's workflow runs every stage that `tools/test all` runs, and no stage that it does not know.
+"""The CI workflow must run every stage of `tools/test all`, and no unknown stage.
 
 usage: tests/layout/check_workflow.py
 """

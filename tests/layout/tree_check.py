@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a check of the source tree is run by: over the tree, or over small ones that are made to prove it."""
+"""Runs a check of the source tree, or its self-test on small trees."""
 import pathlib
 import sys
 import tempfile
 
 
 def proved(check, good, bad):
-    """True: check finds nothing in a tree of `good` files, and in one with a wrong line more, (file, line, complaint), that."""
+    """True if check finds nothing in a tree of `good` files, and finds each added wrong line (file, line, complaint)."""
     right = True
     for extra in [None, *bad]:
         with tempfile.TemporaryDirectory() as tree:

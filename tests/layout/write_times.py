@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""What the usual run took, written by the run itself into the table at the end of tests/README.md.
+"""Writes the durations of the usual run into the table at the end of tests/README.md; called by the run itself.
 
 usage: tests/layout/write_times.py STAGE=SECONDS...
 """
