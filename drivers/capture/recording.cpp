@@ -183,7 +183,7 @@ std::vector<std::string> losses(const RecordingCounts& counts) {
   say(counts.candump.cut_off ? 1 : 0, "line at the end is no whole frame (is the file cut off?)");
   say(counts.candump.remote, "CAN remote frames skipped");
   say(counts.candump.error, "CAN error frames skipped");
-  say(counts.candump.dropped, "CAN frames were dropped before candump could read them, as the log says");
+  say(counts.candump.dropped, "CAN frames were dropped before candump could read them, according to the log");
   return lines;
 }
 

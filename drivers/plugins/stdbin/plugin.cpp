@@ -49,7 +49,7 @@ class Driver {
         full_scale_radps_(options.number("full_scale", 1e-3, 1e4, "a number > 0, at most 10000") *
                           kRadiansPerDegree) {
     if (raw_ && version_ == 2)
-      options.fail("version", "3, 4 or 5 with rate_block = raw: extended blocks came with version 3");
+      options.fail("version", "3, 4 or 5 with rate_block = raw: extended blocks exist since version 3");
   }
 
   void describe(ifog_description& out) const {

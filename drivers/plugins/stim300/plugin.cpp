@@ -78,7 +78,7 @@ constexpr std::array kOptions{
         "datagram", "auto | an identifier, 0x90 ... 0xF7", "auto",
         "Normal Mode datagram, as the datasheet numbers it; auto takes whichever arrives and makes 0xA7"},
     ifog_option{"output", "rate | incremental_angle | integrated_angle", "rate",
-                "gyro output unit set in the device; rate stands for the average one, too"},
+                "gyro output unit set in the device; rate includes the average one"},
     ifog_option{"acceleration", "specific_force | delta_velocity", "specific_force",
                 "unit of accelerometer and inclinometer: g, or m/s since the datagram before"},
     ifog_option{"acceleration_range", "2 | 5 | 10 | 30 | 80", "10",

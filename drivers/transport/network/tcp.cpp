@@ -146,7 +146,7 @@ void TcpTransport::hung_up(int error) noexcept {
   const std::string_view sentence = words_.sentence();
   turned_away_ = !sentence.empty();
   if (turned_away_) {
-    report("the server said, and closed the connection", 0, sentence);
+    report("the server sent this and closed the connection", 0, sentence);
     error = ECONNREFUSED;
   }
   socket_.close();

@@ -51,7 +51,7 @@ std::string resolve(const UdpSettings& settings, Addresses& out) {
   if (settings.interface.size() >= IFNAMSIZ)
     return wrong("interface", settings.interface, "an interface's name, 1 to 15 letters");
   if (!joined && !settings.interface.empty())
-    return wrong("interface", settings.interface, "none without group; bind says what is listened on");
+    return wrong("interface", settings.interface, "none without group; bind selects the local address");
   const std::string any = out.host && out.host->is_v6() ? "::" : "0.0.0.0";
   const std::string& text = joined ? settings.group : settings.bind.empty() ? any : settings.bind;
   const auto local = IpAddress::parse(text);
@@ -270,7 +270,7 @@ Delivery UdpTransport::next() noexcept {
       continue;
     }
     if (addresses_.host && !is_of_port(i)) {
-      report("datagrams from another port of host are dropped; host_port says which is the sensor's", 0);
+      report("datagrams from another port of host are dropped; host_port selects the sensor's", 0);
       continue;
     }
     if (length == 0) continue;
