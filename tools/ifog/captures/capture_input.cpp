@@ -64,7 +64,7 @@ void CaptureInput::add_to(const Command& command) {
   command.add_option("--repeats", repeats, "Rows that repeat the one before: drop or keep")
       .type_name("WHAT")
       .one_of({"drop", "keep"});
-  command.add_option("--separator", separator, "What stands between the cells of a CSV file: ';' or tab")
+  command.add_option("--separator", separator, "Separator of the cells of a CSV file: ';' or tab")
       .type_name("C");
   command
       .add_option("--group", group, "Group of an HDF5 file that holds the columns, or table of records: /imu")

@@ -117,7 +117,7 @@ int run_command_line(int argc, char** argv, std::span<const AddCommand> commands
   } catch (const std::exception& error) {
     warn("ifog: %s\n", printable(error.what(), kLongestMessage).c_str());
   } catch (...) {
-    warn("ifog: failed, and nothing says why\n");
+    warn("ifog: failed for an unknown reason\n");
   }
   return 1;
 }

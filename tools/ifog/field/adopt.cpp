@@ -83,7 +83,7 @@ nlohmann::ordered_json adoption_json(const Proposal& proposal, const Watched& wa
 
 void tell_innovations(const Watched& watched) {
   if (watched.statuses == 0) {
-    say("  innovations: the daemon said nothing in this time\n");
+    say("  innovations: no status from the daemon in this time\n");
     return;
   }
   say("  innovations over %.0f s: %s; %lld gated, %lld divergences\n", watched.seconds,

@@ -84,7 +84,7 @@ bool ModelExchange::takes_effect(const std::string& identity) {
 // The sensor may have stopped after the check in the constructor.
 std::string ModelExchange::why_not_in_effect() const {
   const status_t* const status = live_->of(sensor_);
-  if (status == nullptr || status->state == status_t::STATE_RUNNING) return "its log says why";
+  if (status == nullptr || status->state == status_t::STATE_RUNNING) return "the reason is in its log";
   return not_running(*status);
 }
 

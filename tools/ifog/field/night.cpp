@@ -52,7 +52,7 @@ constexpr double kFitTo = 0.7;
 constexpr double kLeastGain = 0.05;
 constexpr double kMostLoss = 0.02;
 
-const std::string kCannotBeJudged = "the recordings could not be judged; the night's log says why";
+const std::string kCannotBeJudged = "the recordings could not be evaluated; the reason is in the night's log";
 
 // The newest files of at most that many bytes in total, but at least one.
 std::vector<RecordedFile> newest(std::vector<RecordedFile> files, double most_bytes) {
@@ -366,7 +366,7 @@ void add_night(const Command& program) {
                   "of recordings, the newest; a byte takes some four of memory")
       .within(1e5, 1e12)
       .shows_default();
-  command.add_option("--json", arguments->json, "write what the night says, schema ifog.night_report/1");
+  command.add_option("--json", arguments->json, "write the results, schema ifog.night_report/1");
   command.callback([arguments] { run_nights(*arguments); });
 }
 

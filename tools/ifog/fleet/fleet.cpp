@@ -245,7 +245,7 @@ class FleetRun {
     for (const TypeEffect& each : population_.effects) say("  %s\n", report::in_words(each).c_str());
     for (const std::string& remark : population_.remarks) say("  %s\n", remark.c_str());
     for (const StandingOut& each : population_.standing_out)
-      say("  %s stands out: %s, robust z = %.1f\n", population_.serials[each.gyro].c_str(),
+      say("  outlier %s: %s, robust z = %.1f\n", population_.serials[each.gyro].c_str(),
           printable(population_.parameters[each.parameter].name).c_str(), each.z);
     tell_failures();
     say("%s\n%s\n", results_.path("fleet.html").c_str(), results_.path("fleet.json").c_str());
@@ -302,7 +302,7 @@ void run_fleet(FleetArguments& arguments) {
 void add_fleet(const Command& program) {
   auto arguments = std::make_shared<FleetArguments>();
   const Command command = program.add_subcommand(
-      "fleet", "Diagnose every gyro of a type, then the type: its effects, its spread, who stands out");
+      "fleet", "Diagnose every gyro of a type, then the type: effects, spread, outliers");
   command.add_option("manifest", arguments->manifest, "type, and of each gyro serial and captures (.toml)")
       .required();
   command.add_option("--results", arguments->results,

@@ -207,7 +207,7 @@ void add_monitor(const Command& program) {
   auto options = std::make_shared<MonitorOptions>();
   command.add_option("--sensor", options->sensor, "Only this sensor").type_name("NAME");
   command.add_option("--seconds", options->seconds, "Stop after this long").positive();
-  command.add_flag("--once", options->once, "Stop after one second of every sensor heard");
+  command.add_flag("--once", options->once, "Stop after one second of data of every sensor");
   command.add_flag("--plain", options->plain, "Lines instead of a screen with keys, at a terminal, too");
   command
       .add_option("--json", options->json,

@@ -114,7 +114,7 @@ std::vector<std::string> channels(const status_t& status, const KnownSensor* kno
     const double age_s = status.channel_age_s[i];
     if (!std::isfinite(age_s) && (known == nullptr || !known->channels.contains(status.channel_name[i])))
       continue;
-    std::string value = !std::isfinite(age_s) ? "not heard of" : formatted("%.6g", status.channel_value[i]);
+    std::string value = !std::isfinite(age_s) ? "no value" : formatted("%.6g", status.channel_value[i]);
     if (std::isfinite(age_s) && age_s > kFresh_s) value += formatted(" (%.0f s old)", age_s);
     out.push_back(printable(status.channel_name[i]) + " " + value);
   }

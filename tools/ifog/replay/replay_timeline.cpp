@@ -192,7 +192,7 @@ ReplayTimeline read_timeline(const ReplaySource& source) {
     case FileKind::unknown:
       throw std::runtime_error(source.path +
                                ": neither a flight recording, a candump log, raw bytes nor a capture in "
-                               "columns by its name and first bytes; --format says which");
+                               "columns by its name and first bytes; --format selects one");
   }
   if (timeline.on.empty() && !source.input.channel.empty()) timeline.interfaces = {source.input.channel};
   if (timeline.size() == 0) throw std::runtime_error(source.path + ": nothing in it to send");

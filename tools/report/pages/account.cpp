@@ -133,8 +133,7 @@ std::string account(const Diagnosis& d) {
   }
   const std::string key = most_improved(d);
   if (!key.empty())
-    out += "<p>By the model as written and on data held out of the fit, whichever leaves more: " +
-           escaped(account_of_change(d, key)) + " " +
+    out += "<p>The worse of full-data and held-out error: " + escaped(account_of_change(d, key)) + " " +
            (key == "residual_rms_radps" ? "" : escaped(account_of_change(d, "residual_rms_radps"))) +
            "</p>\n";
   if (!d.indistinguishable.empty())

@@ -64,7 +64,7 @@ std::string figures_table(const Diagnosis& d) {
                 {number_cell(number(before * f.scale)), number_cell(number(after * f.scale)), f.unit,
                  Cell(shown, relative && change < -0.5 ? Cell::Kind::better : Cell::Kind::number)});
   }
-  return table("By the model as written, or on data held out of the fit: the larger",
+  return table("The larger of full-data and held-out error",
                {"figure", number_cell("before"), number_cell("after"), "unit", number_cell("change")}, rows);
 }
 

@@ -76,7 +76,7 @@ std::string spectrum_picture(const Diagnosis& d) {
     chart.line(Role::kAfter, "after", s.frequency_hz, scaled(s.after_radps_rthz, 1.0 / kDegreePerHour));
   if (d.unexplained.frequency_hz > 0.0)
     chart.mark_x(d.unexplained.frequency_hz, number(d.unexplained.frequency_hz, 3) + " Hz");
-  return figure_html(chart.svg(), "Its spectrum. A line stands up; slow wander rises to the left.");
+  return figure_html(chart.svg(), "Its spectrum. A line is a peak; slow noise rises to the left.");
 }
 
 std::string allan_picture(const Diagnosis& d) {

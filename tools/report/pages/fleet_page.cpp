@@ -151,7 +151,7 @@ std::string z_picture(const Population& p) {
   }
   if (chart.empty()) return "";
   return figure_html(chart.svg(),
-                     "Beyond the thin lines, 3.5 robust standard deviations, a gyro stands out.");
+                     "Gyros beyond the thin lines, 3.5 robust standard deviations, are outliers.");
 }
 
 std::string parameters_section(const Population& p) {
@@ -164,7 +164,7 @@ std::string parameters_section(const Population& p) {
 }
 
 std::string standing_out_section(const Population& p) {
-  if (p.standing_out.empty()) return "<p>No gyro stands out.</p>\n";
+  if (p.standing_out.empty()) return "<p>No outliers.</p>\n";
   std::string rows;
   for (const StandingOut& each : p.standing_out)
     rows += row(linked(p, each.gyro),
@@ -244,7 +244,7 @@ std::string fleet_page(const FleetPage& page) {
       section("failed", "Without a result", failures_section(p)) +
       section("effects", "What the type has", effects) +
       section("parameters", "How the type is spread", parameters_section(p)) +
-      section("standing-out", "Who stands out", standing_out_section(p)) +
+      section("standing-out", "Outliers", standing_out_section(p)) +
       section("own", "What only single gyros have", own_section(p)) +
       section("gyros", "The gyros", gyros_section(p)) +
       section("origin", "Where it comes from", "<p>Made by</p>\n<pre>" + escaped(page.command) + "</pre>\n");

@@ -37,7 +37,7 @@ std::string unknown_option(const CLI::App& command, int argc, const char* const*
     if (word == "--") break;
     if (word.size() > 1 && word[0] == '-' && std::isalpha(static_cast<unsigned char>(word[1])) != 0 &&
         command.get_option_no_throw(std::string(word.substr(0, 2))) == nullptr)
-      return "unknown option " + in_quotes(word) + "; a name or file that begins with - stands behind --";
+      return "unknown option " + in_quotes(word) + "; put a name or file that begins with - after --";
     if (!word.starts_with("--") || word.size() < 4) continue;
     const std::string name(word.substr(0, word.find('=')));
     if (command.get_option_no_throw(name) != nullptr) continue;
@@ -91,7 +91,7 @@ std::string usage_error(const CLI::App& app, int argc, const char* const* argv, 
       for (std::size_t i = 0; i < commands.size(); ++i)
         what += (i == 0 ? ", expected one of: " : ", ") + commands[i];
   }
-  return who + ": " + what + "\n" + "`" + who + " --help` says what there is.\n";
+  return who + ": " + what + "\n" + "`" + who + " --help` lists the options.\n";
 }
 
 }  // namespace ifog::tools
