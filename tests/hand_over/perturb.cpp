@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Disturbs the order of events between threads: preloaded into a program that was built with ThreadSanitizer,
-// it stands before every atomic operation, futex, sleep and pthread call of that program and now and then
-// lets another thread go first, or waits for up to a tenth of a millisecond.
+// Disturbs the order of events between threads. It is preloaded into a program built with ThreadSanitizer and
+// intercepts every atomic operation, futex, sleep and pthread call; sometimes it yields to another thread or
+// waits for up to a tenth of a millisecond.
 //
-//   IFOG_PERTURB_SEED   other orders; 1 unless set
+//   IFOG_PERTURB_SEED   selects the order; default 1
 //
-// At the end it says on the standard error how often it was there, and how often it disturbed.
+// At the end it prints the number of calls and of disturbances on standard error.
 #include <dlfcn.h>
 #include <linux/futex.h>
 #include <pthread.h>
@@ -21,7 +21,7 @@
 
 namespace {
 
-// Built without ThreadSanitizer: these are no atomics that it would call this library for.
+// Built without ThreadSanitizer: atomics here would call this library.
 std::uint64_t calls, disturbed;
 
 std::uint64_t seed() {
@@ -29,7 +29,7 @@ std::uint64_t seed() {
   return text != nullptr ? strtoull(text, nullptr, 10) : 1;
 }
 
-// Marsaglia's xorshift, one a thread.
+// Marsaglia's xorshift, one per thread.
 std::uint64_t draw() {
   static thread_local std::uint64_t state = 0;
   if (state == 0) state = seed() * 0x9E3779B97F4A7C15ULL ^ static_cast<std::uint64_t>(gettid()) << 20U ^ 1U;
@@ -44,7 +44,7 @@ Function next(const char* name) {
   return reinterpret_cast<Function>(dlsym(RTLD_NEXT, name));
 }
 
-// By the register: syscall() is one of those that this library stands before.
+// By register, because syscall() is intercepted by this library.
 long raw_syscall(long number, long a, long b) {
   long result = 0;
   asm volatile("syscall" : "=a"(result) : "a"(number), "D"(a), "S"(b) : "rcx", "r11", "memory");
@@ -108,7 +108,7 @@ IFOG_BEFORE(int, nanosleep, (const timespec* span, timespec* left), (span, left)
 IFOG_BEFORE(int, clock_nanosleep, (clockid_t clock, int flags, const timespec* span, timespec* left),
             (clock, flags, span, left))
 
-// The futex among the system calls that the program makes by number: before it sleeps and before it wakes.
+// Intercepts the futex system call by its number, before sleeping and before waking.
 extern "C" long syscall(long number, ...) {
   static long (*function)(long, ...) = nullptr;
   if (function == nullptr) function = next<long (*)(long, ...)>("syscall");
