@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-# What the reader of the front page has: a gyro's recording, a service that runs, a service manager. See run.py.
+# Supplies what a reader of the main README has: a gyro's recording, a running service, a service manager. See run.py.
 blocks=3
 elsewhere_1="tools/demo in the stage bench; tools/test is what runs this"
 
-# The programs under the names of installed ones.
+# The programs under their installed names.
 on_the_path() {
   work=$(mktemp -d)
   trap 'rm -rf "$work"' EXIT
@@ -13,13 +13,13 @@ on_the_path() {
   cd "$work"
 }
 
-# systemd's part, by what the units say it does.
+# Replaces systemd according to the units.
 systemctl() {
   case "$*" in
     "reload ifogd")
       grep -q '^ExecReload=/bin/kill -HUP $MAINPID' "$build/systemd/ifogd.service" && kill -HUP "$daemon" ;;
     "enable --now ifogd-diagnose.timer")
-      # The night has come; this one is short.
+      # The night, shortened.
       grep -q '^ExecStart=.*/ifog night --config .*/ifogd/ifogd.toml$' "$build/systemd/ifogd-diagnose.service" &&
         ifog night --config /etc/ifogd/ifogd.toml --least-rest 300 ;;
     *) echo "no such unit here: systemctl $*"; return 1 ;;
@@ -69,7 +69,7 @@ after_2() {
 
 before_3() {
   on_the_path
-  # A computer with this service, for this shell alone.
+  # A computer with this service, for this shell only.
   cp -r /etc etc 2>/dev/null || true
   mkdir -p etc/ifogd state
   mount --bind etc /etc

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
-# What the reader of the map of the messages has: the four packages, and a Debian to install them on. See run.py.
+# Supplies what a reader of msgs/README.md has: the four packages, and a Debian system to install them. See run.py.
 blocks=2
 
-# The packages' files on this computer's, for this shell alone: what apt would bring beside them is here already.
+# Installs the packages' files for this shell only; their dependencies are already installed.
 apt() {
   [ "$1" = install ] || return 1
   local package
@@ -29,7 +29,7 @@ before_1() {
   mount --bind "$work/home" /root
   cpack --config "$build/CPackConfig.cmake" -B "$work/packages" >"$work/log" 2>&1
   cd "$work/packages"
-  # What stands in the block for everybody is set up by who runs this.
+  # System-wide settings in the block are made by the caller.
   ip route del 224.0.0.0/4
   ip link set lo multicast off
 }
@@ -39,7 +39,7 @@ after_1() {
   [ "$(command -v ifog)" = /usr/bin/ifog ]
 }
 
-# The window of lcm-spy wants a screen; which types it knows it says before.
+# The window of lcm-spy needs a screen; it prints the known types before.
 before_2() {
   if ! command -v java >/dev/null || [ ! -e /usr/share/java/jchart2d.jar ] || ! ls /usr/share/java/ifogd-msgs-*.jar >/dev/null; then
     echo "the Java types were not built, or lcm-spy is missing: tools/install-packages test brings them, then configure again"
