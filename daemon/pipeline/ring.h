@@ -2,8 +2,8 @@
 // Ring buffer for a single producer and a single consumer; wait-free, no allocation after construction.
 //
 // Slots are filled and read in place (claim/commit, front/pop), since increments are several hundred bytes.
-// Each side caches the other's index on its own cache line and reads the shared one only if the cached one
-// says full or empty, which reduces cache traffic. tests/bench/ring compares it with Boost.Lockfree and
+// Each side caches the other's index on its own cache line. It reads the shared one only if the ring seems
+// full or empty, which reduces cache traffic. tests/bench/ring compares it with Boost.Lockfree and
 // moodycamel's ReaderWriterQueue.
 //
 // If the ring is full claim() returns null, and the caller decides (IncrementQueue merges).

@@ -25,9 +25,8 @@ std::int64_t arrival_clock_ns() noexcept;
 // Arrival clock at boot.
 std::int64_t arrival_clock_at_boot_ns() noexcept;
 
-// Change of the wall clock since the process started, ns. Constant until the clock is set by more than two
-// clock readings can resolve (50 µs, more if the thread was delayed between them), so that labels do not
-// jitter.
+// Change of the wall clock since the process started, ns. Constant until the clock is set by more than the
+// resolution of two readings (50 µs, more if the thread was delayed between them). So labels do not jitter.
 class WallShift {
  public:
   // Present shift. arrival: a reading of the arrival clock just before; both clocks are read again if it is

@@ -2,9 +2,9 @@
 // Correction before the filter: subtracts a model's effects from the measured rates of one sensor. step() is
 // the daemon's hot path: no allocation, lock or exception; `ifog denoise` uses the same code.
 //
-// With b the environmental effects, s the scale factor error (a function of temperature and rate) and m the
-// misalignment to the sensor's other axes, the true rates solve z = w + b + s(T, w) w + m w_other. Online, w
-// replaces the reference rate of the fit.
+// The true rates solve z = w + b + s(T, w) w + m w_other. b: environmental effects, s: scale factor error (a
+// function of temperature and rate), m: misalignment to the sensor's other axes. Online, w replaces the
+// reference rate of the fit.
 #pragma once
 
 #include <array>

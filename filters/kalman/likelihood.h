@@ -2,10 +2,10 @@
 // Gaussian likelihood of a record under a state model and white measurement noise, by prediction error
 // decomposition: Harvey, "Forecasting, Structural Time Series Models and the Kalman Filter", section 3.4.
 //
-// Exact while the gain changes. At k samples after the start the gain changes by at most 1/k per sample, so
-// it is kept constant over up to k/256 samples, at its value in their middle, while the covariance is
-// propagated exactly (doubling). The error of the likelihood is of second order and smooth in the parameters:
-// below 0.01 for 200 000 samples, where a parameter costs 0.5.
+// Exact while the gain changes. At k samples after the start the gain changes by at most 1/k per sample. So
+// it is kept constant over up to k/256 samples, at its value in their middle; the covariance is propagated
+// exactly (doubling). The error of the likelihood is of second order and smooth in the parameters: below 0.01
+// for 200 000 samples, where a parameter costs 0.5.
 #pragma once
 
 #include <cstddef>

@@ -186,7 +186,7 @@ double probability(const TypePrior& prior, const Estimate& estimate) {
 }
 
 double chance_without(const TypePrior& prior, const Estimate& estimate) {
-  // The likelihood ratio is a parabola of the estimate, so it is as large outside an interval about its
+  // The likelihood ratio is a parabola of the estimate. So it is as large outside an interval about its
   // minimum, or, without spread, on one side of a line.
   const double own = square(estimate.std_error), type = square(prior.spread);
   const double sign = prior.mean < 0.0 ? -1.0 : 1.0;

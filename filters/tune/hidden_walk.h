@@ -8,9 +8,9 @@
 
 namespace ifog {
 
-// If the record does not distinguish the level's walk from none within 0.5 of -ln L, sets theta to the
-// fastest walk within 0.5 of the best (one standard deviation) and returns true. A filter without a walk
-// would not follow a moving level, while a walk that is too fast costs little.
+// Returns true if the record does not distinguish the level's walk from none within 0.5 of -ln L. Then theta
+// is the fastest walk within 0.5 of the best (one standard deviation). A filter without a walk would not
+// follow a moving level, while a walk that is too fast costs little.
 [[nodiscard]] bool bound_hidden_walk(const RecordObjective& objective, std::vector<double>& theta);
 
 }  // namespace ifog

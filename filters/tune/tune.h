@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Q, R and state model of a sensor at rest by maximum likelihood. The likelihood is that of the record
-// (Kalman innovations), the model order is chosen by Schwarz' criterion (Annals of Statistics 6, 1978), the
+// (Kalman innovations). The model order is chosen by Schwarz' criterion (Annals of Statistics 6, 1978). The
 // errors are from the curvature at the optimum.
 //
 // The likelihood has many local optima. Many starts are drawn from the spectrum and optimised in Whittle's

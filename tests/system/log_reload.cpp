@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checks recorded messages of a reload with a new model: every sample is there, the model changes once, and
-// before and after the change the compensated rate is bit for bit that of `ifog denoise` with the respective
+// Checks recorded messages of a reload with a new model: every sample is there, and the model changes once.
+// Before and after the change the compensated rate is bit for bit that of `ifog denoise` with the respective
 // model. The published angle is the sum of the increments to 1e-12 rad.
 //
 // usage: log_reload LOG CHANNEL BEFORE.csv AFTER.csv

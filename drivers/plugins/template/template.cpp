@@ -71,8 +71,8 @@ class Driver {
 
   // STEP 4: bytes come in any portions, so a frame may be split over two calls, and what is not a frame must
   // be passed over. Two rules keep every intact frame: wait in a buffer of fixed size until a frame is
-  // complete, and when its check fails give up one byte, not the whole frame, because the next frame may
-  // begin inside.
+  // complete. If its check fails, drop one byte, not the whole frame, because the next frame may begin
+  // inside.
   void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,
               void* sink) noexcept {
     for (const std::uint8_t byte : bytes) {

@@ -10,7 +10,7 @@
 
 namespace ifog {
 
-// Period 2 pi, 360 or 1 of a channel whose unit is an angle (rad, deg, turns), if its values stay within one
+// Period of a channel with a unit of angle: 2 pi (rad), 360 (deg) or 1 (turns), if its values are within one
 // turn and wrap by a whole one; else 0.
 double angle_period(const std::string& channel, std::span<const double> values);
 

@@ -18,9 +18,9 @@ namespace ifog::bench {
 // and the step's time and size.
 [[nodiscard]] double deviations(const std::vector<double>& left);
 
-// Neyman and Pearson: with one false alarm per alarm_every_s, the false alarm probability in a look_s is
-// look_s / alarm_every_s on average, and at most Phi(d - z) of the steps are found, z its normal quantile.
-// The curve is concave, so varying the threshold over time gains nothing.
+// Neyman and Pearson: with one false alarm per alarm_every_s, its probability in a look_s is look_s /
+// alarm_every_s on average. At most Phi(d - z) of the steps are found, z its normal quantile. The curve is
+// concave, so varying the threshold over time gains nothing.
 [[nodiscard]] double best_share(double deviations, double look_s, double alarm_every_s);
 
 }  // namespace ifog::bench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sensor's noise with its exact state space, so that an oracle with the truth, which shares no code with
-// the diagnosis, can compute the visibility of an effect.
+// The sensor's noise with its exact state space. An oracle that knows the truth and shares no code with the
+// diagnosis computes an effect's visibility from it.
 #pragma once
 
 #include <cstddef>

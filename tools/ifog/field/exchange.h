@@ -21,7 +21,7 @@ void require_that_it_fits(const Field& field, const SensorConfig& sensor, const 
 class ModelExchange {
  public:
   // Checks only. `in_use`: the model in the file. Throws std::runtime_error with one line if the daemon runs
-  // but does not answer or uses another model, or if the sensor is not running, so that the exchange could
+  // but does not answer or uses another model. Also if the sensor is not running, because the exchange could
   // not be verified.
   ModelExchange(const Field& field, const SensorConfig& sensor, const ModelName& in_use);
 

@@ -24,7 +24,7 @@ struct Manifest {
 };
 
 // Throws std::runtime_error with one line: file, line, key, value, expected value. A serial has 1 to 64
-// letters, digits, '.', '_' and '-', begins with a letter, digit or '_', and is unique regardless of case,
+// letters, digits, '.', '_' and '-', and begins with a letter, digit or '_'. It is unique regardless of case,
 // because it names a folder.
 Manifest read_manifest(const std::string& path);
 // The same from a text; path: for messages.
