@@ -136,7 +136,7 @@ Model proposed_model(const std::string& state, const Proposal& proposal) {
   const std::string path = inside(state, proposal.model_file);
   Model model = parsed_state_file(path, parse_model);
   if (name_of(model).sha256 != proposal.model.sha256)
-    throw std::runtime_error(path + ": is not the model in the proposal, expected " +
+    throw std::runtime_error(path + ": is another model than that of the proposal, expected " +
                              proposal.model.identity);
   return model;
 }
