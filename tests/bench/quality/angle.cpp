@@ -32,7 +32,7 @@ constexpr double kRatio = 1e-3;
 using Axes = std::array<double, 3>;
 using Filter = std::function<Axes(const Axes& rate)>;
 
-ifog::FilterSettings told(double noise, double period) {
+ifog::FilterSettings settings_of(double noise, double period) {
   ifog::FilterSettings settings;
   settings.measurement_noise = noise * noise;
   settings.process_noise = kRatio * noise * noise / period;
@@ -120,7 +120,7 @@ struct Candidate {
 std::vector<Candidate> candidates() {
   const auto with = [](bool follow, bool conserve) {
     return [follow, conserve](double noise, double period) {
-      ifog::FilterSettings s = told(noise, period);
+      ifog::FilterSettings s = settings_of(noise, period);
       s.follow_manoeuvres = follow;
       s.conserve_angle = conserve;
       return estimator(s, period);
@@ -128,11 +128,11 @@ std::vector<Candidate> candidates() {
   };
   return {{"nothing: plain irwe-akfg", with(false, false)},
           {"angle state, irwe-akfg's gain",
-           [](double noise, double period) { return angle_state(told(noise, period), period); }},
+           [](double noise, double period) { return angle_state(settings_of(noise, period), period); }},
           {"ledger (residual integral fed back) without following", with(false, true)},
           {"following, no ledger", with(true, false)},
           {"following and ledger, a gain for each axis",
-           [](double noise, double period) { return one_per_axis(told(noise, period), period); }},
+           [](double noise, double period) { return one_per_axis(settings_of(noise, period), period); }},
           {"following and ledger, one gain (the daemon's)", with(true, true)}};
 }
 

@@ -72,7 +72,7 @@ ifog::FilterSettings settings(const Column& column, double q, double r) {
   return s;
 }
 
-struct Told {
+struct Given {
   double q, r;
 };
 
@@ -99,12 +99,12 @@ void study(double ratio, int seeds) {
       reference.push_back(
           rmse(ifog::bench::told_the_truth(records.back().measured, ratio), records.back().truth));
     }
-    for (const Told& told : {Told{1, 1}, {1, 0.01}, {1, 100}, {0.01, 1}, {100, 1}}) {
-      std::printf("| %s | x%g | x%g |", scenario.name, told.q, told.r);
+    for (const Given& given : {Given{1, 1}, {1, 0.01}, {1, 100}, {0.01, 1}, {100, 1}}) {
+      std::printf("| %s | x%g | x%g |", scenario.name, given.q, given.r);
       for (const Column& column : columns) {
         double sum = 0.0, squares = 0.0;
         for (std::size_t i = 0; i < records.size(); ++i) {
-          const Outcome got = run(settings(column, ratio * told.q, told.r), records[i].measured);
+          const Outcome got = run(settings(column, ratio * given.q, given.r), records[i].measured);
           const double relative = rmse(got.denoised, records[i].truth) / reference[i];
           sum += relative;
           squares += relative * relative;

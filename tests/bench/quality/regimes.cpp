@@ -142,11 +142,11 @@ Regime drift_then_step() {
 }
 
 // Two periods of a swing from the first sample on, then rest; judged a minute later.
-Regime started_moving(const std::string& name, bool told) {
+Regime started_moving(const std::string& name, bool given) {
   return {.name = name,
           .limit = 1.1,
           .judge_variance = true,
-          .told = told,
+          .noise_given = given,
           .make = [name](double ratio, std::uint64_t seed) {
             constexpr std::size_t kSwing = 20'000;
             constexpr auto kMinute = static_cast<std::size_t>(60.0 * kSampleRate_hz);
@@ -164,14 +164,14 @@ Regime started_moving(const std::string& name, bool told) {
 // the limits are 10 % wider. Colour of 0.9 at 200 Hz is below 4 Hz and cannot be distinguished from a
 // vehicle's motion.
 void add_untold(std::vector<Regime>& all) {
-  const std::size_t told = all.size();
-  for (std::size_t i = 0; i < told; ++i) {
+  const std::size_t given = all.size();
+  for (std::size_t i = 0; i < given; ++i) {
     if (all[i].name != "gaussian" && all[i].name != "colour-0.5") continue;
-    Regime untold = all[i];
-    untold.name += "-untold";
-    untold.limit *= 1.1;
-    untold.told = false;
-    all.push_back(std::move(untold));
+    Regime learned = all[i];
+    learned.name += "-untold";
+    learned.limit *= 1.1;
+    learned.noise_given = false;
+    all.push_back(std::move(learned));
   }
 }
 
@@ -239,13 +239,13 @@ using Shaken = std::function<std::vector<double>(Random&, std::size_t samples, d
 
 // Motion from the first sample to the last. per_hz: factor on frequencies for a record whose sample rate
 // differs from that of the motions.
-void add_moving(std::vector<Regime>& all, const std::string& name, double sample_rate_hz, bool told,
+void add_moving(std::vector<Regime>& all, const std::string& name, double sample_rate_hz, bool given,
                 const Shaken& motion) {
   constexpr std::size_t kBegins = 50, kSamples = 30'000;
-  Regime regime{.name = name + (told ? "" : "-untold"),
+  Regime regime{.name = name + (given ? "" : "-untold"),
                 .limit = 1.05,
                 .judge_raw_only = true,
-                .told = told,
+                .noise_given = given,
                 .sample_rate_hz = sample_rate_hz,
                 .make = [name, sample_rate_hz, motion](double ratio, std::uint64_t seed) {
                   const Streams streams(name, ratio, seed);
@@ -280,13 +280,13 @@ void add_carried(std::vector<Regime>& all) {
        }}};
   for (const auto& [name, motion] : kinds)
     for (const double hz : {10.0, 100.0, 200.0})
-      for (const bool told : {true, false})
-        add_moving(all, name + "-" + std::to_string(std::lround(hz)) + "Hz", hz, told, motion);
+      for (const bool given : {true, false})
+        add_moving(all, name + "-" + std::to_string(std::lround(hz)) + "Hz", hz, given, motion);
   for (const double amplitude : {3.0, 5.0, 10.0, 30.0})
     for (const auto& [frequency, shown] : {std::pair{0.05, "0.05"}, {0.2, "0.2"}, {1.0, "1"}})
-      for (const bool told : {true, false})
+      for (const bool given : {true, false})
         add_moving(all, "start-" + std::to_string(std::lround(amplitude)) + "-" + shown + "Hz",
-                   kSampleRate_hz, told,
+                   kSampleRate_hz, given,
                    [a = amplitude, f = frequency](Random& random, std::size_t n, double) {
                      std::vector<double> rate = sway(random, n + n, 0, a, f);
                      // At full amplitude

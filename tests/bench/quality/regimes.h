@@ -31,7 +31,7 @@ struct Regime {
   bool judge_variance = false;     // the normalised squared error must be 0.8 … 1.25
   bool judge_against_raw = false;  // the limit also applies relative to the better of raw and conventional
   bool judge_raw_only = false;     // the limit applies to RMSE relative to raw, of the worst seed
-  bool told = true;                // Q and R are given; otherwise learned from the record
+  bool noise_given = true;         // Q and R are given; otherwise learned from the record
   double sample_rate_hz = kSampleRate_hz;
   std::string wideband = "motion";  // FilterSettings::wideband
   std::function<RegimeRecord(double ratio, std::uint64_t seed)> make;

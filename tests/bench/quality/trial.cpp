@@ -21,7 +21,7 @@ ChainSettings chain_settings(const std::string& filter, double ratio, const Regi
   settings.facts.nominal_rate_hz = regime.sample_rate_hz;
   settings.axes = {""};
   settings.filter.wideband = regime.wideband;
-  if (regime.told) {
+  if (regime.noise_given) {
     settings.filter.measurement_noise = kSigma_radps * kSigma_radps;
     settings.filter.process_noise = ratio * kSigma_radps * kSigma_radps * regime.sample_rate_hz;
   }

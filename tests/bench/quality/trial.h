@@ -20,7 +20,7 @@ struct Filtered {
 Filtered conventional(const RegimeRecord& record, double ratio, bool informed);
 
 // "default": the daemon's filter without a model file. "irwe-akfg-plain": the published rule. "ckf": the
-// project's conventional filter. told: true Q and R are given; otherwise learned at start-up. Throws
+// project's conventional filter. noise_given: with true Q and R; otherwise learned at start-up. Throws
 // std::invalid_argument with the name of an unknown filter.
 Filtered denoised(const std::string& filter, const RegimeRecord& record, double ratio, const Regime& regime);
 const std::vector<std::string>& filter_names();
