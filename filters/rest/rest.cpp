@@ -16,13 +16,13 @@ namespace {
 
 constexpr double kWindow_s = 0.5;
 constexpr std::size_t kLeastWindow = 32;  // samples
-constexpr std::size_t kFewestWindows = 16;
-constexpr double kSlowest_s = 2.0;   // sample time
-constexpr double kDwell_s = 1.0;     // with references, slower samples may be dwells of a rate table
-constexpr double kAround_s = 10.0;   // either side, of the running median
-constexpr double kTurned = 20.0;     // times the usual step of quiet windows
-constexpr double kLeastTurn = 1e-3;  // rad/s
+constexpr double kSlowest_s = 2.0;        // sample time
+constexpr double kDwell_s = 1.0;          // with references, slower samples may be dwells of a rate table
+constexpr double kAround_s = 10.0;        // either side, of the running median
+constexpr double kTurned = 20.0;          // times the usual step of quiet windows
+constexpr double kLeastTurn = 1e-3;       // rad/s
 constexpr double kShaken = 4.0;
+constexpr double kExtreme = 0.05;         // share of windows on either side
 constexpr double kQuieter = 0.3;          // share of windows assumed quiet
 constexpr std::size_t kShortestRest = 8;  // windows between two moving ones
 constexpr double kEnoughOfRecord = 0.5;   // of the record
@@ -100,10 +100,13 @@ void mark_axis(const std::vector<Window>& windows, double period_s, std::vector<
     if (i > 0 && std::isfinite(windows[i - 1].mean))
       steps.push_back(std::abs(windows[i].mean - windows[i - 1].mean));
   }
-  // Quantile of the quieter windows, so that rest is found in a record that mostly moves. A normal variable
-  // is within 0.385 standard deviations in 30 % of cases.
-  const double usual = std::min(quantile(steps, kQuieter) / 0.385, kMostNoise_radps);
-  const double quiet = std::min(quantile(scatters, kQuieter), kMostNoise_radps / std::sqrt(period_s));
+  // Quantiles of the quieter windows, so that rest is found in a record that mostly moves. Where the scatter varies
+  // as no noise does, they may be of motion, too: then they are at most those of the noise of any gyro. A normal
+  // variable is within 0.385 standard deviations in 30 % of cases.
+  const bool varies = quantile(scatters, 1.0 - kExtreme) > kShaken * quantile(scatters, kExtreme);
+  const double most = varies ? kMostNoise_radps : std::numeric_limits<double>::infinity();
+  const double usual = std::min(quantile(steps, kQuieter) / 0.385, most);
+  const double quiet = std::min(quantile(scatters, kQuieter), most / std::sqrt(period_s));
   const double window_s = static_cast<double>(samples_of_window(period_s)) * period_s;
   const auto around = static_cast<std::size_t>(std::lround(kAround_s / window_s));
   const std::vector<double> level = running_median(windows, std::max<std::size_t>(4, around));
@@ -266,7 +269,7 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
   const std::size_t count = samples / window;
   std::vector<State> state(std::max<std::size_t>(1, count), State::kResting);
   if (period_s > kDwell_s && !references.empty()) return rest_by_references(references, samples);
-  if (count < kFewestWindows || period_s > kSlowest_s) {
+  if (count < 2 * kShortestRest || period_s > kSlowest_s) {
     Rest rest = as_samples(state, window, samples);
     if (period_s > kSlowest_s) rest.slow_turns = dwells_of(axes);
     return rest;

@@ -7,7 +7,7 @@
 //   times the usual step of quiet windows and more than 0.001 rad/s (0.06 °/s, 14 times the Earth's rate). The
 //   time between two such steps is turned too, if the level there differs from that of the longest rest.
 //   - shaken: the scatter within the window is more than four times that of the record's quieter part.
-// Where the record's own measure exceeds the noise of any gyro, that is the measure: such a record mostly moves.
+// In a record whose scatter varies, both measures are at most those of the noise of any gyro: it may mostly move.
 // Single outliers, drift, flicker and random walks are not motion. A step of the bias counts only at the
 // step.
 #pragma once
