@@ -11,6 +11,7 @@
 #include "filters/chain/plausibility.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/settings/filter_table.h"
+#include "filters/state_models/state_model.h"
 
 namespace ifog {
 namespace {
@@ -54,8 +55,11 @@ ChainParts::ChainParts(const ChainSettings& settings)
 void ChainParts::use_noise(const ChainSettings& settings) {
   const double rate_hz = facts_.nominal_rate_hz;
   if (settings.model) {
-    const NoiseOfAxes known =
-        noise_of_axes(*settings.model, settings.axes, rate_hz, filter_.measurement_noise);
+    double noise = filter_.measurement_noise;
+    if (noise > 0.0 && filter_.process_noise > 0.0)
+      noise += filter_.process_noise *
+               make_state_model(filter_.state, filter_.state_parameters, period_s_)->colour_variance();
+    const NoiseOfAxes known = noise_of_axes(*settings.model, settings.axes, rate_hz, noise);
     shares_ = known.shares;
     if (filter_.measurement_noise <= 0.0 && known.sample) filter_.measurement_noise = *known.sample;
     if (filter_.process_noise <= 0.0 && known.walk && filter_.state == "random-walk")

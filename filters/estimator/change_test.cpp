@@ -132,9 +132,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
   return found;
 }
 
-// A filter of gain k has the variance k R / (r + k) in noise of correlation rate r. Its innovations, summed
-// over 1 / b, have 2 b r / ((r + k) (r + b) (k + b)) R plus the walk's k / (k + b) of the rule's R. So b / (k
-// + b) divided by the noise's part is linear in b and is extrapolated to zero.
+// README.md derives it: b / (k + b) divided by the noise's part is linear in b, and is extrapolated to zero.
 Lanes ChangeTest::wide(const Trackers& trackers, double lag, double rule) const noexcept {
   Lanes wide = Lanes::Ones(), inverse_before = Lanes::Zero();
   if (!coloured_) return wide;

@@ -2,12 +2,8 @@
 // Test for motion: compares each tracker with the filter at rest, and the raw measurement with both.
 //
 // Page's test (Biometrika 41, 1954): the log-likelihood ratio of a tracker's predictions to those of the
-// filter at rest, both with the known R, is summed with fading memory over the tracker's horizon. By chance
-// the sum exceeds 18 nats once in e^18 samples (Ville's inequality). Motion that no tracker predicts
-// (shaking) is detected by size: innovations of variance 4 R against R.
-//
-// Of coloured noise only the variance of sums of innovations over each horizon is used. It is learned at
-// rest.
+// filter at rest, both with the known R, is summed with fading memory over the tracker's horizon. README.md
+// derives it, and what it knows of tails and colour.
 #pragma once
 
 #include <array>

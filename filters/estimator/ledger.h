@@ -6,14 +6,9 @@
 //   late    accumulated before the manoeuvre was detected
 //   tail    of a filter at rest that has not settled since it was reset
 //   doubt   of outliers, until the next measurements show whether they were rotation
-// A settled filter of gain K lags by T (1 - K) / K times the change of rate and recovers this when the rate
-// returns, so it is not booked; nor is the angle of an outlier at rest. When a manoeuvre is detected, the
-// part accumulated since its start is booked as late.
-//
-// Payment over n samples of a tracker of memory M turns 2 (w M)^3 w n of a cone of frequency w into drift. So
-// a manoeuvre's debt is paid within half of its trackers' memory. Late angle is paid over as many samples as
-// it accumulated; faster payment would distort the rate more than the motion did. Payments of the tail are
-// limited to a fraction of the filter's standard deviation.
+// The lag of a settled filter is not booked, nor is the angle of an outlier at rest. README.md says over which time
+// each account is paid: payment over n samples of a tracker of memory M turns 2 (w M)^3 w n of a cone of frequency w
+// into drift.
 #pragma once
 
 #include <algorithm>

@@ -36,12 +36,13 @@ double Mix::least(const Lanes& lanes) const noexcept {
 void Mix::begin(std::size_t found) noexcept {
   link_.fill(Lanes::Zero());
   bias_.fill(Lanes::Zero());
+  ahead_.fill(Lanes::Zero());
   weight_ = {};
   compared_ = {};
   weight_[found] = gain_ = 1.0;
   rest_ratio_.setZero();
   seen_.setZero();
-  rest_age_ = rest_weight_ = failed_after_ = 0.0;
+  age_ = rest_age_ = rest_weight_ = failed_after_ = 0.0;
 }
 
 void Mix::begin_rest() noexcept {
@@ -61,10 +62,14 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour, const
   std::array<Lanes, Trackers::kMost> risk;
   Lanes mean = Lanes::Zero();
   double output = 0.0;
+  age_ = std::min(age_ + 1.0, kShortGap);
+  held_ += now.mask * ((now.rate - last_).square() - held_) * (1.0 / age_);
+  last_ = (now.mask > 0.0).select(now.rate, last_);
   for (std::size_t j = 0; j < size; ++j) {
     const Trackers::Gains& g = trackers.gains(j);
     const double gain = trackers.predicts(j) ? g.rate : 1.0;
-    const Lanes left = (1.0 - gain) * (now.rate - trackers.rate(j));
+    const Lanes error = now.rate - trackers.rate(j), left = (1.0 - gain) * error;
+    ahead_[j] += now.mask * (error * error - ahead_[j]) * (1.0 / age_);
     risk[j] = left * left * now.inverse + 2.0 * gain;
     mean += weight_[j] * risk[j];
     output += weight_[j] * (trackers.predicts(j) ? g.output : 1.0);
@@ -112,25 +117,38 @@ Mix::Published Mix::publish(const Trackers& trackers, const Lanes& rest, const L
   double shorter = 0.0, gain = 0.0;
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     const double weight = weight_[j];
-    // Without measurements the parabola's variance grows with the fourth power of its reach, and its bias, a
-    // cube, with the sixth.
-    const Lanes reach = trackers.prolonged(j), fourth = reach.square().square();
-    if (j > 0) bias += (1.0 - shorter) * (1.0 - shorter) * bias_[j] * fourth * reach.square();
-    noise += fourth * (trackers.gains(j).output * weight * (weight + kCorrelated * shorter));
+    if (j > 0) bias += (1.0 - shorter) * (1.0 - shorter) * bias_[j];
+    noise += trackers.gains(j).output * weight * (weight + kCorrelated * shorter);
     gain += weight * trackers.gains(j).rate;
     shorter += weight;
     moving += weight * trackers.rate(j);
   }
   Published out;
   out.gain = gain;
-  out.rate = rest_weight_ * rest + moving;
   const double share = 1.0 - rest_weight_;
   const double falls_short = shorter - gain;
   const double paid = kPaid * falls_short * falls_short / Ledger::pace_of(length(trackers, lag));
   out.variance = (noise + paid) * scale + bias.max(0.0);
+  if ((trackers.since() > 0.0).any()) predict(trackers, moving, out.variance);
+  out.rate = rest_weight_ * rest + moving;
   const Lanes apart = rest - moving / share;
   out.variance += rest_weight_ * (rest_variance + share * apart * apart);
   return out;
+}
+
+// Axes without a measurement: the last one held, or the prediction that was better of late, with its error. That of a
+// parabola, a cube, grows with the sixth power of its reach.
+void Mix::predict(const Trackers& trackers, Lanes& moving, Lanes& variance) const noexcept {
+  const auto missing = trackers.since() > 0.0;
+  Lanes least = held_ * trackers.since().square(), best = last_;
+  for (std::size_t j = 0; j < trackers.size(); ++j) {
+    if (!trackers.predicts(j)) continue;
+    const Lanes reach = trackers.reach(j), error = ahead_[j] * (reach * reach * reach).square();
+    best = (error < least).select(trackers.rate(j), best);
+    least = least.min(error);
+  }
+  moving = missing.select((1.0 - rest_weight_) * best, moving);
+  variance = missing.select(least, variance);
 }
 
 double Mix::length(const Trackers& trackers, double lag) const noexcept {

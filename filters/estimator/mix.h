@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mixture in a manoeuvre: weights of the trackers, from the raw measurement to the longest, and of the filter
-// at rest.
-//
-// Criterion: the unbiased estimate of a linear filter's risk (Mallows' Cp; Stein, Annals of Statistics 9,
-// 1981), i.e. squared residual plus 2 R times the gain. Neighbouring trackers are compared over the shorter
-// one's horizon, by axis; the axis with most motion decides, since all axes share one gain.
+// at rest, by the unbiased estimate of their risk (Mallows' Cp; Stein, Annals of Statistics 9, 1981).
 #pragma once
 
 #include <array>
@@ -51,15 +47,20 @@ class Mix {
   [[nodiscard]] bool raw() const noexcept { return gain_ > kRawGain; }
 
  private:
+  void predict(const Trackers& trackers, Lanes& moving, Lanes& variance) const noexcept;
   // Minimum over the measured axes; 0 before the first measurement.
   [[nodiscard]] double least(const Lanes& lanes) const noexcept;
   static constexpr double kFound = 9.0;  // nats
   static constexpr double kRawGain = 0.7;
 
   std::array<Lanes, Trackers::kMost> link_{}, bias_{};
+  // Mean squares of the trackers' prediction errors and of that of holding the last measurement.
+  std::array<Lanes, Trackers::kMost> ahead_{};
+  Lanes held_ = Lanes::Zero(), last_ = Lanes::Zero();
   std::array<double, Trackers::kMost> weight_{}, compared_{};
   Lanes rest_ratio_ = Lanes::Zero(), seen_ = Lanes::Zero();  // 1 if the axis was measured in this manoeuvre
   double gain_ = 1.0;                                        // of the trackers' part
+  double age_ = 0.0;                                         // measurements, at most kShortGap
   double rest_age_ = 0.0, rest_weight_ = 0.0, failed_after_ = 0.0;
 };
 

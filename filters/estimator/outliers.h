@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Outlier test: a measurement that neither the filter at rest nor any tracker predicts waits for the next
-// ones. Consecutive ones are a jump if chance does not explain them, given the frequency of outliers so far.
+// Outlier test: a measurement that nothing predicts waits for the next ones, which may show a jump.
 #pragma once
 
 #include <algorithm>
@@ -20,8 +19,9 @@ class Outliers {
   // need not be close to each other; lag: of the filter at rest, samples.
   [[nodiscard]] Verdict take(const Trackers& trackers, const Sample& now, const Lanes& allowed, bool moving,
                              bool scattered, double lag) noexcept {
-    // After a gap nothing predicts the measurement.
-    if (greatest(now.mask * trackers.since()) > kShortGap) {
+    // After a gap nothing predicts the measurement, in a manoeuvre after one missing sample.
+    const double longest = moving ? static_cast<double>(run_) + 1.5 : kShortGap;
+    if (greatest(now.mask * trackers.since()) > longest) {
       run_ = 0;
       return Verdict::usual;
     }
@@ -52,8 +52,8 @@ class Outliers {
     axis_ = axis;
     waited_ = 0;
     ++run_;
-    // Twice the evidence is enough without closeness.
-    const double evidence = static_cast<double>(run_) * rarity();
+    // Where many seem to be outliers, they are a motion that begins. Twice the evidence is enough without closeness.
+    const double evidence = static_cast<double>(run_) * std::max(rarity(), -logarithm(kRare));
     const bool near =
         moving || nearness_ >= 0.5 * logarithm(lag) || (scattered && evidence > 2.0 * kEvidence);
     return evidence > kEvidence && near ? Verdict::jump : Verdict::waits;

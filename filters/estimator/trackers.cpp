@@ -133,14 +133,12 @@ void Trackers::correct_some(State& state, const Lanes& rate, const Lanes& mask) 
   state.curvature += ended(state).select(0.0, g.curvature / (step * step) * innovation);
 }
 
-// That of a parabola grows with the fourth power of how far it is prolonged, in lengths of what it goes
-// through.
+// The variance of a parabola grows with the fourth power of its reach.
 Lanes Trackers::factor(std::size_t j) const noexcept {
   const State& state = state_[j];
   const double one = state.gains.factor;
   if (state.age <= 0.0 || all_since_last()) return Lanes::Constant(one);
-  const Lanes more = (state.length + since_) / (state.length + 1.0);
-  return 1.0 + (one - 1.0) * more.square().square();
+  return 1.0 + (one - 1.0) * reach(j).square().square();
 }
 
 void Trackers::seed(const Lanes& rate, const Lanes& mask) noexcept {

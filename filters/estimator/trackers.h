@@ -5,9 +5,8 @@
 // A tracker is a fading-memory polynomial filter of second degree (Morrison, "Introduction to Sequential
 // Smoothing and Prediction", 1969; Brookner, "Tracking and Kalman Filtering Made Easy", 1998, section 7):
 // three equal poles at theta, gains 1 - theta^3, 3/2 (1 - theta)^2 (1 + theta), (1 - theta)^3. 1 - H is the
-// cube of a first difference: no lag for constant slope or curvature, and a gain that differs from one only
-// with the fourth power of frequency, which keeps coning out of the angle. A young tracker is the
-// least-squares parabola through all measurements since its start. All axes share the gains.
+// cube of a first difference, which keeps coning out of the angle. A young tracker is the least-squares
+// parabola through all measurements since its start.
 #pragma once
 
 #include <array>
@@ -59,9 +58,10 @@ class Trackers {
   [[nodiscard]] double length(std::size_t j) const noexcept { return state_[j].length; }
   // Samples over which it is compared with another filter; its impulse response has decayed then.
   [[nodiscard]] double horizon(std::size_t j) const noexcept { return horizon_[j]; }
-  // Ratio of each axis's parabola including extrapolation to its length; 1 if just measured.
-  [[nodiscard]] Lanes prolonged(std::size_t j) const noexcept {
-    return 1.0 + (since_ / state_[j].length).min(kMostLengths);
+  // Length of each axis's parabola with its extrapolation, relative to that with one sample.
+  [[nodiscard]] Lanes reach(std::size_t j) const noexcept {
+    const double length = state_[j].length;
+    return (length + since_.min(kMostLengths * length)) / (length + 1.0);
   }
   // Nominal samples since each axis was corrected; 1 if none is missing.
   [[nodiscard]] const Lanes& since() const noexcept { return since_; }

@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Learns a sensor's noise from its data: white noise of each axis and the random walk of the rate.
 //
-// Used at the start, at rest, and for higher noise. A stretch of some thousand samples is noise if its Allan
-// variance over means of m samples is R / m + q dt m / 3 with q dt <= 1e-3 R. This must hold within chance at
-// each m from one sample to 1/16 of the stretch. Shaking of bounded angle falls faster with m, turns rise;
-// neither is mistaken for noise.
-//
-// The walk is the ratio q dt / R, on a grid, with the largest likelihood of the long octaves over a million
+// Used at the start, at rest, and for higher noise. README.md says which stretch is noise. The walk is the ratio q dt / R, on a grid, with the largest likelihood of the long octaves over a million
 // samples; R is free.
 #pragma once
 

@@ -29,7 +29,7 @@ struct NoiseOfAxes {
   std::optional<double> walk;    // K², (rad/s)^2/s
   AxisShares shares;
 };
-// measurement_noise: of the model's filter, (rad/s)^2; 0: not given. If it exceeds twice the terms' noise it
+// measurement_noise: of the model's filter with its colour, (rad/s)^2; 0: not given. If it exceeds twice the terms' noise it
 // includes something else, such as dither lines; then all axes get the same share of it.
 [[nodiscard]] NoiseOfAxes noise_of_axes(const Model& model, std::span<const std::string> axes,
                                         double sample_rate_hz, double measurement_noise);

@@ -49,6 +49,11 @@ class StateModel {
   [[nodiscard]] virtual Eigen::MatrixXd stationary() const = 0;
   // The same of stationary noise that is not part of the rate (the colour), with zero rows for other states.
   [[nodiscard]] virtual Eigen::MatrixXd colour() const { return Eigen::MatrixXd::Zero(states(), states()); }
+  // Variance of the colour in a measurement, for unit q.
+  [[nodiscard]] double colour_variance() const {
+    const Eigen::VectorXd h = measurement();
+    return h.dot(colour() * h);
+  }
   // For each non-stationary state its variance before the first measurement, as a multiple of the rate's;
   // zero for the others.
   [[nodiscard]] virtual Eigen::VectorXd diffuse() const = 0;

@@ -191,7 +191,7 @@ class Checks:
             figures = [found[key] for key in ("samples", "samples_before_noise_known", "invalid")]
             assert figures == [samples, unknown, invalid], f"{bounds}: {figures}"
             none = unknown == samples
-            assert found["filter"]["from_start_up"] != none and ("lies within the start-up" in text) == none, text
+            assert found["filter"]["from_start_up"] != none and ("before the noise is known" in text) == none, text
 
     def check_numbers_too_small_for_a_double_are_zero(self):
         tiny = self.folder / "tiny.csv"
@@ -299,7 +299,7 @@ class Checks:
             text = said("denoise", path, "--output", out)
             found = columns(out)
             assert found["denoised_radps"] == found["raw_radps"], "filtered after all"
-            assert "not run" in text and "--start-up" in text and "from the first seconds" not in text, text
+            assert "not run" in text and "4096 samples" in text and "--model" in text and "from the first seconds" not in text, text
         long = self.write("long.csv", {"rate_radps": [self.random.gauss(0, SIGMA) for _ in range(6000)]})
         assert "from the first seconds" in said("denoise", long, "--output", self.folder / "filtered.csv")
 

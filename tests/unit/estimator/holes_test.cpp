@@ -290,6 +290,34 @@ TEST(Holes, AMissingSampleIsAsGoodAsAnUnusableOne) {
   }
 }
 
+// A car or a drone whose log lacks every seventh row: no parabola is laid through a shaking, and a smooth turn is not held.
+TEST(Holes, AMissingSampleOfAShakeIsHeldAndOfATurnPredicted) {
+  for (const bool shakes : {true, false}) {
+    ifog::test::Fed filter(ifog::test::told(1e-6));
+    std::mt19937_64 random(3);
+    std::normal_distribution<double> normal;
+    double last = 0.0, before = 0.0, square = 0.0, held = 0.0, nees = 0.0, count = 0.0;
+    for (int i = 0; i < 12'000; ++i) {
+      const double turn = 300.0 * std::sin(0.1 * i), now = 100.0 * normal(random);
+      const double shake = now - std::exchange(before, now);  // its angle is bounded
+      const double rate = (i < 2000 ? 0.0 : shakes ? shake : turn) + normal(random);
+      const bool missing = i % 7 == 6;
+      filter.in.valid_axes = missing ? 0U : 1U;
+      const ifog::EstimatorOutput& out = filter.step({rate});
+      if (missing && i > 3000) {
+        square += std::pow(out.denoised_radps[0] - rate, 2);
+        nees += std::pow(out.denoised_radps[0] - rate, 2) / out.variance_rad2ps2[0];
+        held += std::pow(last - rate, 2);
+        count += 1.0;
+      }
+      if (!missing) last = rate;
+    }
+    EXPECT_LT(std::sqrt(square / held), shakes ? 1.05 : 0.25);
+    EXPECT_LT(nees / count, 2.0) << shakes;
+    EXPECT_GT(nees / count, 0.3) << shakes;
+  }
+}
+
 // The noise is detected as well of an axis that has every n-th sample, while another has all.
 TEST(Holes, TheVarianceOfAnAxisInARhythmIsItsOwn) {
   for (const int n : {2, 3, 7}) {
