@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string_view>
 #include <utility>
 
@@ -117,10 +118,9 @@ Sensors sensors_of(const TableSample& table, bool references) {
 }
 
 bool axes_differ(const std::vector<RateCandidate>& columns) {
-  for (std::size_t i = 0; i < columns.size(); ++i)
-    for (std::size_t j = 0; j < i; ++j)
-      if (columns[i].axis == columns[j].axis) return false;
-  return true;
+  std::set<std::string> axes;
+  for (const RateCandidate& column : columns) axes.insert(column.axis);
+  return axes.size() == columns.size();
 }
 
 // Possible sensors: the one with the most axes, or all with that number.

@@ -208,7 +208,10 @@ class Chooser {
 
   // Adds what was not asked for, by names.
   void take_reading() {
-    const Readings found = readings_of(form_.sample, header_.layout);
+    Readings found;
+    found.why = "no name surely stands above its column";
+    if (form_.unused_names == 0 || !header_.layout.columns.empty())
+      found = readings_of(form_.sample, header_.layout);
     if (const TableReading* const clear = found.clear()) {
       header_.layout = clear->layout;
       header_.notices.push_back(path_ + ": read as: " + in_words(clear->layout));
@@ -220,17 +223,20 @@ class Chooser {
            "these names" +
            volts());
     fail(
-        (form_.sample.named
-             ? ""
-             : "no header line; " +
-                   (names_.size() == 1 ? std::string("its column is #1")
-                                       : "its columns are #1 to #" + std::to_string(names_.size())) +
-                   "; ") +
-        found.why + options_in_words(found) +
+        without_names() + found.why + options_in_words(found) +
         (found.ways.empty()
              ? "; --column 'rate_x_radps=#2:deg/s' and --time '#1:s' or --sample-rate HZ say which they are, "
                "with the numbers and units of this file"
              : ""));
+  }
+
+  // Why columns have numbers and no names; "" if they have names.
+  [[nodiscard]] std::string without_names() const {
+    if (form_.sample.named) return "";
+    const std::string cells = std::to_string(names_.size());
+    if (form_.unused_names == 0) return "no header line; columns are #1 to #" + cells + "; ";
+    return "the header has " + std::to_string(form_.unused_names) + " names and the rows have " + cells +
+           " cells, #1 to #" + cells + "; ";
   }
 
   void take_time(CsvTime& time) {

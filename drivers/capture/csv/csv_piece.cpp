@@ -9,6 +9,7 @@
 
 #include "drivers/capture/checks/row_checks.h"
 #include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/columns/column_roles.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/times/time_stamps.h"
@@ -21,11 +22,7 @@ namespace {
 // Missing values of R, pandas, databases and spreadsheets.
 bool is_no_value(std::string_view cell) {
   constexpr std::array<std::string_view, 6> kWords{"na", "n/a", "#n/a", "null", "none", "-"};
-  return std::any_of(kWords.begin(), kWords.end(), [&](std::string_view word) {
-    return std::equal(cell.begin(), cell.end(), word.begin(), word.end(), [](char c, char small) {
-      return (c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c) == small;
-    });
-  });
+  return std::find(kWords.begin(), kWords.end(), lower(std::string(cell))) != kWords.end();
 }
 
 struct Unreadable {

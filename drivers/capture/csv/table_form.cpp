@@ -215,20 +215,14 @@ bool take_header(const std::vector<Line>& lines, const Grid& grid, const CsvLayo
     sample_rows(grid, header.last + 1, sample);
   };
   const std::vector<std::string> wanted = wanted_names(layout);
+  if (const auto header = header_asked_for(lines, grid, wanted)) return take(*header), true;
   const std::vector<Header> above = grid.first() ? headers_above(lines, grid) : std::vector<Header>();
-  auto chosen = above.end();
-  if (const auto header = header_asked_for(lines, grid, wanted))
-    return take(*header), true;
-  else if (!wanted.empty())
-    chosen =
-        std::find_if(above.begin(), above.end(), [&](const Header& h) { return has_names(h.names, wanted); });
-  else
-    chosen = std::find_if(above.begin(), above.end(), [&](const Header& h) {
-      take(h);
-      return above.size() == 1 || !readings_of(sample, layout).ways.empty();
-    });
   if (above.empty()) return false;
-  take(chosen == above.end() ? above.front() : *chosen);
+  const bool found = std::any_of(above.begin(), above.end(), [&](const Header& header) {
+    take(header);
+    return wanted.empty() ? !readings_of(sample, layout).ways.empty() : has_names(header.names, wanted);
+  });
+  if (!found) take(above.front());
   return true;
 }
 
@@ -271,6 +265,11 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
       sample.names.push_back("#" + std::to_string(i + 1));
     form.last_line = lines[*grid.first()].number - 1;
     sample_rows(grid, *grid.first(), sample);
+    if (const Row* const above = *grid.first() > 0 ? &grid.rows()[*grid.first() - 1] : nullptr;
+        above != nullptr && !above->comment && above->values == 0 && above->cells.size() > 1) {
+      form.header_line = lines[*grid.first() - 1].number;
+      form.unused_names = above->cells.size();
+    }
   } else {
     fail_at(path, plain->number,
             "no table found, expected a header 'time_s,rate_radps,…' and rows of numbers below; the first "

@@ -13,9 +13,10 @@ namespace ifog {
 
 struct TableForm {
   char separator = ',';
-  std::size_t header_line = 0;  // from 1; 0 without a header
-  std::size_t last_line = 0;    // last line before the first row: header or row of units
-  TableSample sample;           // names, units, first rows, preamble
+  std::size_t header_line = 0;   // from 1; 0 without a header
+  std::size_t last_line = 0;     // last line before the first row: header or row of units
+  std::size_t unused_names = 0;  // in the header, if rows have another number of cells; else 0
+  TableSample sample;            // names, units, first rows, preamble
 };
 
 // text: whole lines from the file's beginning. The header is the first line that starts with time_s, or that

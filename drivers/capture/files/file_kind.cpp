@@ -26,10 +26,7 @@ constexpr std::array<Container, 15> kContainers{
       "is a log of ArduPilot, expected CSV; 'mavlogdump.py --format csv --types IMU' of pymavlink makes it"},
      {"\x93NUMPY", "is an array of NumPy, expected CSV; numpy.savetxt makes it"},
      {"BZh", "is packed by bzip2, expected a plain or gzip file; 'bunzip2' unpacks it"},
-     {{"\xFD"
-       "7zXZ",
-       5},
-      "is packed by xz, expected a plain or gzip file; 'unxz' unpacks it"},
+     {"\xFD\x37zXZ", "is packed by xz, expected a plain or gzip file; 'unxz' unpacks it"},
      {"\x28\xB5\x2F\xFD", "is packed by zstd, expected a plain or gzip file; 'unzstd' unpacks it"},
      {"TDSm",
       "is a TDMS file of LabVIEW, expected CSV; 'tdmsinfo' and to_dataframe().to_csv of nptdms make it"},

@@ -64,6 +64,11 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
        {"whole numbers are often counts", "--column rate_x_radps=X_GYRO_OUT:0.005deg/s"}},
       // Laser gyro test stands write the arcsecond's sign.
       {rows_of("Time [s]; Rate X [\"/s]\n", "0.{i}; {x}"), {"rate_x 'Rate X [\"/s]' in \"/s"}},
+      // A laboratory's logger: three temperatures below one name, and names of sensors that are switched off.
+      {rows_of("time,wx,T,yaw\n", "0.{i},{x},40.0{digit},41.4{digit},38.2{digit},0.5"),
+       {"a.csv:1: the header has 4 names and the rows have 6 cells, #1 to #6; no name surely stands above "
+        "its column; --column 'rate_x_radps=#2:deg/s' and --time '#1:s' or"}},
+      {rows_of("time,wx,T,yaw\n", "0.{i},{x},0.5"), {"the header has 4 names and the rows have 3 cells"}},
       // MATLAB datenum and Excel serial dates: days.
       {rows_of("time,gyro_x_dps\n", "738856.500{i}57858,{x}"), {"read as: time 'time' in d"}},
       {rows_of("time_days,gyro_x_dps\n", "0.00000{i},{x}"), {"read as: time 'time_days' in d"}},
