@@ -44,21 +44,21 @@ void find_held(const std::vector<double>& values, double period_s, std::vector<V
                                " Hz, and figures below that period are the logger's"});
 }
 
-void find_clipped(std::vector<double> sorted, std::vector<ValueFault>& found) {
-  const auto clipped = [&](auto begin, auto end, const char* which) {
-    const double extreme = *begin;
-    const auto next = std::find_if(begin, end, [&](double v) { return v != extreme; });
-    if (next == end) return;
-    const auto after = std::find_if(next, end, [&, second = *next](double v) { return v != second; });
-    const auto here = static_cast<double>(next - begin), there = static_cast<double>(after - next);
-    if (100.0 * here < static_cast<double>(sorted.size()) || here < 3.0 * there) return;
-    found.push_back({"clipped", six(100.0 * here / static_cast<double>(sorted.size())) +
-                                    " % of the samples are at the " + which + " value, " +
-                                    six(extreme / kDegree) +
+void find_clipped(const std::vector<double>& sorted, std::vector<ValueFault>& found) {
+  std::vector<Run> values;  // in ascending order
+  const Stretch all{0, sorted.size()};
+  for_each_run(sorted, {&all, 1}, [&](const Run& run) { values.push_back(run); });
+  const auto samples = static_cast<double>(sorted.size()),
+             average = samples / static_cast<double>(values.size());
+  const auto clipped = [&](const Run& extreme, const Run& next, const char* which) {
+    const auto here = static_cast<double>(extreme.length), there = static_cast<double>(next.length);
+    if (100.0 * here < samples || here < 3.0 * std::max(there, average)) return;
+    found.push_back({"clipped", six(100.0 * here / samples) + " % of the samples are at the " + which +
+                                    " value, " + six(extreme.value / kDegree) +
                                     " °/s: the sensor or its number format is at full scale"});
   };
-  clipped(sorted.rbegin(), sorted.rend(), "largest");
-  clipped(sorted.begin(), sorted.end(), "smallest");
+  clipped(values.back(), values[values.size() - 2], "largest");
+  clipped(values.front(), values[1], "smallest");
 }
 
 void find_wrapped(const std::vector<double>& values, const std::vector<double>& sorted,
@@ -138,7 +138,7 @@ void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, d
   find_held(values, period_s, found);
   find_wrapped(values, sorted, found);
   if (found.size() == before) find_interleaved(values, found);
-  find_clipped(std::move(sorted), found);
+  find_clipped(sorted, found);
   find_implausible(values, period_s, found);
 }
 
