@@ -127,6 +127,12 @@ std::string unit_in_name(const std::string& name) {
     const std::string inside = header.substr(at + 1, header.size() - at - 2);
     return is_unit(inside) ? inside : "";
   }
+  // UncalGyroXRadPerSec, rate_x_degrees_per_second
+  if (const std::size_t per = lower(header).rfind("per"); per != std::string::npos && per > 3) {
+    const std::size_t begin = header.find_last_of(" _ABCDEFGHIJKLMNOPQRSTUVWXYZ", per - 2) + 1;
+    for (std::string rate : {header.substr(begin), header.substr(begin - (begin > 0 ? 1 : 0))})
+      if (angle_unit(rate, true, false)) return rate;
+  }
   // "Gyro X, deg/s", "Gyro X in deg/s"; "min" is usually a minimum.
   std::string behind = header.substr(header.find_last_of(" ,:") + 1);
   if (behind == "s" || (behind.size() > 1 && is_unit(behind) && !says(behind, Role::no_rate))) return behind;
@@ -137,9 +143,6 @@ std::string unit_in_name(const std::string& name) {
     if (angle_unit(angle, false, false) && time_unit(last)) return angle + "/" + last;
   }
   if (last == "s" || last == "S") return "s";
-  // UncalGyroXRadPerSec
-  if (const std::size_t per = header.rfind("Per"); last.empty() && per != std::string::npos && per > 3)
-    if (std::string rate = header.substr(per - 3); angle_unit(rate, true, false)) return rate;
   if (last.size() == 1)
     return std::any_of(kOneLetter.begin(), kOneLetter.end(),
                        [&](const auto& each) {

@@ -36,14 +36,9 @@ std::size_t place_of(const std::string& wanted, const std::vector<std::string>& 
 }
 
 // The only name of a gyro among several sensors' names; else "".
-std::string the_gyro(const std::set<std::string>& names) {
-  std::string found;
-  for (const std::string& name : names)
-    if (lower(name).find("gyr") != std::string::npos) {
-      if (!found.empty()) return "";
-      found = name;
-    }
-  return found;
+std::string the_gyro(std::set<std::string> names) {
+  std::erase_if(names, [](const std::string& name) { return lower(name).find("gyr") == std::string::npos; });
+  return names.size() == 1 ? *names.begin() : "";
 }
 
 // Options of each reading, if none is unambiguous.

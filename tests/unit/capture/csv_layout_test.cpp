@@ -128,10 +128,6 @@ TEST(CsvLayout, SaysWhatIsWrongWithAFile) {
   EXPECT_EQ(refusal_of("t,g\n0,1\n", by), "a.csv:1: no column 'w', the header has 't', 'g'");
   EXPECT_EQ(refusal_of("t,w,w\n0,1,1\n", by),
             "a.csv:1: more than one column 'w', the header has 't', 'w', 'w'");
-  EXPECT_EQ(
-      refusal_of("t,w\n1,1\n0,2\n", by),
-      "a.csv:3: t is 0 s, expected more than in the row before; --sample-rate HZ reads all rows as even");
-  EXPECT_EQ(refusal_of("t,w\n0,1,5\n", by), "a.csv:2: more cells than the 2 columns of the header");
   EXPECT_EQ(refusal_of("t,w\n0,1e9\n", by).substr(0, 46), "a.csv:2: w is '1e9', which no sensor measures,");
   EXPECT_EQ(refusal_of("t,w\n0,0\n# note\n1e-9,3\n", layout({"rate_radps=w:rad"}, "t:s")).substr(0, 21),
             "a.csv:4: w has turned");

@@ -171,8 +171,7 @@ TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
       EXPECT_EQ(found.got.rows.size() + 1, right.got.rows.size()) << bad << piece;
       EXPECT_EQ(count_of(found.notes.faults, said + "; this"), 1) << bad << piece;
     }
-    const std::string often = "time_s,rate_x_radps,rate_y_radps,t_K\n";
-    std::string rows = often;
+    std::string rows = "time_s,rate_x_radps,rate_y_radps,t_K\n";
     for (int i = 0; i < 300; ++i) rows += i % 50 == 1 ? bad + "\n" : std::to_string(100 + i) + ",1,2,3\n";
     const std::string first = "a.csv:3" + said.substr(said.find(": "));
     for (const std::size_t piece : kPieces)

@@ -72,6 +72,11 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       // MATLAB datenum and Excel serial dates: days.
       {rows_of("time,gyro_x_dps\n", "738856.500{i}57858,{x}"), {"read as: time 'time' in d"}},
       {rows_of("time_days,gyro_x_dps\n", "0.00000{i},{x}"), {"read as: time 'time_days' in d"}},
+      // A rocket's logger, and units in words.
+      {rows_of("timestamp_seconds,raw_angular_rate_x_deg_per_s,rate_y_degrees_per_second,Gyro Z rad per s\n",
+               "0.{i},{x},{y},{z}"),
+       {"rate_x 'raw_angular_rate_x_deg_per_s' in deg_per_s, rate_y 'rate_y_degrees_per_second' in "
+        "degrees_per_second, rate_z 'Gyro Z rad per s' in rad per s"}},
       // A unit behind a comma (GOST 2.105) or "in" (DIN 461), or as a divisor; a minimum is no minute.
       {rows_of("Время, с;Угловая скорость X, град/с\n", "0.{i};{x}"),
        {"rate_x 'Угловая скорость X, град/с' in град/с"}},
