@@ -3,6 +3,7 @@
 
 #include <array>
 #include <charconv>
+#include <cmath>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
@@ -42,9 +43,16 @@ std::string listed(const std::vector<std::string>& names) {
   return printable(list, kLongestMessage);
 }
 
+void append_shortest(std::string& out, double value) {
+  std::array<char, 40> text{};  // suffices for any double
+  const char* const end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
+  out += std::isnan(value) ? std::string_view("nan") : std::string_view(text.data(), end);
+}
+
 std::string shortest(double value) {
-  std::array<char, 40> text{};
-  return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+  std::string text;
+  append_shortest(text, value);
+  return text;
 }
 
 void fail_at(const std::string& path, std::size_t line, const std::string& what) {

@@ -26,6 +26,7 @@ std::string listed(const std::vector<std::string>& names);
 
 // Shortest text that reads back exactly.
 std::string shortest(double value);
+void append_shortest(std::string& out, double value);
 
 // Throws std::runtime_error "PATH:LINE: WHAT"; without LINE if it is 0.
 [[noreturn]] void fail_at(const std::string& path, std::size_t line, const std::string& what);

@@ -1,26 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/csv/csv_writer.h"
 
-#include <array>
-#include <charconv>
 #include <cmath>
 
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
 namespace {
-
-void append(std::string& out, double value) {
-  if (std::isnan(value)) {
-    out += "nan";
-    return;
-  }
-  std::array<char, 40> text{};
-  const auto [end, error] = std::to_chars(text.data(), text.data() + text.size(), value);
-  (void)error;  // 40 characters suffice for any double
-  out.append(text.data(), end);
-}
 
 bool is_large_time(double time_s) {
   constexpr double kMost = 9e18;  // whole seconds in 64 bits
@@ -47,7 +35,7 @@ void CsvWriter::rows(std::span<const std::span<const double>> columns, const Tim
       if (c == 0 && (origin != TimeOrigin{} || is_large_time(columns[c][row])))
         append_time(text_, origin, columns[c][row]);
       else
-        append(text_, columns[c][row]);
+        append_shortest(text_, columns[c][row]);
     }
     text_ += '\n';
   }

@@ -12,6 +12,7 @@
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
+#include "drivers/system/shell_word.h"
 
 namespace ifog {
 namespace {
@@ -135,8 +136,8 @@ bool contains(const std::vector<std::string>& names, std::string_view name) {
 Hdf5Columns::Hdf5Columns(const Hdf5Source& source, const Hdf5Wanted& wanted) {
   hdf5_silence();
   H5PLset_loading_state(0);  // no code is loaded
-  const std::string group = wanted.group.empty() ? "/" : wanted.group;
-  open(source, group);
+  if (wanted.group != "/") here_ = wanted.group;
+  open(source, here_.empty() ? "/" : here_);
   choose(wanted);
   comments_ = hdf5_texts(place_, kHdf5Comments, kMostComments, kLongestText);
   if (comments_.empty() && H5Aexists(place_, kHdf5Comments) > 0)
@@ -208,7 +209,7 @@ void Hdf5Columns::choose(const Hdf5Wanted& wanted) {
     for (Hdf5Column& column : dataset)
       if ((capture || column.rows == rows) && !contains(asked, column.name)) add(std::move(column));
   if (!groups_.empty() && !columns_.empty())
-    notices_.push_back("not read: the groups " + list_of(groups_) + "; --group reads one");
+    notices_.push_back("not read: the groups of " + list_of(groups_));
 }
 
 // Members of records, or all links of the group except groups. Anything that is no dataset is rejected when
@@ -250,7 +251,8 @@ std::vector<std::string> Hdf5Columns::names_here() {
     H5O_info_t object{};
     const bool is_group = H5Oget_info_by_name2(place_, name.data(), &object, H5O_INFO_BASIC, access_) >= 0 &&
                           object.type == H5O_TYPE_GROUP;
-    (is_group ? groups_ : names).emplace_back(name.data());
+    is_group ? groups_.push_back("--group " + shell_word(here_ + "/" + name.data()))
+             : names.push_back(name.data());
   }
   return names;
 }
@@ -359,8 +361,8 @@ void Hdf5Columns::add(Hdf5Column column) {
 
 void Hdf5Columns::check_size(const Hdf5Wanted& wanted) const {
   if (columns_.empty())
-    refuse("no dataset in the group " + in_quotes(wanted.group.empty() ? "/" : wanted.group) +
-           (groups_.empty() ? "" : ", which has the groups " + list_of(groups_) + "; --group reads one"));
+    refuse("no dataset in the group " + in_quotes(here_.empty() ? "/" : here_) +
+           (groups_.empty() ? "" : "; its groups are read by " + list_of(groups_)));
   if (rows() == 0) refuse("no rows in its datasets");
   std::uint64_t stored = 0;
   for (const Hdf5Column& column : columns_) stored += column.rows * column.value_bytes;

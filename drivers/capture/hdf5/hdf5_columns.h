@@ -73,7 +73,8 @@ class Hdf5Columns {
 
   Hdf5Id access_, file_, place_, record_;  // record_: type of a table's rows
   std::vector<Hdf5Column> columns_;
-  std::vector<std::string> groups_;  // within the group
+  std::string here_;                 // path of the group; "": the root
+  std::vector<std::string> groups_;  // options that read the groups within it
   std::vector<std::string> comments_, notices_;
   std::size_t chunk_rows_ = 1, chunk_bytes_ = 0;  // of the largest packed chunk
 };
