@@ -218,8 +218,8 @@ class Run {
     result_.channel_delays =
         delayed_channels(reconstructed_, candidates_of(found_.chosen), found_.noise.shape);
     for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
-    result_.unexplained =
-        describe_rest(errors_, found_.noise, data_.grid, options_.significance, result_.noise_changes);
+    result_.unexplained = describe_rest(errors_, lines_, found_.noise, data_.grid, options_.significance,
+                                        result_.noise_changes);
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
     say(unexplained_despite_claims(result_, records_.size()));

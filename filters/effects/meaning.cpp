@@ -289,7 +289,7 @@ std::string meaning_of(const Effect& effect) {
     case Form::kProduct:
       return of_product(effect, form_named(effect.with_form).value_or(Form::kLinear));
     case Form::kLine:
-      return "a line: vibration, mains, or a structure's own frequency, or a beat inside the sensor";
+      return "a line, not corrected: vibration, mains, a structure's own frequency, or a beat in the sensor";
     case Form::kStep:
       return "the bias jumped once";
     case Form::kRateRamp:

@@ -126,13 +126,16 @@ std::size_t least_distance(std::size_t k) { return std::max<std::size_t>(6, k / 
 std::vector<std::size_t> not_near(const std::vector<std::size_t>& peaks) {
   std::vector<std::size_t> taken;
   for (const std::size_t k : peaks)
-    if (std::none_of(taken.begin(), taken.end(),
-                     [&](std::size_t t) { return (t > k ? t - k : k - t) < least_distance(k); }))
+    if (std::none_of(taken.begin(), taken.end(), [&](std::size_t t) { return are_one_peak(t, k); }))
       taken.push_back(k);
   return taken;
 }
 
 }  // namespace
+
+bool are_one_peak(std::size_t one, std::size_t other) {
+  return (one > other ? one - other : other - one) < least_distance(other);
+}
 
 std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
                                      double significance, std::size_t most) {

@@ -31,6 +31,9 @@ inline constexpr double kCoherent = 0.8;
 std::vector<SpectralLine> find_lines(std::span<const double> error, double start_s, double period_s,
                                      double significance, std::size_t most = 12);
 
+// True if two bins of a record's spectrum are too near each other to be found as two peaks.
+bool are_one_peak(std::size_t one, std::size_t other);
+
 // A line in the error of a record.
 struct LineOf {
   std::size_t record;

@@ -13,6 +13,7 @@
 #include "filters/distributions/chi_squared.h"
 #include "filters/distributions/median.h"
 #include "filters/effects/meaning.h"
+#include "filters/series/finite_sum.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 
@@ -53,23 +54,15 @@ double burst_level(std::size_t piece, std::size_t pieces) {
   return std::max(6.0, chi_squared_exceeded(chance, freedom) / chi_squared_quantile(0.5, freedom));
 }
 
-std::size_t measured_of(std::span<const double> energy) {
-  return static_cast<std::size_t>(
-      std::count_if(energy.begin(), energy.end(), [](double value) { return std::isfinite(value); }));
-}
-
 // Energy of each piece over the median of its minute, so that a shock is detected in changing traffic. 0 if
 // nothing was measured; minutes with few values use no median of their own.
 std::vector<double> over_usual(const std::vector<double>& energy, double piece_s) {
   const double of_all = usual_of(energy);
   const auto minute = std::max<std::size_t>(16, static_cast<std::size_t>(60.0 / piece_s));
-  const std::size_t parts = std::max<std::size_t>(1, energy.size() / minute);
   std::vector<double> over;
-  for (std::size_t p = 0; p < parts; ++p) {
-    const std::size_t from = p * minute;
-    const std::size_t to = p + 1 == parts ? energy.size() : from + minute;
-    const std::span<const double> mine(energy.data() + from, to - from);
-    const double usual = measured_of(mine) >= 16 ? usual_of({mine.begin(), mine.end()}) : of_all;
+  for (std::size_t from = 0; from < energy.size(); from += minute) {
+    const std::span<const double> mine(energy.data() + from, std::min(minute, energy.size() - from));
+    const double usual = finite_sum(mine).count >= 16.0 ? usual_of({mine.begin(), mine.end()}) : of_all;
     for (const double each : mine) over.push_back(usual > 0.0 && std::isfinite(each) ? each / usual : 0.0);
   }
   return over;
@@ -116,19 +109,15 @@ void describe_peak(const SpectralLine& peak, Unexplained& found) {
 bool describe_bursts(const std::vector<double>& energy, std::size_t piece, double start_s, double period_s,
                      Unexplained& found) {
   const std::vector<double> over = over_usual(energy, static_cast<double>(piece) * period_s);
-  const std::size_t measured = measured_of(energy);
+  const double measured = finite_sum(energy).count;
   const double level = burst_level(piece, energy.size());
-  std::size_t bursts = 0;
-  std::size_t strongest = 0;
+  const auto bursts = std::ranges::count_if(over, [&](double each) { return each >= level; });
+  const auto strongest = static_cast<std::size_t>(std::ranges::max_element(over) - over.begin());
   std::vector<double> times;
   const auto time_of = [&](std::size_t i) { return start_s + static_cast<double>(i * piece) * period_s; };
-  for (std::size_t i = 0; i < over.size(); ++i) {
-    if (over[i] < level) continue;
-    ++bursts;
-    if (over[i] > over[strongest]) strongest = i;
-    if (times.empty() || time_of(i) - times.back() > 2.0) times.push_back(time_of(i));
-  }
-  if (bursts == 0 || bursts * 10 >= measured) return false;
+  for (std::size_t i = 0; i < over.size(); ++i)
+    if (over[i] >= level && (times.empty() || time_of(i) - times.back() > 2.0)) times.push_back(time_of(i));
+  if (bursts == 0 || 10.0 * static_cast<double>(bursts) >= measured) return false;
   found.kind = "bursts";
   found.hint = formatted(
       "%zu bursts, the first at %s s, the strongest at %s s: knocks, radio keying or supply dips. Log an "
@@ -172,10 +161,7 @@ void describe_share(std::span<const double> error, std::span<const double> left,
   const auto count = std::max<std::size_t>(
       1, static_cast<std::size_t>(std::floor((sways ? grid.block_s : 1.0) / period_s + 0.5)));
   found.means_s = static_cast<double>(count) * period_s;
-  const double before = variance_of(means_over(error, count));
-  const double after = left.data() == error.data() && left.size() == error.size()
-                           ? before
-                           : variance_of(means_over(left, count));
+  const double before = variance_of(means_over(error, count)), after = variance_of(means_over(left, count));
   double known = noise.white_variance * grid.block_s / found.means_s;
   for (const DampedHarmonic& each : noise.shape.harmonics)
     known += noise.white_variance * each.seen_variance();
@@ -187,7 +173,7 @@ void describe_share(std::span<const double> error, std::span<const double> left,
 Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
                                  double period_s, const NoiseFit& noise, const BlockGrid& grid,
                                  const std::vector<SpectralLine>& peaks,
-                                 std::span<const NoiseChange> changes) {
+                                 const std::vector<NoiseChangeIn>& changes) {
   Unexplained found;
   const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
   describe_share(error, left, period_s, noise, grid, found);
@@ -202,20 +188,26 @@ Unexplained describe_unexplained(std::span<const double> error, std::span<const 
   if (changes.empty())
     describe_slow_rest(slow_rest(left, period_s), found);
   else
-    describe_noise_change(changes.front(), found);
+    describe_noise_change(changes.front().change, found);
   return found;
 }
 
-Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
-                          double significance, const std::vector<NoiseChangeIn>& noise_changes) {
+Unexplained describe_rest(const std::vector<EvenError>& errors, const std::vector<LineOf>& lines,
+                          const NoiseFit& noise, const BlockGrid& grid, double significance,
+                          const std::vector<NoiseChangeIn>& noise_changes) {
   const EvenError& longest = longest_of(errors);
   std::vector<SpectralLine> peaks;
   if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, grid.sample_s, significance);
-  std::vector<NoiseChange> changes;
-  changes.reserve(noise_changes.size());
-  for (const NoiseChangeIn& each : noise_changes) changes.push_back(each.change);
-  return describe_unexplained(longest.before, longest.after, longest.origin.in_s(longest.start_s),
-                              grid.sample_s, noise, grid, peaks, changes);
+  Unexplained found =
+      describe_unexplained(longest.before, longest.after, longest.origin.in_s(longest.start_s), grid.sample_s,
+                           noise, grid, peaks, noise_changes);
+  const double length_s = static_cast<double>(longest.after.size()) * grid.sample_s;
+  const auto bin = [&](double hz) { return static_cast<std::size_t>(hz * length_s + 0.5); };
+  for (const auto& [record, line] : lines)
+    if (found.frequency_hz > 0.0 && are_one_peak(bin(found.frequency_hz), bin(line.frequency_hz)))
+      found.hint = formatted("what is left of the line at %.4g Hz, whose size or frequency is not steady",
+                             line.frequency_hz);
+  return found;
 }
 
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found) {

@@ -18,11 +18,12 @@ namespace ifog {
 Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
                                  double period_s, const NoiseFit& noise, const BlockGrid& grid,
                                  const std::vector<SpectralLine>& peaks,
-                                 std::span<const NoiseChange> changes = {});
+                                 const std::vector<NoiseChangeIn>& changes = {});
 
-// Describes the longest record's residual. Peaks are searched in the residual (not on a rate table).
-Unexplained describe_rest(const std::vector<EvenError>& errors, const NoiseFit& noise, const BlockGrid& grid,
-                          double significance, const std::vector<NoiseChangeIn>& noise_changes);
+// Describes the longest record's residual, in which peaks are searched (not on a rate table). lines: taken out.
+Unexplained describe_rest(const std::vector<EvenError>& errors, const std::vector<LineOf>& lines,
+                          const NoiseFit& noise, const BlockGrid& grid, double significance,
+                          const std::vector<NoiseChangeIn>& noise_changes);
 
 // Replaces the description by that of the hysteresis.
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found);

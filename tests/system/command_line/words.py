@@ -8,6 +8,7 @@ usage: words.py PATH_OF_IFOG SOURCE_DIR
 import gzip
 import html
 import json
+import math
 import os
 import random
 import re
@@ -32,6 +33,14 @@ class Checks:
         rows = [f"{i / RATE_HZ!r}{separator}{rate!r}" for i, rate in enumerate(self.noise)]
         path.write_text("\n".join(([header] if header else []) + rows) + "\n")
         return path
+
+    def check_what_stays_is_named_once(self):
+        """A line that grows leaves a peak at its own place, which is not another thing. Lines are said not to be corrected."""
+        path, growing = self.folder / "growing.csv", [v + SIGMA * (0.4 + 2 * i / ROWS) * math.sin(2 * math.pi * 7.3137 * i / RATE_HZ) for i, v in enumerate(self.noise)]
+        path.write_text("\n".join(["time_s,rate_radps", *[f"{i / RATE_HZ!r},{v!r}" for i, v in enumerate(growing)]]) + "\n")
+        said = ifog("diagnose", path)
+        assert said.count("1. line") == 1 and "a line, not corrected: " in said, said
+        assert "what is left of the line at 7.314 Hz" in said and "that is no line" not in said, said
 
     def check_a_name_says_what_is_written(self):
         """For a format that is not written, or not by this command, no file is created."""

@@ -58,7 +58,7 @@ TEST(Lines, WhiteNoiseHasNoneAndItsSpectrumIsFlat) {
 }
 
 Unexplained of(const std::vector<double>& left, const std::vector<SpectralLine>& peaks = {},
-               const std::vector<NoiseChange>& changes = {}) {
+               const std::vector<NoiseChangeIn>& changes = {}) {
   BlockGrid grid;
   grid.block_s = 1.0;
   NoiseFit noise;
@@ -92,7 +92,7 @@ TEST(Unexplained, SaysWhatTheRestLooksLike) {
   EXPECT_NEAR(bursts.times_s[0], 100.0, 0.5);
   EXPECT_NEAR(bursts.times_s[2], 450.0, 0.5);
 
-  EXPECT_EQ(of(noise, {}, {NoiseChange{300.0, 600.0, 3.0, {}}}).kind, "changing_variance");
+  EXPECT_EQ(of(noise, {}, {NoiseChangeIn{"", {300.0, 600.0, 3.0, {}}}}).kind, "changing_variance");
 
   std::vector<double> drifting = noise;
   double walk = 0.0;
