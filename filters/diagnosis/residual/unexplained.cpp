@@ -150,7 +150,7 @@ void describe_slow_rest(const SlowRest& slow, Unexplained& found) {
     found.hint = "correlated with nothing that was logged, and with no pattern of its own";
   } else {
     found.kind = "nothing";
-    found.hint = "what stays is white noise";
+    found.hint = "nothing more is found in the rest";
   }
 }
 

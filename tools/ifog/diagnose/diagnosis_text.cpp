@@ -134,7 +134,7 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
         formatted("\n     correlation %.3f; would tell: %s\n", pair.correlation, pair.separate_by.c_str());
   }
   if (diagnosis.unexplained.kind == "nothing")
-    report += "\nRest is white noise.\n";
+    report += "\nNothing more is found in the rest.\n";
   else
     report += formatted("\nUnexplained: %s of the variance of %.3g s means",
                         percent(diagnosis.unexplained.fraction).c_str(), diagnosis.unexplained.means_s) +
