@@ -41,7 +41,9 @@ class Checks:
         said = ifog("diagnose", path)
         assert said.count("1. line") == 1 and "a line, not corrected: " in said, said
         assert "what is left of the line at 7.314 Hz" in said and "that is no line" not in said, said
-        assert "Nothing more is found in the rest." in ifog("diagnose", self.one)
+        assert "Nothing more is found in the rest." in ifog("diagnose", self.one, "--report", self.folder / "one.html")
+        page = (self.folder / "one.html").read_text()
+        assert "Nothing more is found in what remains." in page and "own noise" not in page
 
     def check_a_name_says_what_is_written(self):
         """For a format that is not written, or not by this command, no file is created."""

@@ -256,7 +256,7 @@ TEST(ReportPage, NothingFoundIsAResult) {
   e.diagnosis.unexplained = {};
   const std::string html = page_of(e);
   EXPECT_NE(html.find("Nothing was found"), std::string::npos);
-  EXPECT_NE(html.find("looks like noise"), std::string::npos);
+  EXPECT_NE(html.find("Nothing more is found"), std::string::npos);
   EXPECT_EQ(html.find("nan"), std::string::npos);
 }
 

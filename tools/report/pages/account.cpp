@@ -114,12 +114,9 @@ std::string account(const Diagnosis& d) {
            account_of_rest(d) + "</p>\n";
   }
   if (d.effects.empty()) {
-    const bool noise = d.unexplained.kind.empty() || d.unexplained.kind == "nothing";
     return "<p><strong>Nothing was found.</strong> No channel, and no pattern in time, explains more of this "
-           "error than chance would. That is a result: " +
-           std::string(noise ? "what is left is the sensor's own noise, and a correction would only add to it"
-                             : "a correction by them would only add to it") +
-           ".</p>\n<p>" + account_of_rest(d) + "</p>\n";
+           "error than chance would. That is a result: a correction by them would only add to it.</p>\n<p>" +
+           account_of_rest(d) + "</p>\n";
   }
   std::string out = "<p><strong>" + count_words(d.effects.size()) +
                     (d.effects.size() == 1 ? " was" : " were") + " found.</strong>";
@@ -143,8 +140,7 @@ std::string account(const Diagnosis& d) {
 
 std::string account_of_rest(const Diagnosis& d) {
   const Unexplained& u = d.unexplained;
-  if (u.kind.empty() || u.kind == "nothing")
-    return "What remains looks like noise: nothing in it asks for another effect.";
+  if (u.kind.empty() || u.kind == "nothing") return "Nothing more is found in what remains.";
   std::string kind = u.kind;
   std::replace(kind.begin(), kind.end(), '_', ' ');
   return "Something remains unexplained: <strong>" + escaped(kind) + "</strong>, " +
