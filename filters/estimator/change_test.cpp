@@ -35,8 +35,7 @@ void ChangeTest::begin() noexcept {
 }
 
 // Prior variance of an offset that raises R to kShakingVariance R: m / n of R, n the worth of a sum over the
-// horizon. The likelihood ratio of a sum with normalised square z^2 is exp(z^2 / 2 m / (m + 1)) / sqrt(m +
-// 1).
+// horizon. A sum of normalised square z^2 has the likelihood ratio exp(z^2 / 2 m / (m + 1)) / sqrt(m + 1).
 ChangeTest::ChangeTest(const Trackers& trackers) noexcept {
   forget_angle();
   for (std::size_t j = 0; j < Trackers::kMost; ++j) {

@@ -65,7 +65,7 @@ struct EstimatorHealth {
 
 // Knowledge of the noise in addition to FilterSettings.
 struct KnownNoise {
-  // Noise variance of each axis / FilterSettings::measurement_noise, used until it is learned.
+  // Noise variance of each axis / FilterSettings::measurement_noise, with the model's colour, until it is learned.
   Axes share{1.0, 1.0, 1.0};
   // Driving noise of each axis / FilterSettings::process_noise. nullopt: in proportion to the axis's noise.
   std::optional<Axes> walk_share;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Trackers of rate, slope and curvature with memories half a decade apart, from one sample (the measured
-// rate) up to that of the filter at rest.
+// Trackers of rate, slope and curvature with memories from one sample (the measured rate) to the filter's at rest.
 //
 // A tracker is a fading-memory polynomial filter of second degree (Morrison, "Introduction to Sequential
 // Smoothing and Prediction", 1969; Brookner, "Tracking and Kalman Filtering Made Easy", 1998, section 7):

@@ -22,8 +22,7 @@ class Unmeasured {
       if ((now.valid >> a & 1U) != 0) {
         others_[a] = rate;
         if (more == 0.0) continue;
-        // After a measurement the rate error is at most its distance from the measurement plus that one's
-        // noise.
+        // The error is at most the distance from the measurement and its noise.
         const double apart = now.rate[i] - rate[i];
         more = std::min(more * (1.0 - gain) * (1.0 - gain), apart * apart + now.scale[i]);
         if (more < 1e-3 * variance[i]) more = 0.0;
