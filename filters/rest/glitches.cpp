@@ -60,7 +60,8 @@ class Yardstick {
       while (next < i) next += stride;
       if (i == next) some.push_back(middle.away);
       const double size = std::abs(middle.value);
-      if (size >= largest_) times_ = size > largest_ ? 1 : times_ + 1;
+      if (size > largest_) times_ = 0;
+      if (size >= largest_ && (times_ == 0 || middle.step > 0.0)) ++times_;
       largest_ = std::max(largest_, size);
       if (middle.step > kRounding * std::abs(middle.value))
         smallest_step = std::min(smallest_step, middle.step);
@@ -70,8 +71,10 @@ class Yardstick {
     // Most neighbours of a sensor with coarse resolution are equal except for rounding.
     least_ = std::max(kRounding * largest_, std::isfinite(smallest_step) ? 0.5 * smallest_step : 0.0);
   }
-  // The value farthest from zero, if it occurs more than once.
-  [[nodiscard]] bool is_placeholder(double value) const { return times_ > 1 && std::abs(value) == largest_; }
+  // The value farthest from zero, if it recurs or stays for more than the two samples that a crest may have.
+  [[nodiscard]] bool is_placeholder(const Run& run) const {
+    return std::abs(run.value) == largest_ && (times_ > 1 || run.length > 2);
+  }
   // True if not even the two extreme values differ enough for a leap.
   [[nodiscard]] bool is_quiet() const { return 2.0 * largest_ <= kFar * least(); }
   // Lower limit of at().
@@ -112,7 +115,7 @@ class Yardstick {
   std::span<const Stretch> parts_;
   std::array<Near, 4> near_;  // cache
   double all_ = 0.0, least_ = 0.0, largest_ = 0.0;
-  std::size_t times_ = 0;  // number of samples with largest_
+  std::size_t times_ = 0;  // number of runs of largest_
 };
 
 }  // namespace
@@ -128,9 +131,8 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
   std::size_t end = 0, various = 0;  // end of the last outlier; samples that are no placeholder
   for_each_run(rate, parts, [&](const Run& run) {
     const double between = 0.5 * (run.before + run.after), away = std::abs(run.value - between);
-    const bool placeholder = of == LeapOf::kOneValue && yardstick.is_placeholder(run.value);
-    const bool wanted = placeholder || (run.length == 1) == (of == LeapOf::kOneSample);
-    if (run.length > kLongest || !wanted) return;
+    const bool placeholder = of == LeapOf::kOneValue && yardstick.is_placeholder(run);
+    if (run.length > kLongest || !(of == LeapOf::kOneValue ? placeholder : run.length == 1)) return;
     if (!(away > kFar * yardstick.least()) || std::abs(run.after - run.before) >= 0.5 * away) return;
     const double deviation = yardstick.at(run.begin);
     if (!(deviation > 0.0) || away <= kFar * deviation) return;

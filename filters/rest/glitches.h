@@ -29,8 +29,8 @@ struct Glitches {
   double most_times = 0.0;
 };
 
-// kOneSample: one sample. kOneValue, also in motion: placeholders. These are two to seven equal samples in a
-// row, or any sample of the value farthest from zero if the record has it more than once.
+// kOneSample: one sample. kOneValue, also in motion: placeholders, i.e. the value farthest from zero if it recurs, or
+// if it stays for three to seven samples. Two equal samples may be the crest of a motion.
 enum class LeapOf { kOneSample, kOneValue };
 
 // Finds outliers in `parts`, which hold no NaN and, for kOneSample, are at rest, because a shock is one

@@ -123,6 +123,20 @@ TEST(Glitches, SinglePlaceholdersAreOutForEveryCommandHoweverOftenTheyStand) {
     }
 }
 
+// The heel strike of a foot-mounted sensor: a crest of two equal samples is no placeholder, largest or not.
+TEST(Glitches, ACrestOfTwoEqualSamplesStays) {
+  std::vector<double> logged = white(20000, 7);
+  for (const auto& [at, crest] : {std::pair{5000U, 3.4}, std::pair{9000U, 5.0}}) {
+    logged[at] = -1.2, logged[at + 1] = logged[at + 2] = crest, logged[at + 3] = -1.5;
+  }
+  LongSeries rate;
+  rate.add(logged);
+  std::vector<ValueFault> faults;
+  leave_out_placeholders(
+      rate, [](std::size_t i) { return 1e-2 * static_cast<double>(i); }, faults);
+  EXPECT_TRUE(faults.empty());
+}
+
 // What stays where it has gone is a step, what takes several samples a blow: both are rates.
 TEST(Glitches, NoiseStepsAndBlowsAreNone) {
   std::vector<double> rate = white(200000, 2);
