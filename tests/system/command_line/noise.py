@@ -175,6 +175,9 @@ class Noise:
         assert found["samples_at_rest"] == allan["samples"] < found["samples"]
         for tau, value in zip(("0.1", "1", "10"), allan["adev_radps"]):
             assert abs(found["raw"][0]["adev_radps"][tau] / value - 1) < 1e-9, (tau, value, found["raw"][0])
+        assert "not judged" not in found["verdict"][0]["text"], found["verdict"]
+        turning = self.json("compare", path, "--from", "98", "--to", "150")
+        assert "not judged" in turning["verdict"][0]["text"], turning["verdict"]
         still = self.json("compare", path, "--to", "90")
         assert still["motion"] == "" and still["samples"] == still["samples_at_rest"] == 90 * RATE_HZ
 
