@@ -202,7 +202,7 @@ Unexplained describe_rest(const std::vector<EvenError>& errors, const std::vecto
       describe_unexplained(longest.before, longest.after, longest.origin.in_s(longest.start_s), grid.sample_s,
                            noise, grid, peaks, noise_changes);
   const double length_s = static_cast<double>(longest.after.size()) * grid.sample_s;
-  const auto bin = [&](double hz) { return static_cast<std::size_t>(hz * length_s + 0.5); };
+  const auto bin = [&](double hz) { return static_cast<std::size_t>(std::lround(hz * length_s)); };
   for (const auto& [record, line] : lines)
     if (found.frequency_hz > 0.0 && are_one_peak(bin(found.frequency_hz), bin(line.frequency_hz)))
       found.hint = formatted("what is left of the line at %.4g Hz, whose size or frequency is not steady",
