@@ -268,9 +268,7 @@ void Engine::take(Step& s, bool learn) noexcept {
 
 void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
   rest_->shift_to(rate, started_);
-  const double of_all = noise_.mean(variance / noise_.share());
-  // A larger model keeps what it knows of colour and lines.
-  if (rest_->rate_alone() || of_all > rest_->rate().variance) rest_->set_variance(of_all);
+  rest_->set_variance(noise_.mean(variance / noise_.share()));
   follow_.since_moved = 0.0;
 }
 

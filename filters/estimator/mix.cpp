@@ -37,6 +37,7 @@ void Mix::begin(std::size_t found) noexcept {
   link_.fill(Lanes::Zero());
   bias_.fill(Lanes::Zero());
   ahead_.fill(Lanes::Zero());
+  held_.setZero();
   weight_ = {};
   compared_ = {};
   weight_[found] = gain_ = 1.0;
@@ -63,7 +64,7 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour, const
   Lanes mean = Lanes::Zero();
   double output = 0.0;
   age_ = std::min(age_ + 1.0, kShortGap);
-  held_ += now.mask * ((now.rate - last_).square() - held_) * (1.0 / age_);
+  if (age_ > 1.0) held_ += now.mask * ((now.rate - last_).square() - held_) * (1.0 / (age_ - 1.0));
   last_ = (now.mask > 0.0).select(now.rate, last_);
   for (std::size_t j = 0; j < size; ++j) {
     const Trackers::Gains& g = trackers.gains(j);
@@ -129,24 +130,26 @@ Mix::Published Mix::publish(const Trackers& trackers, const Lanes& rest, const L
   const double falls_short = shorter - gain;
   const double paid = kPaid * falls_short * falls_short / Ledger::pace_of(length(trackers, lag));
   out.variance = (noise + paid) * scale + bias.max(0.0);
-  if ((trackers.since() > 0.0).any()) predict(trackers, moving, out.variance);
+  if ((trackers.since() > 0.0).any()) predict(trackers, scale, moving, out.variance);
   out.rate = rest_weight_ * rest + moving;
   const Lanes apart = rest - moving / share;
   out.variance += rest_weight_ * (rest_variance + share * apart * apart);
   return out;
 }
 
-// Axes without a measurement: the last one held, or the prediction that was better of late, with its error. That of a
-// parabola, a cube, grows with the sixth power of its reach.
-void Mix::predict(const Trackers& trackers, Lanes& moving, Lanes& variance) const noexcept {
-  const auto missing = trackers.since() > 0.0;
-  Lanes least = held_ * trackers.since().square(), best = last_;
+// Axes without a measurement: the best prediction of late, or holding, with its error, at least that of white noise.
+void Mix::predict(const Trackers& trackers, const Lanes& scale, Lanes& moving,
+                  Lanes& variance) const noexcept {
+  Lanes least = Lanes::Constant(1e300), best = last_;
+  if (age_ > 1.0) least = held_.max(2.0 * scale) * trackers.since().square();
   for (std::size_t j = 0; j < trackers.size(); ++j) {
     if (!trackers.predicts(j)) continue;
-    const Lanes reach = trackers.reach(j), error = ahead_[j] * (reach * reach * reach).square();
+    const Lanes reach = trackers.reach(j);
+    const Lanes error = ahead_[j].max(trackers.gains(j).factor * scale) * (reach * reach * reach).square();
     best = (error < least).select(trackers.rate(j), best);
     least = least.min(error);
   }
+  const auto missing = trackers.since() > 0.0 && least < 1e300;
   moving = missing.select((1.0 - rest_weight_) * best, moving);
   variance = missing.select(least, variance);
 }

@@ -47,7 +47,7 @@ class Mix {
   [[nodiscard]] bool raw() const noexcept { return gain_ > kRawGain; }
 
  private:
-  void predict(const Trackers& trackers, Lanes& moving, Lanes& variance) const noexcept;
+  void predict(const Trackers& trackers, const Lanes& scale, Lanes& moving, Lanes& variance) const noexcept;
   // Minimum over the measured axes; 0 before the first measurement.
   [[nodiscard]] double least(const Lanes& lanes) const noexcept;
   static constexpr double kFound = 9.0;  // nats

@@ -139,18 +139,18 @@ void RestFilter::shift_to(const Lanes& rate, std::uint32_t which) noexcept {
       if ((which >> static_cast<unsigned>(axis) & 1U) != 0)
         core.x.col(axis) =
             model_.kept.cwiseProduct(core.x.col(axis)) + model_.level * (rate[axis] - now[axis]);
-    if (!model_.rate_alone)
-      core.p = model_.kept.asDiagonal() * core.p * model_.kept.asDiagonal() + model_.colour;
   }
   refresh();
 }
 
 void RestFilter::set_variance(double variance) noexcept {
   for (Core& core : cores()) {
+    if (!model_.rate_alone)
+      core.p = model_.kept.asDiagonal() * core.p * model_.kept.asDiagonal() + model_.colour;
     const double now = read(model_.readout, core).variance;
     if (variance >= now)
       core.p += (variance - now) * model_.level.lazyProduct(model_.level.transpose());
-    else
+    else if (model_.rate_alone)
       core.p *= variance / now;
   }
   refresh();

@@ -42,10 +42,9 @@ class RestFilter {
   void update(const Measured& m, std::uint64_t sequence, bool learn) noexcept;
   // A step without measurement.
   void skip() noexcept;
-  // Sets the level of the axes in `which` so that the predicted measurement is `rate`. Lines remain; the colour
-  // begins again with its stationary variance.
+  // Sets the level of the axes in `which` so that they measure `rate`, without colour. Lines remain.
   void shift_to(const Lanes& rate, std::uint32_t which) noexcept;
-  // Sets the variance of the rate.
+  // Sets the variance of the rate, in a larger model only to a larger one, and that of the colour at the start.
   void set_variance(double variance) noexcept;
   // Lag and correlation for the present gain in steady state.
   [[nodiscard]] Settled settled() const noexcept;

@@ -304,6 +304,7 @@ TEST(Holes, AMissingSampleOfAShakeIsHeldAndOfATurnPredicted) {
       const bool missing = i % 7 == 6;
       filter.in.valid_axes = missing ? 0U : 1U;
       const ifog::EstimatorOutput& out = filter.step({rate});
+      ASSERT_GT(out.variance_rad2ps2[0], 1e-6) << i;
       if (missing && i > 3000) {
         square += std::pow(out.denoised_radps[0] - rate, 2);
         nees += std::pow(out.denoised_radps[0] - rate, 2) / out.variance_rad2ps2[0];
