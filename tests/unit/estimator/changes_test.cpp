@@ -147,4 +147,22 @@ TEST(Changes, AMotionAfterARestFullOfOutliersIsFollowed) {
   EXPECT_GT(product / square, 0.6);
 }
 
+// A phone that was turned is put down, and shaken soon after: what the long trackers remember of the turn is no
+// prediction of the shaking.
+TEST(Changes, AShakeSoonAfterATurnIsNotPredictedByIt) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Fed filter(told(1e-6), 1);
+    for (int i = 0; i < 3350; ++i) {
+      const double turn = 4000.0 * std::sin(0.02 * i) * std::min(1.0, (3000 - i) / 20.0);
+      const double rate =
+          normal(random) + (i >= 1000 && i < 3000 ? turn : 0.0) + (i >= 3150 ? 4.0 * normal(random) : 0.0);
+      const double denoised = filter.step({rate}).denoised_radps[0];
+      if (i < 3150) continue;
+      ASSERT_LT(std::abs(denoised - rate), 40.0) << i << ", seed " << seed;
+    }
+  }
+}
+
 }  // namespace
