@@ -8,6 +8,7 @@
 #include <span>
 
 #include "filters/estimator/sample.h"
+#include "filters/kalman/core.h"
 #include "filters/kalman/settled.h"
 #include "filters/rules/rule.h"
 #include "filters/state_models/few_states.h"
@@ -79,12 +80,7 @@ class RestFilter {
     FewStatesMatrix start, colour;  // covariance at the start, and of the colour in steady state
     bool rate_alone;
   };
-  // State of KalmanCore<n>: one column per axis, and the parts common to all axes.
-  struct Core {
-    Eigen::Matrix<double, Eigen::Dynamic, kMaxAxes, Eigen::ColMajor, kMaxStates, kMaxAxes> x;
-    FewStatesMatrix p;
-    FewStatesVector gain;
-  };
+  using Core = KalmanCore<Eigen::Dynamic>;
   [[nodiscard]] std::span<Core> cores() noexcept { return {cores_.data(), hypotheses_.size()}; }
   // Value, variance and gain of `of`'x in one core, and in the weighted mean.
   [[nodiscard]] Reading read(const FewStatesVector& of, const Core& core) const noexcept;

@@ -10,6 +10,7 @@
 #include <Eigen/Dense>
 
 #include "filters/settings/axes.h"
+#include "filters/state_models/state_model.h"
 
 namespace ifog {
 
@@ -25,31 +26,36 @@ void predict_covariance(Matrix& p, const Matrix& transition, const Matrix& drivi
 // but stays positive despite rounding.
 template <class Matrix, class Vector>
 void correct_covariance(Matrix& p, Vector& gain, const Vector& h, double c) noexcept {
-  const Vector ph = p * h;
+  const Vector ph = p.lazyProduct(h);
   gain = ph / c;
-  const Matrix keep = Matrix::Identity(h.size(), h.size()) - gain * h.transpose();
+  const Matrix keep = Matrix::Identity(h.size(), h.size()) - gain.lazyProduct(h.transpose());
   const Matrix kept = keep.lazyProduct(p);
-  const Matrix joseph = kept.lazyProduct(keep.transpose()) + (c - h.dot(ph)) * gain * gain.transpose();
+  const Matrix joseph =
+      kept.lazyProduct(keep.transpose()) + (c - h.dot(ph)) * gain.lazyProduct(gain.transpose());
   p = 0.5 * (joseph + joseph.transpose());
 }
 
+// n: number of states, or Eigen::Dynamic for any number up to kMaxStates.
 template <int n>
 struct KalmanCore {
-  static constexpr int kAxes = kMaxAxes;
-  using Vector = Eigen::Matrix<double, n, 1>;
-  using Matrix = Eigen::Matrix<double, n, n>;
+  static constexpr int kFixed = n == Eigen::Dynamic ? 0 : n, kMost = n == Eigen::Dynamic ? kMaxStates : n;
+  using Vector = Eigen::Matrix<double, n, 1, Eigen::ColMajor, kMost, 1>;
+  using Matrix = Eigen::Matrix<double, n, n, Eigen::ColMajor, kMost, kMost>;
 
-  Eigen::Matrix<double, n, kAxes> x = Eigen::Matrix<double, n, kAxes>::Zero();  // one column per axis
-  Matrix p = Matrix::Zero();  // common to all axes, (rad/s)^2
-  Vector h = Vector::Zero();
-  Vector gain = Vector::Zero();
+  // One column per axis.
+  using States =
+      Eigen::Matrix<double, n, kMaxAxes, n == 1 ? Eigen::RowMajor : Eigen::ColMajor, kMost, kMaxAxes>;
+
+  States x = States::Zero(kFixed, kMaxAxes);
+  Matrix p = Matrix::Zero(kFixed, kFixed);  // common to all axes, (rad/s)^2
+  Vector h = Vector::Zero(kFixed), gain = Vector::Zero(kFixed);
 
   // Eqs. (9), (10).
   void predict(const Matrix& transition, const Matrix& driving, double factor = 1.0) noexcept {
     if constexpr (n == 1) {
       x *= transition(0, 0);
     } else {
-      x = (transition * x).eval();
+      x = transition.lazyProduct(x).eval();
     }
     predict_covariance(transition, driving, factor);
   }
@@ -68,7 +74,7 @@ struct KalmanCore {
   }
   [[nodiscard]] double variance() const noexcept {
     if constexpr (n == 1) return p(0, 0);
-    return h.dot(p * h);
+    return h.dot(p.lazyProduct(h));
   }
 
   // As correct_covariance(); a single state needs one division.
