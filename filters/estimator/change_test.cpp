@@ -2,7 +2,6 @@
 #include "filters/estimator/change_test.h"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 #include "filters/estimator/noise.h"

@@ -42,6 +42,7 @@ void Trackers::reach(double samples) noexcept {
 void Trackers::begin() noexcept {
   for (State& state : state_) state = {};
   since_.setZero();
+  stride_.setOnes();
 }
 
 void Trackers::grow_to(State& state, std::size_t j, double age) const noexcept {
@@ -93,6 +94,10 @@ void Trackers::prolong(State& state, double steps) const noexcept {
   const bool whole = steps == 1.0 && all_since_last();
   for (std::size_t j = 0; j < size_; ++j) {
     State& state = state_[j];
+    if (steps >= 2.0 && steps > memory_[j]) {  // little of it is left
+      state.slope = state.curvature = Lanes::Zero();
+      grow_to(state, j, 0.0);
+    }
     if (!state.settled) set_gains(state, j);
     if (!whole) {
       prolong(state, steps);
@@ -119,18 +124,28 @@ void Trackers::prolong(State& state, double steps) const noexcept {
     state.age += 1.0;
     if (!state.settled) state.length = std::min(memory_[j], state.age / 3.0 + 1.0);
   }
+  stride_ = whole ? Lanes::Ones() : (mask > 0.0).select(since_, stride_).eval();
   since_ *= 1.0 - mask;
 }
 
-// The gains are for steps of one sample. The gains of slope and curvature decrease with the distance of the
-// measurements; otherwise longer steps would be unstable.
+// The gains after a step of s samples are those of pole theta^s: weights fade with time, so the filter is stable for any
+// pattern of gaps. With the gains of one sample it is not.
 void Trackers::correct_some(State& state, const Lanes& rate, const Lanes& mask) noexcept {
   const Gains& g = state.gains;
   const Lanes innovation = mask * (rate - state.rate), step = since_.max(1.0);
+  Lanes first = Lanes::Constant(g.rate), second = Lanes::Constant(g.slope),
+        third = Lanes::Constant(g.curvature);
+  for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
+    if (mask[a] == 0.0 || step[a] < 2.0 || state.age < kParabola || state.length <= 1.0) continue;
+    const double th = exponential(step[a] * logarithm(1.0 - 1.0 / state.length)), m = 1.0 - th;
+    first[a] = 1.0 - th * th * th;
+    second[a] = 1.5 * m * m * (1.0 + th);
+    third[a] = 0.5 * m * m * m;
+  }
   // After the end of its extrapolation a parabola restarts instead of being corrected.
-  state.rate += ended(state).select(innovation, g.rate * innovation);
-  state.slope += ended(state).select(0.0, g.slope / step * innovation);
-  state.curvature += ended(state).select(0.0, g.curvature / (step * step) * innovation);
+  state.rate += ended(state).select(innovation, first * innovation);
+  state.slope += ended(state).select(0.0, second / step * innovation);
+  state.curvature += ended(state).select(0.0, third / (step * step) * innovation);
 }
 
 // The variance of a parabola grows with the fourth power of its reach.

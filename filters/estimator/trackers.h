@@ -64,6 +64,8 @@ class Trackers {
   }
   // Nominal samples since each axis was corrected; 1 if none is missing.
   [[nodiscard]] const Lanes& since() const noexcept { return since_; }
+  // Distance of each axis's measurements of late, nominal samples: the trackers' noise is as many times larger.
+  [[nodiscard]] const Lanes& stride() const noexcept { return stride_; }
 
  private:
   struct State {
@@ -90,7 +92,7 @@ class Trackers {
   std::array<Gains, kMost> fading_{};
   std::array<State, kMost> state_{};
   std::size_t size_ = 0;
-  Lanes since_ = Lanes::Zero();
+  Lanes since_ = Lanes::Zero(), stride_ = Lanes::Ones();
 };
 
 }  // namespace ifog

@@ -160,6 +160,27 @@ TEST(Holes, AMotionIsFollowedThroughThem) {
   }
 }
 
+// Of each so many samples only the first ones are there, then none for some time: a logger that records now and then, as
+// one of a temperature run did (51 samples, 283 lost). A tracker that goes on over the gap with the gains of one sample
+// is unstable.
+TEST(Holes, GapsInARhythmLeaveTheTrackersStable) {
+  for (const double amplitude : {0.0, 0.05}) {
+    const auto motion = [=](int i) { return amplitude * std::sin(0.4 * std::numbers::pi * i * kPeriod); };
+    for (const auto& [there, lost] :
+         {std::pair{2, 20}, {3, 3}, {10, 16}, {20, 49}, {48, 99}, {51, 283}, {200, 399}, {1000, 30}}) {
+      const auto fate = [there = there, lost = lost](int i) {
+        return i % (there + lost) < there ? Sample::good : Sample::missing;
+      };
+      const Seen seen = Turning(1, motion, fate).go(10'000, 100'000, 100'000);
+      const auto which = testing::Message() << amplitude << " rad/s, " << there << " and " << lost << " lost";
+      EXPECT_EQ(seen.not_finite, 0) << which;
+      EXPECT_LT(seen.rms(), (amplitude == 0.0 ? 0.3 : 1.05) * kNoise) << which;
+      EXPECT_LT(seen.worst, 6.0 * kNoise) << which;
+      EXPECT_LT(seen.nees(), 1.5) << which;
+    }
+  }
+}
+
 // Some of each n samples cannot be used, from the first one on or in a turn, of the only axis or of one of
 // three.
 TEST(Holes, UnusableSamplesInARhythmLeaveTheTrackersStable) {
