@@ -20,14 +20,15 @@ struct Rollover {
   double length_s;
   const char* what;
 };
-constexpr double kTwo32 = 4294967296.0;
 constexpr std::array<Rollover, 5> kRollovers{{{604'800.0, "a GPS week"},
                                               {86'400.0, "a day"},
-                                              {kTwo32 * 1e-6, "a count of µs in 32 bits"},
-                                              {kTwo32 * 1e-4, "a count of 100 µs in 32 bits"},
-                                              {kTwo32 * 1e-3, "a count of ms in 32 bits"}}};
+                                              {0x1p32 * 1e-6, "a count of µs in 32 bits"},
+                                              {0x1p32 * 1e-4, "a count of 100 µs in 32 bits"},
+                                              {0x1p32 * 1e-3, "a count of ms in 32 bits"}}};
 
 constexpr std::size_t kFewBursts = 8;
+// No packet has as many rows; a logger that records for some seconds now and then has them, at even times.
+constexpr double kWindowRows = 32.0;
 constexpr double kHole = 1.5;  // times the usual step; longer steps are gaps
 
 // True if four of five are within 20 % of the median: packets are even, gaps and jitter are not.
@@ -55,6 +56,7 @@ double step_within_bursts(const std::vector<double>& time_s) {
     begin = i;
   }
   if (between.size() < kFewBursts || within.size() < between.size()) return 0.0;
+  if (median_value(rows) >= kWindowRows && are_even(within)) return 0.0;
   return median_value(within) < 0.25 * mean_s && are_even(between) && are_even(rows) ? mean_s : 0.0;
 }
 

@@ -44,9 +44,13 @@ double number(const std::string& column, std::string_view cell, std::string_view
 bool is_no_row(std::string_view line) { return trimmed(line).empty() || line.front() == '#'; }
 
 std::string_view cell_at(std::string_view line, std::size_t place, char separator) {
+  const auto skip_blanks = [&] {
+    while (separator == ' ' && line.starts_with(' ')) line.remove_prefix(1);
+  };
+  skip_blanks();
   for (; place > 0 && !line.empty(); --place) {
     line.remove_prefix(std::min(cell_end(line, separator) + 1, line.size()));
-    while (separator == ' ' && line.starts_with(' ')) line.remove_prefix(1);
+    skip_blanks();
   }
   return unquoted(line.substr(0, cell_end(line, separator)));
 }

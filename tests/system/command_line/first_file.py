@@ -105,6 +105,9 @@ class Checks:
         scale = ["--time", "t_ms:ms", *(word for a in "xyz" for word in ("--column", f"rate_{a}_radps=Gy{a.upper()}:{1 / 13100}deg/s"))]
         densities, said = typed(path, *scale)
         assert densities and all(abs(densities[a] / N - 1) < 0.05 for a in "xyz"), (densities, said)
+        ascii = self.file("ascii.txt", self.rows(lambda i, x, y, z: (f"   {5 * i:.7e}", f"  {x:.7e}"), " "))  # MATLAB: save -ascii
+        densities, said = typed(ascii, "--time", "#1:ms", "--column", "rate_x_radps=#2:deg/s")
+        assert densities and abs(densities["x"] / N - 1) < 0.05, (densities, said)
         loud = self.file("loud.csv", ["t_ms,GyX", *self.rows(lambda i, x, y, z: (5 * i, round(x * 131000)))])
         said = typed(loud, "--time", "t_ms:ms", "--column", "rate_x_radps=GyX:rad/s")[1]
         assert "counts are read by their scale: --column 'rate_x_radps=GyX:0.00763deg/s'" in said, said
@@ -209,6 +212,7 @@ class Checks:
     def check_stamps(self):
         header = "time_s,rate_x_radps"
         self.reads("packets.csv", [header, *self.rows(lambda i, x, y, z: (f"{0.03 + i // 7 * 0.035 + i % 7 * 1e-4:.6f}", x * RAD))], axes="x", says=("come in bursts", "at 200 Hz"))
+        self.reads("windows.csv", [header, *self.rows(lambda i, x, y, z: (f"{i // 80 * 20 + i % 80 * 0.005:.6f}", x * RAD))], axes="x", says=())
         self.reads("same.csv", [header, *self.rows(lambda i, x, y, z: (f"{i // 7 * 0.035:.6f}", x * RAD))], axes="x", says=("come in bursts", "at 200 Hz"))
         rows = self.rows(lambda i, x, y, z: (f"{i / RATE_HZ:.3f}", x * RAD))
         self.reads("twice.csv", [header, *self.rows(lambda i, x, y, z: (f"{(i - (i % 37 == 36)) / RATE_HZ:.6f}", x * RAD))], axes="x", says=("have the time of the row before",))
