@@ -2,7 +2,6 @@
 #include "daemon/housekeeping/status_report.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <utility>

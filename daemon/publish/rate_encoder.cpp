@@ -2,7 +2,6 @@
 #include "daemon/publish/rate_encoder.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "daemon/publish/message_flags.h"
 

@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <stdexcept>
 #include <utility>
-#include <vector>
 
 #include "daemon/sensor/noise_memory.h"
 #include "daemon/sensor/sensor_parts.h"

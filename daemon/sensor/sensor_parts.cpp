@@ -5,7 +5,6 @@
 #include <cctype>
 #include <cstdlib>
 #include <fstream>
-#include <stdexcept>
 #include <string_view>
 #include <tuple>
 #include <utility>

@@ -7,7 +7,6 @@
 #include <limits>
 #include <memory>
 #include <span>
-#include <utility>
 
 #include "filters/allan/two_sum.h"
 #include "filters/threads/share_out.h"

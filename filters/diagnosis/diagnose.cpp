@@ -2,7 +2,6 @@
 #include "filters/diagnosis/diagnose.h"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 

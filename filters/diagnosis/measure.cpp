@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/measure.h"
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <stdexcept>

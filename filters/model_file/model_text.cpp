@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <array>
-#include <charconv>
 #include <cmath>
-#include <cstdio>
 #include <type_traits>
 
 #include "filters/model_file/channel_names.h"

@@ -9,7 +9,6 @@
 // smooth covariance. `uniform` uses e_i ~ U(0, 1), the other interpretation of "randomly generated in the
 // range [0, 1]".
 #include <array>
-#include <cmath>
 
 #include "filters/random/deviates.h"
 #include "filters/rules/rule.h"

@@ -10,7 +10,6 @@
 // change the limit bounds the recovery time, as in Page's test.
 #include <algorithm>
 #include <array>
-#include <cmath>
 
 #include "filters/random/log_exp.h"
 #include "filters/rules/rule.h"

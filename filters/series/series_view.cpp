@@ -2,7 +2,6 @@
 #include "filters/series/series_view.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
 

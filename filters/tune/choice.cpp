@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <memory>
 
 #include "filters/state_models/poles.h"
 #include "filters/state_models/state_model.h"

@@ -6,7 +6,6 @@
 #include <charconv>
 #include <cmath>
 #include <complex>
-#include <functional>
 #include <iterator>
 #include <numbers>
 

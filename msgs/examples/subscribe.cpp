@@ -6,7 +6,6 @@
 //
 // Ends after COUNT messages. Build:  c++ subscribe.cpp $(pkg-config --cflags --libs ifogd-msgs)
 #include <cstdio>
-#include <cstdlib>
 #include <ifog/rate_t.hpp>
 #include <lcm/lcm-cpp.hpp>
 #include <string>

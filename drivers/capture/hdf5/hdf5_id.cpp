@@ -2,7 +2,6 @@
 #include "drivers/capture/hdf5/hdf5_id.h"
 
 #include <cstring>
-#include <string_view>
 
 namespace ifog {
 namespace {

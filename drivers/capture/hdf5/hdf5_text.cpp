@@ -24,7 +24,6 @@
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
-#include <utility>
 
 #include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/csv/csv_rows.h"

@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
-#include <stdexcept>
 #include <string_view>
 
 #include "drivers/ifog/quoted.h"

@@ -4,7 +4,6 @@
 // Radians or degrees, rate or delta angle, and the temperature's scale are settings of the device (=ANGUNITS,
 // =ANGFMT, =LINFMT, =TEMPUNITS) and must be given to the driver. KVH delivers devices that send delta angles;
 // the default here is rate.
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/plugins/stdbin/telegram.h"
 
-#include <algorithm>
 #include <numeric>
 
 #include "drivers/plugins/framing/fields.h"

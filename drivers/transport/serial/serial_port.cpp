@@ -8,10 +8,8 @@
 #include <array>
 #include <cerrno>
 #include <climits>
-#include <cstdlib>
 #include <string>
 #include <system_error>
-#include <utility>
 
 #include "drivers/transport/sole_reader.h"
 

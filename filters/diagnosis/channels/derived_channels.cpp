@@ -6,7 +6,6 @@
 #include <map>
 #include <numbers>
 #include <optional>
-#include <utility>
 
 #include "filters/effects/meaning.h"
 #include "filters/units/told_time.h"

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/cleaning/steps.h"
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <stdexcept>
 

@@ -2,9 +2,7 @@
 #include "filters/diagnosis/record/blocks.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <set>
 #include <stdexcept>
 #include <string>

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <numbers>
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/search/scan.h"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "filters/diagnosis/search/search.h"
 #include "filters/distributions/chi_squared.h"

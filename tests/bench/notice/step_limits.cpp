@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/bench/notice/step_limits.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <random>
 #include <vector>

@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <stdexcept>
 
 #include "drivers/capture/capture.h"
 #include "tests/unit/capture/refusal.h"

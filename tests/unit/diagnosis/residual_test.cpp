@@ -2,10 +2,7 @@
 // The room `residual`: what effects leave, as lines, as lines that move, and in words.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <random>
 

@@ -3,10 +3,6 @@
 // from the bit-serial definition, outside this program.
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <utility>
-#include <vector>
-
 #include "drivers/host/driver_instance.h"
 #include "drivers/plugins/framing/frame_finder.h"
 #include "drivers/plugins/sbgecom/message.h"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
-#include <vector>
 
 #include "drivers/host/driver_instance.h"
 #include "drivers/plugins/framing/frame_finder.h"

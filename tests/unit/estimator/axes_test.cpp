@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include "tests/unit/estimator/drive.h"
 

@@ -3,9 +3,7 @@
 // began.
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
-#include <numeric>
 
 #include "tests/unit/estimator/drive.h"
 

@@ -4,7 +4,6 @@
 // that are made here; 1 kHz, noise 1e-5 rad/s.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -8,9 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <bit>
-#include <cmath>
 #include <cstdint>
-#include <vector>
 
 #include "tests/unit/estimator/drive.h"
 

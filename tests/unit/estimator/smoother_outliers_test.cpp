@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <cstddef>
-#include <vector>
 
 #include "tests/unit/estimator/drive.h"
 #include "tests/unit/estimator/smooth_one.h"

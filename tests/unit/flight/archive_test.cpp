@@ -5,7 +5,6 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <set>
 
 #include "tests/unit/flight/archived.h"
 #include "tests/unit/own_folder.h"

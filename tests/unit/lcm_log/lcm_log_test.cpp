@@ -7,13 +7,11 @@
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <ifog/channel_t.hpp>
 #include <ifog/rate_t.hpp>
 #include <ifog/status_t.hpp>
 #include <lcm/lcm-cpp.hpp>
 #include <limits>
-#include <stdexcept>
 
 #include "drivers/capture/capture.h"
 #include "drivers/capture/files/output_file.h"

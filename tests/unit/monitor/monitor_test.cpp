@@ -3,7 +3,6 @@
 // that is no message of ours is counted.
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdlib>
 #include <ifog/rate_t.hpp>

@@ -6,7 +6,6 @@
 
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "filters/population/shrinkage.h"
 #include "tests/unit/population/one_coefficient.h"

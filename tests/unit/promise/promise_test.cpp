@@ -10,7 +10,6 @@
 #include <cmath>
 #include <numbers>
 #include <random>
-#include <span>
 #include <vector>
 
 #include "filters/promise/running_trial.h"

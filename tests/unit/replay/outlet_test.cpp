@@ -10,7 +10,6 @@
 
 #include <cerrno>
 #include <deque>
-#include <stdexcept>
 #include <string>
 #include <thread>
 #include <vector>

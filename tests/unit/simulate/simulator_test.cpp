@@ -6,7 +6,6 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <numbers>
 
 #include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"

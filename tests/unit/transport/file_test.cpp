@@ -10,10 +10,8 @@
 
 #include <atomic>
 #include <cerrno>
-#include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <thread>
 
 #include "drivers/capture/files/output_file.h"

@@ -8,7 +8,6 @@
 
 #include <atomic>
 #include <cerrno>
-#include <memory>
 #include <string>
 #include <thread>
 

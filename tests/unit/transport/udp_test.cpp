@@ -9,7 +9,6 @@
 #include <net/if.h>
 #include <sys/ioctl.h>
 
-#include <algorithm>
 #include <string>
 #include <thread>
 

@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <iterator>
 #include <memory>
 #include <mutex>
 #include <stdexcept>

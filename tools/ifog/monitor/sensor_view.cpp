@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/monitor/sensor_view.h"
 
-#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"

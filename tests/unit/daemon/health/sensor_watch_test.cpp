@@ -11,7 +11,6 @@
 #include <numeric>
 #include <random>
 #include <regex>
-#include <vector>
 
 #include "daemon/health/level_noise.h"
 #include "daemon/health/sequential_tests.h"

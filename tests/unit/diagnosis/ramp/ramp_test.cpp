@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 
 #include "filters/effects/compensator.h"
 #include "tests/unit/diagnosis/findings.h"
