@@ -113,7 +113,7 @@ std::optional<std::size_t> ChangeTest::take(const Trackers& trackers, const Samp
     if (!(greatest(c.ratio) > 0.5 * kEvidence)) continue;
     suspected_ = true;
     for (Eigen::Index a = 0; a < kMaxAxes; ++a) {
-      const double same = same_size(c, a) / c.divisor[a], over = c.ratio[a] - kEvidence;
+      const double same = same_size(c, a), over = c.ratio[a] - kEvidence;
       if (over <= most || same <= logarithm(lag)) continue;
       most = over;
       found = j;
