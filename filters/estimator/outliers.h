@@ -52,10 +52,9 @@ class Outliers {
     axis_ = axis;
     waited_ = 0;
     ++run_;
-    // Where many seem to be outliers, they are a motion that begins. Twice the evidence is enough without closeness.
+    // Where many seem to be outliers, they are a motion that begins.
     const double evidence = static_cast<double>(run_) * std::max(rarity(), -logarithm(kRare));
-    const bool near =
-        moving || nearness_ >= 0.5 * logarithm(lag) || (scattered && evidence > 2.0 * kEvidence);
+    const bool near = moving || scattered || nearness_ >= 0.5 * logarithm(lag);
     return evidence > kEvidence && near ? Verdict::jump : Verdict::waits;
   }
   // Evidence of one outlier at rest in nats. It is limited because two may coincide by chance.

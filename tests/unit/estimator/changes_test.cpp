@@ -147,6 +147,39 @@ TEST(Changes, AMotionAfterARestFullOfOutliersIsFollowed) {
   EXPECT_GT(product / square, 0.6);
 }
 
+// A footfall is followed from its third sample on, although it grows from each to the next, and outliers came before.
+TEST(Changes, AnOnsetThatGrowsIsFollowedFromItsThirdSample) {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Fed filter(told(1e-6), 1);
+    for (int i = 0; i < 8000; ++i) filter.step({normal(random) + (i % 1000 == 500 ? 60.0 : 0.0)});
+    for (const double onset : {40.0, 130.0, 200.0, 390.0, 430.0, 580.0}) {
+      const double rate = onset + normal(random), denoised = filter.step({rate}).denoised_radps[0];
+      ASSERT_LT(std::abs(denoised - rate), (onset < 200.0 ? 1.1 : 0.15) * onset)
+          << onset << ", seed " << seed;
+    }
+  }
+}
+
+// A quadrotor whose noise was measured with its motors on takes off soon after the start. What is far quieter than the
+// known noise may be coloured, but no colour explains twenty standard deviations.
+TEST(Changes, ATurnIsFollowedThoughTheKnownNoiseIsTenTimesTooLarge) {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Fed filter(told(1e-6), 3);
+    double square = 0.0;
+    for (int i = 0; i < 2400; ++i) {
+      const double turn = i < 400 ? 0.0 : 20.0 * std::sin(0.02 * (i - 400)), noise = 0.1 * normal(random);
+      const ifog::EstimatorOutput& out =
+          filter.step({turn + noise, 0.1 * normal(random), 0.1 * normal(random)});
+      square += std::pow(out.denoised_radps[0] - turn, 2);
+    }
+    EXPECT_LT(std::sqrt(square / 2400), 1.0) << seed;
+  }
+}
+
 // A phone that was turned is put down, and shaken soon after: what the long trackers remember of the turn is no
 // prediction of the shaking.
 TEST(Changes, AShakeSoonAfterATurnIsNotPredictedByIt) {
