@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Variance of a raw rate while its noise is unknown, from the first samples: their square, and from the
-// fourth sample on the differences of neighbours, allowing for their small number.
+// Variance of a raw rate while its noise is unknown: the square of the first samples, and from the fourth sample
+// on the present differences of neighbours, allowing for their small number.
 #pragma once
 
 #include <algorithm>
@@ -18,7 +18,9 @@ class FirstSamples {
   [[nodiscard]] double variance(std::size_t axis, double rate, bool valid) noexcept {
     Axis& a = axes_[axis];
     if (valid && std::isfinite(rate)) {
-      if (a.samples > 0.0) a.squares += 0.5 * (rate - a.last) * (rate - a.last);
+      // The present ones, to 6 %; a motion before them is over.
+      if (a.samples > 0.0)
+        a.square += (0.5 * (rate - a.last) * (rate - a.last) - a.square) / std::min(a.samples, 512.0);
       a.samples += 1.0;
       a.last = rate;
     }
@@ -28,13 +30,13 @@ class FirstSamples {
     if (a.samples < 2.0) return own;
     // The mean of 1 / chi-square with n d.o.f. is 1 / (n - 2); n overlapping differences have 2n/3 d.o.f.
     const double degrees = 2.0 * (a.samples - 1.0) / 3.0;
-    const double found = a.squares / (a.samples - 1.0) * (degrees > 3.0 ? degrees / (degrees - 2.0) : 3.0);
+    const double found = a.square * (degrees > 3.0 ? degrees / (degrees - 2.0) : 3.0);
     return a.samples < 4.0 ? std::max(own, found) : found;
   }
 
  private:
   struct Axis {
-    double samples = 0.0, last = 0.0, squares = 0.0;
+    double samples = 0.0, last = 0.0, square = 0.0;
   };
   std::array<Axis, kMaxAxes> axes_{};
 };

@@ -128,7 +128,7 @@ Mix::Published Mix::publish(const Trackers& trackers, const Lanes& rest, const L
   const double share = 1.0 - rest_weight_;
   const double falls_short = shorter - gain;
   const double paid = kPaid * falls_short * falls_short / Ledger::pace_of(length(trackers, lag));
-  out.variance = ((noise * trackers.stride()).min(1.0) + paid) * scale + bias.max(0.0);
+  out.variance = (noise.max((noise * trackers.stride()).min(1.0)) + paid) * scale + bias.max(0.0);
   if ((trackers.since() > 0.0).any()) predict(trackers, scale, moving, out.variance);
   out.rate = rest_weight_ * rest + moving;
   const Lanes apart = rest - moving / share;

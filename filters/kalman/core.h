@@ -54,16 +54,10 @@ struct KalmanCore {
   void predict(const Matrix& transition, const Matrix& driving, double factor = 1.0) noexcept {
     if constexpr (n == 1) {
       x *= transition(0, 0);
-    } else {
-      x = transition.lazyProduct(x).eval();
-    }
-    predict_covariance(transition, driving, factor);
-  }
-  void predict_covariance(const Matrix& transition, const Matrix& driving, double factor = 1.0) noexcept {
-    if constexpr (n == 1) {
       p(0, 0) = transition(0, 0) * transition(0, 0) * p(0, 0) + factor * driving(0, 0);
     } else {
-      ifog::predict_covariance(p, transition, driving, factor);
+      x = transition.lazyProduct(x).eval();
+      predict_covariance(p, transition, driving, factor);
     }
   }
 

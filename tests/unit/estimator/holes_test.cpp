@@ -160,9 +160,8 @@ TEST(Holes, AMotionIsFollowedThroughThem) {
   }
 }
 
-// Of each so many samples only the first ones are there, then none for some time: a logger that records now and then, as
-// one of a temperature run did (51 samples, 283 lost). A tracker that goes on over the gap with the gains of one sample
-// is unstable.
+// A logger records bursts with gaps between them, e.g. one of a temperature run (51 samples, 283 lost). The gains of one
+// sample would make a tracker unstable there.
 TEST(Holes, GapsInARhythmLeaveTheTrackersStable) {
   for (const double amplitude : {0.0, 0.05}) {
     const auto motion = [=](int i) { return amplitude * std::sin(0.4 * std::numbers::pi * i * kPeriod); };
