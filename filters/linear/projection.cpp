@@ -4,7 +4,7 @@
 namespace ifog {
 
 Projection::Projection(const Eigen::MatrixXd& columns)
-    : basis_(Eigen::HouseholderQR<Eigen::MatrixXd>(columns).householderQ() *
+    : basis_(Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(columns).householderQ() *
              Eigen::MatrixXd::Identity(columns.rows(), columns.cols())) {}
 
 void Projection::take_out_of(Eigen::VectorXd& values) const {
@@ -17,7 +17,7 @@ void Projection::take_out_of(Columns& values) const {
 }
 
 Eigen::MatrixXd Projection::complement(const Eigen::VectorXd& column) {
-  const Eigen::MatrixXd whole = Eigen::HouseholderQR<Eigen::MatrixXd>(column).householderQ();
+  const Eigen::MatrixXd whole = Eigen::ColPivHouseholderQR<Eigen::MatrixXd>(column).householderQ();
   return whole.rightCols(column.size() - 1);
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "filters/state_models/poles.h"
+#include "filters/state_models/spectral_radius.h"
 
 namespace ifog {
 
@@ -28,7 +28,7 @@ Arma::Arma(std::vector<double> phi, std::vector<double> theta, double nominal_pe
   }
   driving_ = period_s_ * shock * shock.transpose();
 
-  const double largest = poles(transition_).cwiseAbs().maxCoeff();
+  const double largest = spectral_radius(transition_);
   if (!(largest < 1.0)) {
     throw std::invalid_argument("state_parameters: autoregression with a root of modulus " +
                                 std::to_string(largest) + ", expected a stationary one, all below 1");

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filters/state_models/poles.h"
+#include "filters/state_models/spectral_radius.h"
 #include "filters/state_models/state_model.h"
 #include "filters/units/told_time.h"
 
@@ -52,10 +52,7 @@ double memories_in_record(const FilterSettings& settings, double period_s, doubl
   Eigen::MatrixXd transition(n, n), driving(n, n);
   model->discretise(period_s, transition, driving);
   // The level is the first block.
-  double nearest = std::numeric_limits<double>::infinity();
-  for (const auto& pole : poles(transition.bottomRightCorner(n - 1, n - 1)))
-    nearest = std::min(nearest, 1.0 - std::abs(pole));
-  return nearest * samples;
+  return (1.0 - spectral_radius(transition.bottomRightCorner(n - 1, n - 1))) * samples;
 }
 
 std::size_t choose(std::vector<TunedModel>& models, double period_s, double samples) {
