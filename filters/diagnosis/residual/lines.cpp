@@ -131,6 +131,24 @@ std::vector<std::size_t> not_near(const std::vector<std::size_t>& peaks) {
   return taken;
 }
 
+Samples samples_of(const SpectralLine& line, const EvenError& error, double sample_s) {
+  const double turn = 2.0 * std::numbers::pi * line.frequency_hz;
+  Samples part(error.rest.size());
+  for (std::size_t i = 0; i < part.size(); ++i) {
+    const double phase = turn * (error.start_s + static_cast<double>(i) * sample_s);
+    part[i] = line.cosine * std::cos(phase) + line.sine * std::sin(phase);
+  }
+  return part;
+}
+
+// True if the error itself is smaller without the line: an effect that does not hold leaves lines of its own.
+bool is_in(std::span<const double> line, std::span<const double> error) {
+  double gain = 0.0;
+  for (std::size_t i = 0; i < line.size(); ++i)
+    if (std::isfinite(error[i])) gain += line[i] * (2.0 * error[i] - line[i]);
+  return gain > 0.0;
+}
+
 }  // namespace
 
 bool are_one_peak(std::size_t one, std::size_t other) {
@@ -168,20 +186,14 @@ std::vector<LineOf> coherent_lines(const std::vector<EvenError>& errors, double 
   std::vector<LineOf> found;
   for (std::size_t r = 0; r < errors.size(); ++r)
     for (const SpectralLine& line : find_lines(errors[r].after, errors[r].start_s, sample_s, significance))
-      if (line.coherence >= kCoherent) found.push_back({r, line});
+      if (line.coherence >= kCoherent && is_in(samples_of(line, errors[r], sample_s), errors[r].before))
+        found.push_back({r, line});
   return found;
 }
 
 void take_out(const std::vector<LineOf>& lines, BlockGrid& grid, std::vector<EvenError>& errors) {
-  for (const auto& [record, line] : lines) {
-    const double turn = 2.0 * std::numbers::pi * line.frequency_hz;
-    Samples part(errors[record].rest.size());
-    for (std::size_t i = 0; i < part.size(); ++i) {
-      const double phase = turn * (errors[record].start_s + static_cast<double>(i) * grid.sample_s);
-      part[i] = line.cosine * std::cos(phase) + line.sine * std::sin(phase);
-    }
-    take_out(part, record, grid, errors[record]);
-  }
+  for (const auto& [record, line] : lines)
+    take_out(samples_of(line, errors[record], grid.sample_s), record, grid, errors[record]);
 }
 
 }  // namespace ifog

@@ -42,6 +42,13 @@ TEST(Lines, AToneIsFoundToItsBounds) {
   EXPECT_LT(lines[0].frequency_std_hz, 2.0 * bound);
   EXPECT_NEAR(std::hypot(lines[0].cosine, lines[0].sine), 0.5, 5.0 * std::sqrt(2.0 / 20000.0));
   EXPECT_GT(lines[0].coherence, 0.95);
+  // A tone that the effects left and the error itself does not have is none of the sensor.
+  EvenError own, left;
+  own.start_s = left.start_s = start;
+  own.before = own.rest = own.after = left.rest = left.after = Samples(error.begin(), error.end());
+  left.before = Samples(error.size(), 0.0);
+  EXPECT_EQ(coherent_lines({own}, kPeriod, 0.01).size(), 1U);
+  EXPECT_TRUE(coherent_lines({left}, kPeriod, 0.01).empty());
 }
 
 TEST(Lines, WhiteNoiseHasNoneAndItsSpectrumIsFlat) {
