@@ -60,7 +60,7 @@ class Trackers {
   // Length of each axis's parabola with its extrapolation, relative to that with one sample.
   [[nodiscard]] Lanes reach(std::size_t j) const noexcept {
     const double length = state_[j].length;
-    return (length + since_.min(kMostLengths * length)) / (length + 1.0);
+    return (length + since_) / (length + 1.0);
   }
   // Nominal samples since each axis was corrected; 1 if none is missing.
   [[nodiscard]] const Lanes& since() const noexcept { return since_; }
@@ -85,8 +85,8 @@ class Trackers {
   // Axes that have been missing for longer than a parabola is extrapolated.
   [[nodiscard]] auto ended(const State& state) const noexcept { return since_ > kMostLengths * state.length; }
 
-  // Largest extrapolation in units of the parabola's length; beyond, the variance exceeds 1000 R.
-  static constexpr double kMostLengths = 4.0;
+  // Largest extrapolation in units of the parabola's length: its squared error is then 3^6 times as large.
+  static constexpr double kMostLengths = 2.0;
   Lanes axes_;  // 1 for the sensor's axes
   std::array<double, kMost> memory_{}, horizon_{};
   std::array<Gains, kMost> fading_{};
