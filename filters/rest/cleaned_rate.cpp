@@ -18,18 +18,17 @@ constexpr std::size_t kStuck = 8;  // equal samples in a row
 // Empty if repeated values are normal in this record.
 std::vector<Stretch> stuck_runs(const SeriesView& rate, std::span<const Stretch> parts) {
   std::vector<Stretch> stuck;
-  std::size_t runs = 0, single = 0;
+  Repeats repeats;
   for_each_run(rate, parts, [&](const Run& run) {
-    ++runs, single += run.length == 1 ? 1 : 0;
+    repeats.add(run);
     if (run.length >= kStuck) stuck.push_back({run.begin, run.begin + run.length});
   });
-  if (10 * single < 9 * runs || runs <= 16) stuck.clear();
+  if (!repeats.are_rare() || repeats.runs <= 16) stuck.clear();
   return stuck;
 }
 
 std::string in_words(const std::vector<Stretch>& stuck, const TimeOfSample& time_s) {
-  std::size_t longest = 0;
-  for (const Stretch& each : stuck) longest = std::max(longest, each.size());
+  const std::size_t longest = std::ranges::max_element(stuck, {}, &Stretch::size)->size();
   return "stands still for up to " + std::to_string(longest) + " samples, " + std::to_string(stuck.size()) +
          (stuck.size() == 1 ? " time" : " times") + ", first at " + told_time(time_s(stuck.front().begin)) +
          " s: the sensor or the logger repeated a value, not used in these figures";
@@ -59,22 +58,22 @@ std::optional<LongSeries> with(const SeriesView& rate, std::vector<Replacement> 
   return out;
 }
 
-// Samples to be set to NaN.
-std::vector<Replacement> leaps_in(const SeriesView& rate, const std::vector<Stretch>& parts, LeapOf of,
-                                  const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
-  const Glitches leaps = find_glitches(rate, parts, of);
+std::vector<Replacement> leaps_in(const SeriesView& rate, const SeriesView& error,
+                                  std::span<const Stretch> parts, LeapOf of, const TimeOfSample& time_s,
+                                  std::vector<ValueFault>& faults) {
+  const Glitches leaps = find_glitches(error, parts, of);
   if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
-  std::vector<Replacement> missing;
-  for (const Glitches::Leap& leap : leaps.few)
-    missing.push_back({{leap.sample, leap.sample + 1}, std::nan("")});
-  return missing;
+  std::vector<Replacement> out;
+  for (const auto& [at, between] : leaps.few)
+    out.push_back({{at, at + 1}, between + (rate.at(at) - error.at(at))});
+  return out;
 }
 
 }  // namespace
 
 void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
   const std::vector<Stretch> parts = stretches({}, rate, {});
-  auto missing = leaps_in(rate, parts, LeapOf::kOneValue, time_s, faults);
+  auto missing = leaps_in(rate, rate, parts, LeapOf::kOneValue, time_s, faults);
   const std::vector<Stretch> stuck = stuck_runs(rate, parts);
   if (!stuck.empty()) faults.push_back({"stuck", in_words(stuck, time_s)});
   for (const Stretch& each : stuck) missing.push_back({each, std::nan("")});
@@ -82,20 +81,14 @@ void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector
 }
 
 void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
-  auto cleaned = with(rate, leaps_in(rate, stretches({}, rate, {}), LeapOf::kOneValue, time_s, faults));
+  auto cleaned = with(rate, leaps_in(rate, rate, stretches({}, rate, {}), LeapOf::kOneValue, time_s, faults));
   if (cleaned) rate = *std::move(cleaned);
 }
 
 std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,
                                         std::span<const Stretch> parts, const TimeOfSample& time_s,
                                         std::vector<ValueFault>& faults) {
-  const Glitches leaps = find_glitches(error, parts);
-  if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
-  std::vector<Replacement> between;
-  for (const Glitches::Leap& leap : leaps.few)
-    between.push_back(
-        {{leap.sample, leap.sample + 1}, leap.between + (rate.at(leap.sample) - error.at(leap.sample))});
-  return with(rate, std::move(between));
+  return with(rate, leaps_in(rate, error, parts, LeapOf::kOneSample, time_s, faults));
 }
 
 }  // namespace ifog

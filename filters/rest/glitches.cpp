@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "filters/distributions/median.h"
@@ -26,21 +27,14 @@ constexpr std::size_t kLongest = 7;       // samples; a longer run is a repeated
 constexpr double kRounding = 1e-12;       // relative
 constexpr std::size_t kEnough = 100'000;  // enough second differences for the median
 
-// A sample with two neighbours: its distances from their mean and from the sample before.
-struct Middle {
-  double value = 0.0, away = 0.0, step = 0.0;
-};
-
-// Calls use(i, middle) for each sample that has both neighbours.
+// Calls use(i, away) for each sample that has both neighbours, with its distance from their mean.
 template <typename Use>
 void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use use) {
   for (const Stretch& part : parts) {
     double before = 0.0, middle = 0.0;
     for_each_piece(rate, part.begin, part.end, [&](std::span<const double> values, std::size_t first) {
       for (std::size_t k = 0; k < values.size(); ++k) {
-        if (first + k >= part.begin + 2)
-          use(first + k - 1,
-              Middle{middle, std::abs(middle - 0.5 * (before + values[k])), std::abs(middle - before)});
+        if (first + k >= part.begin + 2) use(first + k - 1, std::abs(middle - 0.5 * (before + values[k])));
         before = middle;
         middle = values[k];
       }
@@ -55,28 +49,21 @@ class Yardstick {
     std::vector<double> some;
     const std::size_t stride = rate.size() / kEnough + 1;
     std::size_t next = 0;  // multiple of the stride
-    double smallest_step = std::numeric_limits<double>::infinity();
-    for_each_middle(rate, parts, [&](std::size_t i, const Middle& middle) {
+    for_each_middle(rate, parts, [&](std::size_t i, double away) {
       while (next < i) next += stride;
-      if (i == next) some.push_back(middle.away);
-      const double size = std::abs(middle.value);
-      if (size > largest_) times_ = 0;
-      if (size >= largest_ && (times_ == 0 || middle.step > 0.0)) ++times_;
-      largest_ = std::max(largest_, size);
-      if (middle.step > kRounding * std::abs(middle.value))
-        smallest_step = std::min(smallest_step, middle.step);
+      if (i == next) some.push_back(away);
     });
+    for_each_run(rate, parts, [&](const Run& run) { add(run); });
     if (some.size() < 3) return;
     all_ = kOfMedian * median(some);
     // Most neighbours of a sensor with coarse resolution are equal except for rounding.
-    least_ = std::max(kRounding * largest_, std::isfinite(smallest_step) ? 0.5 * smallest_step : 0.0);
+    least_ = std::max(kRounding * largest_, 0.5 * smallest_step_);
   }
-  // The value farthest from zero, if it recurs or stays for more than the two samples that a crest may have.
+  // A rate has magnitudes up to its largest, in a crest of two samples at most where values do not repeat.
   [[nodiscard]] bool is_placeholder(const Run& run) const {
-    return std::abs(run.value) == largest_ && (times_ > 1 || run.length > 2);
+    return std::abs(run.value) == largest_ && 2.0 * second_ < largest_ &&
+           (times_ > 1 || (run.length > 2 && repeats_.are_rare()));
   }
-  // True if not even the two extreme values differ enough for a leap.
-  [[nodiscard]] bool is_quiet() const { return 2.0 * largest_ <= kFar * least(); }
   // Lower limit of at().
   [[nodiscard]] double least() const { return std::max(all_, least_); }
   // Deviation at sample i: the whole record's, or the local one if that is higher, so that growing noise is
@@ -106,15 +93,27 @@ class Yardstick {
       if (part.end > begin && part.begin < end)
         here.push_back({std::max(part.begin + 1, begin) - 1, std::min(part.end, end + 1)});
     std::vector<double> away;
-    for_each_middle(rate_, here, [&](std::size_t, const Middle& middle) { away.push_back(middle.away); });
+    for_each_middle(rate_, here, [&](std::size_t, double each) { away.push_back(each); });
     known = {block, away.size() >= kLeast ? kOfMedian * median(away) : 0.0};
     return known.deviation;
   }
 
+  void add(const Run& run) {
+    const double size = std::abs(run.value);
+    repeats_.add(run);
+    if (const double step = std::abs(run.value - run.before); step > kRounding * size)
+      smallest_step_ = std::min(smallest_step_, step);
+    if (size > largest_) second_ = std::exchange(largest_, size), times_ = 0;
+    if (size < largest_) second_ = std::max(second_, size);
+    times_ += size == largest_ ? 1 : 0;
+  }
+
   const SeriesView& rate_;
   std::span<const Stretch> parts_;
+  Repeats repeats_;
   std::array<Near, 4> near_;  // cache
-  double all_ = 0.0, least_ = 0.0, largest_ = 0.0;
+  double all_ = 0.0, least_ = 0.0, largest_ = 0.0, second_ = 0.0;
+  double smallest_step_ = std::numeric_limits<double>::infinity();
   std::size_t times_ = 0;  // number of runs of largest_
 };
 
@@ -123,7 +122,6 @@ class Yardstick {
 Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, LeapOf of) {
   Glitches out;
   Yardstick yardstick(rate, parts);
-  if (yardstick.is_quiet()) return out;
   std::size_t samples = 0;
   for (const Stretch& part : parts) samples += part.size();
   // One outlier is accepted even in a very short record.
@@ -143,7 +141,8 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
     out.count += run.length;
     out.most_times = std::max(out.most_times, away / deviation);
     various += placeholder ? 0 : run.length;
-    for (std::size_t i = run.begin; i < end && various <= most; ++i) out.few.push_back({i, between});
+    for (std::size_t i = run.begin; i < end && various <= most; ++i)
+      out.few.push_back({i, placeholder ? std::nan("") : between});
   });
   if (various > most) out.few.clear();
   return out;

@@ -18,7 +18,7 @@ namespace ifog {
 struct Glitches {
   struct Leap {
     std::size_t sample = 0;
-    double between = 0.0;  // median of the neighbouring values, rad/s
+    double between = 0.0;  // median of the neighbouring values, rad/s; NaN for a placeholder
   };
   std::size_t count = 0;
   std::size_t first = 0;  // sample; meaningful when count > 0
@@ -29,8 +29,8 @@ struct Glitches {
   double most_times = 0.0;
 };
 
-// kOneSample: one sample. kOneValue, also in motion: placeholders, i.e. the value farthest from zero if it recurs, or
-// if it stays for three to seven samples. Two equal samples may be the crest of a motion.
+// kOneSample: one sample. kOneValue, also in motion: placeholders, i.e. the value farthest from zero, twice as
+// far as any other, if it recurs, or stays for three to seven samples where repeats are rare.
 enum class LeapOf { kOneSample, kOneValue };
 
 // Finds outliers in `parts`, which hold no NaN and, for kOneSample, are at rest, because a shock is one

@@ -18,6 +18,14 @@ struct Run {
   double before = 0.0, after = 0.0;  // neighbouring values; NaN at an end of a stretch
 };
 
+// How often values repeat: in a log that holds them, a long run is not remarkable.
+struct Repeats {
+  std::size_t runs = 0, single = 0;
+
+  void add(const Run& run) { ++runs, single += run.length == 1 ? 1 : 0; }
+  [[nodiscard]] bool are_rare() const { return 10 * single >= 9 * runs; }
+};
+
 // Calls use(run) for each run of each stretch, in order. The stretches hold no NaN.
 template <class Use>
 void for_each_run(const SeriesView& series, std::span<const Stretch> parts, Use use) {

@@ -137,6 +137,16 @@ TEST(Glitches, ACrestOfTwoEqualSamplesStays) {
   EXPECT_TRUE(faults.empty());
 }
 
+// A rocket under its drogue in a log that holds each value, and a foot's strikes at full scale.
+TEST(Glitches, TheFarthestValueStaysWhereValuesAreHeldAndOthersNearlyAsFar) {
+  std::vector<double> held, strikes = white(20000, 9);
+  for (const double value : white(5000, 8)) held.insert(held.end(), 4, value);
+  std::fill_n(held.begin() + 4000, 4, 8.6);
+  for (std::size_t i = 500; i < 19000; i += 900) strikes[i] = i % 800 == 0 ? 20.0 : 34.9;
+  for (const std::vector<double>& logged : {held, strikes})
+    EXPECT_EQ(find_glitches(logged, std::vector<Stretch>{{0, 20000}}, LeapOf::kOneValue).count, 0U);
+}
+
 // What stays where it has gone is a step, what takes several samples a blow: both are rates.
 TEST(Glitches, NoiseStepsAndBlowsAreNone) {
   std::vector<double> rate = white(200000, 2);
