@@ -77,13 +77,7 @@ CaptureShape capture_shape(const std::vector<std::string>& names, const std::str
   std::string axis;
   for (const std::string& name : names)
     if (axis_of(name, "rate", axis)) shape.axes.push_back(axis);
-  if (shape.axes.empty()) {
-    fail_at(
-        path, notes.header_line,
-        "no rate column among " + listed(names) +
-            ", expected 'rate_radps' or 'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of "
-            "these names");
-  }
+  if (shape.axes.empty()) fail_at(path, notes.header_line, no_rate_among(names));
   const auto index_of = [&](const std::string& name) {
     for (std::size_t i = 0; i < shape.axes.size(); ++i)
       if (shape.axes[i] == name) return i;

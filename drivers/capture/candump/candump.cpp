@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <span>
 
 #include "drivers/capture/times/date_time.h"
 #include "drivers/capture/times/text_cursor.h"
@@ -91,22 +90,6 @@ CandumpLine parse_log(TextCursor& in, ifog_can_frame& frame) {
   return remote ? CandumpLine::remote : CandumpLine::frame;
 }
 
-constexpr char kSwapped = '`';  // between the bytes in reverse order, candump -S
-
-// Two digits, or eight with candump -i.
-bool parse_byte(TextCursor& in, std::uint8_t& byte) {
-  std::uint32_t value = 0, bits = 0, digit = 0;
-  int n = 0;
-  for (bool binary = true; in.hex(digit); ++n) {
-    binary = binary && digit <= 1;
-    if (n == 8 || (n >= 2 && !binary)) return false;
-    value = value << 4U | digit;
-    bits = bits << 1U | digit;
-  }
-  byte = static_cast<std::uint8_t>(n == 8 ? bits : value);
-  return n == 2 || n == 8;
-}
-
 // Part of a screen line after the id: "[8]  11 22 …"; raw DLC 9 … F for a length of 8 as "{8}".
 CandumpLine parse_screen(TextCursor& in, ifog_can_frame& frame) {
   std::uint64_t length = 0;
@@ -125,19 +108,15 @@ CandumpLine parse_screen(TextCursor& in, ifog_can_frame& frame) {
     const bool remote = in.word() == "remote" && in.blanks() && in.word() == "request";
     return remote ? CandumpLine::remote : CandumpLine::malformed;
   }
-  const std::span data(frame.data, static_cast<std::size_t>(length));
-  bool swapped = false;
-  for (std::size_t i = 0; i < data.size(); ++i) {
-    if (i == 1) swapped = in.at(kSwapped);
-    if ((i > 0 && !(swapped ? in.literal(kSwapped) : in.blanks())) || !parse_byte(in, data[i]))
-      return CandumpLine::malformed;
+  std::uint32_t high = 0, low = 0;
+  for (std::size_t i = 0; i < length; ++i) {
+    if ((i > 0 && !in.blanks()) || !in.hex(high) || !in.hex(low)) return CandumpLine::malformed;
+    frame.data[i] = static_cast<std::uint8_t>(high << 4U | low);
   }
-  if (swapped) std::reverse(data.begin(), data.end());
   frame.length = static_cast<std::uint8_t>(length);
   if (in.done()) return CandumpLine::frame;
   if (length > 0 && !in.blanks()) return CandumpLine::malformed;
-  const bool characters = in.at('\'') || in.at(kSwapped);
-  return characters || in.word() == "ERRORFRAME" ? CandumpLine::frame : CandumpLine::malformed;
+  return in.at('\'') || in.word() == "ERRORFRAME" ? CandumpLine::frame : CandumpLine::malformed;
 }
 
 // "DROPCOUNT: dropped 5 CAN frames on 'can0' socket (total drops 12)" of candump -d.

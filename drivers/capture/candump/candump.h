@@ -3,8 +3,8 @@
 //   candump -l, -L   "(1436509052.249713) can0 123#1122AABB". CAN FD: "123##5AABB", the digit being the flags
 //   (1 bit-rate switch, 2 error state)
 //   on the screen    "  can0  123   [4]  11 22 AA BB", optionally after a time (-t a, d, z, and A, a date,
-//   assumed to be UTC), "RX - -" after the interface (-x), the bytes as bits (-i), in reverse order with "`"
-//   between them (-S), or also as characters at the end (-a). CAN FD: the length has two digits, "[08]"
+//   assumed to be UTC), "RX - -" after the interface (-x), characters behind the bytes (-a). CAN FD: the length has
+//   two digits, "[08]"
 // Extended ids have 8 digits. Remote frames ("123#R4", "remote request") and error frames (id with bit 29
 // set) are recognised.
 #pragma once

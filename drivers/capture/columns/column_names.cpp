@@ -43,6 +43,12 @@ std::string listed(const std::vector<std::string>& names) {
   return printable(list, kLongestMessage);
 }
 
+std::string no_rate_among(const std::vector<std::string>& names) {
+  return "no rate column among " + listed(names) +
+         ", expected 'rate_radps' or 'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of these "
+         "names";
+}
+
 void append_shortest(std::string& out, double value) {
   std::array<char, 40> text{};  // suffices for any double
   const char* const end = std::to_chars(text.data(), text.data() + text.size(), value).ptr;
@@ -57,11 +63,6 @@ std::string shortest(double value) {
 
 void fail_at(const std::string& path, std::size_t line, const std::string& what) {
   throw std::runtime_error(path + (line == 0 ? "" : ":" + std::to_string(line)) + ": " + what);
-}
-
-std::string unit_by_name(const std::string& header, const std::string& unit, const std::string& option) {
-  return in_quotes(header) + " is in " + in_quotes(unit) +
-         " by its name, and no unit was given; to read it so: " + option;
 }
 
 }  // namespace ifog

@@ -23,6 +23,8 @@ bool is_signal_column(const std::string& name);
 
 // "'a', 'b'", for messages.
 std::string listed(const std::vector<std::string>& names);
+// Message for columns of which none is a rate.
+std::string no_rate_among(const std::vector<std::string>& names);
 
 // Shortest text that reads back exactly.
 std::string shortest(double value);
@@ -30,7 +32,5 @@ void append_shortest(std::string& out, double value);
 
 // Throws std::runtime_error "PATH:LINE: WHAT"; without LINE if it is 0.
 [[noreturn]] void fail_at(const std::string& path, std::size_t line, const std::string& what);
-// Message for a column that was chosen without a unit and whose name contains another one than needed.
-std::string unit_by_name(const std::string& header, const std::string& unit, const std::string& option);
 
 }  // namespace ifog

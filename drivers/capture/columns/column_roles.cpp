@@ -29,8 +29,9 @@ bool speaks_of_increment(const Words& words) {
 bool speaks_of_rate(const Words& words) {
   return words.have(Role::rate) || (words.have(Role::speed) && words.have(Role::turn)) ||
          (words.first() == "rate" && !words.has("hz")) || (words.first() == "raw" && words.size() <= 2) ||
-         // gx, wz; w_RS_S_x of kalibr.
-         (!words.axis.empty() && (words.first() == "w" || (words.first() == "g" && words.size() == 1)));
+         // wz; w_RS_S_x of kalibr; gx, g_x, IMU_gx.
+         (!words.axis.empty() && (words.first() == "w" || (words.first() == "g" && words.size() == 1) ||
+                                  words.text.ends_with("_g" + words.axis)));
 }
 
 // Unit of a rate by name or convention: "rad" of a gyro means rad/s.
@@ -62,16 +63,6 @@ std::optional<RateCandidate> candidate_of(const Words& words, const std::string&
   return found;
 }
 
-std::string unit_of(const TableSample& table, std::size_t place) {
-  if (const std::string given = table.stated_unit(place); !given.empty()) return typed(given);
-  const std::string& text = Words(table.names[place]).text;  // gyro_rad[0]
-  if (const std::string unit = unit_in_name(table.names[place]); !unit.empty())
-    return unit == "G" && text.starts_with("mag") ? "gauss"
-                                                  : typed(unit);  // a magnetometer's G is gauss, not gravity
-  const std::string last = text.substr(text.rfind('_') + 1);
-  return angle_unit(last, false, false) ? last : "";
-}
-
 // p, q and r are body rates; x, y and z alone are the axes of a file with a single sensor, e.g. of a phone.
 // Next to w or qw they are a quaternion or position.
 void add_triple(const TableSample& table, Sensors& sensors) {
@@ -80,7 +71,7 @@ void add_triple(const TableSample& table, Sensors& sensors) {
   bool attitude = false;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
-    const std::string unit = unit_of(table, i);
+    const std::string unit = table.unit_of(i);
     attitude = attitude || words.text == "w" || words.text == "qw" || words.text == "q_w";
     if (words.text.size() == 1 && words.text >= "p" && words.text <= "r" &&
         (unit.empty() || angle_unit(unit, true, true)))
@@ -99,8 +90,8 @@ Sensors sensors_of(const TableSample& table, bool references) {
   Sensors sensors;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
-    auto found = candidate_of(words, unit_of(table, i));
-    if (!found || found->reference != references) continue;
+    auto found = candidate_of(words, table.unit_of(i));
+    if (!found || found->reference != references || is_empty(table.cells[i])) continue;
     found->place = i;
     if (words.has("minus")) found->scale = -1.0;
     sensors[words.stem].push_back(*found);
@@ -178,7 +169,7 @@ void add_others(const TableSample& table, const std::vector<RateCandidate>& rate
                                               [&](const RateCandidate& r) { return r.axis == column.axis; }))
         add(capture_name(column), column.place, column.unit);
   for (std::size_t i = 0; i < table.names.size(); ++i)
-    add(channel_name(Words(table.names[i]), unit_of(table, i)), i, unit_of(table, i));
+    add(channel_name(Words(table.names[i]), table.unit_of(i)), i, table.unit_of(i));
 }
 
 TableReading reading_by(const TableSample& table, const CsvLayout& asked, const std::optional<CsvTime>& time,
@@ -216,12 +207,29 @@ TableReading reading_by(const TableSample& table, const CsvLayout& asked, const 
 
 // "; in the place of rad/s: deg/s, rad/sample": alternatives.
 std::string instead_of(const std::vector<std::string>& units) {
+  if (units.size() < 2) return "";
   std::string text = "; in the place of " + units.front() + ": ";
   for (std::size_t i = 1; i < units.size(); ++i) text += (i > 1 ? ", " : "") + units[i];
   return text;
 }
 
 bool is_unit_unknown(const RateCandidate& rate) { return rate.unit.empty(); }
+
+// The chosen columns, or each sensor of which these may be the rates.
+std::vector<Rates> sensors_asked_for(const TableSample& table, const CsvLayout& asked) {
+  std::vector<Rates> sensors(1);
+  if (!asked.columns.empty()) {
+    for (std::size_t i = 0; i < table.names.size(); ++i)
+      for (const CsvColumn& column : asked.columns)
+        if (column.is_rate() && column.header == table.header_of(i)) sensors[0].push_back({i, "rad/s", ""});
+    return sensors;
+  }
+  std::optional<CsvTime> time = asked.time;
+  if (const auto times = times_of(table, {}); !time && !times.empty()) time = times[0];
+  sensors = table.named ? choices_of(sensors_of(table, false)) : rates_by_place(table, time);
+  std::erase_if(sensors, [](const Rates& each) { return each.empty(); });
+  return sensors;
+}
 
 }  // namespace
 
@@ -242,56 +250,63 @@ std::string TableSample::header_of(std::size_t place) const {
   return alone && printable(name, name.size()) == name ? name : "#" + std::to_string(place + 1);
 }
 
+std::string TableSample::unit_of(std::size_t place) const {
+  if (const std::string given = stated_unit(place); !given.empty()) return typed(given);
+  const std::string& text = Words(names[place]).text;  // gyro_rad[0]
+  if (const std::string unit = unit_in_name(names[place]); !unit.empty())
+    return unit == "G" && text.starts_with("mag") ? "gauss"
+                                                  : typed(unit);  // a magnetometer's G is gauss, not gravity
+  const std::string last = text.substr(text.rfind('_') + 1);
+  return angle_unit(last, false, false) ? last : "";
+}
+
 Readings readings_of(const TableSample& table, const CsvLayout& asked) {
   Readings out;
-  std::vector<std::optional<CsvTime>> times;
   const bool any_time = asked.time || asked.sample_rate_hz;
-  if (!any_time)
-    for (const CsvTime& time : times_of(table)) times.emplace_back(time);
-  const std::size_t time_columns = times.size();
-  if (times.empty()) times.emplace_back();
-  std::vector<Rates> sensors(1);
-  if (asked.columns.empty()) {
-    sensors = table.named ? choices_of(sensors_of(table, false)) : rates_by_place(table, times[0]);
-    std::erase_if(sensors, [](const Rates& each) { return each.empty(); });
-    if (sensors.empty()) {
-      out.why = "no column is named as a gyro's rate";
-      return out;
-    }
+  std::vector<Rates> sensors = sensors_asked_for(table, asked);
+  if (sensors.empty()) {
+    out.why = "no column is named as a gyro's rate";
+    return out;
   }
-  bool time_unit_known = true, rate_unit_known = true, counts = false;
-  for (auto& time : times) {
-    if (!time || !time->unit.empty()) continue;
-    const std::vector<std::string> units{"s", "ms", "us", "ns", "d"};
-    if (std::exchange(time_unit_known, false)) out.other_units = instead_of(units);
-    time->unit = units.front();
-  }
+  std::string time_units, rate_units;  // alternatives, if unknown
+  bool counts = false;
+  std::size_t time_columns = 0;
   const CsvColumn scale = stated_scale(table.comments);
   for (Rates& sensor : sensors) {
     if (!scale.unit.empty() && are_counts(table, sensor))
       for (RateCandidate& rate : sensor)
         if (is_unit_unknown(rate)) rate.unit = scale.unit, rate.scale = scale.scale;
-    if (std::none_of(sensor.begin(), sensor.end(), is_unit_unknown)) continue;
-    const std::vector<std::string> units = units_of(table, sensor);
-    counts = counts || are_counts(table, sensor);
-    if (std::exchange(rate_unit_known, false)) out.other_units += instead_of(units);
-    for (RateCandidate& rate : sensor)
-      if (is_unit_unknown(rate)) rate.unit = units.front();
-  }
-  for (const auto& time : times)
-    for (const Rates& each : sensors) {
-      if (out.ways.size() == kMostWays) break;
-      out.ways.push_back(reading_by(table, asked, time, each));
-      out.ways.back().clear = out.ways.back().clear && time_unit_known && rate_unit_known;
+    if (std::any_of(sensor.begin(), sensor.end(), is_unit_unknown)) {
+      const std::vector<std::string> units = units_of(table, sensor);
+      counts = counts || are_counts(table, sensor);
+      if (rate_units.empty()) rate_units = instead_of(units);
+      for (RateCandidate& rate : sensor)
+        if (is_unit_unknown(rate)) rate.unit = units.front();
     }
+    std::vector<std::optional<CsvTime>> times;
+    if (!any_time)
+      for (const CsvTime& time : times_of(table, sensor)) times.emplace_back(time);
+    time_columns = std::max(time_columns, times.size());
+    if (times.empty()) times.emplace_back();
+    for (auto& time : times) {
+      if (time && time->unit.empty()) {
+        const std::vector<std::string> units = units_of(table, *time);
+        time->unit = units.front();
+        time_units = instead_of(units);
+      }
+      if (out.ways.size() < kMostWays) out.ways.push_back(reading_by(table, asked, time, sensor));
+    }
+  }
+  out.other_units = time_units + rate_units;
+  out.ways.front().clear = out.ways.front().clear && out.other_units.empty();
   if (time_columns == 0 && !any_time) {
     const std::string counted = counting_column(table);
     out.why =
         counted.empty() ? "no time column" : "no time column, " + in_quotes(counted) + " counts the rows";
   } else if (out.ways.size() > 1) {
     out.why = "more than one column may be the " + std::string(time_columns > 1 ? "time" : "rate");
-  } else if (!time_unit_known || !rate_unit_known) {
-    out.why = "the unit of the " + std::string(time_unit_known ? "rate" : "time") + " is not named";
+  } else if (!out.other_units.empty()) {
+    out.why = "the unit of the " + std::string(time_units.empty() ? "rate" : "time") + " is not named";
   }
   if (counts)
     out.why += "; whole numbers are often counts, whose scale is in the sensor's manual: --column " +
@@ -313,7 +328,7 @@ std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayou
       });
       if (same != chosen.columns.end())
         sibling = &*same;
-      else
+      else if (!chosen.time || chosen.time->header != header)
         others.push_back({"other_" + capture_name(rate), header, ""});
     }
     if (sibling == nullptr) continue;

@@ -27,6 +27,8 @@ struct TableSample {
   [[nodiscard]] std::string header_of(std::size_t place) const;
   // Unit from the row of units, or "".
   [[nodiscard]] std::string stated_unit(std::size_t place) const { return units.empty() ? "" : units[place]; }
+  // The same, or else from the name, or "".
+  [[nodiscard]] std::string unit_of(std::size_t place) const;
 };
 
 // One way to read the table.
@@ -56,10 +58,6 @@ std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayou
 
 // "time 'Time (s)' in s, rate_x 'Gyroscope X (deg/s)' in deg/s": how a file is read.
 std::string in_words(const CsvLayout& layout);
-
-// Possible time columns; a single one if it is most likely. The unit is empty if neither name nor values
-// determine it.
-std::vector<CsvTime> times_of(const TableSample& table);
 
 // Unit in ASCII: deg/s for a degree sign of another encoding than UTF-8.
 std::string typed(const std::string& unit);
@@ -105,6 +103,12 @@ struct RateCandidate {
 
 using Rates = std::vector<RateCandidate>;
 
+// Possible time columns of rows with these rates; a single one if it is most likely. Unknown units are empty.
+std::vector<CsvTime> times_of(const TableSample& table, const Rates& rates);
+
+// True if there are cells, and none says anything.
+bool is_empty(const std::vector<std::string>& cells);
+
 // True if three columns together have the length of gravity, i.e. are an accelerometer at rest: in m/s², g,
 // mg or 16-bit counts with a range of 2, 4, 8 or 16 g.
 bool is_gravity(const TableSample& table, const Rates& columns);
@@ -112,8 +116,9 @@ bool is_gravity(const TableSample& table, const Rates& columns);
 // Integers, as from a converter.
 bool are_counts(const TableSample& table, const Rates& rates);
 
-// Possible units of a rate column without a stated unit, most likely first.
+// Possible units of a rate or time column without a stated unit, most likely first.
 std::vector<std::string> units_of(const TableSample& table, const Rates& rates);
+std::vector<std::string> units_of(const TableSample& table, const CsvTime& time);
 
 // Rates among columns without names: a single numeric column, or three adjacent ones as axes.
 std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<CsvTime>& time);

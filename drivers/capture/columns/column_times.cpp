@@ -139,14 +139,8 @@ bool are_dates(const std::vector<std::string>& cells) {
          std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return is_date(cell); });
 }
 
-// By the row of units or the name.
-std::string unit_stated(const TableSample& table, std::size_t place) {
-  std::string stated = table.stated_unit(place);
-  return time_unit(stated) ? stated : unit_in_name(table.names[place]);
-}
-
 std::string time_unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
-  if (const std::string named = unit_stated(table, place); time_unit(named)) return typed(named);
+  if (std::string named = table.unit_of(place); time_unit(named)) return named;
   const std::vector<double> values = numbers_in(table.cells[place]);
   if (std::string stated = unit_by_stated_rate(table, mean_step(values)); !stated.empty()) return stated;
   if (const auto scale = stated(table.comments, {"tscale"})) return shortest(*scale) + "s";  // gcsv
@@ -182,8 +176,8 @@ bool is_fraction_of_second(const TableSample& table, std::size_t place, const st
 }
 
 std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
+  if (is_empty(table.cells[place])) return std::nullopt;
   const std::vector<std::string> cells = filled(table.cells[place]);
-  if (cells.empty() && !table.cells[place].empty()) return std::nullopt;
   const bool dated = are_dates(cells);
   // A date that is the same in all rows is no time; a time of day in whole seconds may be.
   if (dated && cells.size() > 1 && cells.front() == cells.back() && cells[0].find(':') == std::string::npos)
@@ -247,6 +241,14 @@ std::optional<CsvTime> joined(const TableSample& table, std::size_t first, std::
   return named || by_values ? std::optional(out) : std::nullopt;
 }
 
+// True if the column says something in each row in which a rate does.
+bool covers(const TableSample& table, std::size_t place, const Rates& rates) {
+  for (const RateCandidate& rate : rates)
+    for (std::size_t row = 0; row < table.cells[place].size(); ++row)
+      if (table.cells[place][row].empty() && !table.cells[rate.place][row].empty()) return false;
+  return true;
+}
+
 // Resolution of the cells' text, s.
 double resolution_s(const std::vector<std::string>& cells, const CsvTime& time) {
   std::size_t digits = 0;
@@ -258,21 +260,24 @@ double resolution_s(const std::vector<std::string>& cells, const CsvTime& time) 
 
 }  // namespace
 
-std::vector<CsvTime> times_of(const TableSample& table) {
+bool is_empty(const std::vector<std::string>& cells) { return !cells.empty() && filled(cells).empty(); }
+
+std::vector<CsvTime> times_of(const TableSample& table, const Rates& rates) {
   std::vector<CsvTime> best;
   for (std::size_t i = 0; i + 1 < table.names.size(); ++i)
     if (const auto two = joined(table, i, i + 1)) best.push_back(*two);
   if (!best.empty()) return best;
   std::vector<std::size_t> places;  // of the best
-  int rank = 1;
+  int rank = 2;
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const Words words(table.names[i]);
     int here = table.named ? rank_of(table.names[i], words) : 1;
     // For names in other languages: a unit of time, or dates, suffice.
-    if (here == 0 && !words.have(Role::no_time) &&
-        (time_unit(unit_stated(table, i)) || are_dates(table.cells[i])))
+    if (here == 0 && !words.have(Role::no_time) && (time_unit(table.unit_of(i)) || are_dates(table.cells[i])))
       here = 1;
-    if (here < rank) continue;
+    // Of a phone's sensors each has its own time, which rows of others lack.
+    here = 2 * here + (!rates.empty() && words.first() == Words(table.names[rates[0].place]).first() ? 1 : 0);
+    if (here < rank || !covers(table, i, rates)) continue;
     const auto found = candidate_at(table, i, words);
     if (!found || (!table.named && !best.empty())) continue;
     if (here > rank) best.clear(), places.clear();

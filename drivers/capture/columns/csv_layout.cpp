@@ -59,11 +59,6 @@ std::optional<double> seconds_in(const std::string& unit) {
   return factor * *of;
 }
 
-bool is_another(const std::string& unit, const std::string& wanted) {
-  const auto by = convert_unit(unit, wanted);
-  return by && (by->scale != 1.0 || by->offset != 0.0);
-}
-
 }  // namespace
 
 CsvColumn CsvColumn::parse(const std::string& text) {
@@ -97,8 +92,6 @@ bool CsvColumn::is_rate() const {
   return own_unit() == kRateUnit &&
          (name.starts_with("rate_") || name.starts_with("reference_rate_") || is_other_rate(name));
 }
-
-bool CsvColumn::is_increment() const { return unit.ends_with(kPerSample) && angle_rad().has_value(); }
 
 std::optional<double> CsvColumn::angle_rad() const {
   if (!is_rate() || angle_unit(unit, true, false)) return std::nullopt;
@@ -151,24 +144,6 @@ std::string unit_in_name(const std::string& name) {
                ? last
                : "";
   return angle_unit(last, true, false) || time_unit(last) || !other_units(last).empty() ? last : "";
-}
-
-std::string other_unit(const CsvColumn& column) {
-  if (!column.unit.empty()) return "";
-  CsvColumn read = column;
-  read.unit = unit_in_name(column.header);
-  // A rate whose name ends in a unit of angle is often per second; so it is an error, not a guess. "rads"
-  // means both.
-  if (read.unit.empty() && column.is_rate() && unit_of_name(column.header) != "rads")
-    read.unit = unit_of_name(column.header);
-  if (read.unit.empty()) return "";
-  return read.angle_rad() || is_another(read.unit, unit_of_name(column.name)) ? read.unit : "";
-}
-
-std::string other_unit(const CsvTime& time) {
-  if (!time.unit.empty()) return "";
-  const std::string stated = unit_in_name(time.header);
-  return time_unit(stated).value_or(1.0) != 1.0 ? stated : "";
 }
 
 CsvTime CsvTime::parse(const std::string& text) {

@@ -25,7 +25,6 @@ struct CsvColumn {
   // Unit of `name`: "degC".
   [[nodiscard]] std::string own_unit() const;
   [[nodiscard]] bool is_rate() const;
-  [[nodiscard]] bool is_increment() const;
   // rad per unit of an angle or increment; nullopt otherwise.
   [[nodiscard]] std::optional<double> angle_rad() const;
   // Conversion to the capture's unit; of an angle to rad.
@@ -77,9 +76,6 @@ std::string option_for(const CsvTime& time);
 // Unit at the end of a column's name, "GyroX (deg/s)" or "gyro_x_dps", or "". A counter `k`, a `gps_t` or an
 // `adc_c` is not in kelvin, tesla or degrees.
 std::string unit_in_name(const std::string& name);
-// Unit in the header's name if no unit was given and it is not the capture's; else "".
-std::string other_unit(const CsvColumn& column);
-std::string other_unit(const CsvTime& time);
 // True for a known unit.
 bool is_unit(const std::string& text);
 // "deg/s" of "[deg/s]" or "(deg/s)".

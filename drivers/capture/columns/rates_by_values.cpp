@@ -5,6 +5,9 @@
 #include <array>
 #include <cmath>
 #include <cstdlib>
+#include <iterator>
+
+#include "drivers/capture/columns/measurable.h"
 
 namespace ifog {
 namespace {
@@ -50,6 +53,19 @@ bool are_counts(const TableSample& table, const Rates& rates) {
                      [&](const RateCandidate& rate) { return is_whole(table.cells[rate.place]); });
 }
 
+// Removes units in which no sensor measures one of the cells, unless that leaves none.
+template <typename RangeIn>
+void keep_possible(std::vector<std::string>& units, const std::vector<std::string>& cells, RangeIn range_in) {
+  std::vector<std::string> possible;
+  std::copy_if(units.begin(), units.end(), std::back_inserter(possible), [&](const std::string& unit) {
+    const Measurable range = range_in(unit);
+    return std::all_of(cells.begin(), cells.end(), [&](const std::string& cell) {
+      return range.holds(finite_number(cell).value_or(range.least));
+    });
+  });
+  if (!possible.empty()) units = std::move(possible);
+}
+
 // A rate in motion is as smooth as an angle, so only a lone column without a name is offered as an angle first.
 std::vector<std::string> units_of(const TableSample& table, const Rates& rates) {
   std::vector<std::string> units{"rad/s", "deg/s", "rad/sample", "deg/sample"};
@@ -58,6 +74,20 @@ std::vector<std::string> units_of(const TableSample& table, const Rates& rates) 
     std::rotate(units.begin(), units.begin() + 2, units.end());
   else if (std::any_of(rates.begin(), rates.end(), is_summed))
     units.insert(!table.named && rates.size() == 1 ? units.begin() : units.end(), {"rad", "deg"});
+  for (const RateCandidate& rate : rates)
+    keep_possible(units, table.cells[rate.place], [](const std::string& unit) {
+      return measurable_in_file(CsvColumn{"rate_radps", "", unit});
+    });
+  return units;
+}
+
+std::vector<std::string> units_of(const TableSample& table, const CsvTime& time) {
+  std::vector<std::string> units{"s", "ms", "us", "ns", "d"};
+  for (std::size_t i = 0; i < table.names.size(); ++i)
+    if (table.header_of(i) == time.header)
+      keep_possible(units, table.cells[i], [](const std::string& unit) {
+        return measurable_in_file(CsvTime{"", unit});
+      });
   return units;
 }
 

@@ -173,9 +173,7 @@ class Chooser {
       for (const CsvColumn& other : rates_not_chosen(form_.sample, layout)) layout.columns.push_back(other);
     for (CsvColumn& column : layout.columns) {
       const std::size_t at = place(column.header);
-      if (column.unit.empty()) column.unit = stated_unit(column, at);
-      if (const std::string unit = other_unit(column); !unit.empty())
-        fail(unit_by_name(column.header, unit, option_for(column, unit)));
+      if (column.unit.empty()) column.unit = own_unit(column, at);
       if (at == header_.time_place || at == header_.time_part ||
           std::any_of(header_.columns.begin(), header_.columns.end(),
                       [at](const FileColumn& chosen) { return chosen.place == at; }))
@@ -184,21 +182,14 @@ class Chooser {
     }
   }
 
-  // Unit from the row of units, for a chosen column without one, if it becomes the capture's unit.
-  [[nodiscard]] std::string stated_unit(const CsvColumn& chosen, std::size_t at) const {
+  // By the row of units or the name, if it becomes the capture's unit. A rate named in deg is often in deg/s.
+  [[nodiscard]] std::string own_unit(const CsvColumn& chosen, std::size_t at) const {
     CsvColumn column = chosen;
-    column.unit = form_.sample.stated_unit(at);
+    column.unit = form_.sample.unit_of(at);
+    if (column.angle_rad() && form_.sample.stated_unit(at).empty())
+      fail(in_quotes(column.header) + " is in " + in_quotes(column.unit) +
+           " by its name, and no unit was given; to read it so: " + option_for(column, column.unit));
     return column.angle_rad() || convert_unit(column.unit, column.own_unit()) ? column.unit : "";
-  }
-
-  // Option for a voltage column, or "".
-  [[nodiscard]] std::string volts() const {
-    for (std::size_t i = 0; i < names_.size(); ++i)
-      if (const std::string unit = form_.sample.stated_unit(i) + unit_in_name(names_[i]);
-          convert_unit(unit, "V") || lower(unit).starts_with("volt"))
-        return "; a voltage with the scale before the unit: --column " +
-               shell_word("rate_x_radps=" + form_.sample.header_of(i) + ":0.05deg/s");
-    return "";
   }
 
   // Adds what was not asked for, by names.
@@ -212,11 +203,7 @@ class Chooser {
       header_.notices.push_back(path_ + ": read as: " + in_words(clear->layout));
       return;
     }
-    if (found.ways.empty() && form_.sample.named)
-      fail("no rate column among " + listed(names_) +
-           ", expected 'rate_radps' or 'rate_x_radps', …, or --column rate_x_radps=NAME:UNIT with one of "
-           "these names" +
-           volts());
+    if (found.ways.empty() && form_.sample.named) fail(no_rate_among(names_));
     fail(
         without_names() + found.why + options_in_words(found) +
         (found.ways.empty()
@@ -227,7 +214,7 @@ class Chooser {
 
   // Why columns have numbers and no names; "" if they have names.
   [[nodiscard]] std::string without_names() const {
-    if (form_.sample.named) return "";
+    if (form_.sample.named || !is_number_of_column(names_.front())) return "";
     const std::string cells = std::to_string(names_.size());
     if (form_.unused_names == 0) return "no header line; columns are #1 to #" + cells + "; ";
     return "the header has " + std::to_string(form_.unused_names) + " names and the rows have " + cells +
@@ -239,11 +226,9 @@ class Chooser {
       return is_number_of_column(name) || std::count(names_.begin(), names_.end(), name) > 0;
     });
     header_.time_place = place(parts.front());
-    if (const std::string stated = form_.sample.stated_unit(header_.time_place);
-        parts.size() == 1 && time.unit.empty() && time_unit(stated))
-      time.unit = stated;
-    if (const std::string unit = other_unit(time); !unit.empty())
-      fail(unit_by_name(time.header, unit, option_for(CsvTime{time.header, unit})));
+    if (const std::string unit = form_.sample.unit_of(header_.time_place);
+        parts.size() == 1 && time.unit.empty() && time_unit(unit).value_or(1.0) != 1.0)
+      time.unit = unit;
     if (parts.size() > 1) {
       header_.time_part = place(parts.back());
       header_.part_digits =

@@ -78,7 +78,7 @@ class CsvRows {
   // The text after the header.
   std::string begin() {
     std::string text = head();
-    form_ = LineForm(std::string_view(text).substr(0, kHead));
+    form_ = LineForm(std::string_view(text).substr(0, kHead), path_);
     if (!form_.is_plain()) text = form_.rows_of(text);
     header_ = read_csv_header(text, form_.names(), path_, layout_, has_lines_);
     Lines lines(text);

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "drivers/capture/columns/column_names.h"
 #include "drivers/capture/columns/column_roles.h"
 #include "drivers/capture/csv/text_cells.h"
 #include "drivers/capture/times/date_time.h"
@@ -40,19 +41,25 @@ std::string_view word_before(std::string_view line) {
   return is_word ? line.substr(0, word.size() + 1) : std::string_view();
 }
 
-// Column names of NovAtel's raw inertial logs, whose axes are in the order z, -y, x. Source: OEM7 Commands
-// and Logs, RAWIMU, RAWIMUS, RAWIMUX, RAWIMUSX.
+// Column names of NovAtel's inertial logs; the axes of raw ones are in the order z, -y, x. Source: OEM7 Commands and
+// Logs, RAWIMU, RAWIMUS, RAWIMUX, RAWIMUSX, CORRIMUDATA, CORRIMUDATAS.
 std::vector<std::string> novatel_names(std::string_view log, std::string_view line) {
-  if (!log.substr(1).starts_with("RAWIMU")) return {};
+  const bool corrected = log.substr(1).starts_with("CORRIMUDATA");
+  if (!corrected && !log.substr(1).starts_with("RAWIMU")) return {};
   const bool extended = log.find('X') != std::string_view::npos,
-             is_short = log.find("IMUS") != std::string_view::npos;
+             is_short =
+                 log.find("IMUS") != std::string_view::npos || log.find("DATAS") != std::string_view::npos;
   std::vector<std::string> names{"log", "head_week", "head_tow_s"};
   if (!is_short)
     names = {"log",       "port",       "sequence", "idle",     "quality",
              "head_week", "head_tow_s", "receiver", "reserved", "version"};
   if (extended) names.insert(names.end(), {"imu_info", "imu_type"});
-  names.insert(names.end(), {"gps_week", "tow_s", "imu_status", "accel_z", "accel_minus_y", "accel_x",
-                             "dtheta_z", "dtheta_minus_y", "dtheta_x"});
+  if (corrected)
+    names.insert(names.end(), {"gps_week", "tow_s", "delta_angle_x", "delta_angle_y", "delta_angle_z", "dv_x",
+                               "dv_y", "dv_z"});
+  else
+    names.insert(names.end(), {"gps_week", "tow_s", "imu_status", "accel_z", "accel_minus_y", "accel_x",
+                               "dtheta_z", "dtheta_minus_y", "dtheta_x"});
   const auto ends = std::count_if(line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; });
   return static_cast<std::size_t>(ends) + 1 == names.size() ? names : std::vector<std::string>();
 }
@@ -145,7 +152,7 @@ std::vector<std::string> names_by(const std::vector<std::string>& labels) {
 // Most frequent record type whose cells have names of a gyro: from NovAtel's manual, or from lines like "#
 // UncalGyro,utcTimeMillis,…" (GnssLogger) and "FMT, 140, 43, IMU, QBffffff, TimeUS,I,GyrX,…" (ArduPilot).
 // Uses two passes.
-void LineForm::find_record(std::string_view text) {
+void LineForm::find_record(std::string_view text, const std::string& path) {
   std::map<std::string, std::pair<std::size_t, std::string_view>> records;  // count, and one of them
   Lines lines(text);
   for (std::string_view line; lines.next(line);) {
@@ -155,12 +162,18 @@ void LineForm::find_record(std::string_view text) {
     if (count++ == 0) one = line;
   }
   std::size_t most = kAlike - 1;
+  std::size_t novatel = 0;
   for (const auto& [record, found] : records) {
-    if (found.first <= most || novatel_log(found.second).empty()) continue;
+    if (novatel_log(found.second).empty()) continue;
+    novatel = std::max(novatel, found.first);
+    std::vector<std::string> names = novatel_names(record, found.second);
+    if (names.empty() || found.first <= most) continue;
     record_ = record;
-    names_ = novatel_names(record, found.second);
+    names_ = std::move(names);
     most = found.first;
   }
+  if (novatel > most)
+    fail_at(path, 0, "logs of NovAtel without rates, expected RAWIMUS or CORRIMUDATAS among them");
   Lines stating(text);
   for (std::string_view line; stating.next(line);) {
     if (!is_of_gyro(std::string(line))) continue;
@@ -179,8 +192,8 @@ void LineForm::find_record(std::string_view text) {
   }
 }
 
-LineForm::LineForm(std::string_view beginning) {
-  find_record(beginning);
+LineForm::LineForm(std::string_view beginning, const std::string& path) {
+  find_record(beginning, path);
   if (!record_.empty()) return;
   Lines lines(beginning);
   std::size_t before = 0, alone = 0, looked = 0, alike = 0;

@@ -18,8 +18,8 @@ namespace ifog {
 class LineForm {
  public:
   LineForm() = default;  // rows are used unchanged
-  // Determines the form from the file's beginning.
-  explicit LineForm(std::string_view beginning);
+  // Determines the form from the file's beginning. Throws std::runtime_error with one line for logs without rates.
+  LineForm(std::string_view beginning, const std::string& path);
 
   [[nodiscard]] bool is_plain() const {
     return stamps_ == Stamps::none && labels_.empty() && record_.empty();
@@ -31,7 +31,7 @@ class LineForm {
 
  private:
   enum class Stamps { none, before, above };
-  void find_record(std::string_view text);
+  void find_record(std::string_view text, const std::string& path);
   void append_row(std::string_view line, std::string& out);
 
   Stamps stamps_ = Stamps::none;

@@ -66,15 +66,22 @@ std::vector<std::string> names_in(std::string_view line, char separator, const R
   return names;
 }
 
-// Units of a row next to the names; empty if it is no row of units (each cell a text, one a known unit).
-std::vector<std::string> units_in(std::vector<std::string> units, char separator) {
+bool are_names(const std::vector<std::string>& names) {
+  const std::set<std::string> each(names.begin(), names.end());
+  return each.size() == names.size() && !each.contains("");
+}
+
+// Units of a row of texts below the names: one is known, or half of them if the names may continue in this row.
+std::vector<std::string> units_in(std::vector<std::string> units, const std::vector<std::string>& names,
+                                  char separator) {
   const auto value = [&](const std::string& cell) { return cell != "1" && is_value(cell, separator); };
   for (std::string& unit : units) unit = without_brackets(unit);
-  if (std::any_of(units.begin(), units.end(), value) || std::none_of(units.begin(), units.end(), is_unit))
-    return {};
+  if (std::any_of(units.begin(), units.end(), value)) return {};
+  const auto known = std::count_if(units.begin(), units.end(), is_unit);
   for (std::string& unit : units)
     if (unit == "-" || unit == "1") unit.clear();
-  return units;
+  const auto said = std::ssize(units) - std::count(units.begin(), units.end(), "");
+  return known == 0 || (2 * known < said && !are_names(names)) ? std::vector<std::string>() : units;
 }
 
 // Header line, its names, and the line before the first row, which may be one of units.
@@ -92,18 +99,22 @@ std::optional<Header> header_asked_for(const std::vector<Line>& lines, const Gri
     if (!is_capture_header(lines[i].text) && (wanted.empty() || !has_names(header.names, wanted))) continue;
     if (i + 1 == lines.size()) return header;
     std::vector<std::string> below = cells_of(without_mark(lines[i + 1].text), grid.separator());
-    if (below.size() == header.names.size()) header.units = units_in(std::move(below), grid.separator());
+    if (below.size() == header.names.size())
+      header.units = units_in(std::move(below), header.names, grid.separator());
     header.last += header.units.empty() ? 0 : 1;
     return header;
   }
   return std::nullopt;
 }
 
-// "Gyro x" from "x" below "Gyro", which may span several columns.
-std::vector<std::string> joined(const std::vector<std::string>& above, std::vector<std::string> below) {
+// "Gyro x" from "x" below "Gyro", which may span several columns. "s" below "Time" goes to the units.
+std::vector<std::string> joined(const std::vector<std::string>& above, std::vector<std::string> below,
+                                std::vector<std::string>& units) {
   std::string over;
+  units.resize(below.size());
   for (std::size_t i = 0; i < below.size(); ++i) {
     if (i < above.size() && !above[i].empty()) over = above[i];
+    if (units[i].empty() && is_unit(below[i])) units[i] = std::exchange(below[i], "");
     if (!over.empty() && over != below[i]) below[i] = over + (below[i].empty() ? "" : " " + below[i]);
   }
   return below;
@@ -121,13 +132,13 @@ std::vector<Header> headers_above(const std::vector<Line>& lines, const Grid& gr
     // Above a row of units, names may be numbers.
     const bool names =
         !grid.rows()[first - back].is_row() || (back == 2 && !is_value(above[1][0], grid.separator()) &&
-                                                !units_in(above[0], grid.separator()).empty());
+                                                !units_in(above[0], above[1], grid.separator()).empty());
     if (row.is_as_wide(above.back().size()) && names) continue;
     above.pop_back();
     break;
   }
   Header header{first, first - 1, {}, {}};
-  if (above.size() > 1) header.units = units_in(above[0], grid.separator());
+  if (above.size() > 1) header.units = units_in(above[0], above[1], grid.separator());
   if (!header.units.empty()) {
     above.erase(above.begin());
     --header.at;
@@ -138,15 +149,19 @@ std::vector<Header> headers_above(const std::vector<Line>& lines, const Grid& gr
     found.push_back(header);
     found.back().at -= up;
   };
-  const auto are_names = [](const std::vector<std::string>& names) {
-    const std::set<std::string> each(names.begin(), names.end());
-    return each.size() == names.size() && !each.contains("");
-  };
   const bool two = above.size() > 1, own = !above.empty() && are_names(above[0]);
-  if (two && !own) are_names(above[1]) ? add(2, above[1]) : add(1, joined(above[1], above[0]));
+  if (two && !own) are_names(above[1]) ? add(2, above[1]) : add(1, joined(above[1], above[0], header.units));
   if (!above.empty()) add(1, above[0]);
   if (two && own && are_names(above[1])) add(2, above[1]);
   return found;
+}
+
+// "a[0]" to "a[3]": columns without names of their own, of which more than axes.
+bool are_of_one_matrix(const std::vector<std::string>& names) {
+  const std::string stem = names[0].substr(0, names[0].rfind('[') + 1);
+  return names.size() > 3 && stem.size() > 1 &&
+         std::all_of(names.begin(), names.end(),
+                     [&](const auto& name) { return name.starts_with(stem) && name.ends_with(']'); });
 }
 
 std::vector<Line> first_lines(std::string_view text, const std::string& path) {
@@ -215,12 +230,14 @@ bool take_header(const std::vector<Line>& lines, const Grid& grid, const CsvLayo
     sample_rows(grid, header.last + 1, sample);
   };
   const std::vector<std::string> wanted = wanted_names(layout);
-  if (const auto header = header_asked_for(lines, grid, wanted)) return take(*header), true;
   const std::vector<Header> above = grid.first() ? headers_above(lines, grid) : std::vector<Header>();
+  for (const Header& header : above)
+    if (!wanted.empty() && has_names(header.names, wanted)) return take(header), true;
+  if (const auto header = header_asked_for(lines, grid, wanted)) return take(*header), true;
   if (above.empty()) return false;
   const bool found = std::any_of(above.begin(), above.end(), [&](const Header& header) {
     take(header);
-    return wanted.empty() ? !readings_of(sample, layout).ways.empty() : has_names(header.names, wanted);
+    return !readings_of(sample, layout).ways.empty();
   });
   if (!found) take(above.front());
   return true;
@@ -258,6 +275,7 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
   const bool headed = given.empty() && take_header(lines, grid, layout, form);
   if (headed) {
     if (units.size() == sample.names.size()) sample.units = units;
+    sample.named = !are_of_one_matrix(sample.names);
   } else if (grid.first()) {
     sample.named = !given.empty();
     sample.names = given;

@@ -29,33 +29,12 @@ constexpr std::uint64_t kMostGrowth = 1100, kGrowthFree = 256U << 20U;
 constexpr std::size_t kLongestName = 1000;      // in bytes
 constexpr std::size_t kMostComments = 100'000;  // in lines
 constexpr std::size_t kLongestText = 4096;      // bytes per comment
-constexpr std::size_t kMostPlaces = 16, kMostLooked = 4096;
 
 [[noreturn]] void refuse(const std::string& what) { throw std::runtime_error(what); }
 
 // "'a', 'b'", limited in length; or "none".
 std::string list_of(const std::vector<std::string>& names) {
   return names.empty() ? "none" : printable(listed(names), 300);
-}
-
-// Possible values of --group: paths of groups and tables of records; limited in number.
-std::vector<std::string> places_of(hid_t file) {
-  struct Found {
-    std::vector<std::string> names{"/"};
-    std::size_t looked = 0;
-  } found;
-  const auto look = [](hid_t root, const char* name, const H5L_info_t* link, void* to) -> herr_t {
-    auto& all = *static_cast<Found*>(to);
-    if (++all.looked > kMostLooked || all.names.size() >= kMostPlaces) return 1;
-    const Hdf5Id object(link->type == H5L_TYPE_HARD ? H5Oopen(root, name, H5P_DEFAULT) : H5I_INVALID_HID);
-    if (!object.good()) return 0;
-    const Hdf5Id type(H5Iget_type(object) == H5I_DATASET ? H5Dget_type(object) : H5I_INVALID_HID);
-    if (H5Iget_type(object) == H5I_GROUP || (type.good() && H5Tget_class(type) == H5T_COMPOUND))
-      all.names.push_back("/" + std::string(name));
-    return 0;
-  };
-  hdf5_demand(H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, look, &found) >= 0, "its groups cannot be read");
-  return found.names;
 }
 
 void demand_numbers(hid_t type, const std::string& name) {
@@ -164,8 +143,12 @@ void Hdf5Columns::open(const Hdf5Source& source, const std::string& group) {
   file_ = Hdf5Id(H5Fopen(in_memory ? "/dev/null/image" : source.name.c_str(), H5F_ACC_RDONLY, how));
   hdf5_demand(file_.good(), "cannot be read as HDF5");
   place_ = Hdf5Id(H5Oopen(file_, group.c_str(), access_));
-  if (!place_.good())
-    refuse("no group " + in_quotes(group) + ", the file has the groups " + list_of(places_of(file_)));
+  if (!place_.good()) {
+    here_.clear();
+    place_ = Hdf5Id(H5Oopen(file_, "/", access_));
+    (void)names_here();
+    refuse("no group " + in_quotes(group) + "; the file's are read by " + list_of(groups_));
+  }
   if (H5Iget_type(place_) == H5I_GROUP) return;
   if (H5Iget_type(place_) != H5I_DATASET)
     refuse(in_quotes(group) + " is a type, expected a group of datasets");

@@ -29,7 +29,7 @@ CASES = pathlib.Path(sys.argv[2]).resolve().parent / "shared/cases"
 def typed(path, *options, hz=None):
     """N by axis from `ifog allan` with its output, or its error message."""
     output = path.with_suffix(".json")
-    result = ran("allan", path, "--json", output, *[o.replace("HZ", str(hz)) if hz else o for o in options])
+    result = ran("allan", path, "--json", output, *[str(o).replace("HZ", str(hz)) if hz else o for o in options])
     if result.returncode != 0:
         return None, result.stderr
     document = json.loads(output.read_text())
@@ -182,6 +182,16 @@ class Checks:
         densities, said = typed(path, "--time", "t_s:s", "--column", "rate_x_radps=gyro_x_dps:deg/s")
         assert densities and abs(densities["x"] / N - 1) < 0.06, (densities, said)
         assert "only the rest is analysed" in said, said
+
+    def check_what_is_suggested_may_be_added_to_what_is_typed(self):
+        """A rate beside a time that is stamped in whole ms; a matrix of MATLAB with its time."""
+        path = self.file("jitter.csv", ["t,gyro_x_dps", *self.rows(lambda i, x, y, z: (5 * i + i % 3, x))])
+        densities, said = typed(path, "--time", "t:ms", "--column", "rate_x_radps=gyro_x_dps:deg/s", "--sample-rate", RATE_HZ)
+        assert densities and abs(densities["x"] / N - 1) < 0.05, (densities, said)
+        path = self.file("matrix.csv", [",".join(f"gyro[{i}]" for i in range(4)), *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, y, z))])
+        densities, said = typed(path, "--time", "gyro[0]:s", "--column", "rate_radps=gyro[1]:deg/s")
+        assert densities and abs(densities[""] / N - 1) < 0.05, (densities, said)
+        self.reads("matrix.csv", path.read_text().splitlines())
 
     def check_two_candidates_are_both_shown(self):
         path = self.file("twice.csv", ["time_s,gyro1_x_dps,gyro2_x_dps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, 3 * y))])

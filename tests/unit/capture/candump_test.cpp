@@ -210,10 +210,8 @@ TEST(CandumpParser, ReadsEveryViewOfTheScreen) {
                            " (1777630830.000001000)"})
     for (const char* interface : {"can0", "       vcan0", "any", "a_long_interface"})
       for (const char* direction : {"", "  RX - -", "  TX B E", "  TX B -"})
-        for (const char* data :
-             {"   [3]  11 22 AB", "   {3}  11 22 AB", "  [03]  11 22 AB", "   [3]  AB`22`11",
-              "   [3]  11 22 AB                     '.\".'", "   [3]  AB`22`11                     `.\".`",
-              "   [3]  00010001 00100010 10101011", "   [3]  10101011`00100010`00010001"})
+        for (const char* data : {"   [3]  11 22 AB", "   {3}  11 22 AB", "  [03]  11 22 AB",
+                                 "   [3]  11 22 AB                     '.\".'"})
           for (const bool extended : {false, true}) {
             std::string line = std::string(time) + "  " + interface + direction + "  " +
                                (extended ? "12345678" : "123") + data;

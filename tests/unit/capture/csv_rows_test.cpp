@@ -264,24 +264,4 @@ TEST(CsvRows, SeparatorsThatAreBlanksCountAsSeparators) {
             "a.csv:2: more cells than the 2 columns of the header");
 }
 
-TEST(CsvRows, ATruncatedPackedFileIsSaid) {
-  const ifog::test::OwnFolder folder;
-  const std::string path = folder.path("rows.csv.gz");
-  ifog::write_file(path, long_text(60000));
-  const auto refused = [&] {
-    ifog::InputFile input(path);
-    Gathered got;
-    const std::string refusal = ifog::test::refusal(
-        [&] {
-          (void)ifog::read_csv_rows([&](char* to, std::size_t most) { return input.read(to, most); }, "a.csv",
-                                    {}, got, std::size_t{1} << 16U);
-        },
-        "");
-    return refusal.empty() ? "rows: " + std::to_string(got.rows.size()) : refusal;
-  };
-  EXPECT_EQ(refused(), "rows: 60000");
-  std::filesystem::resize_file(path, std::filesystem::file_size(path) * 3 / 4);
-  EXPECT_EQ(refused(), path + ": cannot read: the gzip stream ends early (truncated file)");
-}
-
 }  // namespace

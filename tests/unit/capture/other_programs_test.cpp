@@ -137,9 +137,34 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
        {"--time t:s --column rate_x_radps=x:rad/s --column rate_y_radps=y:rad/s"}},
       {rows_of("timestamp,xyz[0],xyz[1],xyz[2]\n", "1{i}000,{x},{y},{z}"),
        {"--column 'rate_x_radps=xyz[0]:rad/s'"}},
-      // An oscilloscope: channels called by their numbers, in volts.
+      // An oscilloscope: channels called by their numbers.
       {rows_of("x-axis,1,2\nsecond,Volt,Volt\n", "0.{i},{x},{y}"),
-       {"a voltage with the scale before the unit: --column rate_x_radps=1:0.05deg/s"}},
+       {"no rate column among 'x-axis', '1', '2'"}},
+      // SensorLog: a time of each sensor, which its other rows lack, and columns without any value.
+      {rows_of("loggingTime,gpsTimestamp_since1970,gyroTimestamp_sinceReboot,gyroRotationX,motionTimestamp_"
+               "sinceReboot,motionRotationRateX\n",
+               "2016-08-09 13:09:51.{i},,254988.{i},{x},,\n2016-08-09 13:09:51.{i}5,1470740990.{i},,,,"),
+       {"--time gyroTimestamp_sinceReboot:s --column rate_x_radps=gyroRotationX:rad/s; in"}},
+      // RepoIMU: a row of axes whose first cell is a unit.
+      {rows_of("Time;Vicon;;;;IMU Gyroscope;;\ns;W;X;Y;Z;X;Y;Z\n", "0.{i};1;0.1;0.2;0.3;{x};{y};{z}"),
+       {"--time Time:s --column 'rate_x_radps=IMU Gyroscope X:rad/s'"}},
+      {rows_of("Time,KX_IMU_ax,IMU_gx,IMU_gy\n", "0.{i},1.0,{x},{y}"),
+       {"--time Time:s --column rate_x_radps=IMU_gx:rad/s --column rate_y_radps=IMU_gy:rad/s"}},
+      {rows_of("lowG_data.timeStamp_lowG,lowG_data.ax,lowG_data.gx\n", "194{i}000,1.0,{x}"),
+       {"--time lowG_data.timeStamp_lowG:s --column rate_x_radps=lowG_data.gx:rad/s"}},
+      // A matrix of MATLAB 7.3: time and rates in one.
+      {rows_of("buffer[0],buffer[1],buffer[2],buffer[3]\n", "0.{i},{x},{y},{z}"),
+       {"--time 'buffer[0]:s' --column 'rate_x_radps=buffer[1]:rad/s' --column "
+        "'rate_y_radps=buffer[2]:rad/s'"}},
+      // Only units in which a sensor may measure the values are offered.
+      {rows_of("timestamp,imu.gyro.x\n", "25655{i}491968,{x}"),
+       {"--time timestamp:us", "in the place of us: ns;"}},
+      {rows_of("t_s,gyro_x\n", "0.{i},32{i}"), {"gyro_x:deg/s; in the place of deg/s: rad/sample"}},
+      // NovAtel SPAN without inertial logs.
+      {rows_of("",
+               "#INSATTA,USB3,0,68.5;1992,2363{i}.0,0.{i},0.1,0.2*8498a2b3\n#BESTVELA,USB3,0,68.5;SOL_"
+               "COMPUTED,0.{i},0.2,0.{i}*042fe272"),
+       {"logs of NovAtel without rates, expected RAWIMUS"}},
       // Text that is no table says what makes one.
       {"[{\"sensor\":\"Gyroscope\",\"time\":\"1\",\"x\":\"0.1\"},{\"sensor\":\"Accelerometer\",\"time\":"
        "\"1\",\"x\":\"9\"}]",

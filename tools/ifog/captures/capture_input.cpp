@@ -81,8 +81,6 @@ CsvLayout CaptureInput::layout() const {
   }
   if (!time.empty()) out.time = parsed("--time", time, CsvTime::parse);
   if (sample_rate_hz > 0.0) out.sample_rate_hz = sample_rate_hz;
-  if (out.time && out.sample_rate_hz)
-    throw WrongUsage("--sample-rate", "cannot go with --time, expected one of them");
   if (!only.empty())
     parsed("--only", only, [&out](const std::string& text) { return out.parse_only(text), 0; });
   out.keep_repeats = repeats == "keep";
