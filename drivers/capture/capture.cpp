@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/capture/capture.h"
 
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
@@ -10,29 +13,18 @@
 #include "drivers/ifog/quoted.h"
 
 namespace ifog {
-namespace {
 
-// Collects blocks into whole columns.
-class TableSink final : public RowSink {
- public:
-  explicit TableSink(Table& table) : table_(table) {}
+void TableSink::begin(const std::vector<std::string>& names) {
+  for (const std::string& name : names) table_.columns.push_back({name, {}});
+}
 
-  void begin(const std::vector<std::string>& names) override {
-    for (const std::string& name : names) table_.columns.push_back({name, {}});
-  }
-  void take(RowBlock& rows) override {
-    table_.origin = rows.origin;
-    table_.time_s.insert(table_.time_s.end(), rows.time_s.begin(), rows.time_s.end());
-    for (std::size_t c = 0; c < rows.columns.size(); ++c)
-      table_.columns[c].values.insert(table_.columns[c].values.end(), rows.columns[c].begin(),
-                                      rows.columns[c].end());
-  }
-
- private:
-  Table& table_;
-};
-
-}  // namespace
+void TableSink::take(RowBlock& rows) {
+  table_.origin = rows.origin;
+  table_.time_s.insert(table_.time_s.end(), rows.time_s.begin(), rows.time_s.end());
+  for (std::size_t c = 0; c < rows.columns.size(); ++c)
+    table_.columns[c].values.insert(table_.columns[c].values.end(), rows.columns[c].begin(),
+                                    rows.columns[c].end());
+}
 
 Table table_of(const std::function<RowNotes(RowSink&)>& read) {
   Table table;
@@ -45,6 +37,23 @@ Table read_table(InputFile& file, const CsvLayout& layout) {
   return table_of([&](RowSink& sink) { return read_csv_rows(file, layout, sink); });
 }
 
+Capture known_part_of(Table table, const std::string& path) {
+  std::string axis;
+  std::vector<std::string> dead;
+  std::erase_if(table.columns, [&](const CaptureColumn& column) {
+    const bool known =
+        std::any_of(column.values.begin(), column.values.end(), [](double v) { return !std::isnan(v); });
+    if (!known && axis_of(column.name, "rate", axis)) dead.push_back(axis);
+    return !known;
+  });
+  if (std::none_of(table.columns.begin(), table.columns.end(),
+                   [&](const CaptureColumn& column) { return axis_of(column.name, "rate", axis); }))
+    throw std::runtime_error("the device marks every value of every axis invalid");
+  Capture capture = capture_of(std::move(table), path);
+  capture.dead_axes = std::move(dead);
+  return capture;
+}
+
 Capture capture_of(Table table, const std::string& path) {
   std::vector<std::string> names;
   for (const CaptureColumn& column : table.columns) names.push_back(column.name);
@@ -53,6 +62,7 @@ Capture capture_of(Table table, const std::string& path) {
   capture.notices = std::move(table.notices);
   capture.faults = std::move(table.faults);
   capture.comments = lines_of(table.comments);
+  capture.since_power_up_s = table.since_power_up_s;
   capture.origin = table.origin;
   capture.time_s = std::move(table.time_s);
   capture.axes = shape.axes;

@@ -47,6 +47,20 @@ struct Table : RowNotes {
   std::vector<CaptureColumn> columns;  // all but time_s, in the file's order
 };
 
+// Collects blocks into whole columns.
+class TableSink : public RowSink {
+ public:
+  explicit TableSink(Table& table) : table_(table) {}
+  void begin(const std::vector<std::string>& names) override;
+  void take(RowBlock& rows) override;
+
+ private:
+  Table& table_;
+};
+
+// Table of the rows that `read` delivers to its sink.
+Table table_of(const std::function<RowNotes(RowSink&)>& read);
+
 // Reads a capture. Throws std::runtime_error with one line: file, line, column, value, what was expected.
 // Errors: first column not time_s, no rate column, time not increasing, a cell that is no number, a line with
 // another number of cells, a .gz that ends early, more than 1 % impossible values in a column. Fewer
@@ -56,12 +70,13 @@ Capture read_capture(const std::string& path);
 
 // The same for a text; `path` names it in messages. A table needs no rate column.
 Table read_table(InputFile& file, const CsvLayout& layout = {});
-// Table of the rows that `read` delivers to its sink.
-Table table_of(const std::function<RowNotes(RowSink&)>& read);
 Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout = {});
 
 // Converts a table. Throws std::runtime_error with one line: no rate, a reference without its rate.
 Capture capture_of(Table table, const std::string& path);
+
+// The same for a driver's samples, without axes and channels that never have a value. Throws if nothing is left.
+Capture known_part_of(Table table, const std::string& path);
 
 // Roles of the columns with these names in a capture.
 struct CaptureShape {

@@ -14,10 +14,6 @@ namespace {
 
 constexpr double kGap = 1.5;  // in periods
 
-bool never_known(const std::vector<double>& values) {
-  return std::all_of(values.begin(), values.end(), [](double value) { return std::isnan(value); });
-}
-
 double period_of(const ifog_description& description) {
   return description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0;
 }
@@ -25,7 +21,8 @@ double period_of(const ifog_description& description) {
 std::vector<std::string> columns_of(const ifog_description& description) {
   std::vector<std::string> out;
   for (std::uint32_t i = 0; i < description.axes; ++i)
-    out.push_back("rate " + std::string(description.axis[i]));
+    out.push_back(description.axis[i][0] == '\0' ? "rate_radps"
+                                                 : "rate_" + std::string(description.axis[i]) + "_radps");
   for (std::uint32_t i = 0; i < description.environments; ++i) out.emplace_back(description.environment[i]);
   return out;
 }
@@ -40,15 +37,14 @@ bool same_samples(const ifog_description& a, const ifog_description& b) {
 
 }  // namespace
 
-CaptureBuilder::CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside)
-    : description_(description), times_(description) {
-  for (std::uint32_t i = 0; i < description.axes; ++i) capture_.axes.emplace_back(description.axis[i]);
-  capture_.rate_radps.resize(description.axes);
-  capture_.reference_rate_radps.resize(description.axes);
-  for (std::uint32_t i = 0; i < description.environments; ++i)
-    capture_.channels.push_back({description.environment[i], {}});
-  for (const std::string& name : outside) capture_.channels.push_back({name, {}});
-  for (const CaptureColumn& channel : capture_.channels) channel_range_.push_back(measurable(channel.name));
+CaptureBuilder::CaptureBuilder(const ifog_description& description, RowSink& sink,
+                               const std::vector<std::string>& outside)
+    : description_(description), times_(description), batch_(sink), before_(description.axes, kMissing) {
+  std::vector<std::string> names = columns_of(description);
+  names.insert(names.end(), outside.begin(), outside.end());
+  for (std::size_t i = description.axes; i < names.size(); ++i)
+    channel_range_.push_back(measurable(names[i]));
+  batch_.begin(names);
 }
 
 void CaptureBuilder::go_on_as(const ifog_description& description) {
@@ -72,15 +68,14 @@ void CaptureBuilder::add_rates(const ifog_sample& sample, const SampleTimes::Sta
       } else if ((last_.valid_axes & 1U << i) != 0) {
         const double turned = sample.value[i] - last_.value[i];
         const double wrap = description_.angle_wrap_rad;
-        const std::vector<double>& before = capture_.rate_radps[i];
-        const double rate_before = before.empty() || std::isnan(before.back()) ? 0.0 : before.back();
+        const double rate_before = std::isnan(before_[i]) ? 0.0 : before_[i];
         const double usual = description_.nominal_rate_hz > 0.0 ? period_of(description_) : stamped.period_s;
         const double elapsed = stamped.elapsed_s;
         if (elapsed <= kGap * usual || turn_is_known(rate_before, elapsed, wrap))
           rate = (wrap > 0.0 ? std::remainder(turned, wrap) : turned) / elapsed;
       }
     }
-    capture_.rate_radps[i].push_back(rate);
+    row_.push_back(rate);
   }
 }
 
@@ -94,7 +89,7 @@ double CaptureBuilder::believable(std::size_t channel, double value) {
 void CaptureBuilder::hold_to_what_can_be(const ifog_sample& sample) {
   bool at_end = false, beyond = false;
   for (std::uint32_t i = 0; i < description_.axes; ++i) {
-    double& rate = capture_.rate_radps[i].back();
+    double& rate = row_[i];
     const double full_scale = description_.full_scale[i];
     const bool marked =
         (sample.valid_axes & 1U << i) == 0 || (description_.kind == IFOG_ANGLE && std::isnan(rate));
@@ -110,18 +105,19 @@ void CaptureBuilder::hold_to_what_can_be(const ifog_sample& sample) {
 void CaptureBuilder::add(const ifog_sample& sample, std::span<const double> outside) {
   const std::optional<SampleTimes::Stamped> stamped = times_.next(sample);
   if (!stamped) return;
-  capture_.origin = times_.origin();
-  capture_.time_s.push_back(stamped->since_s);
+  row_.clear();
   if (stamped->restarted) last_.valid_axes = 0;  // no angle difference across this
   add_rates(sample, *stamped);
-  for (std::uint32_t i = 0; i < description_.environments; ++i)
-    capture_.channels[i].values.push_back(
-        believable(i, (sample.environment_fresh & 1U << i) != 0 ? sample.environment[i] : kMissing));
-  for (std::size_t i = description_.environments; i < capture_.channels.size(); ++i) {
-    const std::size_t o = i - description_.environments;
-    capture_.channels[i].values.push_back(believable(i, o < outside.size() ? outside[o] : kMissing));
-  }
   hold_to_what_can_be(sample);
+  for (std::uint32_t i = 0; i < description_.environments; ++i)
+    row_.push_back(
+        believable(i, (sample.environment_fresh & 1U << i) != 0 ? sample.environment[i] : kMissing));
+  for (std::size_t i = description_.environments; i < channel_range_.size(); ++i) {
+    const std::size_t o = i - description_.environments;
+    row_.push_back(believable(i, o < outside.size() ? outside[o] : kMissing));
+  }
+  batch_.add(stamped->since_s, row_, times_.origin());
+  std::swap(before_, row_);
   last_ = sample;
 }
 
@@ -156,36 +152,6 @@ std::vector<std::string> CaptureBuilder::remarks() const {
   for (std::string& line : not_measured_in_words(at_full_scale_, implausible_, counts().ambiguous))
     lines.push_back(std::move(line));
   return lines;
-}
-
-std::vector<std::string> CaptureBuilder::names() const {
-  std::vector<std::string> out;
-  for (const std::string& axis : capture_.axes)
-    out.push_back(axis.empty() ? "rate_radps" : "rate_" + axis + "_radps");
-  for (const CaptureColumn& channel : capture_.channels) out.push_back(channel.name);
-  return out;
-}
-
-void CaptureBuilder::next_rows(RowBlock& rows) {
-  rows.columns.clear();
-  rows.origin = capture_.origin;
-  rows.time_s = std::exchange(capture_.time_s, {});
-  for (std::vector<double>& rate : capture_.rate_radps) rows.columns.push_back(std::exchange(rate, {}));
-  for (CaptureColumn& channel : capture_.channels) rows.columns.push_back(std::exchange(channel.values, {}));
-}
-
-Capture CaptureBuilder::finish() {
-  if (capture_.time_s.empty()) throw std::runtime_error("holds no sample that the driver understands");
-  for (std::size_t i = capture_.axes.size(); i-- > 0;) {
-    if (!never_known(capture_.rate_radps[i])) continue;
-    capture_.dead_axes.push_back(capture_.axes[i]);
-    capture_.axes.erase(capture_.axes.begin() + static_cast<std::ptrdiff_t>(i));
-    capture_.rate_radps.erase(capture_.rate_radps.begin() + static_cast<std::ptrdiff_t>(i));
-    capture_.reference_rate_radps.pop_back();
-  }
-  if (capture_.axes.empty()) throw std::runtime_error("the device marks every value of every axis invalid");
-  std::erase_if(capture_.channels, [](const CaptureColumn& channel) { return never_known(channel.values); });
-  return std::move(capture_);
 }
 
 }  // namespace ifog

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Builds a capture from a driver's samples: rates in rad/s over a time axis in seconds.
+// Builds a capture's rows from a driver's samples: rates in rad/s over a time axis in seconds.
 #pragma once
 
 #include <cstddef>
@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/capture.h"
 #include "drivers/capture/columns/measurable.h"
 #include "drivers/capture/times/row_sink.h"
 #include "drivers/capture/times/sample_times.h"
@@ -23,8 +22,10 @@ namespace ifog {
 // environment values that are not in the sample or impossible (measurable.h).
 class CaptureBuilder {
  public:
-  // outside: names of channels that are not in the frames.
-  explicit CaptureBuilder(const ifog_description& description, const std::vector<std::string>& outside = {});
+  // The sink receives rows in blocks: rates by axis, then channels; must outlive this. outside: names of channels
+  // that are not in the frames.
+  CaptureBuilder(const ifog_description& description, RowSink& sink,
+                 const std::vector<std::string>& outside = {});
 
   // Throws std::runtime_error with one line if time does not increase: the sample's number, both times, the
   // cause. outside: new values of those channels since the sample before, NaN if none.
@@ -38,14 +39,8 @@ class CaptureBuilder {
   void allow_restarts() { times_.allow_restarts(); }
   void keep_stamps(std::optional<std::int64_t> zero_ns) { times_.keep_stamps(zero_ns); }
 
-  // Columns in the order of next_rows(): rates by axis, then channels.
-  [[nodiscard]] std::vector<std::string> names() const;
-  // Number of rows since the last call of next_rows(), which moves them out.
-  [[nodiscard]] std::size_t waiting() const { return capture_.size(); }
-  void next_rows(RowBlock& rows);
-
-  // Drops axes and channels without a value. Throws std::runtime_error if nothing is left.
-  Capture finish();
+  // Hands on the last rows.
+  void finish() { batch_.hand_on(); }
 
   // One line for each count that is not 0: samples missing, repeated, from two devices, invalid.
   [[nodiscard]] std::vector<std::string> remarks() const;
@@ -58,7 +53,8 @@ class CaptureBuilder {
 
   ifog_description description_;
   SampleTimes times_;
-  Capture capture_;
+  RowBatch batch_;
+  std::vector<double> row_, before_;  // by column; and the row before
   ifog_sample last_{};
   std::size_t impossible_ = 0, at_full_scale_ = 0, implausible_ = 0;
   std::vector<Measurable> channel_range_;
@@ -68,31 +64,5 @@ class CaptureBuilder {
 // range, and missing by a clock that may have been set.
 std::vector<std::string> not_measured_in_words(std::size_t at_full_scale, std::size_t implausible,
                                                std::size_t ambiguous);
-
-// Passes rows from a builder to a sink in blocks.
-class BuiltRows {
- public:
-  BuiltRows(CaptureBuilder& builder, RowSink& sink) : builder_(builder), sink_(sink) {
-    sink_.begin(builder.names());
-  }
-  // To be called after each sample.
-  void added() {
-    if (builder_.waiting() >= kRows) hand_on();
-  }
-  void finish() {
-    if (builder_.waiting() > 0) hand_on();
-  }
-
- private:
-  static constexpr std::size_t kRows = std::size_t{1} << 14U;
-  void hand_on() {
-    builder_.next_rows(rows_);
-    sink_.take(rows_);
-  }
-
-  CaptureBuilder& builder_;
-  RowSink& sink_;
-  RowBlock rows_;
-};
 
 }  // namespace ifog

@@ -44,6 +44,26 @@ void RowBlock::keep_first(std::size_t rows) {
     if (!column.empty()) column.resize(rows);
 }
 
+void RowBatch::begin(const std::vector<std::string>& names) {
+  rows_.columns.resize(names.size());
+  sink_.begin(names);
+}
+
+void RowBatch::add(double time_s, std::span<const double> values, const TimeOrigin& origin) {
+  constexpr std::size_t kRows = std::size_t{1} << 14U;
+  rows_.origin = origin;
+  rows_.time_s.push_back(time_s);
+  for (std::size_t c = 0; c < values.size(); ++c) rows_.columns[c].push_back(values[c]);
+  if (rows_.size() == kRows) hand_on();
+}
+
+void RowBatch::hand_on() {
+  const std::size_t columns = rows_.columns.size();
+  if (rows_.size() > 0) sink_.take(rows_);
+  rows_.time_s.clear();
+  rows_.columns.assign(columns, {});
+}
+
 void RowBlock::split_off(std::size_t from, RowBlock& to) {
   const auto behind = [from](auto& values, auto& kept) {
     const auto begin = values.begin() + static_cast<std::ptrdiff_t>(std::min(from, values.size()));

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -79,6 +80,21 @@ class RowSink {
   }
   // Takes the next rows, at least one; may move or change them.
   virtual void take(RowBlock& rows) = 0;
+};
+
+// Passes single rows to a sink in blocks.
+class RowBatch {
+ public:
+  explicit RowBatch(RowSink& sink) : sink_(sink) {}
+
+  [[nodiscard]] bool begun() const { return !rows_.columns.empty(); }
+  void begin(const std::vector<std::string>& names);
+  void add(double time_s, std::span<const double> values, const TimeOrigin& origin = {});
+  void hand_on();
+
+ private:
+  RowSink& sink_;
+  RowBlock rows_;
 };
 
 // Reports of a reader besides the rows; complete after the last row.

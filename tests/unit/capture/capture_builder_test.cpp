@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of a driver as a capture: the devices that the chain's tests have, too
 // (tests/unit/drivers/timeline_truth_test.cpp).
-#include "drivers/capture/capture_builder.h"
+#include "tests/unit/capture/refusal.h"
 
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ TEST(CaptureBuilder, OverAGapInWhichAnAngleMayHaveGoneRoundNoRateIsMadeUp) {
     d.angle_wrap_rad = kRound;
     d.nominal_rate_hz = 1000.0;
     d.sequence_modulus = modulus;
-    CaptureBuilder builder(d);
+    test::Built builder(d);
     for (int n = 0; n < 1000; ++n) {
       if (n >= 400 && n < 600) continue;
       ifog_sample sample{};
@@ -55,7 +55,7 @@ TEST(CaptureBuilder, OfAnAngleOverASilenceNoRateIsMadeUp) {
     d.angle_wrap_rad = wrap;
     d.nominal_rate_hz = 500.0;
     d.sequence_modulus = 256;
-    CaptureBuilder builder(d);
+    test::Built builder(d);
     for (int n = 0; n < 10'000; ++n) {
       if (n >= 2500 && n < 7500) continue;
       ifog_sample sample{};
@@ -86,7 +86,7 @@ TEST(CaptureBuilder, AClockOfMillisecondsAtFiveKilohertzLosesNoSample) {
     d.nominal_rate_hz = 5000.0;
     d.has_device_time = 1;
     d.sequence_modulus = modulus;
-    CaptureBuilder builder(d);
+    test::Built builder(d);
     for (int n = 0; n < 20'000; ++n) {
       ifog_sample sample{};
       sample.flags = IFOG_SAMPLE_DEVICE_TIME;

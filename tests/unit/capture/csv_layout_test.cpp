@@ -228,10 +228,5 @@ TEST(CsvLayout, MillisecondsTakenForSecondsAreSaid) {
   EXPECT_TRUE(parse_capture(milliseconds, "a.csv", layout({}, "time_s:ms")).notices.empty());
 }
 
-TEST(CsvLayout, TheOptionThatIsPrintedKeepsTheScale) {
-  EXPECT_EQ(refusal([] { parse_capture("a,b\n1,2\n", "a.csv", layout({"rate_radps=b:12.5deg/s"})); }),
-            "a.csv:1: no time column; to read it: --sample-rate HZ --column rate_radps=b:12.5deg/s");
-}
-
 }  // namespace
 }  // namespace ifog

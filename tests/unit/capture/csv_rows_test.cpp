@@ -195,14 +195,6 @@ TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
   }
 }
 
-TEST(CsvRows, ALineThatNobodyWroteIsRefusedWithItsNumber) {
-  const std::string text = "time_s,a_V\n0,1\n1," + std::string(ifog::kLongestLine + 10, '1');
-  for (const std::string end : {"", "\n2,1\n"})
-    for (const std::size_t piece : {std::size_t{1000}, std::size_t{1} << 20U, kWhole})
-      EXPECT_EQ(in_pieces(text + end, piece).refused.substr(0, 46),
-                "a.csv:3: a line of more than 1048576 bytes, be");
-}
-
 // Looks at some columns only, and spoils what it was given.
 struct Choosy final : ifog::RowSink {
   std::vector<std::size_t> wanted;

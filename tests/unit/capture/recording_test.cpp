@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "drivers/capture/candump/candump.h"
-#include "drivers/capture/capture_builder.h"
 #include "drivers/capture/capture_encoder.h"
+#include "tests/unit/capture/refusal.h"
 #include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 
@@ -75,7 +75,7 @@ class Recording : public testing::Test, protected ifog::test::OwnFolder {
     }
     notices_ = encoder.notices();
     ifog::DriverInstance in(plugin, all);
-    ifog::CaptureBuilder builder(in.description());
+    ifog::test::Built builder(in.description());
     ifog::InputFile recorded(file);
     counts_ =
         ifog::decode_recording(recorded, in, "", [&](const ifog_sample& sample) { builder.add(sample); });
@@ -178,7 +178,7 @@ TEST_F(Recording, ARateAtFullScaleIsMissing) {
   while (encoder.next(bytes)) {
   }
   EXPECT_EQ(encoder.rows_at_full_scale(), 10U);
-  ifog::CaptureBuilder builder(in.description());
+  ifog::test::Built builder(in.description());
   in.decode_bytes(bytes, 0, [&](const ifog_sample& sample) { builder.add(sample); });
   EXPECT_EQ(builder.remarks(),
             std::vector<std::string>{"10 samples at or beyond the sensor's full scale, treated as missing"});
@@ -291,7 +291,7 @@ TEST_F(Recording, AClockThatShowsTheEpochMakesTheRatesOfOneThatBeginsAtZero) {
   d.kind = IFOG_ANGLE;
   d.has_device_time = 1;
   d.nominal_rate_hz = 1000.0;
-  ifog::CaptureBuilder from_0(d), from_1970(d);
+  ifog::test::Built from_0(d), from_1970(d);
   ifog_sample sample{};
   sample.valid_axes = 1;
   sample.flags = IFOG_SAMPLE_DEVICE_TIME;
@@ -302,14 +302,12 @@ TEST_F(Recording, AClockThatShowsTheEpochMakesTheRatesOfOneThatBeginsAtZero) {
     sample.device_time_ns += 1'700'000'000'000'000'000;
     from_1970.add(sample);
   }
-  ifog::RowBlock one, other;
-  from_0.next_rows(one);
-  from_1970.next_rows(other);
+  const Capture one = from_0.finish(), other = from_1970.finish();
   EXPECT_EQ(one.origin, ifog::TimeOrigin{});
   EXPECT_EQ(other.origin, (ifog::TimeOrigin{1'700'000'000, 0}));
   EXPECT_EQ(one.time_s, other.time_s);
-  ASSERT_EQ(one.columns[0].size(), 200U);
-  for (std::size_t i = 1; i < 200; ++i) ASSERT_EQ(one.columns[0][i], other.columns[0][i]) << i;
+  ASSERT_EQ(one.size(), 200U);
+  for (std::size_t i = 1; i < 200; ++i) ASSERT_EQ(one.rate_radps[0][i], other.rate_radps[0][i]) << i;
 }
 
 // As of a capture's own cells: no temperature is below absolute zero.
@@ -319,7 +317,7 @@ TEST_F(Recording, AChannelsValueThatCannotBeIsMissingAndCounted) {
   d.nominal_rate_hz = 100.0;
   d.environments = 1;
   std::string("temperature_degC").copy(d.environment[0], sizeof d.environment[0] - 1);
-  ifog::CaptureBuilder builder(d, {"coil_degC"});
+  ifog::test::Built builder(d, {"coil_degC"});
   ifog_sample sample{};
   sample.valid_axes = 1;
   sample.environment_fresh = 1;

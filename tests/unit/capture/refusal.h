@@ -4,6 +4,7 @@
 #include <string>
 
 #include "drivers/capture/capture.h"
+#include "drivers/capture/capture_builder.h"
 #include "tests/unit/refusal.h"
 
 namespace ifog {
@@ -13,4 +14,18 @@ inline std::string refusal_of(const std::string& text, const CsvLayout& layout =
   return test::refusal([&] { parse_capture(text, "a.csv", layout); });
 }
 
+namespace test {
+
+// A builder whose rows become a capture.
+struct Built : private Table, private TableSink, CaptureBuilder {
+  explicit Built(const ifog_description& description, const std::vector<std::string>& outside = {})
+      : TableSink(static_cast<Table&>(*this)),
+        CaptureBuilder(description, static_cast<RowSink&>(*this), outside) {}
+  Capture finish() {
+    CaptureBuilder::finish();
+    return known_part_of(std::move(static_cast<Table&>(*this)), "");
+  }
+};
+
+}  // namespace test
 }  // namespace ifog

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "drivers/capture/capture_builder.h"
+#include "tests/unit/capture/refusal.h"
 #include "tests/unit/flight/recordings.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/flight/flight_input.h"
@@ -107,7 +107,7 @@ TEST(FlightRuns, FilesOfOneRunAreOneRecord) {
 
 TEST(FlightRuns, OtherColumnsAreRefused) {
   ifog_description one = make_driver("kvh1750", kRadians).description();
-  CaptureBuilder builder(one);
+  test::Built builder(one);
   EXPECT_NO_THROW(builder.go_on_as(one));
   one.axes = 2;
   EXPECT_THROW(builder.go_on_as(one), std::runtime_error);

@@ -174,14 +174,10 @@ RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& i
                            (why.empty() ? "" : " (" + why + ")"));
 }
 
-void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
-                         const std::function<void()>& added) const {
+void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder) const {
   const std::string& path = file.path();
   const RecordingCounts counts = naming(path, [&] {
-    return for_each_sample(file, instance, [&](const ifog_sample& sample) {
-      builder.add(sample);
-      added();
-    });
+    return for_each_sample(file, instance, [&](const ifog_sample& sample) { builder.add(sample); });
   });
   for (const auto& lines : {losses(counts), builder.remarks()})
     for (const std::string& line : lines) warn("%s: %s\n", path.c_str(), line.c_str());
@@ -249,11 +245,10 @@ RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
     return flight.rows(instance, sink);
   }
   DriverInstance instance = make_driver();
-  CaptureBuilder builder(instance.description());
+  CaptureBuilder builder(instance.description(), sink);
   if (instance.takes_can()) builder.keep_stamps(zero_of_stamps(file.head()));
-  BuiltRows rows(builder, sink);
-  build(file, instance, builder, [&rows] { rows.added(); });
-  rows.finish();
+  build(file, instance, builder);
+  builder.finish();
   return {};
 }
 

@@ -91,8 +91,7 @@ struct CaptureInput {
   RowNotes column_rows(InputFile& file, RowSink& sink) const;
   [[nodiscard]] FileKind readable(const InputFile& file) const;
   [[nodiscard]] bool holds_rates(const InputFile& file, FileKind found) const;
-  void build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder,
-             const std::function<void()>& added) const;
+  void build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder) const;
   static void keep_rates(LongTable& table, const std::string& path);
   static void tell(const std::vector<std::string>& notices, const std::vector<std::string>& faults);
 };

@@ -177,8 +177,7 @@ RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const Recor
   });
 }
 
-std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder& builder,
-                                         const std::function<void()>& added) {
+std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder& builder) {
   std::int64_t first_ns = 0;
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   builder.allow_restarts();
@@ -193,7 +192,6 @@ std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder&
                                  }
                                  builder.add(recorded.sample, fresh);
                                  if (first_ns == 0) first_ns = recorded.read_ns;
-                                 added();
                                },
                                [&] { builder.discontinuity(); },
                                {},
@@ -208,21 +206,16 @@ std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder&
 
 Capture FlightInput::capture(DriverInstance& driver) {
   return naming(file_.path(), [&] {
-    CaptureBuilder builder(driver.description(), header().channels);
-    const auto since_power_up_s = build(driver, builder, [] {});
-    Capture out = builder.finish();
-    out.since_power_up_s = since_power_up_s;
-    return out;
+    return known_part_of(table_of([&](RowSink& sink) { return rows(driver, sink); }), file_.path());
   });
 }
 
 RowNotes FlightInput::rows(DriverInstance& driver, RowSink& sink) {
   return naming(file_.path(), [&] {
-    CaptureBuilder builder(driver.description(), header().channels);
-    BuiltRows rows(builder, sink);
+    CaptureBuilder builder(driver.description(), sink, header().channels);
     RowNotes notes;
-    notes.since_power_up_s = build(driver, builder, [&] { rows.added(); });
-    rows.finish();
+    notes.since_power_up_s = build(driver, builder);
+    builder.finish();
     return notes;
   });
 }

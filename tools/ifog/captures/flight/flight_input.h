@@ -61,8 +61,7 @@ class FlightInput {
 
  private:
   // Returns the time since power-up of the first sample if the header has it.
-  std::optional<double> build(DriverInstance& driver, CaptureBuilder& builder,
-                              const std::function<void()>& added);
+  std::optional<double> build(DriverInstance& driver, CaptureBuilder& builder);
   void tell_losses() const;
   [[nodiscard]] DriverInstance made() const;
   [[nodiscard]] bool names_the_driver() const;

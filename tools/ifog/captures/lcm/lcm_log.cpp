@@ -201,34 +201,6 @@ void look_through(ChosenLog& chosen, LcmChannels& channels) {
   throw std::runtime_error(chosen.path + ": has several channels, expected --channel with one of " + list);
 }
 
-// Passes rows to a sink in blocks.
-class BatchedRows {
- public:
-  explicit BatchedRows(RowSink& sink) : sink_(sink) {}
-
-  [[nodiscard]] bool begun() const { return !rows_.columns.empty(); }
-  void begin(const std::vector<std::string>& names) {
-    rows_.columns.resize(names.size());
-    sink_.begin(names);
-  }
-  void add(double time_s, std::span<const double> values) {
-    rows_.time_s.push_back(time_s);
-    for (std::size_t c = 0; c < values.size(); ++c) rows_.columns[c].push_back(values[c]);
-    if (rows_.size() == kRows) hand_on();
-  }
-  void hand_on() {
-    const std::size_t columns = rows_.columns.size();
-    if (rows_.size() > 0) sink_.take(rows_);
-    rows_.time_s.clear();
-    rows_.columns.assign(columns, {});
-  }
-
- private:
-  static constexpr std::size_t kRows = std::size_t{1} << 14U;
-  RowSink& sink_;
-  RowBlock rows_;
-};
-
 // Prints the date of t = 0, which the times do not contain.
 void tell_start(const std::string& path, const rate_t& first) {
   const TimeOrigin origin = TimeOrigin::of(first.utime * 1000);
@@ -246,7 +218,7 @@ void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
   std::vector<std::string> extra = chosen.peer ? chosen.peer->extra_columns() : std::vector<std::string>();
   const std::vector<std::string> others = channels.settle(extra);
   extra.insert(extra.end(), others.begin(), others.end());
-  BatchedRows rows(sink);
+  RowBatch rows(sink);
   std::vector<double> values;
   for_each_rate(
       chosen,
@@ -276,7 +248,7 @@ void read_published(InputFile& file, const std::string& channel, RowSink& sink) 
                              ", expected --channel with one that carries ifog.rate_t");
   LcmChannels unused(chosen.rates);
   if (!chosen.asked_for) look_through(chosen, unused);
-  BatchedRows rows(sink);
+  RowBatch rows(sink);
   double time_s = 0.0;
   std::vector<double> values;
   const auto take = [&](const rate_t& message, double) {
