@@ -211,7 +211,7 @@ class Checks:
         assert sorted(self.converted(native, "--group", "/a")) == ["rate_radps", "temperature_degC", "time_s"]
         self.refused(native, "no dataset in the group '/'; its groups are read by '--group /a'")
         self.refused(file, "no dataset in the group 'flight'; its groups are read by '--group flight/imu'", options=["--group", "flight"])
-        self.refused(native, "no group '/b'; the file's are read by '--group /a'", options=["--group", "/b"])
+        self.refused(native, "no group '/b', the file has '--group /a'", options=["--group", "/b"])
         self.refused(file, "no dataset 'GyroY', the group has", "'GyroX'", options=["--group", "/flight/imu", "--column", "rate_radps=GyroY:deg/s", "--time", "t:ms"])
         refused(2, "convert", self.csv, self.folder / "x.h5", "--group", "/a", says=["expected an HDF5 file"])
 
