@@ -322,13 +322,13 @@ std::vector<CsvColumn> rates_not_chosen(const TableSample& table, const CsvLayou
     const CsvColumn* sibling = nullptr;
     others.clear();
     for (const RateCandidate& rate : sensor) {
-      const std::string header = table.header_of(rate.place);
-      const auto same = std::find_if(chosen.columns.begin(), chosen.columns.end(), [&](const CsvColumn& c) {
-        return c.is_rate() && (c.header == header || c.header == "#" + std::to_string(rate.place + 1));
-      });
+      const std::string header = table.header_of(rate.place), number = "#" + std::to_string(rate.place + 1);
+      const auto is_here = [&](const std::string& wanted) { return wanted == header || wanted == number; };
+      const auto same = std::ranges::find_if(
+          chosen.columns, [&](const CsvColumn& c) { return c.is_rate() && is_here(c.header); });
       if (same != chosen.columns.end())
         sibling = &*same;
-      else if (!chosen.time || chosen.time->header != header)
+      else if (!chosen.time || !is_here(chosen.time->header))
         others.push_back({"other_" + capture_name(rate), header, ""});
     }
     if (sibling == nullptr) continue;

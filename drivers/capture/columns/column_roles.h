@@ -106,7 +106,7 @@ using Rates = std::vector<RateCandidate>;
 // Possible time columns of rows with these rates; a single one if it is most likely. Unknown units are empty.
 std::vector<CsvTime> times_of(const TableSample& table, const Rates& rates);
 
-// True if there are cells, and none says anything.
+// True if all cells are empty.
 bool is_empty(const std::vector<std::string>& cells);
 
 // True if three columns together have the length of gravity, i.e. are an accelerometer at rest: in m/s², g,

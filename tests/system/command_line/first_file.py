@@ -192,6 +192,9 @@ class Checks:
         densities, said = typed(path, "--time", "gyro[0]:s", "--column", "rate_radps=gyro[1]:deg/s")
         assert densities and abs(densities[""] / N - 1) < 0.05, (densities, said)
         self.reads("matrix.csv", path.read_text().splitlines())
+        path = self.file("more.csv", [line + (",T" if i == 0 else ",25") for i, line in enumerate(path.read_text().splitlines())])
+        for time in ("gyro[0]:s", "#1:s"):
+            assert typed(path, "--time", time, "--column", "rate_radps=gyro[1]:deg/s")[0], time
 
     def check_two_candidates_are_both_shown(self):
         path = self.file("twice.csv", ["time_s,gyro1_x_dps,gyro2_x_dps", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, 3 * y))])
