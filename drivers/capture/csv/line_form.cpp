@@ -172,7 +172,7 @@ void LineForm::find_record(std::string_view text, const std::string& path) {
     names_ = std::move(names);
     most = found.first;
   }
-  if (novatel > most)
+  if (record_.empty() && novatel > most)
     fail_at(path, 0, "logs of NovAtel without rates, expected RAWIMUS or CORRIMUDATAS among them");
   Lines stating(text);
   for (std::string_view line; stating.next(line);) {
