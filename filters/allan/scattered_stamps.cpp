@@ -10,9 +10,10 @@
 namespace ifog {
 namespace {
 
-constexpr std::size_t kNext = 7;      // stamps whose median confirms a gap
-constexpr std::size_t kSettle = 128;  // stamps that give the initial phase
-constexpr double kHalf = 0.5;         // of a period
+constexpr std::size_t kNext = 7;       // stamps whose median confirms a gap
+constexpr std::size_t kReturn = 1024;  // stamps in which a delay returns: 10 s at 100 Hz, of a stalled host
+constexpr std::size_t kSettle = 128;   // stamps that give the initial phase
+constexpr double kHalf = 0.5;          // of a period
 // Second-order tracker, critically damped. It settles within 100 samples; stamps off by up to half a period
 // move it by 1/25 period.
 constexpr double kPhaseGain = 1.0 / 32.0, kRateGain = kPhaseGain * kPhaseGain / 4.0;
@@ -42,30 +43,34 @@ class Clock {
   }
   // Returns the number of samples lost before the next stamp. times: that stamp and those that follow it.
   std::size_t take(double last_s, std::span<const double> times) {
-    late_ += later(last_s, times[0], 1);
+    late_ += (times[0] - last_s) / period_s_ - 1.0 - rate_;
     double lost = 0.0;
     if (late_ > kHalf)
       lost = std::max(0.0, std::round(std::min({late_, lateness_of_next(times), kMostLost})));
     late_ -= lost;
+    if (late_ > 4.0 * kHalf)
+      return static_cast<std::size_t>(lost);  // a delay that returns says nothing of the clock
     const double off = std::clamp(late_, -kHalf, kHalf);
     late_ -= kPhaseGain * off;
     rate_ += kRateGain * off;
-    squares_ += off * off;
     return static_cast<std::size_t>(lost);
   }
-  [[nodiscard]] double squares() const { return squares_; }
 
  private:
-  // Lateness of a stamp relative to one `samples` before it, in periods.
-  [[nodiscard]] double later(double last_s, double time_s, std::size_t samples) const {
-    return (time_s - last_s) / period_s_ - static_cast<double>(samples) * (1.0 + rate_);
-  }
-  // Median lateness of these stamps and of the last one.
+  // Least median lateness of the next stamps and of longer runs behind them: after a delay that returns it is that
+  // before the delay.
   [[nodiscard]] double lateness_of_next(std::span<const double> times) const {
-    std::array<double, kNext> late{};
-    const std::size_t count = std::min(kNext, times.size());
-    for (std::size_t k = 0; k < count; ++k) late[k] = late_ + later(times[0], times[k], k);
-    return middle_of(std::span(late).first(count));
+    std::array<double, kSettle> late{};
+    double least = kMostLost;
+    for (std::size_t at = 0, run = kNext; at < times.size() && at < kReturn && least > kHalf;
+         at += run, run = kSettle) {
+      const std::size_t count = std::min(run, times.size() - at);
+      if (at > 0 && count < kNext) break;
+      for (std::size_t k = 0; k < count; ++k)
+        late[k] = late_ + (times[at + k] - times[0]) / period_s_ - static_cast<double>(at + k);
+      least = std::min(least, middle_of(std::span(late).first(count)));
+    }
+    return least;
   }
   // An element, not the mean of two, which may be on either side of a gap.
   static double middle_of(std::span<double> values) {
@@ -76,20 +81,19 @@ class Clock {
 
   double period_s_;
   double late_ = 0.0, rate_ = 0.0;  // of the last stamp used; relative error of the period
-  double squares_ = 0.0;            // sum of squared distances
 };
 
 }  // namespace
 
-double holes_of_scattered(const SeriesView& time_s, double period_s,
-                          const std::function<void(std::size_t i, std::size_t lost, double step_s)>& found) {
+void holes_of_scattered(const SeriesView& time_s, double period_s,
+                        const std::function<void(std::size_t i, std::size_t lost, double step_s)>& found) {
   const std::size_t samples = time_s.size();
   Clock clock(period_s);
   std::vector<double> room;
   for (std::size_t begin = 0; begin + 1 < samples; begin += kSeriesPiece) {
     const std::size_t end = std::min(begin + kSeriesPiece, samples - 1);
     const std::span<const double> times =
-        time_s.piece(begin, std::min(end + 1 + kSettle, samples) - begin, room);
+        time_s.piece(begin, std::min(end + 1 + kReturn, samples) - begin, room);
     if (begin == 0) clock.begin(times);
     for (std::size_t i = begin; i < end; ++i) {
       const std::span<const double> next = times.subspan(i + 1 - begin);
@@ -99,7 +103,6 @@ double holes_of_scattered(const SeriesView& time_s, double period_s,
       if (lost > kSilence) clock.begin(next);
     }
   }
-  return clock.squares() / static_cast<double>(std::max<std::size_t>(samples, 2) - 1);
 }
 
 }  // namespace ifog

@@ -12,12 +12,12 @@
 namespace ifog {
 
 // Calls found(i, lost, step_s) in order for each sample i after which samples are lost, with the time step
-// there. Returns the mean squared distance of the stamps from the clock, in periods².
+// there.
 //
 // Exact while each stamp is off by less than half a period. With larger errors, a gap counts only if most of
-// the next stamps confirm it (median, which other gaps nearby do not disturb). period_s: within 1 % of the
-// true period.
-double holes_of_scattered(const SeriesView& time_s, double period_s,
-                          const std::function<void(std::size_t i, std::size_t lost, double step_s)>& found);
+// the next stamps confirm it (median, which other gaps nearby do not disturb) and the delay does not return
+// later, as that of a stalled host does. period_s: within 0.05 % of the true period.
+void holes_of_scattered(const SeriesView& time_s, double period_s,
+                        const std::function<void(std::size_t i, std::size_t lost, double step_s)>& found);
 
 }  // namespace ifog

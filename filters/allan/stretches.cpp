@@ -56,35 +56,27 @@ void for_each_step(const SeriesView& time_s, Use use) {
   }
 }
 
-// Calls found(i, lost, step) for each gap after sample i. Returns the stamps' mean squared distance if they
-// scatter.
+// Calls found(i, lost, step) for each gap after sample i.
 template <typename Found>
-double for_each_hole(const SeriesView& time_s, double period, bool scatters, Found found) {
+void for_each_hole(const SeriesView& time_s, double period, bool scatters, Found found) {
   if (scatters) return holes_of_scattered(time_s, period, found);
   for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
     if (!steps.is_gap(i, period)) return;
     const double step = steps.step(i);
     found(i, static_cast<std::size_t>(std::max(0.0, std::round(step / period) - 1.0)), step);
   });
-  return 0.0;
 }
-
-struct Period {
-  double period_s = 0.0;  // mean of the steps without gaps
-  std::size_t gaps = 0;
-  double squares = 0.0;  // as returned by for_each_hole
-};
 
 // Mean period without the gaps found with this period. With scattering stamps a short gap counts as its
 // number of steps, because its length is less accurate.
-Period mean_period(const SeriesView& time_s, double period_s, bool scatters) {
+double mean_period(const SeriesView& time_s, double period_s, bool scatters) {
   constexpr std::size_t kShort = 8;
   const std::size_t count = time_s.size() - 1;
   double between_s = time_s.at(count) - time_s.at(0);
   double steps = static_cast<double>(count);
-  Period out;
-  out.squares = for_each_hole(time_s, period_s, scatters, [&](std::size_t, std::size_t lost, double step_s) {
-    ++out.gaps;
+  std::size_t gaps = 0;
+  for_each_hole(time_s, period_s, scatters, [&](std::size_t, std::size_t lost, double step_s) {
+    ++gaps;
     if (scatters && lost <= kShort) {
       steps += static_cast<double>(lost);
       return;
@@ -92,9 +84,8 @@ Period mean_period(const SeriesView& time_s, double period_s, bool scatters) {
     between_s -= step_s;
     steps -= 1.0;
   });
-  if (out.gaps == count) throw std::invalid_argument("no two samples are one sample time apart");
-  out.period_s = between_s / steps;
-  return out;
+  if (gaps == count) throw std::invalid_argument("no two samples are one sample time apart");
+  return between_s / steps;
 }
 
 // Shortest and longest step; if the longest is no gap, there is none.
@@ -141,38 +132,51 @@ std::vector<double> some_steps(const SeriesView& time_s, std::size_t stride) {
   return some;
 }
 
-// Period of scattering stamps. near_s: from the single steps.
-double scattered_period(const SeriesView& time_s, double near_s) {
-  Period out{.period_s = near_s};
-  for (int round = 0; round < 3; ++round) out = mean_period(time_s, out.period_s, true);
-  // The mean of all steps is the period if no sample is missing. It is rejected if a clock with few gaps fits
-  // much better, or if stamps would be off by more than half a period, as in bursts.
-  constexpr double kHalfEitherWay = 0.1;  // of a uniform error; 1/12 plus the clock's error
-  const std::size_t count = time_s.size() - 1;
-  const double all_s = (time_s.at(count) - time_s.at(0)) / static_cast<double>(count);
-  const Period all = mean_period(time_s, all_s, true);
-  const bool even = all.gaps == 0 && all.squares < kHalfEitherWay &&
-                    (4 * out.gaps > count || all.squares < 2.0 * out.squares);
-  return even ? all_s : out.period_s;
-}
+// An even clock whose stamps are late: the least delay of 512 stamps is the same as that of the 512 before.
+struct EvenClock {
+  double period_s = 0.0;
+  // In periods: usual and largest difference of these least delays, and by how much a stamp usually exceeds them.
+  double usual = 0.0, largest = 0.0, late = 0.0;
 
-// Period of an even clock with stamps rounded to ticks of more than half a period (single precision far from
-// 0). Its steps of one and two ticks would look like gaps. A stamp is never more than one tick from such a
-// clock. 0: the stamps are not of this kind.
-double even_period(const SeriesView& time_s, double tick_s) {
-  constexpr double kFewest = 16.0, kRounding = 1.0 + 1e-6;
-  const auto count = static_cast<double>(time_s.size() - 1);
-  const double first_s = time_s.at(0), period_s = (time_s.at(time_s.size() - 1) - first_s) / count;
-  const double of_two = (period_s / tick_s - 1.0) * count;
-  if (of_two < kFewest || count - of_two < kFewest) return 0.0;
-  std::vector<double> room;
-  for (std::size_t begin = 0; begin < time_s.size(); begin += kSeriesPiece) {
-    const std::size_t piece = std::min(kSeriesPiece, time_s.size() - begin);
-    double even = static_cast<double>(begin);
-    for (const double time : time_s.piece(begin, piece, room))
-      if (std::abs(time - first_s - period_s * even++) > kRounding * tick_s) return 0.0;
+  // Of stamps rounded to ticks: from half their range.
+  [[nodiscard]] double scatter() const { return 2.0 * late / std::sqrt(12.0); }
+  // Whether the stamps do not contradict it. A lost sample is a difference of one period. After a late stamp a step is
+  // short, after a lost sample none is: without short steps there is no difference at all. Rows in bursts are not
+  // late: their pauses are many periods.
+  [[nodiscard]] bool explains(double short_step_s) const {
+    constexpr double kHalf = 0.5, kBurst = 2.0, kTenth = 1.28 * std::numbers::sqrt2;  // of Gaussian scatter
+    const SampleClock by_steps{.scatter = (1.0 - short_step_s / period_s) / kTenth},
+        whole{.scatter = scatter()};
+    return late < kBurst && (by_steps.scatters() ? usual < kHalf : whole.scatters() && largest < kHalf);
   }
-  return period_s;
+};
+
+EvenClock even_clock(const SeriesView& time_s) {
+  constexpr std::size_t kStamps = 512, kFewest = 8;
+  const std::size_t windows = time_s.size() / kStamps, last = windows * kStamps - 1;
+  EvenClock clock{.late = std::numeric_limits<double>::infinity()};
+  if (windows < kFewest) return clock;
+  clock.period_s = (time_s.at(last) - time_s.at(0)) / static_cast<double>(last);
+  std::vector<double> least, late, delays(kStamps), room;
+  for (int round = 0; round < 3; ++round) {
+    least.clear(), late.clear();
+    for (std::size_t begin = 0; begin < last; begin += kStamps) {
+      const std::span<const double> stamps = time_s.piece(begin, kStamps, room);
+      for (std::size_t i = 0; i < kStamps; ++i)
+        delays[i] = (stamps[i] - time_s.at(0)) / clock.period_s - static_cast<double>(begin + i);
+      least.push_back(*std::ranges::min_element(delays));
+      late.push_back(median(delays) - least.back());
+    }
+    for (std::size_t i = 0; i + 1 < windows; ++i) least[i] = least[i + 1] - least[i];
+    least.pop_back();
+    const double drift = median(least);
+    clock.period_s *= 1.0 + drift / static_cast<double>(kStamps);
+    for (double& each : least) each = std::abs(each - drift);
+  }
+  clock.usual = median(least);
+  clock.largest = *std::ranges::max_element(least);
+  clock.late = median(late);
+  return clock;
 }
 
 }  // namespace
@@ -187,19 +191,25 @@ SampleClock sample_clock(const SeriesView& time_s) {
   if (!(period > 0.0)) throw std::invalid_argument("time does not increase");
 
   SampleClock clock;
-  if (const double even_s = even_period(time_s, period); even_s > 0.0) {
-    clock.scatter = period / (std::sqrt(12.0) * even_s);  // of the rounding error
-    period = even_s;
+  const auto scatter = [&](double period_s) {
+    std::vector<double> away = some;
+    for (double& step : away) step = std::abs(step - period_s);
+    return 1.4826 * median(away) / (std::numbers::sqrt2 * period_s);  // of Gaussian scatter
+  };
+  // The median of coarse stamps is one tick too short or too long; a second round with the mean corrects it.
+  const EvenClock even = steps.gapless(period) ? EvenClock{} : even_clock(time_s);
+  std::ranges::nth_element(some, some.begin() + std::ssize(some) / 10);
+  if (even.period_s > 0.0 && even.explains(some[some.size() / 10])) {
+    period = even.period_s;
+    clock.scatter = std::max(scatter(period), even.scatter());
   } else {
-    // The median of coarse stamps is one tick too short or too long; a second round with the mean corrects
-    // it.
+    // The median of coarse stamps is one tick too short or too long; a second round with the mean corrects it.
     for (int round = 0; round < 2; ++round)
       period = steps.gapless(period) ? (time_s.at(count) - time_s.at(0)) / static_cast<double>(count)
-                                     : mean_period(time_s, period, false).period_s;
-    for (double& step : some) step = std::abs(step - period);
-    clock.scatter = 1.4826 * median(some) / (std::numbers::sqrt2 * period);  // of Gaussian scatter
-    if (clock.scatters()) period = scattered_period(time_s, period);
+                                     : mean_period(time_s, period, false);
+    clock.scatter = scatter(period);
   }
+  for (int round = 0; clock.scatters() && round < 3; ++round) period = mean_period(time_s, period, true);
   clock.period_s = period;
   if (!clock.scatters() && steps.gapless(period)) {
     clock.worst_jitter_s = steps.jitter_s(period);

@@ -15,6 +15,7 @@ namespace ifog {
 struct Stretch {
   std::size_t begin = 0, end = 0;
   [[nodiscard]] std::size_t size() const { return end - begin; }
+  bool operator==(const Stretch&) const = default;
 };
 
 struct SampleClock {
@@ -30,10 +31,10 @@ struct SampleClock {
   std::size_t first_gap = 0;  // index of the sample before the first gap; meaningful when gaps > 0
 };
 
-// Throws std::invalid_argument unless time_s is strictly increasing and has two samples or more. The median
-// step defines a gap, so up to half of the steps may be gaps. Coarsely rounded stamps alternate between k and
-// k + 1 ticks; so a step is a gap only if later stamps stay late. Scattering stamps:
-// filters/allan/scattered_stamps.h.
+// Throws std::invalid_argument unless time_s is strictly increasing and has two samples or more. An even clock
+// with late stamps is assumed where their delay returns. Else the median step defines a gap, so up to half of the
+// steps may be gaps. Coarsely rounded stamps alternate between k and k + 1 ticks; so a step is a gap only if later
+// stamps stay late. Scattering stamps: filters/allan/scattered_stamps.h.
 [[nodiscard]] SampleClock sample_clock(const SeriesView& time_s);
 
 struct Hole {

@@ -19,7 +19,6 @@ using ifog::AngleSum;
 using ifog::Deviation;
 using ifog::LongSeries;
 using ifog::SeriesView;
-using ifog::Stretch;
 
 constexpr double kSampled_hz = 100.0;
 constexpr std::size_t kSamples = 300000;
@@ -56,20 +55,13 @@ TEST(LongRecord, HasTheClockTheStretchesAndTheRestOfOneInMemory) {
   EXPECT_EQ(clock.worst_jitter_s, same.worst_jitter_s);
   EXPECT_EQ(clock.missing, same.missing);
   EXPECT_EQ(clock.first_gap, same.first_gap);
-  const auto expect_equal = [](const std::vector<Stretch>& a, const std::vector<Stretch>& b) {
-    ASSERT_EQ(a.size(), b.size());
-    for (std::size_t i = 0; i < a.size(); ++i) {
-      EXPECT_EQ(a[i].begin, b[i].begin);
-      EXPECT_EQ(a[i].end, b[i].end);
-    }
-  };
   const auto parts = ifog::stretches(r.time, r.rate, clock);
   EXPECT_EQ(parts.size(), 6U);
-  expect_equal(parts, ifog::stretches(r.long_time, r.long_rate, clock));
+  EXPECT_EQ(parts, ifog::stretches(r.long_time, r.long_rate, clock));
   const std::vector<SeriesView> in_memory{r.rate}, filed{r.long_rate};
   const ifog::Rest rest = ifog::find_rest(in_memory, {}, clock.period_s);
   EXPECT_GT(rest.turned, 200U);
-  expect_equal(rest.at_rest, ifog::find_rest(filed, {}, clock.period_s).at_rest);
+  EXPECT_EQ(rest.at_rest, ifog::find_rest(filed, {}, clock.period_s).at_rest);
 }
 
 TEST(LongRecord, HasTheDeviationsOfOneInMemory) {
