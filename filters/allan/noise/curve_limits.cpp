@@ -39,13 +39,14 @@ double CurveLimits::most(Term term) const {
 
 CurveLimits::Verdict CurveLimits::judge(Term term, double variance) const {
   Verdict verdict;
-  double share = 0.0;
+  double share = 0.0, fallen = 0.0;
   bool within = false;
   for (const Octave& o : octaves_) {
     const double part = variance * expected_variance(Deviation::kAllan, term, o.m);
     if (part > o.upper) {
-      // Not suppressed by a filter, or quantisation.
-      if (within || term == kQ) return {true, o.m};
+      // Not suppressed by a filter, below which the curve rises, or quantisation.
+      if (within || o.upper < fallen || term == kQ) return {true, o.m};
+      if (o.measured < kGoodPart * part) fallen = o.measured;
       continue;
     }
     if (!within) verdict.from_m = o.m;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "filters/allan/confidence.h"
@@ -91,21 +92,23 @@ TEST(NoiseCoefficients, WhiteNoiseAloneShowsNothingElse) {
   EXPECT_LE(s.R.seen, 3);
 }
 
+std::vector<double> with_angle_noise(std::vector<double> rate, std::uint64_t seed, std::uint32_t stream) {
+  ifog::simulate::Draw draw(seed, stream);
+  double now = draw.normal();
+  for (double& r : rate) {
+    const double before = std::exchange(now, draw.normal());
+    r += (now - before) * 1e-6 * kRate;
+  }
+  return rate;
+}
+
 // Angle noise alone, long enough that the fit of a hundred thousand samples takes part: once, the fits at
 // τ far apart were treated as independent, and white rate noise was claimed in its place.
 TEST(NoiseCoefficients, QuantisationAloneIsNoOtherTerm) {
   constexpr int kRecords = 30;
   int found = 0, others = 0;
-  for (int record = 0; record < kRecords; ++record) {
-    ifog::simulate::Draw draw(static_cast<std::uint64_t>(record), 5);
-    std::vector<double> rate(32768);
-    double before = draw.normal();
-    for (double& r : rate) {
-      const double now = draw.normal();
-      r = (now - before) * 1e-6 * kRate;
-      before = now;
-    }
-    const NoiseCoefficients f = fit(rate);
+  for (std::uint64_t record = 0; record < kRecords; ++record) {
+    const NoiseCoefficients f = fit(with_angle_noise(std::vector<double>(32768), record, 5));
     if (f.Q.present && std::abs(f.Q.value - 1e-6) < 4.0 * f.Q.std_error) ++found;
     others += (f.N.present ? 1 : 0) + (f.B.present ? 1 : 0) + (f.K.present ? 1 : 0);
   }
@@ -121,15 +124,8 @@ TEST(NoiseCoefficients, QuantisationDoesNotDrownWhatIsSlow) {
   const double N = std::sqrt(3.0 / 512.0) * 1e-6 * std::sqrt(kRate);
   int found = 0, others = 0;
   for (std::uint64_t record = 0; record < kRecords; ++record) {
-    std::vector<double> rate = ifog::simulate::noise({.N = N}, kRate, 4096, 300 + record);
-    ifog::simulate::Draw draw(record, 6);
-    double before = draw.normal();
-    for (double& r : rate) {
-      const double now = draw.normal();
-      r += (now - before) * 1e-6 * kRate;
-      before = now;
-    }
-    const NoiseCoefficients f = fit(rate);
+    const auto rate = ifog::simulate::noise({.N = N}, kRate, 4096, 300 + record);
+    const NoiseCoefficients f = fit(with_angle_noise(rate, record, 6));
     found += f.N.present ? 1 : 0;
     others += (f.B.present ? 1 : 0) + (f.K.present ? 1 : 0);
   }
@@ -242,6 +238,17 @@ TEST(NoiseCoefficients, WhatAFilterHoldsBackIsSaid) {
   EXPECT_EQ(fit(white).N.from_s, 0.0);
 }
 
+// A temperature run of an hour at 2 Hz, told as 100 Hz: the rate swings by far more than the noise.
+TEST(NoiseCoefficients, ASwingIsNoBiasInstabilityThatAFilterHoldsDown) {
+  auto rate = ifog::simulate::noise({.N = 2e-5}, kRate, 8400, 23);
+  for (std::size_t i = 0; i < rate.size(); ++i)
+    rate[i] +=
+        0.012 * std::sin(2e-3 * static_cast<double>(i)) + 0.006 * std::sin(5e-3 * static_cast<double>(i));
+  const NoiseCoefficients f = fit(rate);
+  EXPECT_EQ(f.B.from_s, 0.0);
+  EXPECT_LT(f.B.upper, 2e-4);  // 1.4 times the lowest deviation
+}
+
 TEST(NoiseCoefficients, RefusesWhatCannotBeFitted) {
   EXPECT_THROW((void)fit(std::vector<double>(63, 1.0)), std::invalid_argument);
   EXPECT_THROW((void)fit(std::vector<double>(1000, 1.0)), std::invalid_argument);
@@ -250,16 +257,15 @@ TEST(NoiseCoefficients, RefusesWhatCannotBeFitted) {
 // Whatever the unit: the figures are those of the same record in another, or there are none.
 TEST(NoiseCoefficients, ValuesNextToNothingAreRefused) {
   const std::vector<double> rate = ifog::simulate::noise({.N = 1e-5}, 100.0, 6000, 3);
-  const auto fit = [&](double scale) {
-    std::vector<double> scaled = rate;
-    for (double& value : scaled) value *= scale;
-    const std::vector<ifog::Stretch> all{{0, scaled.size()}};
-    return ifog::noise_coefficients(ifog::AngleSum(scaled, all), 0.01);
+  const auto scaled = [&](double scale) {
+    std::vector<double> out = rate;
+    for (double& value : out) value *= scale;
+    return fit(out);
   };
-  const double N = fit(1.0).N.value;
-  for (const double scale : {1e-40, 1e-20, 1e20}) EXPECT_NEAR(fit(scale).N.value / (scale * N), 1.0, 1e-6);
+  const double N = scaled(1.0).N.value;
+  for (const double scale : {1e-40, 1e-20, 1e20}) EXPECT_NEAR(scaled(scale).N.value / (scale * N), 1.0, 1e-6);
   for (const double scale : {1e-155, 1e-150, 1e-140, 1e-100, 1e-70})
-    EXPECT_THROW((void)fit(scale), std::invalid_argument) << scale;
+    EXPECT_THROW((void)scaled(scale), std::invalid_argument) << scale;
 }
 
 // White noise of density N has the deviation N/√τ: terms that are a fifth too large are off by that at every τ, and
