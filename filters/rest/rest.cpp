@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "filters/rest/value_faults.h"
 #include "filters/threads/share_out.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -21,11 +22,12 @@ constexpr double kDwell_s = 1.0;          // with references, slower samples may
 constexpr double kAround_s = 10.0;        // either side, of the running median
 constexpr double kTurned = 20.0;          // times the usual step of quiet windows
 constexpr double kLeastTurn = 1e-3;       // rad/s
+constexpr double kCertain = 5.0;          // standard deviations
+// Means of 1 s at rest scatter by 0.02 to 0.1 °/s for the noisiest MEMS gyros (data sheets, L3GD20 to LISY300).
+constexpr double kMostNoise_radps = 0.2 * kDegree;
 constexpr double kShaken = 4.0;
-constexpr double kExtreme = 0.05;         // share of windows on either side
-constexpr double kQuieter = 0.3;          // share of windows assumed quiet
+constexpr double kQuietest = 0.05;        // share of windows assumed quiet
 constexpr std::size_t kShortestRest = 8;  // windows between two moving ones
-constexpr double kEnoughOfRecord = 0.5;   // of the record
 
 enum class State : unsigned char { kResting, kShaking, kTurning };
 
@@ -91,23 +93,19 @@ std::vector<double> running_median(const std::vector<Window>& windows, std::size
 }
 
 // leap: by window, the largest step of all axes that exceeds noise and is no turn.
-void mark_axis(const std::vector<Window>& windows, double period_s, std::vector<State>& state,
+void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<State>& state,
                std::vector<double>& leap) {
   std::vector<double> scatters, steps;
-  for (std::size_t i = 0; i < windows.size(); ++i) {
-    if (!std::isfinite(windows[i].mean)) continue;
-    scatters.push_back(windows[i].scatter);
-    if (i > 0 && std::isfinite(windows[i - 1].mean))
+  for (const Window& window : windows)
+    if (window.scatter > 0.0) scatters.push_back(window.scatter);
+  const double few = windows.size() < 2 * kShortestRest ? std::numeric_limits<double>::infinity() : 0.0;
+  const double shaken = std::max(few, kShaken * quantile(std::move(scatters), kQuietest));
+  for (std::size_t i = 1; i < windows.size(); ++i)
+    if (windows[i].scatter <= shaken && windows[i - 1].scatter <= shaken)
       steps.push_back(std::abs(windows[i].mean - windows[i - 1].mean));
-  }
-  // Quantiles of the quieter windows, so that rest is found in a record that mostly moves. Where the scatter varies
-  // as no noise does, they may be of motion, too: then they are at most those of the noise of any gyro. A normal
-  // variable is within 0.385 standard deviations in 30 % of cases.
-  const bool varies = quantile(scatters, 1.0 - kExtreme) > kShaken * quantile(scatters, kExtreme);
-  const double most = varies ? kMostNoise_radps : std::numeric_limits<double>::infinity();
-  const double usual = std::min(quantile(steps, kQuieter) / 0.385, most);
-  const double quiet = std::min(quantile(scatters, kQuieter), most / std::sqrt(period_s));
-  const double window_s = static_cast<double>(samples_of_window(period_s)) * period_s;
+  // A normal variable is within 0.385 standard deviations in 30 % of cases.
+  const double usual = std::max(few, quantile(std::move(steps), 0.3) / 0.385);
+  const double noise = std::min(kTurned * usual, kCertain * kMostNoise_radps / std::sqrt(window_s));
   const auto around = static_cast<std::size_t>(std::lround(kAround_s / window_s));
   const std::vector<double> level = running_median(windows, std::max<std::size_t>(4, around));
   for (std::size_t i = 0; i < windows.size(); ++i) {
@@ -117,12 +115,11 @@ void mark_axis(const std::vector<Window>& windows, double period_s, std::vector<
     const double across = between ? std::abs(windows[i + 1].mean - windows[i - 1].mean) : 0.0;
     const double away = std::abs(windows[i].mean - level[i]);
     const double most = std::max(away, std::isfinite(across) ? across : 0.0);
-    if (most > std::max(kLeastTurn, kTurned * usual))
+    if (most > std::max(kLeastTurn, noise))
       state[i] = State::kTurning;
-    else if (usual > 0.0 && most > kTurned * usual)
+    else if (noise > 0.0 && most > noise)
       leap[i] = std::max(leap[i], most);
-    if (state[i] == State::kTurning) continue;
-    if (quiet > 0.0 && windows[i].scatter > kShaken * quiet) state[i] = State::kShaking;
+    if (state[i] != State::kTurning && windows[i].scatter > shaken) state[i] = State::kShaking;
   }
 }
 
@@ -137,41 +134,46 @@ void widen(std::vector<State>& state) {
   for (std::size_t i = 0; i < state.size();) {
     std::size_t end = i;
     while (end < state.size() && state[end] == State::kResting) ++end;
-    const bool inside = i > 0 && end < state.size();
-    if (inside && end - i < kShortestRest)
-      for (std::size_t j = i; j < end; ++j) state[j] = state[i - 1];
+    if (end - i < std::min(kShortestRest, state.size()))
+      for (std::size_t j = i; j < end; ++j) state[j] = i > 0 ? state[i - 1] : state[end];
     i = std::max(end, i + 1);
   }
 }
 
-// A steady turn has little scatter. A rest between two turns counts only at the level of the longest rest.
-void mark_steady_turns(const std::vector<Window>& windows, std::vector<State>& state) {
+// A steady turn has little scatter. A rest between two turns counts only at the level of the longest rest. No rest
+// has means that scatter more than those of any gyro.
+void mark_other_turns(const std::vector<Window>& windows, double window_s, std::vector<State>& state) {
   struct Run {
     std::size_t begin, end;
     double mean;
   };
   std::vector<Run> runs;
+  const auto turned = [&](std::size_t begin, std::size_t end) {
+    std::fill(state.begin() + static_cast<std::ptrdiff_t>(begin),
+              state.begin() + static_cast<std::ptrdiff_t>(end), State::kTurning);
+  };
   for (std::size_t i = 0; i < state.size();) {
     std::size_t end = i;
-    double sum = 0.0, count = 0.0;
-    for (; end < state.size() && state[end] == State::kResting; ++end)
-      if (std::isfinite(windows[end].mean)) {
-        sum += windows[end].mean;
-        count += 1.0;
-      }
-    if (count > 0.0) runs.push_back({i, end, sum / count});
+    double sum = 0.0, count = 0.0, squares = 0.0, steps = 0.0, before = std::nan("");
+    for (; end < state.size() && state[end] == State::kResting; ++end) {
+      const double mean = windows[end].mean;
+      if (!std::isfinite(mean)) continue;
+      sum += mean, count += 1.0;
+      if (std::isfinite(before)) squares += 0.5 * (mean - before) * (mean - before), steps += 1.0;
+      before = mean;
+    }
+    if (squares * window_s > steps * kMostNoise_radps * kMostNoise_radps)
+      turned(i, end);
+    else if (count > 0.0)
+      runs.push_back({i, end, sum / count});
     i = std::max(end, i + 1);
   }
   if (runs.size() < 2) return;
-  const auto longest = std::max_element(
-      runs.begin(), runs.end(), [](const Run& a, const Run& b) { return a.end - a.begin < b.end - b.begin; });
-  const double level = longest->mean;
+  const auto longest = std::ranges::max_element(runs, {}, [](const Run& run) { return run.end - run.begin; });
   for (const Run& run : runs) {
     const bool between = run.begin > 0 && run.end < state.size() && state[run.begin - 1] == State::kTurning &&
                          state[run.end] == State::kTurning;
-    if (between && std::abs(run.mean - level) > 10.0 * kLeastTurn)
-      std::fill(state.begin() + static_cast<std::ptrdiff_t>(run.begin),
-                state.begin() + static_cast<std::ptrdiff_t>(run.end), State::kTurning);
+    if (between && std::abs(run.mean - longest->mean) > 10.0 * kLeastTurn) turned(run.begin, run.end);
   }
 }
 
@@ -269,19 +271,25 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
   const std::size_t count = samples / window;
   std::vector<State> state(std::max<std::size_t>(1, count), State::kResting);
   if (period_s > kDwell_s && !references.empty()) return rest_by_references(references, samples);
-  if (count < 2 * kShortestRest || period_s > kSlowest_s) {
+  if (count == 0 || period_s > kSlowest_s) {
     Rest rest = as_samples(state, window, samples);
-    if (period_s > kSlowest_s) rest.slow_turns = dwells_of(axes);
+    rest.slow_turns = count == 0 ? Rest::SlowTurns{} : dwells_of(axes);
     return rest;
   }
+  const double window_s = static_cast<double>(window) * period_s;
   std::vector<std::vector<Window>> windows(axes.size());
   share_out(axes.size(), 0, [&](std::size_t a) { windows[a] = rest_windows(axes[a], period_s); });
   std::vector<double> leap(count);
-  for (const std::vector<Window>& of_axis : windows) mark_axis(of_axis, period_s, state, leap);
+  for (const std::vector<Window>& of_axis : windows) mark_axis(of_axis, window_s, state, leap);
   widen(state);
-  for (const std::vector<Window>& of_axis : windows) mark_steady_turns(of_axis, state);
+  for (const std::vector<Window>& of_axis : windows) mark_other_turns(of_axis, window_s, state);
   Rest rest = as_samples(state, window, samples);
   rest.slow_turns = slow_turns_of(leap, state, window);
+  if (rest.resting() > 0) return rest;
+  std::vector<ValueFault> faults;
+  for (const SeriesView& rate : axes) find_value_faults(rate, stretches({}, rate, {}), period_s, faults);
+  for (const ValueFault& fault : faults)
+    if (fault.name == "wrapped") rest.wrapped = "; " + fault.text;
   return rest;
 }
 
@@ -318,9 +326,8 @@ std::string slow_turns_in_words(const Rest& rest, double period_s, double first_
 }
 
 void require_rest(const Rest& rest, double period_s, double first_s) {
-  if (rest.turned == 0) return;
-  if (static_cast<double>(rest.resting()) >= kEnoughOfRecord * static_cast<double>(rest.samples)) return;
-  throw std::invalid_argument("the sensor was " + in_words(rest, period_s, first_s) +
+  if (rest.resting() > rest.turned) return;
+  throw std::invalid_argument("the sensor was " + in_words(rest, period_s, first_s) + rest.wrapped +
                               "; expected a record that is mostly at rest, in the right unit");
 }
 

@@ -4,12 +4,11 @@
 //
 // Two kinds of windows of about half a second are not rest:
 //   - turned: the mean departs from the running median of the seconds around it, or steps, by more than 20
-//   times the usual step of quiet windows and more than 0.001 rad/s (0.06 °/s, 14 times the Earth's rate). The
-//   time between two such steps is turned too, if the level there differs from that of the longest rest.
-//   - shaken: the scatter within the window is more than four times that of the record's quieter part.
-// In a record whose scatter varies, both measures are at most those of the noise of any gyro: it may mostly move.
-// Single outliers, drift, flicker and random walks are not motion. A step of the bias counts only at the
-// step.
+//   times the usual step of quiet windows or five times the noise of any gyro, and more than 0.001 rad/s
+//   (0.06 °/s, 14 times the Earth's rate). The time between two such steps is turned too, if the level there
+//   differs from that of the longest rest, and every rest whose means scatter more than those of any gyro.
+//   - shaken: the scatter within the window is more than four times that of the record's quietest windows.
+// Single outliers, drift, flicker and random walks are not motion. A step of the bias is, for a moment.
 #pragma once
 
 #include <cstddef>
@@ -18,12 +17,8 @@
 #include <vector>
 
 #include "filters/allan/stretches.h"
-#include "filters/units/field_units.h"
 
 namespace ifog {
-
-// Largest noise of any gyro: scatter of means of 1 s at rest, rad/s.
-inline constexpr double kMostNoise_radps = 0.2 * kDegree;
 
 struct Rest {
   std::vector<Stretch> at_rest;  // in order; the whole record if there was no motion
@@ -35,12 +30,13 @@ struct Rest {
     std::size_t count = 0, first = 0;  // first: sample
     double largest_radps = 0.0;
   } slow_turns;
+  std::string wrapped;  // nothing is at rest, because signed counts were read as unsigned: the fault's text
 
   [[nodiscard]] std::size_t resting() const { return samples - turned - shaken; }
 };
 
-// Stretches in which all axes are at rest. Records of fewer than 16 windows, or with more than 2 s per
-// sample, are assumed to be at rest. axes: rates of one sensor, rad/s, equally long, NaN where missing.
+// Stretches in which all axes are at rest. Records of fewer than 16 windows are judged by the noise of any gyro
+// alone; records with more than 2 s per sample are assumed to be at rest. axes: rates of one sensor, rad/s, equally long, NaN where missing.
 [[nodiscard]] Rest find_rest(std::span<const std::span<const double>> axes, double period_s);
 // The same with references: other measurements of the same rates, equally long; may be none. With references,
 // samples more than 1 s apart may be dwells of a rate table. Then only the references decide: turned is where
@@ -55,8 +51,8 @@ struct Rest {
 // "the rate leaps by up to 118 °/h, 4 times, first at 35 s: …"; empty if it does not.
 [[nodiscard]] std::string slow_turns_in_words(const Rest& rest, double period_s, double first_s);
 
-// Throws std::invalid_argument with a message if the sensor was turned and less than half of the record is at
-// rest. Of a record that was only shaken the quieter part can be used.
+// Throws std::invalid_argument with a message unless the sensor was longer at rest than it was turned. Of a record
+// that was only shaken the quieter part can be used.
 void require_rest(const Rest& rest, double period_s, double first_s);
 
 // Intersection of two lists of stretches, each in order.

@@ -7,7 +7,6 @@
 #include <numbers>
 #include <numeric>
 
-#include "filters/rest/rest.h"
 #include "filters/rest/runs.h"
 #include "filters/units/told_time.h"
 
@@ -101,28 +100,12 @@ void find_interleaved(const std::vector<double>& values, std::vector<ValueFault>
   }
 }
 
-void find_implausible(const std::vector<double>& values, double period_s, std::vector<ValueFault>& found) {
+void find_implausible(const std::vector<double>& values, std::vector<ValueFault>& found) {
   const double mean = std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
   if (std::abs(mean) > kMostBias_radps)
     found.push_back({"unit", "the mean at rest is " + six(mean / kDegree) +
                                  " °/s, more than the bias of any gyro: is it at rest, and is the unit right "
                                  "(deg/h by --column)?"});
-  const auto second = static_cast<std::size_t>(std::max(1.0, std::round(1.0 / period_s)));
-  double before = 0.0, squares = 0.0;
-  std::size_t count = 0;
-  for (std::size_t at = 0; at + second <= values.size(); at += second, ++count) {
-    const auto from = values.begin() + static_cast<std::ptrdiff_t>(at);
-    const double average =
-        std::accumulate(from, from + static_cast<std::ptrdiff_t>(second), 0.0) / static_cast<double>(second);
-    if (count > 0) squares += 0.5 * (average - before) * (average - before);
-    before = average;
-  }
-  if (count < 3) return;
-  const double deviation = std::sqrt(squares / static_cast<double>(count - 1));
-  if (deviation > kMostNoise_radps)
-    found.push_back(
-        {"moving", "means of 1 s scatter by " + six(deviation / kDegree) +
-                       " °/s, more than the noise of any gyro: it was never at rest, or the unit is wrong"});
 }
 
 }  // namespace
@@ -139,7 +122,7 @@ void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, d
   find_wrapped(values, sorted, found);
   if (found.size() == before) find_interleaved(values, found);
   find_clipped(sorted, found);
-  find_implausible(values, period_s, found);
+  find_implausible(values, found);
 }
 
 }  // namespace ifog

@@ -14,7 +14,7 @@
 namespace ifog {
 
 struct ValueFault {
-  std::string name;  // held, clipped, wrapped, interleaved, unit, moving; leaps and stuck from cleaned_rate.h
+  std::string name;  // held, clipped, wrapped, interleaved, unit; leaps and stuck from cleaned_rate.h
   std::string text;
 };
 
@@ -26,8 +26,7 @@ struct ValueFault {
 //   read as unsigned;
 //   - interleaved: the scatter of every second, third or fourth sample about its mean is less than half of
 //   the total scatter;
-//   - unit: the mean at rest exceeds 5 °/s, the largest bias of a MEMS gyro;
-//   - moving: means of 1 s scatter by more than 0.2 °/s, more than the noise of any gyro.
+//   - unit: the mean at rest exceeds 5 °/s, the largest bias of a MEMS gyro.
 void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, double period_s,
                        std::vector<ValueFault>& found);
 

@@ -124,7 +124,7 @@ class Checks:
     def check_any_csv(self):
         """A file of another maker: other names, units, separator, decimal commas, byte-order mark; with the same result."""
         theirs, ours = self.folder / "theirs.txt", self.folder / "ours.csv"
-        rows = [(20 * i, math.sin(0.1 * i), 68 + 0.1 * i) for i in range(500)]
+        rows = [(20 * i, 0.01 * math.sin(0.1 * i), 68 + 0.1 * i) for i in range(500)]
         cells = "".join(f"{t};{rate};{degf:.1f};ok\n".replace(".", ",") for t, rate, degf in rows)
         theirs.write_text("\ufefft;GyroX;T;state\n" + cells, encoding="utf-8")
         chosen = ["--separator", ";", "--time", "t:ms", "--column", "rate_x_radps=GyroX:deg/s", "--column", "temperature_degC=T:degF"]

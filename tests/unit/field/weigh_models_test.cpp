@@ -30,7 +30,7 @@ Recorded recorded_hour(double coefficient) {
     capture.channels[0].values.push_back(temperature);
     capture.rate_radps[0].push_back(5e-5 + coefficient * (temperature - 25.0) + 1e-6 * normal(random));
   }
-  out.rest = {{{0, 36000}}, 36000, 0, 0, {}};
+  out.rest = {{{0, 36000}}, 36000, 0, 0, {}, {}};
   return out;
 }
 

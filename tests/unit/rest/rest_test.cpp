@@ -36,8 +36,8 @@ bool at_rest(const Rest& rest, double from_s, double to_s) {
 
 TEST(Rest, NoiseOfAnyKindIsNoMotion) {
   for (const NoiseLevels& levels :
-       {NoiseLevels{.N = 1e-6}, NoiseLevels{.B = 1e-6}, NoiseLevels{.K = 1e-6}, NoiseLevels{.N = 1e-2},
-        NoiseLevels{.N = 1e-3, .K = 1e-3}, NoiseLevels{.K = 1.0}, NoiseLevels{.N = 1e-6, .R = 1e-4}}) {
+       {NoiseLevels{.N = 1e-6}, NoiseLevels{.B = 1e-6}, NoiseLevels{.K = 1e-6}, NoiseLevels{.N = 2e-3},
+        NoiseLevels{.N = 1e-3, .K = 1e-3}, NoiseLevels{.N = 1e-6, .R = 1e-4}}) {
     for (std::uint64_t seed = 1; seed <= 5; ++seed) {
       const Rest rest = rest_of(ifog::simulate::noise(levels, kRate, 60000, seed));
       EXPECT_EQ(rest.resting(), 60000U) << "N " << levels.N << " B " << levels.B << " K " << levels.K;
@@ -46,16 +46,32 @@ TEST(Rest, NoiseOfAnyKindIsNoMotion) {
   }
 }
 
+// White noise, and beyond `rest_s` motion of low frequencies.
+Rest rest_of_motion(double rate_hz, double length_s, double rest_s, double motion_radps, double smoothing_s) {
+  const auto samples = static_cast<std::size_t>(length_s * rate_hz);
+  std::vector<double> rate = ifog::simulate::noise({.N = 1e-4}, rate_hz, samples, 5);
+  const std::vector<double> force = ifog::simulate::noise({.N = 1.0}, 1.0, samples, 6);
+  const double gain = 1.0 / std::max(1.0, smoothing_s * rate_hz), scale = std::sqrt((2.0 - gain) / gain);
+  double moved = 0.0;
+  for (auto i = static_cast<std::size_t>(rest_s * rate_hz); i < samples; ++i)
+    rate[i] += motion_radps * scale * (moved += gain * (force[i] - moved));
+  return ifog::find_rest(std::vector<std::span<const double>>{rate}, 1.0 / rate_hz);
+}
+
 // The log of a flight, ten minutes with one on the ground: its quieter windows are no measure of the noise.
 TEST(Rest, AFlightThatHardlyRestsIsNoNoise) {
-  std::vector<double> rate = ifog::simulate::noise({.N = 1e-4}, kRate, 60000, 5);
-  const std::vector<double> air = ifog::simulate::noise({.N = 0.1}, kRate, 60000, 6);
-  double turn = 0.0;
-  for (std::size_t i = 6000; i < rate.size(); ++i) rate[i] += turn += 0.1 * (air[i] - turn);
-  const Rest rest = rest_of(rate);
+  const Rest rest = rest_of_motion(kRate, 600.0, 60.0, 0.23, 0.1);
   EXPECT_TRUE(at_rest(rest, 0.0, 59.0));
   EXPECT_LT(rest.resting(), 7000U);
   EXPECT_THROW(ifog::require_rest(rest, 1.0 / kRate, 0.0), std::invalid_argument);
+}
+
+TEST(Rest, WithoutRestThereIsNone) {
+  EXPECT_EQ(rest_of_motion(200.0, 26.0, 0.0, 0.04, 0.1).resting(), 0U);  // a hand-held VMU931
+  EXPECT_EQ(rest_of_motion(4.0, 48.0, 0.0, 0.37, 0.0).resting(), 0U);    // a robot fish: six windows
+  EXPECT_EQ(rest_of_motion(4.0, 48.0, 48.0, 0.0, 0.0).resting(), 192U);
+  EXPECT_EQ(rest_of_motion(4.0, 2.0, 2.0, 0.0, 0.0).resting(), 8U);      // less than a window
+  EXPECT_EQ(rest_of_motion(64.0, 33.0, 2.5, 0.04, 0.03).resting(), 0U);  // a Roomba that starts after 2 s
 }
 
 TEST(Rest, AStepOfTheBiasAndOutliersAreNoMotion) {
@@ -133,9 +149,7 @@ TEST(Rest, TheNoiseIsThatOfTheRest) {
 
 TEST(Rest, WhatTwoListsHaveInCommon) {
   const std::vector<ifog::Stretch> a{{0, 10}, {20, 30}}, b{{5, 22}, {25, 40}};
-  std::vector<std::vector<std::size_t>> both;
-  for (const ifog::Stretch& part : ifog::common(a, b)) both.push_back({part.begin, part.end});
-  EXPECT_EQ(both, (std::vector<std::vector<std::size_t>>{{5, 10}, {20, 22}, {25, 30}}));
+  EXPECT_EQ(ifog::common(a, b), (std::vector<ifog::Stretch>{{5, 10}, {20, 22}, {25, 30}}));
 }
 
 // The dwells of a rate table: nothing is seen of a turn within one, but the reference says at what rate it

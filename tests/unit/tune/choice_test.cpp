@@ -50,10 +50,6 @@ double rmse(const std::vector<double>& estimate, const std::vector<double>& leve
   return std::sqrt(sum);
 }
 
-std::vector<double> denoised(const ifog::FilterSettings& settings, const Record& record) {
-  return ifog::test::run(settings, record.rate).denoised;
-}
-
 // What is written is judged by the level, which only a simulation knows: on another record of the same gyro.
 TEST(TuneChoice, AWalkIsNotTakenForColour) {
   constexpr double kRatio = 1e-3;
@@ -61,7 +57,7 @@ TEST(TuneChoice, AWalkIsNotTakenForColour) {
     const auto fitted = walk_under_white_noise(seed, 6000, kRatio);
     const ifog::Tuning t = tuned(fitted.rate);
     const auto next = walk_under_white_noise(seed + 1000, 20000, kRatio);
-    const double error = rmse(denoised(t.models[t.chosen].settings, next), next.level);
+    const double error = rmse(ifog::test::run(t.models[t.chosen].settings, next.rate).denoised, next.level);
     EXPECT_LE(error, 1.15 * rmse(ifog::test::told_the_truth(next.rate, kRatio), next.level))
         << seed << ": " << t.models[t.chosen].settings.state;
   }

@@ -165,10 +165,7 @@ TEST(Tune, PicksTheOrderOfAFastColour) {
 // Held out: of white noise the chosen model's published rate has no more noise than the random walk's; and figures
 // of white noise are known: 1/sqrt(m).
 TEST(Tune, SaysWhatTheModelWillDo) {
-  Noise noise(21);
-  std::vector<double> z;
-  for (int k = 0; k < 20000; ++k) z.push_back(2e-6 * noise());
-  const Tuning t = tuned(z, 0.01);
+  const Tuning t = tuned(random_walk(21, 20000, 0.0, 4e-12, 0.0), 0.01);
   const auto& chosen = t.models[t.chosen];
   ASSERT_TRUE(chosen.held_out.has_value());
   const ifog::RateFigures& before = chosen.held_out->before[0];
