@@ -128,8 +128,8 @@ void Trackers::prolong(State& state, double steps) const noexcept {
   since_ *= 1.0 - mask;
 }
 
-// The gains after a step of s samples are those of pole theta^s: weights fade with time, so the filter is stable for any
-// pattern of gaps. With the gains of one sample it is not.
+// The gains after a step of s samples are those of pole theta^s: weights fade with time, so the filter is stable
+// for any pattern of gaps. With the gains of one sample it is not.
 void Trackers::correct_some(State& state, const Lanes& rate, const Lanes& mask) noexcept {
   const Gains& g = state.gains;
   const Lanes innovation = mask * (rate - state.rate), step = since_.max(1.0);

@@ -36,7 +36,8 @@ struct Rest {
 };
 
 // Stretches in which all axes are at rest. Records of fewer than 16 windows are judged by the noise of any gyro
-// alone; records with more than 2 s per sample are assumed to be at rest. axes: rates of one sensor, rad/s, equally long, NaN where missing.
+// alone; records with more than 2 s per sample are assumed to be at rest. axes: rates of one sensor, rad/s,
+// equally long, NaN where missing.
 [[nodiscard]] Rest find_rest(std::span<const std::span<const double>> axes, double period_s);
 // The same with references: other measurements of the same rates, equally long; may be none. With references,
 // samples more than 1 s apart may be dwells of a rate table. Then only the references decide: turned is where

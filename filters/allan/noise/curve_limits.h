@@ -26,8 +26,8 @@ class CurveLimits {
     std::size_t from_m = 1;  // shortest octave from which on the term stays below the curve
   };
   // Judges a term of at least this variance. If it exceeds the curve only at the shortest m, where the curve
-  // rises, and is a good part of it beyond, a filter suppresses it there, and it is not refuted. Quantisation that exceeds the
-  // curve anywhere is refuted.
+  // rises, and is a good part of it beyond, a filter suppresses it there, and it is not refuted. Quantisation
+  // that exceeds the curve anywhere is refuted.
   [[nodiscard]] Verdict judge(Term term, double variance) const;
 
  private:
