@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/time_part.h"
 
-#include <algorithm>
 #include <optional>
-#include <ranges>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
@@ -23,11 +21,15 @@ void keep(const TimePart::Rows& rows, Samples& values) {
 // Index of the first row from `begin` on that is not before `wanted`.
 std::size_t first_from(const SeriesView& time_s, const TimeOrigin& origin, std::size_t begin,
                        const SaidTime& wanted) {
-  const auto rows = std::views::iota(begin, time_s.size());
-  return begin + static_cast<std::size_t>(
-                     std::ranges::partition_point(
-                         rows, [&](std::size_t row) { return wanted.is_after(origin, time_s.at(row)); }) -
-                     rows.begin());
+  std::size_t end = time_s.size();
+  while (begin < end) {
+    const std::size_t middle = begin + (end - begin) / 2;
+    if (wanted.is_after(origin, time_s.at(middle)))
+      begin = middle + 1;
+    else
+      end = middle;
+  }
+  return begin;
 }
 
 }  // namespace
