@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
+#include <utility>
 
 #include "filters/rest/value_faults.h"
 #include "filters/threads/share_out.h"
@@ -26,7 +27,7 @@ constexpr double kCertain = 5.0;          // standard deviations
 // Means of 1 s at rest scatter by 0.02 to 0.1 °/s for the noisiest MEMS gyros (data sheets, L3GD20 to LISY300).
 constexpr double kMostNoise_radps = 0.2 * kDegree;
 constexpr double kShaken = 4.0;
-constexpr double kQuietest = 0.05;        // share of windows assumed quiet
+constexpr double kQuietest = 0.05;        // share of the record assumed quiet
 constexpr std::size_t kShortestRest = 8;  // windows between two moving ones
 
 enum class State : unsigned char { kResting, kShaking, kTurning };
@@ -92,14 +93,32 @@ std::vector<double> running_median(const std::vector<Window>& windows, std::size
   return out;
 }
 
+// Smallest difference of neighbouring values: the converter's step if it is coarse.
+double least_step(const SeriesView& rate) {
+  double least = std::numeric_limits<double>::infinity(), before = std::nan("");
+  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t) {
+    for (const double value : values) {
+      const double step = std::abs(value - before);
+      if (step > 0.0 && step < least) least = step;
+      before = value;
+    }
+  });
+  return std::isfinite(least) ? least : 0.0;
+}
+
 // leap: by window, the largest step of all axes that exceeds noise and is no turn.
-void mark_axis(const std::vector<Window>& windows, double window_s, std::vector<State>& state,
-               std::vector<double>& leap) {
-  std::vector<double> scatters, steps;
-  for (const Window& window : windows)
-    if (window.scatter > 0.0) scatters.push_back(window.scatter);
+void mark_axis(const std::vector<Window>& windows, double window_s, double converter_step,
+               std::vector<State>& state, std::vector<double>& leap) {
+  // Medians of the shortest rest: by chance a single window's scatter may be half of the noise.
+  std::vector<double> some, scatters, steps;
+  for (const Window& window : windows) {
+    if (window.scatter > 0.0) some.push_back(window.scatter);
+    if (some.size() == kShortestRest) scatters.push_back(quantile(std::exchange(some, {}), 0.5));
+  }
+  if (scatters.empty()) scatters.push_back(quantile(std::move(some), 0.5));
   const double few = windows.size() < 2 * kShortestRest ? std::numeric_limits<double>::infinity() : 0.0;
-  const double shaken = std::max(few, kShaken * quantile(std::move(scatters), kQuietest));
+  // Between two steps of a converter any noise scatters by half a step.
+  const double shaken = std::max({few, kShaken * quantile(std::move(scatters), kQuietest), converter_step});
   for (std::size_t i = 1; i < windows.size(); ++i)
     if (windows[i].scatter <= shaken && windows[i - 1].scatter <= shaken)
       steps.push_back(std::abs(windows[i].mean - windows[i - 1].mean));
@@ -280,7 +299,8 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
   std::vector<std::vector<Window>> windows(axes.size());
   share_out(axes.size(), 0, [&](std::size_t a) { windows[a] = rest_windows(axes[a], period_s); });
   std::vector<double> leap(count);
-  for (const std::vector<Window>& of_axis : windows) mark_axis(of_axis, window_s, state, leap);
+  for (std::size_t a = 0; a < axes.size(); ++a)
+    mark_axis(windows[a], window_s, least_step(axes[a]), state, leap);
   widen(state);
   for (const std::vector<Window>& of_axis : windows) mark_other_turns(of_axis, window_s, state);
   Rest rest = as_samples(state, window, samples);

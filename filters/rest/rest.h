@@ -7,8 +7,9 @@
 //   times the usual step of quiet windows or five times the noise of any gyro, and more than 0.001 rad/s
 //   (0.06 °/s, 14 times the Earth's rate). The time between two such steps is turned too, if the level there
 //   differs from that of the longest rest, and every rest whose means scatter more than those of any gyro.
-//   - shaken: the scatter within the window is more than four times that of the record's quietest windows.
-// Single outliers, drift, flicker and random walks are not motion. A step of the bias is, for a moment.
+//   - shaken: the scatter within the window is more than four times that of the record's quietest windows, and
+//   more than a step of the converter.
+// Single outliers, drift, flicker and random walks are not motion. A step of the bias counts only at the step.
 #pragma once
 
 #include <cstddef>

@@ -46,6 +46,15 @@ TEST(Rest, NoiseOfAnyKindIsNoMotion) {
   }
 }
 
+// A drift carries noise of a tenth of the converter's step past the level where every second sample is a step off.
+TEST(Rest, ACoarseConverterIsNotShaken) {
+  std::vector<double> rate = ifog::simulate::noise({.N = 0.1 * std::sqrt(1e-3)}, 1000.0, 100'000, 3);
+  for (std::size_t i = 0; i < rate.size(); ++i)
+    rate[i] = 1e-5 * std::round(rate[i] + 1e-5 * static_cast<double>(i));
+  const Rest rest = ifog::find_rest(std::vector<std::span<const double>>{rate}, 1e-3);
+  EXPECT_EQ(rest.resting(), rate.size());
+}
+
 // White noise, and beyond `rest_s` motion of low frequencies.
 Rest rest_of_motion(double rate_hz, double length_s, double rest_s, double motion_radps, double smoothing_s) {
   const auto samples = static_cast<std::size_t>(length_s * rate_hz);
