@@ -77,7 +77,7 @@ void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std
     const CsvColumn& column = layout.columns[i];
     if (!column.angle_rad()) continue;
     std::vector<double>& values = all.columns[i];
-    if (column.unit.ends_with("/sample")) {
+    if (column.is_increment()) {
       // Time of an increment, independent of the rows' times.
       const double period_s = median_step_s(all.time_s);
       for (double& value : values) value /= period_s;
@@ -92,7 +92,7 @@ void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std
     // A glitch of an angle gives two outliers, and the wrong cell is ambiguous.
     for (std::size_t row = 0; row < values.size(); ++row)
       if (std::abs(values[row]) > IFOG_MAX_RATE)
-        fail_at(path, all.lines.empty() ? 0 : all.lines[row],
+        fail_at(path, notes.line_of_row(row),
                 printable(column.header) + " has turned at " + shortest(values[row]) +
                     " rad/s since the row before, which no sensor measures");
   }
@@ -126,6 +126,8 @@ void RowChecks::take(RowBlock& rows) {
 }
 
 void RowChecks::behind_clock(RowBlock& rows) {
+  notes_.add_lines(given_, rows);
+  given_ += rows.size();
   if (!all_) return sink_.take(rows);
   all_->append(rows);
 }

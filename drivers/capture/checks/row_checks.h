@@ -47,6 +47,7 @@ class RowChecks {
   RowClock clock_;
   std::optional<RowBlock> all_;  // used if angles become rates
   std::size_t rows_ = 0;
+  std::size_t given_ = 0;  // rows after the clock
 };
 
 }  // namespace ifog

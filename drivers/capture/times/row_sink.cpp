@@ -77,4 +77,17 @@ void RowBlock::split_off(std::size_t from, RowBlock& to) {
   for (std::size_t c = 0; c < columns.size(); ++c) behind(columns[c], to.columns[c]);
 }
 
+void RowNotes::add_lines(std::size_t rows, const RowBlock& block) {
+  for (std::size_t i = 0; i < block.lines.size(); ++i)
+    if (lines.empty() || block.lines[i] - lines.back().line != rows + i - lines.back().row)
+      lines.push_back({rows + i, block.lines[i]});
+}
+
+std::size_t RowNotes::line_of_row(std::size_t row) const {
+  const auto behind =
+      std::upper_bound(lines.begin(), lines.end(), row,
+                       [](std::size_t wanted, const Lines& each) { return wanted < each.row; });
+  return behind == lines.begin() ? 0 : std::prev(behind)->line + (row - std::prev(behind)->row);
+}
+
 }  // namespace ifog

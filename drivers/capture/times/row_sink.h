@@ -99,11 +99,22 @@ class RowBatch {
 
 // Reports of a reader besides the rows; complete after the last row.
 struct RowNotes {
+  // Rows from `row` on are on consecutive lines from `line` on.
+  struct Lines {
+    std::size_t row, line;
+  };
+
   std::string comments;                    // without the '#', each with a line end
   std::size_t header_line = 0;             // 0: not from a text
+  std::vector<Lines> lines;                // empty: rows have no lines; rows of HDF5 count from 1
   std::vector<std::string> notices;        // about ambiguous content
   std::vector<std::string> faults;         // cells read as missing, one line per column
   std::optional<double> since_power_up_s;  // of the sensor at the first row, if known
+
+  // Line of a data row (counted from 0), for messages; 0 without lines.
+  [[nodiscard]] std::size_t line_of_row(std::size_t row) const;
+  // Adds the lines of a block that starts at row `rows`.
+  void add_lines(std::size_t rows, const RowBlock& block);
 };
 
 }  // namespace ifog

@@ -330,7 +330,7 @@ class Checks:
         ns, half = self.series["even"][0], ROWS // 2
         for later_s, start in ((1, STARTS["1970"]), (7200, STARTS["GPS"]), (1, 0)):
             path, _ = self.csv("hole.csv", [start + t + (later_s * S if i >= half else 0) for i, t in enumerate(ns)])
-            missing, place = later_s * RATE_HZ, f"hole.csv: 1 gap in the time column ({later_s * RATE_HZ} samples missing), the first after "
+            missing, place = later_s * RATE_HZ, f"hole.csv:{half + 1}: 1 gap in the time column ({later_s * RATE_HZ} samples missing), the first after "
             axis = self.answer("allan", path, [])[0]["axes"][0]
             assert axis["missing"] == missing and axis["gaps"] == 1, axis
             assert f"{missing} more lost in 1 gap" in ifog("denoise", path, "--output", self.folder / "out.csv")

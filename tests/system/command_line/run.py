@@ -173,7 +173,8 @@ class Checks:
         said = ifog("allan", holes)
         for part in ("1 gap", "100 samples missing", "missing in 1 of 19900 rows", "3 stretches"):
             assert part in said, f"'{part}' is not in: {said[:600]}"
-        refused(1, "allan", holes, "--gaps", "refuse", says=[f"{holes}: 1 gap"])
+        # The gap is after data row 5000, whose line is header + 5001 counted from one.
+        refused(1, "allan", holes, "--gaps", "refuse", says=[f"{holes}:{header + 5001}: 1 gap"])
         found = self.json("allan", holes, "--tau", "1")
         near(found["axes"][0]["adev_radps"][0], N, 0.12 * N, "sigma(1 s) around holes")
 

@@ -125,6 +125,16 @@ class Checks:
         back = piped(self.capture.read_bytes(), "convert", "-", "-", *FRAMES)
         assert back.returncode == 0 and back.stdout == log.read_bytes(), back.stderr.decode()
 
+    def check_lines_are_named_without_a_second_look(self):
+        lines = self.capture.read_text().splitlines()
+        header = next(i for i, line in enumerate(lines) if line.startswith("time_s"))
+        lines.insert(header + 11, "# a remark")
+        del lines[header + 2002:header + 2102]
+        result = piped(("\n".join(lines) + "\n").encode(), "allan", "-", "--gaps", "refuse")
+        assert result.returncode == 1
+        # Data row 2000, counted from one, is one line lower because of the comment.
+        one_line(result.stderr.decode(), f"-:{header + 2002}: 1 gap")
+
     def check_standard_input_is_read_once(self):
         result = piped(self.capture.read_bytes(), "allan", "-", "-")
         assert result.returncode == 1

@@ -78,6 +78,8 @@ void expect_same(const Reading& a, const Reading& b, std::size_t piece) {
                              a.got.rows.columns[c].size() * sizeof(double)));
   }
   EXPECT_EQ(a.notes.comments, b.notes.comments);
+  for (std::size_t row = 0; row < a.got.rows.size(); ++row)
+    ASSERT_EQ(a.notes.line_of_row(row), b.notes.line_of_row(row));
   EXPECT_EQ(a.notes.header_line, b.notes.header_line);
   EXPECT_EQ(a.notes.faults, b.notes.faults);
   EXPECT_EQ(a.notes.notices, b.notes.notices);

@@ -100,9 +100,9 @@ void note_what_fits_badly(const LoggedRate& logged, const SeriesView& rate, cons
 // Adds notes about gaps and uneven time stamps. Throws std::runtime_error if gaps are refused.
 void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
   const SampleClock& clock = logged.of.clock;
-  const auto note = [&](const std::string& what) {
-    if (refuse) throw std::runtime_error(logged.of.capture + ": " + what + ", expected none");
-    record.notes.push_back(logged.of.capture + ": " + what);
+  const auto note = [&](std::size_t row, const std::string& what) {
+    if (refuse) throw std::runtime_error(logged.of.place(row) + ": " + what + ", expected none");
+    record.notes.push_back(logged.of.place(row) + ": " + what);
   };
   std::size_t nans = 0, first_nan = 0;
   for_each_piece(logged.rate, 0, logged.rate.size(), [&](std::span<const double> values, std::size_t first) {
@@ -111,11 +111,13 @@ void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
   });
   record.missing = nans + clock.missing;
   if (clock.gaps > 0)
-    note(std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") + " in the time column (" +
-         std::to_string(clock.missing) + " samples missing), the first after " +
-         told_time(logged.of.shown_time_s(clock.first_gap)) + " s");
+    note(clock.first_gap, std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
+                              " in the time column (" + std::to_string(clock.missing) +
+                              " samples missing), the first after " +
+                              told_time(logged.of.shown_time_s(clock.first_gap)) + " s");
   if (nans > 0)
-    note(missing_in_words(logged.column, nans, logged.rate.size(), logged.of.shown_time_s(first_nan)));
+    note(first_nan,
+         missing_in_words(logged.column, nans, logged.rate.size(), logged.of.shown_time_s(first_nan)));
   if (clock.worst_jitter_s > 0.1 * clock.period_s)
     record.notes.push_back(logged.of.capture + ": time is uneven by up to " +
                            six_digits(clock.worst_jitter_s * 1e3) +
@@ -159,6 +161,12 @@ void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& 
 }
 
 }  // namespace
+
+std::string AnalysedPart::place(std::size_t row) const {
+  row += rows.begin;
+  const std::size_t line = table.line_of_row(row);
+  return capture + (line > 0 ? ":" + std::to_string(line) : ": sample " + std::to_string(row));
+}
 
 std::string six_digits(double value) { return formatted("%.6g", value); }
 

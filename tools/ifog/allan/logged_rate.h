@@ -26,8 +26,10 @@ struct AnalysedPart {
   Rest rest = {};
   std::string slow_turns = {};  // note about turns that remain; "" if none
 
-  // `row` counts in the part.
+  // For messages; `row` counts in the part.
   [[nodiscard]] double shown_time_s(std::size_t row) const { return table.origin.in_s(time_s.at(row)); }
+  // "file:line", or the sample's number if the file is not text.
+  [[nodiscard]] std::string place(std::size_t row) const;
 };
 
 // A rate as logged.

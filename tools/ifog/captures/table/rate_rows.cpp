@@ -67,6 +67,9 @@ void LongTable::keep_rate_rows(const std::string& path) {
   for (LongColumn& column : columns) column.values = kept_of(column.values, with, !is_rate(column.name));
   time_s = kept_of(time_s, with, false);
   outlines.clear();  // outlines of all rows are not valid for the rest
+  // Line numbers apply to the rows of the file.
+  header_line = 0;
+  lines.clear();
   notices.push_back(path + ": " + std::to_string(size()) + " of " + std::to_string(before) +
                     " rows have a rate, and only they are read: the others are of a faster sensor");
 }
