@@ -35,16 +35,25 @@ constexpr std::array<Container, 15> kContainers{
 
 // JSON that is no table: nested, of several kinds, or all in one line.
 std::string foreign_json(std::string_view head) {
-  const std::size_t inner = head.find('{', head.find('{') + 1), end = head.find('}');
+  const std::size_t first = head.find('{'), inner = head.find('{', first + 1), end = head.find('}');
+  if (inner < end)
+    return "is JSON with objects inside of objects, expected a table; jq -r '[.t, .gyro.x, .gyro.y, .gyro.z] "
+           "| @csv', with the names of this file, makes one";
+  const bool one_line = head.find('\n', end) > inner;
+  bool kinds = false;
   constexpr std::string_view kKind = "\"sensor\":";
-  const std::size_t kind = head.find(kKind), behind = std::min(head.find_first_of(",}", kind), head.size());
-  bool table = inner >= end && head.find('\n', end) <= inner;
-  for (std::size_t at = kind; at != std::string_view::npos; at = head.find(kKind, at + 1))
-    table = table && head.substr(kind, behind - kind).starts_with(head.substr(at, behind - kind));
-  return table ? ""
-               : "is JSON of several sensors, nested, or in one line, expected a table; jq -r '.[] | "
-                 "select(.sensor == \"Gyroscope\") | [.time, .x, .y, .z] | @csv', with the names of this "
-                 "file, makes one";
+  std::string_view before;
+  for (std::size_t at = head.find(kKind); at != std::string_view::npos; at = head.find(kKind, at + 1)) {
+    const std::size_t behind = head.find_first_of(",}", at);
+    if (behind == std::string_view::npos) break;
+    const std::string_view kind = head.substr(at, behind - at);
+    kinds = kinds || (!before.empty() && kind != before);
+    before = kind;
+  }
+  if (!kinds && !one_line) return "";
+  return std::string("is JSON of ") + (kinds ? "several sensors" : "all rows in one line") +
+         ", expected a table; jq -r '.[] | " + (kinds ? "select(.sensor == \"Gyroscope\") | " : "") +
+         "[.time, .x, .y, .z] | @csv', with the names of this file, makes one";
 }
 
 }  // namespace

@@ -147,7 +147,7 @@ void Hdf5Columns::open(const Hdf5Source& source, const std::string& group) {
     here_.clear();
     place_ = Hdf5Id(H5Oopen(file_, "/", access_));
     (void)names_here();
-    refuse("no group " + in_quotes(group) + ", the file has " + list_of(groups_));
+    refuse("no group " + in_quotes(group) + ", expected one of the file's: " + list_of(groups_));
   }
   if (H5Iget_type(place_) == H5I_GROUP) return;
   if (H5Iget_type(place_) != H5I_DATASET)
