@@ -21,7 +21,9 @@ CsvWriter::CsvWriter(const std::string& path, const std::string& comments,
                      const std::vector<std::string>& names)
     : file_(path) {
   for (const std::string& comment : lines_of(comments)) text_ += "# " + comment + "\n";
-  for (std::size_t c = 0; c < names.size(); ++c) text_ += (c == 0 ? "" : ",") + names[c];
+  for (std::size_t c = 0; c < names.size(); ++c)
+    text_ +=
+        (c == 0 ? "" : ",") + (names[c].find(',') == std::string::npos ? names[c] : '"' + names[c] + '"');
   text_ += '\n';
   file_.write(text_);
 }

@@ -78,10 +78,12 @@ TEST(CaptureText, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
   }
   const ifog::test::OwnFolder folder;
   const std::string name = folder.path("a.csv.gz");
-  ifog::CsvWriter file(name, "", {"time_s", "rate_radps"});
-  file.rows(std::vector<std::span<const double>>{time_s, rate_radps});
+  const std::string channel = "temperature, inner_degC";
+  ifog::CsvWriter file(name, "", {"time_s", "rate_radps", channel});
+  file.rows(std::vector<std::span<const double>>{time_s, rate_radps, time_s});
   file.finish();
   const ifog::Capture back = ifog::read_capture(name);
+  EXPECT_EQ(back.channels.at(0).name, channel);
   EXPECT_EQ(back.time_s, time_s);
   EXPECT_EQ(back.rate_radps[0], rate_radps);
   fs::resize_file(name, fs::file_size(name) / 2);
@@ -92,6 +94,15 @@ TEST(CaptureText, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
   ASSERT_FALSE(cut.faults.empty());
   EXPECT_EQ(cut.faults.back(),
             name + ": the gzip stream ends early (truncated file); the rows until there are read");
+}
+
+TEST(CaptureText, ARowsLineIsKnownWithoutASecondLook) {
+  ifog::InputFile file("t.csv", "# a\n\ntime_s,rate_radps\n0,1\n# b\n1,1\n\n\n2,1\n3,1\n# end\n");
+  const ifog::Table table = ifog::read_table(file);
+  EXPECT_EQ(table.header_line, 3U);
+  const std::size_t lines[] = {4, 6, 9, 10};
+  for (std::size_t row = 0; row < 4; ++row) EXPECT_EQ(table.line_of_row(row), lines[row]);
+  EXPECT_EQ(ifog::Table{}.line_of_row(7), 0U);
 }
 
 // What a hostile file may cost: a line, a cell, a name or an unpacked stream of any size is refused with one
