@@ -18,9 +18,10 @@ class FirstSamples {
   [[nodiscard]] double variance(std::size_t axis, double rate, bool valid) noexcept {
     Axis& a = axes_[axis];
     if (valid && std::isfinite(rate)) {
-      // The present ones, to 6 %; a motion before them is over.
+      // Differences, which give the variance to 6 %; a motion before them is over.
+      constexpr double kMemory = 512.0;
       if (a.samples > 0.0)
-        a.square += (0.5 * (rate - a.last) * (rate - a.last) - a.square) / std::min(a.samples, 512.0);
+        a.square += (0.5 * (rate - a.last) * (rate - a.last) - a.square) / std::min(a.samples, kMemory);
       a.samples += 1.0;
       a.last = rate;
     }

@@ -288,7 +288,7 @@ EstimatorHealth SignalChain::health() const noexcept {
   EstimatorHealth out = parts_->estimator_ ? parts_->estimator_->health() : EstimatorHealth{};
   for (std::uint64_t EstimatorHealth::*counter :
        {&EstimatorHealth::gated, &EstimatorHealth::manoeuvres, &EstimatorHealth::floor_hits,
-        &EstimatorHealth::divergences, &EstimatorHealth::restarts})
+        &EstimatorHealth::divergences})
     out.*counter += before_.*counter;
   return out;
 }

@@ -276,7 +276,6 @@ void Engine::move_rest(const Lanes& rate, const Lanes& variance) noexcept {
 void Engine::guard(Step& s) noexcept {
   if (rest_->sound() && s.rate.allFinite()) return;
   ++health_.divergences;
-  ++health_.restarts;
   s.out.flags |= kRestarted;
   restart();
   begin_axes(s);
@@ -352,7 +351,6 @@ void Engine::learn(const Step& s) noexcept {
 }
 
 void Engine::publish(const Step& s) noexcept {
-  const Lanes colour = noise_.each(&Noise::colour);
   for (std::size_t a = 0; a < axes_; ++a) {
     const auto i = static_cast<Eigen::Index>(a);
     const double variance = s.variance[i] + unmeasured_.more()[i];
@@ -364,7 +362,6 @@ void Engine::publish(const Step& s) noexcept {
         rest_->covariance() * (settings_.follow_manoeuvres ? noise_.share()[i] : 1.0);
     health_.measurement_noise[a] = rest_->rule().measurement_noise();
     if (settings_.follow_manoeuvres) health_.measurement_noise[a] *= noise_.share()[i] * noise_.over_given();
-    health_.colour[a] = colour[i];
   }
   health_.floor_hits = rest_->rule().floor_hits();
   if (s.in.sequence % kLagEvery == 0 || follow_.settled_lag == 0.0) refresh_lag();

@@ -56,11 +56,9 @@ struct EstimatorHealth {
   Axes nis_mean{};   // exponentially averaged; 1 if the predicted variance is right
   Axes whiteness{};  // autocorrelation of the innovations at lag 1
   Axes measurement_noise{};
-  // Variance of the innovations / that of white noise of the same third differences
-  Axes colour{1.0, 1.0, 1.0};
   double group_delay_s = 0.0;
   double correlation_time_s = 0.0;
-  std::uint64_t gated = 0, manoeuvres = 0, floor_hits = 0, divergences = 0, restarts = 0;
+  std::uint64_t gated = 0, manoeuvres = 0, floor_hits = 0, divergences = 0;
 };
 
 // Knowledge of the noise in addition to FilterSettings.

@@ -43,8 +43,9 @@ class Mix {
   [[nodiscard]] double rest_weight() const noexcept { return rest_weight_; }
   // Effective memory of the published rate, samples.
   [[nodiscard]] double length(const Trackers& trackers, double lag) const noexcept;
-  // True if the published rate is almost the raw one: no tracker follows the motion.
-  [[nodiscard]] bool raw() const noexcept { return gain_ > kRawGain; }
+  // True if no tracker follows the motion, almost only the raw one. Equal samples in a motion, such as a
+  // logger's repeats, are soon the filter's at rest.
+  [[nodiscard]] bool raw() const noexcept { return gain_ > kRawGain * (1.0 - rest_weight_); }
 
  private:
   void predict(const Trackers& trackers, const Lanes& scale, Lanes& moving, Lanes& variance) const noexcept;

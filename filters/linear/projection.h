@@ -8,7 +8,7 @@ namespace ifog {
 
 class Projection {
  public:
-  // columns: linearly independent, at most as many as rows (Householder QR).
+  // columns: linearly independent, at most as many as rows (Householder QR with pivoting).
   explicit Projection(const Eigen::MatrixXd& columns);
 
   // In place; needs as many rows as the columns have.

@@ -99,7 +99,6 @@ TEST(Faults, ABrokenCovarianceIsCountedAndTheFilterGoesOn) {
   settings.follow_manoeuvres = false;
   const Filtered got = run(settings, r.measured);
   EXPECT_GT(got.health.divergences, 0U);
-  EXPECT_EQ(got.health.divergences, got.health.restarts);
   for (const double rate : got.denoised) ASSERT_TRUE(std::isfinite(rate));
   settings.floor = 0.01;
   const Filtered floored = run(settings, r.measured);
