@@ -15,12 +15,15 @@ constexpr double kAdapter_s = 0.02;     // USB adapters collect bytes for 16 ms
 constexpr double kLatest_s = 2.0;       // a delivery later than this is a gap
 constexpr double kStands_s = 1.0;       // a delayed line shows within this time that it drains
 constexpr double kShrinks_s = 0.03;     // by reducing its delay by this
+constexpr double kPaced = 0.75;         // in sample times
 constexpr int kEarly = 8, kStrays = 8;  // consecutive frames; a single damaged stamp or counter has no effect
 constexpr double kClocksApart = 0.01;  // difference of device clock and counter, relative to the time between
 constexpr double kNoSetting_s = 60.0;  // a larger jump of only the clock means it was set
 constexpr double kStoodStill = 8.0;    // in sample times; a larger step means the device stood still
 
 double seconds(std::int64_t ns) noexcept { return static_cast<double>(ns) * 1e-9; }
+// Not read together with those that came before it.
+bool alone(const Timeline::Frame& frame) noexcept { return frame.at_once > 0 && frame.at_once <= 2; }
 std::int64_t nanoseconds(double s) noexcept { return std::llround(std::clamp(s, -9e9, 9e9) * 1e9); }
 
 }  // namespace
@@ -237,14 +240,12 @@ void Timeline::by_counter(const Frame& frame, const Look& now, Step& step) const
   }
 }
 
-// For a device with neither, or whose clock starts. After a silence a single frame is prompt; otherwise the
-// interval is the advance of the due times, smoothed over a few samples.
+// For a device with neither, or whose clock starts. After a long silence a frame that is read alone is prompt;
+// otherwise the interval is the advance of the due times, smoothed over a few samples.
 void Timeline::by_elapsed(const Frame& frame, const Look& now, Step& step) noexcept {
-  constexpr std::uint32_t kAlone = 2;
-  const bool prompt = frame.reopened || (frame.at_once > 0 && frame.at_once <= kAlone);
   step.dt_s = std::max(0.0, now.elapsed_s);
   if (!pace_.known()) return;
-  if (now.silent && prompt) {
+  if (now.silent && (frame.reopened || (alone(frame) && now.quiet_s > kLatest_s))) {
     step.samples = pace_.samples_in(now.elapsed_s);
     return;
   }
@@ -285,8 +286,12 @@ void Timeline::judge_delay(const Frame& frame, const Look& now, double late_s, S
     delay_ = {shown, late_s, frame.arrival_ns};
   if (!delay_) return;
   if (late_s < kPrompt_s + scatter_s_) return delay_.reset();
+  // A device with neither counter nor clock is at its pace if a frame that is read alone comes a period after
+  // the one before it.
+  const bool paced =
+      !now.counted && !now.clocked && alone(frame) && !now.silent && now.quiet_s > kPaced * pace_.period_s();
   if (late_s < delay_->least_late_s - kShrinks_s) *delay_ = {delay_->shown, late_s, frame.arrival_ns};
-  if (seconds(ns_between(delay_->least_ns, frame.arrival_ns)) >= kStands_s)
+  if (paced || seconds(ns_between(delay_->least_ns, frame.arrival_ns)) >= kStands_s)
     end_delay(frame, now, late_s, step);
 }
 

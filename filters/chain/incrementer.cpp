@@ -14,9 +14,11 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kClockMemory_s = 20.0;
-constexpr std::uint64_t kGapsThatShow = 64;
-// S; after this time of gaps before every sample they are assumed to be none
-constexpr double kGapsAreNone = 5.0;
+constexpr std::uint64_t kFramesThatTell = 64;        // of a rate
+constexpr double kTells_s = 5.0, kStretch_s = 60.0;  // shortest and longest stretch for a rate
+constexpr double kAccelerated = -0.95;               // samples from a recording, not at its pace
+constexpr double kLate_s = 0.25;                     // delay of a delivery that is no silence
+constexpr double kRight = 0.01;                      // relative; no quartz has a larger error
 constexpr int kEarly = 8;          // consecutive arrivals; a single wrong stamp does not count
 constexpr double kApart_s = 0.1;   // distance from the line of labels; less is scheduling
 constexpr double kScatters = 4.0;  // times the mean distance
@@ -47,11 +49,24 @@ double Incrementer::clock_offset_ppm() const noexcept {
   return labels_.clock.settled() ? (labels_.clock.period_s() / period_s_ * longer - 1.0) * 1e6 : 0.0;
 }
 
-double Incrementer::interval_error() const noexcept {
-  if (row_.lasts_s >= kGapsAreNone && row_.gaps >= kGapsThatShow)
-    return row_.lasts_s / static_cast<double>(row_.gaps) / period_s_ - 1.0;
-  const bool nominal = facts_.sequence_modulus > 0 && !last_.clocked;
-  return nominal && labels_.clock.settled() ? labels_.clock.period_s() / period_s_ - 1.0 : 0.0;
+// Measures the rate of samples by their arrivals, at both ends of the stretch late by up to kLate_s.
+void Incrementer::look_at_rate(const Timeline::Frame& frame, const Step& now) noexcept {
+  if (frame.arrival_ns <= 0) return;
+  const double lasts_s = static_cast<double>(ns_between(stretch_.begin_ns, frame.arrival_ns)) * 1e-9;
+  if (stretch_.begin_ns == 0 || now.restarted || now.clock_moved || frame.reopened || lasts_s > kStretch_s)
+    stretch_ = {.begin_ns = frame.arrival_ns, .interval_error = stretch_.interval_error};
+  if (stretch_.begin_ns == frame.arrival_ns) return;
+  ++stretch_.frames;
+  stretch_.gaps += now.gap ? 1 : 0;
+  stretch_.samples += now.samples;
+  if (lasts_s < kTells_s || stretch_.frames < kFramesThatTell) return;
+  // If nearly each frame seems to come after a gap, there are none.
+  const bool no_gaps = 10 * stretch_.gaps > 9 * stretch_.frames;
+  if (!no_gaps && (!frame.counts || frame.clocked)) return;
+  const auto samples = static_cast<double>(no_gaps ? stretch_.frames : stretch_.samples);
+  const double error = lasts_s / (samples * period_s_) - 1.0;
+  stretch_.interval_error =
+      std::abs(error) > kRight + kLate_s / lasts_s && error > kAccelerated ? error : 0.0;
 }
 
 Timeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
@@ -256,9 +271,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   out.flags = 0;
   if (started_ && now.gap) pass_gap(now, out);
   if (now.restarted) restart();
-  const bool in_a_row = now.gap && !now.restarted && frame.clocked && !frame.counts;
-  row_.gaps = in_a_row ? row_.gaps + 1 : 0;
-  row_.lasts_s = in_a_row ? row_.lasts_s + now.dt_s : 0.0;
+  look_at_rate(frame, now);
   if (now.clock_set) {
     out.flags |= kSensorClockSet;
     ++counts_.sensor_clock_sets;
@@ -276,7 +289,7 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   measure(reading, now, out);
   hold_channels(reading, now.samples, out);
   ++counts_.samples;
-  last_ = {reading.wall_shift_ns, out.utime_ns, reading.read_ns, frame.clocked};
+  last_ = {reading.wall_shift_ns, out.utime_ns, reading.read_ns};
   started_ = true;
   reopened_ = false;
   return true;

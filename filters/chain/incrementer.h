@@ -57,14 +57,15 @@ class Incrementer {
   [[nodiscard]] bool mixed() const noexcept { return timeline_.two_devices(); }
   // Relative difference of fitted and nominal period, 1e-6; 0 until the line has settled.
   [[nodiscard]] double clock_offset_ppm() const noexcept;
-  // Relative error of the nominal period, (true − nominal) / nominal, for devices where it is used: with a
-  // counter and no clock for each interval, with a clock and no counter for counting missing samples. 0 for
-  // others, and until it is known.
-  [[nodiscard]] double interval_error() const noexcept;
+  // Relative error of the nominal period by arrivals, (true − nominal) / nominal, where it is used: for each
+  // interval of a device with a counter and no clock, or for missing samples if each sample seems to follow
+  // some. 0 for others, and until it is known.
+  [[nodiscard]] double interval_error() const noexcept { return stretch_.interval_error; }
 
  private:
   using Step = Timeline::Step;
   [[nodiscard]] Timeline::Frame frame_of(const Reading& reading) const noexcept;
+  void look_at_rate(const Timeline::Frame& frame, const Step& now) noexcept;
   void pass_gap(const Step& step, Increment& out) noexcept;
   void restart() noexcept;
   void label(const Reading& reading, const Step& step, Increment& out) noexcept;
@@ -91,13 +92,13 @@ class Incrementer {
   // Previous reading; its channels are kept below.
   struct Last {
     std::int64_t wall_shift_ns = 0, utime_ns = 0, read_ns = 0;
-    bool clocked = false;
   } last_;
-  // Consecutive samples that each follow a gap, for a device with only a clock.
-  struct Row {
-    std::uint64_t gaps = 0;
-    double lasts_s = 0.0;
-  } row_;
+  // From which the rate is measured.
+  struct Stretch {
+    std::int64_t begin_ns = 0;
+    std::uint64_t frames = 0, gaps = 0, samples = 0;  // after the first frame
+    double interval_error = 0.0;
+  } stretch_;
   std::uint64_t sequence_ = 0;
   std::array<PlausibleRate, kMaxAxes> rate_;
   std::array<PlausibleAngle, kMaxAxes> angle_;  // SensorKind::angle

@@ -81,6 +81,7 @@ class PlausibleAngle {
  public:
   // To be called before take() for every sample, valid or not.
   void pass(double dt_s) noexcept {
+    missed_ = missed_ || since_s_ > 0.0;
     since_s_ += dt_s;
     suspect_since_s_ += dt_s;
   }
@@ -92,7 +93,7 @@ class PlausibleAngle {
       settle(angle_rad);
       return Verdict::plausible;
     }
-    // In a gap the direction of rotation may be ambiguous.
+    // Over missing or invalid samples the direction of rotation may be ambiguous.
     if (missed_ && !turn_is_known(rate_radps_, since_s_, wrap_rad)) {
       settle(angle_rad);
       rate_radps_ = 0.0;

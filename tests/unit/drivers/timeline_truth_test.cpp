@@ -208,7 +208,6 @@ TEST_P(TimelineTruth, EachFrameHasItsTimeAndNoOther) {
 
 constexpr std::int64_t kHour71_ns = 4'294'967'296'000;
 constexpr Case kCases[] = {
-    {"Plain", 128, 1000.0, Event::none},
     {"InPortionsOf16ms", 128, 1000.0, Event::none, 0.0, 0, 0, 0.016},
     // A gyro that is switched off and on: no counter tells how long, the elapsed time does.
     {"OffFor10s7At100Hz", 128, 100.0, Event::off_and_on, 10.7, 0, 0, 0.0, false, 0.03, 0.03, 1},
@@ -229,6 +228,7 @@ constexpr Case kCases[] = {
     {"UnpluggedFor3HoursWithAClock", 128, 200.0, Event::unplugged, 10800.0, 1000, kHour71_ns},
     // Deliveries that stall lose nothing.
     {"HeldUpFor3s", 128, 1000.0, Event::held_up, 3.0},
+    {"HeldUpFor1sWithNeither", 0, 100.0, Event::held_up, 1.0, 0, 0, 0.0, false, 0.01},
     {"HeldUpFor3sWithAClock", 128, 1000.0, Event::held_up, 3.0, 1000, kHour71_ns},
     // One stamp moves its own label alone.
     {"OneStamp6sEarly", 65536, 200.0, Event::early_stamp, 6.0, 0, 0, 0.0, true},
