@@ -108,11 +108,15 @@ SpectralLine refine(const Search& in, std::size_t bin, double floor) {
   }
   line.coherence = separate > 0.0 ? std::norm(together) / (separate * separate) : 0.0;
   const std::vector<Complex> whole = demodulate(error, spectrum.mean, line.frequency_hz * period_s, 1);
+  // Missing values contribute nothing, and floor is of as many.
+  const double present = static_cast<double>(std::count_if(error.begin(), error.end(),
+                                                           [](double v) { return std::isfinite(v); })) /
+                         n;
   const Complex amplitude =
-      2.0 / n * whole[0] * std::polar(1.0, -2.0 * std::numbers::pi * line.frequency_hz * start_s);
+      2.0 / (present * n) * whole[0] * std::polar(1.0, -2.0 * std::numbers::pi * line.frequency_hz * start_s);
   line.cosine = amplitude.real();
   line.sine = -amplitude.imag();
-  line.std_error = std::sqrt(2.0 * floor / length / n);
+  line.std_error = std::sqrt(2.0 * floor / length / n) / present;
   const double size = std::max(std::abs(amplitude), 1e-300);
   // Cramer-Rao bound of a tone's frequency in white noise (Rife and Boorstyn 1974).
   line.frequency_std_hz = std::sqrt(6.0) / std::numbers::pi * line.std_error / size / (n * period_s);

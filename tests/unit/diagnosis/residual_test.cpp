@@ -49,6 +49,14 @@ TEST(Lines, AToneIsFoundToItsBounds) {
   left.before = Samples(error.size(), 0.0);
   EXPECT_EQ(coherent_lines({own}, kPeriod, 0.01).size(), 1U);
   EXPECT_TRUE(coherent_lines({left}, kPeriod, 0.01).empty());
+  // Missing values make it uncertain, not small.
+  const std::vector<double> coins = white(error.size(), 2);
+  for (std::size_t i = 0; i < error.size(); ++i)
+    if (coins[i] > 0.25) error[i] = std::nan("");
+  const std::vector<SpectralLine> rest = find_lines(error, start, kPeriod, 0.01);
+  ASSERT_EQ(rest.size(), 1U);
+  EXPECT_NEAR(std::hypot(rest[0].cosine, rest[0].sine), 0.5, 5.0 * std::sqrt(2.0 / 12000.0));
+  EXPECT_NEAR(rest[0].std_error, std::sqrt(2.0 / 12000.0), 0.3 * std::sqrt(2.0 / 12000.0));
 }
 
 TEST(Lines, WhiteNoiseHasNoneAndItsSpectrumIsFlat) {

@@ -211,7 +211,7 @@ std::string page_of(const ifog::example::Example& e) {
   Page page;
   page.sensor = "bench & co";
   page.captures = {"bench.csv"};
-  page.axes = {{"", &e.diagnosis, e.records()}};
+  page.axes = {{"\"><i>", &e.diagnosis, e.records()}};
   page.model_path = "bench.toml";
   page.made = "2026-01-01, ifog 0.2.0";
   page.command = "ifog diagnose bench.csv --report 'a & b.html'";
@@ -233,6 +233,7 @@ TEST(ReportPage, HoldsEverySectionAndFetchesNothing) {
                            "bench &amp; co", "&lt;2 pi reset&gt;", "A capture with faster changes", "τ",
                            "serial: 17 &lt;b&gt;", "a &amp; b.html", "cccccccc", "class=\"band after\""})
     EXPECT_NE(html.find(part), std::string::npos) << part;
+  EXPECT_EQ(html.find("<i>"), std::string::npos);
   EXPECT_FALSE(std::regex_search(html, std::regex("(src|href)=\"(?!#|data:,)")));
   // One script, in the page, that asks nobody for anything; numbers packed for it are no text.
   EXPECT_EQ(count_of(html, "<script"), 1U);

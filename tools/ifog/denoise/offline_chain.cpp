@@ -43,6 +43,9 @@ std::vector<std::size_t> chosen_channels(const LongTable& capture, const Capture
     if (shape.places[c].kind == CaptureShape::Place::Kind::channel &&
         (all || used(model, capture.columns[c].name)))
       out.push_back(c);
+  if (out.size() > static_cast<std::size_t>(kMaxChannels))
+    throw std::runtime_error("the model uses " + std::to_string(out.size()) + " channels, expected at most " +
+                             std::to_string(kMaxChannels));
   return out;
 }
 

@@ -188,7 +188,7 @@ std::string origin(const Page& page) {
 
 std::string axis_sections(const PageAxis& axis) {
   const Diagnosis& d = *axis.diagnosis;
-  const std::string id = axis.axis.empty() ? "" : "-" + axis.axis;
+  const std::string id = axis.axis.empty() ? "" : "-" + escaped(axis.axis);
   const std::string of = axis.axis.empty() ? "" : ", axis " + escaped(axis.axis);
   std::string out =
       section("account" + id, "In short" + of,
@@ -210,7 +210,7 @@ std::string axis_sections(const PageAxis& axis) {
 std::string contents(const Page& page) {
   std::string out = "<nav aria-label=\"Contents\"><ul>\n";
   for (const PageAxis& axis : page.axes) {
-    const std::string id = axis.axis.empty() ? "" : "-" + axis.axis;
+    const std::string id = axis.axis.empty() ? "" : "-" + escaped(axis.axis);
     const std::string of = axis.axis.empty() ? "" : " " + escaped(axis.axis);
     for (const auto& [name, words] : {std::pair{"account", "In short"},
                                       {"residual", "The error"},
