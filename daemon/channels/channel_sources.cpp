@@ -225,8 +225,16 @@ struct ChannelSources::Impl {
     for (const std::string& name : names) lcm_subscribe(lcm, as_written(name).c_str(), &Impl::received, this);
   }
 
+  void subscribe_again() noexcept {
+    if (lcm != nullptr) lcm_destroy(std::exchange(lcm, nullptr));
+    try {
+      subscribe();
+    } catch (const std::exception&) {
+    }
+  }
+
   void listen() {
-    pollfd wanted[2] = {{stop_event, POLLIN, 0}, {lcm != nullptr ? lcm_get_fileno(lcm) : -1, POLLIN, 0}};
+    constexpr std::int64_t kAgain_ns = 5'000'000'000;
     for (;;) {
       std::int64_t now_ns = monotonic_ns();
       std::int64_t next_ns = now_ns + 3'600'000'000'000;
@@ -235,9 +243,15 @@ struct ChannelSources::Impl {
         next_ns = std::min(next_ns, file.due_ns());
       }
       now_ns = monotonic_ns();
+      // Without a descriptor, the server of tcpq:// is away. LCM itself would wait for it in lcm_handle().
+      const int socket = lcm != nullptr ? lcm_get_fileno(lcm) : -1;
+      const bool away = socket < 0 && !messages.empty();
+      if (away) next_ns = std::min(next_ns, now_ns + kAgain_ns);
+      pollfd wanted[2] = {{stop_event, POLLIN, 0}, {socket, POLLIN, 0}};
       poll(wanted, 2, static_cast<int>(std::max<std::int64_t>(0, next_ns - now_ns + 999'999) / 1'000'000));
       if ((wanted[0].revents & POLLIN) != 0) return;
-      if ((wanted[1].revents & POLLIN) != 0) lcm_handle(lcm);
+      if (wanted[1].revents != 0) lcm_handle(lcm);
+      if (away) subscribe_again();
     }
   }
 };

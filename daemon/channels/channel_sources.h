@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Reads environment channels from outside a sensor's frames and stores their latest values for the sensor's
-// reader thread. One ordinary thread for all.
+// reader thread. One ordinary thread for each CAN bus, and one for all else.
 #pragma once
 
 #include <functional>

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <limits>
 #include <set>
@@ -132,6 +134,11 @@ SensorConfig read_sensor(const toml::table& table, ReadingContext& context) {
       else
         out.options[std::string(key.str())] = node.is_string() ? node.as_string()->get() : as_written(node);
     }
+  }
+  if (const auto rate = out.options.find("rate_hz"); rate != out.options.end() && !context.recorded) {
+    const double hz = std::strtod(rate->second.c_str(), nullptr);
+    if (hz > 0.0 && out.nominal_rate_hz > 0.0 && std::abs(out.nominal_rate_hz / hz - 1.0) > 0.01)
+      in.complain("nominal_rate_hz", ": is not options.rate_hz; expected one of the two");
   }
   if (const toml::table* const filter = in.table("filter"))
     out.filter = read_filter(*filter, "sensor.filter", out.start_up_s, context);

@@ -86,7 +86,7 @@ TransportConfig read_transport(const toml::table& table, const std::string& wher
     if (const auto pace = in.choice("pace", {"free", "recorded"})) out.recorded = *pace == "recorded";
     take(in.number("speed", {1e-3, 1e6}), out.speed);
     take(in.number("bytes_per_second", {1.0, 1e9}), out.bytes_per_second);
-    take(in.integer("block_bytes", 1, 1'000'000), out.block_bytes);
+    take(in.integer("block_bytes", 1, 65'536), out.block_bytes);
     take(in.boolean("await_writer"), out.await_writer);
     take(in.text("interface"), out.interface);
     if (out.recorded && !out.candump && !in.has("bytes_per_second"))

@@ -27,7 +27,6 @@ enum class EventKind : std::uint8_t {
 
 struct Event {
   EventKind kind = EventKind::gap;
-  std::int64_t utime_ns = 0;
   std::uint64_t sequence = 0;
   std::uint64_t count = 0;
   double a = 0.0, b = 0.0;

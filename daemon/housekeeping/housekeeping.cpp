@@ -228,7 +228,8 @@ void Housekeeping::report_second(Sensor& sensor, double interval_s) {
   if (const std::string moved = sensor.report.moved(); !moved.empty()) sensor.log->warn("{}", moved);
   for (const ChannelWatch::News& news : sensor.channels.look(message, *sensor.parts.outside))
     sensor.log->log(news.good ? spdlog::level::info : spdlog::level::warn, "{}", news.words);
-  if (const std::string wrong = sensor.report.wrong_rate(); !wrong.empty())
+  if (const std::string wrong = sensor.report.wrong_rate();
+      !wrong.empty() && !pipeline.reader().transport().holds_back())
     sensor.log->warn("{}: is rate_hz of its options (or nominal_rate_hz) that of the device?", wrong);
   if (const std::string unseen = sensor.report.unseen_axes(); !unseen.empty()) sensor.log->info("{}", unseen);
   if (const std::string frozen = sensor.report.newly_frozen(); !frozen.empty())
@@ -320,7 +321,7 @@ int Housekeeping::run() {
   std::int64_t deadline_ns = monotonic_ns();
   std::int64_t reloaded_ns = deadline_ns - kReloadEvery_ns;
   std::int64_t second_ns = deadline_ns;
-  for (int tick = 1; !ended; ++tick) {
+  for (std::int64_t tick = 1; !ended; ++tick) {
     deadline_ns += kTick_ns;
     int signal = 0;
     while ((signal = wait_for_signal(deadline_ns)) == SIGHUP) {

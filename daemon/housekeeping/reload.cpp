@@ -94,6 +94,14 @@ std::string Housekeeping::reload() {
   } catch (const std::exception& error) {
     errors.emplace_back(error.what());
   }
+  // Also what only a restart will use.
+  for (const SensorConfig& sensor : fresh.sensors) {
+    try {
+      (void)make_sensor_driver(sensor, fresh.plugin_folders);
+    } catch (const std::exception& error) {
+      errors.push_back(error_at(fresh, sensor, error));
+    }
+  }
   for (const auto& sensor : sensors_) {
     const SensorConfig* const found = sensor_named(fresh, sensor->config.name);
     if (found == nullptr) continue;

@@ -15,8 +15,7 @@
 namespace ifog {
 namespace {
 
-constexpr double kWrongRate = 0.01;  // no quartz has a larger error
-constexpr int kInVain = 5;           // seconds of input without a frame before a warning
+constexpr int kInVain = 5;  // seconds of input without a frame before a warning
 
 // Time without data after which an open device counts as silent.
 double silence_s(double rate_hz) { return std::max(2.0, 3.0 / rate_hz); }
@@ -99,6 +98,16 @@ void StatusReport::look_for_samples(const ReaderCounters& reader) {
       static_cast<double>(monotonic_ns() - samples_.last_ns) * 1e-9 > silence_s(nominal_rate_hz_);
   samples_.mixed = reader.mixed.load(std::memory_order_relaxed);
   samples_.frozen = long_ago && !samples_.mixed && !samples_.news && (came || samples_.frozen);
+}
+
+std::string StatusReport::fault_of_samples() {
+  const bool in_vain = now_.frames_good + now_.samples_decoded == 0 && now_.bytes_read + now_.frames_read > 0;
+  in_vain_ = in_vain ? in_vain_ + 1 : 0;
+  if (samples_.mixed) return kMixed;
+  if (samples_.frozen) return kFrozen;
+  if (in_vain_ < kInVain) return "";
+  return std::string(now_.frames_read > 0 ? "CAN frames" : "bytes") +
+         " received and no frame of the sensor in them: check driver, options and baud";
 }
 
 // True if a file has ended, is completely counted, and had no frame.
@@ -190,22 +199,19 @@ const status_t& StatusReport::update(Pipeline& pipeline, const FilterSnapshot& s
   now_.model_since = snapshot.model_since_ns / 1000;
   take_books(snapshot);
   now_.fault = imbalance(snapshot.reader, snapshot.books);
+  look_for_samples(pipeline.reader().counters());
+  // A fault in the data may be an old one.
+  if (now_.fault.empty() && pipeline.reader().transport().state() == TransportState::open)
+    now_.fault = fault_of_samples();
   if (now_.fault.empty()) now_.fault = fault_of(pipeline.reader());
   if (now_.fault.empty() && nothing_in_file(pipeline))
     now_.fault = pipeline.reader().transport().name() + ": ended, and no frame of the sensor was in its " +
-                 received_in_words() + " (is it this driver's, with these options?)";
-  look_for_samples(pipeline.reader().counters());
-  if (now_.fault.empty() && samples_.mixed) now_.fault = kMixed;
-  if (now_.fault.empty() && samples_.frozen) now_.fault = kFrozen;
+                 (now_.frames_read > 0 ? std::to_string(now_.frames_read) + " CAN frames"
+                                       : std::to_string(now_.bytes_read) + " bytes") +
+                 " (is it this driver's, with these options?)";
   take_line(pipeline.reader().transport().counters());
   take_counters(pipeline.reader().counters(), pipeline.filter().counters());
   take_health(snapshot);
-  in_vain_ = now_.frames_good + now_.samples_decoded == 0 && now_.bytes_read + now_.frames_read > 0
-                 ? in_vain_ + 1
-                 : 0;
-  if (now_.fault.empty() && in_vain_ >= kInVain)
-    now_.fault =
-        received_in_words() + " received and no frame of the sensor in them: check driver, options and baud";
   watch_.take(snapshot.rest, pipeline.filter().counters().published.value(),
               pipeline.filter().counters().out_of_range.value());
   now_.noticed = watch_.noticed();
@@ -231,11 +237,6 @@ void StatusReport::update(Recorder& recorder) {
 
 std::string StatusReport::newly_noticed() const { return watch_.words(now_.noticed & ~before_.noticed); }
 
-std::string StatusReport::received_in_words() const {
-  return now_.frames_read > 0 ? std::to_string(now_.frames_read) + " CAN frames"
-                              : std::to_string(now_.bytes_read) + " bytes";
-}
-
 std::string StatusReport::unseen_axes() const {
   if (!samples_.news || samples_.seconds != kInVain || samples_.axes_seen == 0) return "";
   std::string out;
@@ -249,8 +250,8 @@ std::string StatusReport::newly_frozen() const {
 }
 
 std::string StatusReport::wrong_rate() const {
-  if (std::abs(interval_error_) < kWrongRate || std::abs(interval_error_before_) >= kWrongRate) return "";
-  return wrong_rate_in_words(nominal_rate_hz_, interval_error_, now_.input_rate_hz);
+  if (interval_error_ == 0.0 || interval_error_before_ != 0.0) return "";
+  return wrong_rate_in_words(nominal_rate_hz_, interval_error_);
 }
 
 std::string StatusReport::moved() const {

@@ -54,7 +54,7 @@ class StatusReport {
   void look_for_samples(const ReaderCounters& reader);
   [[nodiscard]] std::int32_t state_of(const Pipeline& pipeline);
   [[nodiscard]] bool nothing_in_file(const Pipeline& pipeline) const;
-  [[nodiscard]] std::string received_in_words() const;  // as text
+  [[nodiscard]] std::string fault_of_samples();
 
   ifog::status_t before_, now_;
   SensorWatch watch_;

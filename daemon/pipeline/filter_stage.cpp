@@ -102,7 +102,7 @@ void FilterStage::process(const Increment& in) noexcept {
     counters_.published.add(1);
   } else {
     if (counters_.lcm_failures.value() == 0)
-      events_.report({.kind = EventKind::publish_failed, .utime_ns = in.utime_ns, .sequence = in.sequence});
+      events_.report({.kind = EventKind::publish_failed, .sequence = in.sequence});
     counters_.lcm_failures.add(1);
   }
   if ((out_.compensator_flags & (kStaleChannel | kNoChannelYet)) != 0) counters_.channel_stale.add(1);
@@ -110,12 +110,11 @@ void FilterStage::process(const Increment& in) noexcept {
   if ((out_.flags & kNotCompensated) != 0) counters_.corrections_refused.add(1);
   if ((out_.estimate.flags & kRestarted) != 0) {
     counters_.filter_resets.add(1);
-    events_.report({.kind = EventKind::divergence, .utime_ns = in.utime_ns, .sequence = in.sequence});
+    events_.report({.kind = EventKind::divergence, .sequence = in.sequence});
   }
   if (!noise_known_ && parts.noise_known()) {
     noise_known_ = true;
     events_.report({.kind = EventKind::noise_learned,
-                    .utime_ns = in.utime_ns,
                     .sequence = in.sequence,
                     .a = parts.filter().process_noise,
                     .b = parts.filter().measurement_noise});
@@ -161,7 +160,6 @@ void FilterStage::adopted(std::uint64_t sequence) noexcept {
 bool FilterStage::answer() noexcept {
   constexpr int kTries = 1000;
   const ChainParts& parts = chain_.parts();
-  answer_.now.has_health = parts.health() != nullptr;
   answer_.now.health = chain_.health();
   answer_.now.learned = parts.learned();
   answer_.now.books = {.samples = counters_.device_samples.value(),

@@ -38,7 +38,6 @@ struct FilterSnapshot {
   }
   EstimatorHealth health;
   RestSums rest;
-  bool has_health = false;              // false while the noise is learned
   std::optional<LearnedNoise> learned;  // ChainParts::learned()
   DurationHistogram latency;            // since the previous snapshot
   std::array<double, kMaxChannels> channel;

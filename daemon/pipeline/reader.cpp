@@ -55,7 +55,6 @@ void Reader::take(const ifog_sample& sample) noexcept {
 void Reader::report(const Increment& increment, const IncrementerCounts& before) noexcept {
   const IncrementerCounts& now = incrementer_.counts();
   Event event;
-  event.utime_ns = increment.utime_ns;
   event.sequence = increment.sequence;
   if (now.restarts != before.restarts) {
     event.kind = EventKind::device_restart;
@@ -104,8 +103,6 @@ void Reader::publish_counters() noexcept {
   counters_.repeated.set(counts.repeated);
   counters_.saturated.set(counts.saturated);
   counters_.implausible.set(counts.implausible);
-  counters_.device_restarts.set(counts.restarts);
-  counters_.clock_steps.set(counts.clock_steps);
   counters_.axes_seen.store(incrementer_.axes_seen(), std::memory_order_relaxed);
   counters_.mixed.store(incrementer_.mixed(), std::memory_order_relaxed);
   counters_.clock_offset_ppm.store(incrementer_.clock_offset_ppm(), std::memory_order_relaxed);
@@ -139,7 +136,7 @@ void Reader::look_outside() noexcept {
 }
 
 void Reader::stand_back() noexcept {
-  const std::int64_t rest_ns = share_.rest_ns(turn_ns_, thread_time_ns);
+  const std::int64_t rest_ns = share_.rest_ns(arrival_clock_ns(), thread_time_ns);
   if (rest_ns == 0) return;
   counters_.stood_back.add(1);
   std::this_thread::sleep_for(std::chrono::nanoseconds(rest_ns));
@@ -180,7 +177,7 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   if (links_.tape != nullptr && (!delivery.empty() || delivery.restarted)) record(delivery);
   counters_.turns.add(1);
   // A source that waits for its reader takes no time from others.
-  if (!delivery.empty() && !transport_->holds_back()) stand_back();
+  if (!transport_->holds_back()) stand_back();
   return !transport_->stopped() && !(delivery.empty() && transport_->state() == TransportState::ended);
 }
 

@@ -28,7 +28,7 @@ namespace ifog {
 
 // Readable by any thread; relaxed, since independent.
 struct ReaderCounters {
-  Counter turns, samples, gaps, missing, invalid, repeated, device_restarts, clock_steps;
+  Counter turns, samples, gaps, missing, invalid, repeated;
   Counter saturated, implausible, channel_implausible, channel_drops;
   Counter values_beyond;  // of ifog_driver_counters
   Counter frames_crc, bytes_skipped, frames_repeated, samples_incomplete;

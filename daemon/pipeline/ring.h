@@ -53,7 +53,6 @@ class Ring {
     const std::size_t tail = tail_.load(std::memory_order_acquire);
     return head_.load(std::memory_order_acquire) - tail;
   }
-  [[nodiscard]] std::size_t capacity() const noexcept { return mask_ + 1; }
 
  private:
   // Not std::hardware_destructive_interference_size, which depends on compiler flags.

@@ -6,6 +6,7 @@
 #include <sched.h>
 #include <sys/mman.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -29,7 +30,10 @@ void prefault_stack() noexcept {
 std::string apply_to_this_thread(const ThreadPlan& plan) {
   std::string missed;
   const pthread_t self = pthread_self();
-  pthread_setname_np(self, plan.name.substr(0, 15).c_str());
+  // Of the 15 characters that the kernel keeps, the last ones tell a sensor's threads apart.
+  const std::size_t end = std::min(plan.name.rfind(':'), plan.name.size());
+  const std::string role = plan.name.substr(end);
+  pthread_setname_np(self, (plan.name.substr(0, std::min(end, 15 - role.size())) + role).c_str());
   if (!plan.cpus.empty()) {
     cpu_set_t set;
     CPU_ZERO(&set);

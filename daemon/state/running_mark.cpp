@@ -120,11 +120,11 @@ std::string RunningMark::listen_in(const std::string& folder) {
   // Removes the socket of a killed daemon, or anything of this name, without following it.
   (void)::unlinkat(holder, kSocketName, 0);
   const sockaddr_un address = address_in(holder);
-  // Regardless of the service's umask, so that the group can connect. No other threads run yet.
-  const mode_t before = ::umask(S_IXUSR | S_IXGRP | S_IRWXO);
-  const bool bound = ::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  ::umask(before);  // does not change errno
-  if (bound && ::listen(socket_, static_cast<int>(kMostClients)) == 0) return "";
+  // The mode regardless of the service's umask, so that the group can connect.
+  if (::bind(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+      ::fchmodat(holder, kSocketName, S_IRUSR | S_IWUSR | S_IRGRP | S_IWGRP, AT_SYMLINK_NOFOLLOW) == 0 &&
+      ::listen(socket_, static_cast<int>(kMostClients)) == 0)
+    return "";
   return folder + "/" + kSocketName + ": ifog status and adopt cannot ask this daemon: " + reason(errno);
 }
 

@@ -142,7 +142,7 @@ std::optional<std::string> state_file(const std::string& path, std::size_t most)
   }, holder{};
   if (::fstat(file, &there) != 0 || ::fstat(folder, &holder) != 0 || !S_ISREG(there.st_mode))
     fail(path, "is no regular file, expected one of the state folder");
-  if (there.st_nlink != 1) fail(path, "has other names, expected a file of the state folder alone");
+  if (there.st_nlink > 1) fail(path, "has other names, expected a file of the state folder alone");
   if (there.st_uid != 0 && there.st_uid != ::geteuid() && there.st_uid != holder.st_uid &&
       there.st_gid != holder.st_gid)
     fail(path, "belongs to a user who has no part in its folder");

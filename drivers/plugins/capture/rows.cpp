@@ -98,6 +98,8 @@ bool Rows::read_header(std::string_view line) noexcept {
     if (column == kMostColumns || (column == 0 && cell != "time_s")) return false;
     const auto at = std::find(wanted_.begin(), wanted_.end(), cell);
     slot_[column] = static_cast<std::int16_t>(at == wanted_.end() ? -1 : at - wanted_.begin());
+    for (std::size_t before = 0; at != wanted_.end() && before < column; ++before)
+      if (slot_[before] == slot_[column]) return false;
     if (at != wanted_.end()) ++found;
   }
   if (found != wanted_.size()) return false;

@@ -27,7 +27,6 @@ class CanSocket {
   void close() noexcept;
 
   [[nodiscard]] int fd() const { return fd_; }
-  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
 
   // Receives only data frames of these ids (all if empty) and every error frame. Throws OpenError.
   void receive_only(std::span<const CanId> ids, const std::string& interface) const;

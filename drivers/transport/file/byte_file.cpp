@@ -82,6 +82,11 @@ void ByteFile::close_file() noexcept {
   fd_ = -1;
 }
 
+bool ByteFile::is_removed() const noexcept {
+  struct stat info {};
+  return fifo_ && ::fstat(fd_, &info) == 0 && info.st_nlink == 0;
+}
+
 ByteFile::Fill ByteFile::fill() noexcept {
   if (begin_ > 0) {
     std::memmove(buffer_.data(), buffer_.data() + begin_, end_ - begin_);

@@ -32,8 +32,9 @@ class ByteFile {
   // nothing from a new writer.
   void open(const std::string& path);
   void close() noexcept;
-  [[nodiscard]] bool is_open() const { return fd_ >= 0; }
   [[nodiscard]] bool is_fifo() const { return fifo_; }
+  // A FIFO without a name: nobody can open it any more.
+  [[nodiscard]] bool is_removed() const noexcept;
   // Readable if fill() may return data; −1: always (regular file).
   [[nodiscard]] int poll_fd() const { return regular_ ? -1 : fd_; }
 

@@ -83,7 +83,9 @@ void FileTransport::reopen() {
 
 Delivery FileTransport::receive(std::int64_t until_ns) noexcept {
   const Delivery delivery = take(until_ns);
-  if (delivery.empty() && at_end_ && unread().empty()) finish();
+  const bool ends = at_end_ && unread().empty() && state() != TransportState::ended;
+  // A FIFO that was made again is another one.
+  if (delivery.empty() && (ends || (!written_ && file_.is_removed()))) finish();
   return delivery;
 }
 
@@ -156,7 +158,7 @@ class BytesFile final : public FileTransport {
  public:
   explicit BytesFile(FileSettings settings) : FileTransport(std::move(settings)) {
     const double rate = this->settings().bytes_per_second * this->settings().speed;
-    block_ = this->settings().block_bytes;
+    block_ = std::min<std::size_t>(this->settings().block_bytes, ByteFile::kCapacity);
     if (block_ == 0)
       block_ = static_cast<std::size_t>(std::max(1.0, std::min(rate / 1000.0, ByteFile::kCapacity / 2.0)));
   }
@@ -348,9 +350,6 @@ std::unique_ptr<Transport> make_file_transport(FileSettings settings) {
     refuse("bytes_per_second is " + std::to_string(settings.bytes_per_second) + ", expected 0 or more");
   if (bytes && settings.pace == FileSettings::Pace::recorded && settings.bytes_per_second == 0.0)
     refuse("raw bytes carry no times: recorded pace needs bytes_per_second");
-  if (settings.block_bytes > ByteFile::kCapacity)
-    refuse("block_bytes is " + std::to_string(settings.block_bytes) + ", expected at most " +
-           std::to_string(ByteFile::kCapacity));
   if (bytes) return std::make_unique<BytesFile>(std::move(settings));
   return std::make_unique<CandumpFile>(std::move(settings));
 }

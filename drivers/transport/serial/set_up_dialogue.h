@@ -29,7 +29,7 @@ class SetUpDialogue {
   bool take(std::span<const std::uint8_t> bytes);
   // The wrong answer; "": no answer.
   [[nodiscard]] const std::string& refusal() const { return refusal_; }
-  // All answers so far, separated by commas.
+  // All answers so far, separated by "; ".
   [[nodiscard]] const std::string& answers() const { return answers_; }
 
  private:

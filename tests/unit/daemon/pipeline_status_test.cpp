@@ -47,6 +47,7 @@ TEST(PipelineStatus, InputThatIsNoneOfTheSensorsIsAFaultInWords) {
   for (const bool rubbish : {true, false}) {
     Rig rig(rubbish ? std::vector<std::uint8_t>(50 * kFrame) : frames(50), kFrame, true);
     rig.transport->stays_open_ = true;
+    rig.transport->stray_ = rubbish;  // long ago, and not what is wrong now
     rig.pipeline->start();
     while (rig.pipeline->reader().books().bytes_read < 50 * kFrame) std::this_thread::sleep_for(1ms);
     StatusReport report("test", rig.chain.channels, rig.chain.axes, rig.chain.facts.nominal_rate_hz);
@@ -56,10 +57,9 @@ TEST(PipelineStatus, InputThatIsNoneOfTheSensorsIsAFaultInWords) {
       snapshot.reader = rig.pipeline->reader().books();
       fault = report.update(*rig.pipeline, snapshot, 1.0).fault;
     }
-    EXPECT_EQ(fault,
-              rubbish ? "1800 bytes received and no frame of the sensor in them: check driver, options and "
-                        "baud"
-                      : "");
+    EXPECT_EQ(fault, rubbish
+                         ? "bytes received and no frame of the sensor in them: check driver, options and baud"
+                         : "");
     rig.pipeline->stop();
   }
 }

@@ -30,6 +30,7 @@ class MemoryTransport final : public Transport {
   bool connect(std::string&, std::int64_t) override { return true; }
   Delivery receive(std::int64_t) noexcept override {
     Delivery out;
+    if (stray_.exchange(false)) report("a stray", 0);
     const bool all_given = at_ >= bytes_to_give_.size();
     if (all_given && !stays_open_.load()) end(0);
     if (all_given || at_ >= allowed_.load()) {
@@ -56,6 +57,7 @@ class MemoryTransport final : public Transport {
   std::atomic<std::size_t> given_{0};
   std::atomic<std::size_t> allowed_{~std::size_t{0}};  // no more than this is given yet
   std::atomic<bool> stays_open_{false};
+  std::atomic<bool> stray_{false};  // at first a fault in the data is reported
 };
 
 class KeepingPublisher final : public Publisher {

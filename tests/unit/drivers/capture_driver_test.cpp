@@ -89,6 +89,7 @@ TEST(CaptureDriver, AHeaderWithoutTheWantedColumnsGivesNoSamples) {
   const std::vector<ifog_sample> samples = feed(driver, "time_s,rate_radps\n0,1\n", 5);
   EXPECT_TRUE(samples.empty());
   EXPECT_EQ(driver.counters().frames_format, 2U);
+  EXPECT_TRUE(feed(driver, "time_s,rate_radps,rate_radps\n0,1,1\n", 5).empty());
 }
 
 TEST(CaptureDriver, RefusesColumnsThatCannotBe) {
