@@ -100,7 +100,11 @@ void ModelExchange::exchange(const std::optional<Model>& model, const std::optio
   } catch (const std::exception& error) {
     why = error.what();
   }
-  put(before);
+  try {
+    put(before);
+  } catch (const std::exception& error) {
+    throw std::runtime_error(why + "; it remains in place: " + error.what());
+  }
   // Also if the first request failed: the daemon must use the model that is now in place.
   try {
     ask_for_reload();

@@ -47,6 +47,8 @@ bool Outlet::send(const void* bytes, std::size_t n, bool whole) {
     }
     const int error = accepted < 0 ? errno : EAGAIN;
     if (interrupted()) return false;
+    // Of an earlier datagram that nobody received; a sensor goes on sending.
+    if (whole && error == ECONNREFUSED) continue;
     if (error == EINTR) continue;
     if (error == EPIPE) throw std::runtime_error(name_ + ": the reader went away");
     if (error != EAGAIN && error != ENOBUFS)
