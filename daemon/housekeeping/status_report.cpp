@@ -78,15 +78,17 @@ std::int32_t StatusReport::state_of(const Pipeline& pipeline) {
       break;
   }
   if (samples_.mixed) return status_t::STATE_NO_DATA;
-  if (samples_.last_ns == 0) return status_t::STATE_STARTING;
-  if (static_cast<double>(monotonic_ns() - samples_.last_ns) * 1e-9 > silence_s(nominal_rate_hz_))
+  const std::int64_t since_ns = std::max(samples_.first_look_ns, samples_.last_ns);
+  if (static_cast<double>(monotonic_ns() - since_ns) * 1e-9 > silence_s(nominal_rate_hz_))
     return status_t::STATE_NO_DATA;
+  if (samples_.last_ns == 0) return status_t::STATE_STARTING;
   return status_t::STATE_RUNNING;
 }
 
 // From the reader, so it does not depend on the filter's answer. A repeated frame is no sample.
 void StatusReport::look_for_samples(const ReaderCounters& reader) {
   const std::uint64_t accepted = reader.samples.value(), decoded = accepted + reader.repeated.value();
+  if (samples_.first_look_ns == 0) samples_.first_look_ns = monotonic_ns();
   const bool came = std::exchange(samples_.decoded, decoded) != decoded;
   samples_.news = std::exchange(samples_.accepted, accepted) != accepted;
   if (samples_.news) samples_.last_ns = monotonic_ns();

@@ -64,6 +64,7 @@ class StatusReport {
     std::uint32_t axes_seen = 0;
     bool news = false;                           // there were new ones
     int seconds = 0;                             // number of updates with new ones
+    std::int64_t first_look_ns = 0;              // monotonic time of the first update
     std::int64_t last_ns = 0;                    // monotonic time of the last update with new ones
     bool mixed = false;                          // frames of two devices arrive, and none is used
     bool frozen = false, frozen_before = false;  // all samples repeat earlier ones

@@ -159,8 +159,10 @@ bool Timeline::out_of_turn(const Frame& frame, const Look& now) const noexcept {
   const std::uint64_t most = std::min<std::uint64_t>(RecentFrames::kMost, modulus_ / 2);
   if (modulus_ - now.ahead > most || now.passed_s > 0.0 || (frame.reopened && !now.timed)) return false;
   const Had was = recent_.had(modulus_ - now.ahead, now.digest);
-  const bool usual = now.timed && !delay_ && !now.contradicts(pace_.time_s(now.ahead));
-  return was == Had::same || (was == Had::no && !usual);
+  const double ahead_s = pace_.time_s(now.ahead);
+  const bool usual = now.timed && !delay_ && !now.contradicts(ahead_s);
+  // Frames of a coarse sensor at rest are equal, and none of them comes as late as the next after a loss.
+  return (was == Had::same && now.quiet_s < 0.5 * ahead_s) || (was == Had::no && !usual);
 }
 
 // Restart after the elapsed time, also if that is unknown.
@@ -173,13 +175,15 @@ void Timeline::restart(const Look& now, Step& step) const noexcept {
 bool Timeline::clock_is_wrong(const Look& now) const noexcept {
   const double grain_s = ticks_.grain_s();
   const double counted_s = pace_.time_s(now.counted_samples);
-  if (now.passed_s < 0.0 || now.contradicts(now.passed_s - grain_s)) return true;
+  if (now.passed_s < 0.0) return true;
+  // A clock that agrees with the counter is right whenever the frame arrives. Otherwise the one nearer to the
+  // elapsed time is.
+  const double apart_s = 2.0 * pace_.nominal_s() + kClocksApart * now.passed_s + grain_s;
+  if (now.counted && std::abs(now.passed_s - counted_s) <= apart_s) return false;
+  if (now.contradicts(now.passed_s - grain_s)) return true;
   if (!now.counted || now.silent || delay_) return false;
   if (!now.timed) return now.ahead == 1 && now.passed_s > counted_s + kNoSetting_s;
-  // If clock and counter disagree, the one nearer to the elapsed time is right.
-  const double apart_s = 2.0 * pace_.nominal_s() + kClocksApart * now.passed_s + grain_s;
-  return std::abs(now.passed_s - counted_s) > apart_s &&
-         std::abs(counted_s - now.elapsed_s) < std::abs(now.passed_s - now.elapsed_s);
+  return std::abs(counted_s - now.elapsed_s) < std::abs(now.passed_s - now.elapsed_s);
 }
 
 // With rollovers from the clock. If the counter stood or restarted, the clock alone is used.

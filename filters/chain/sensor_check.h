@@ -3,6 +3,7 @@
 // would hide the fault.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -14,25 +15,26 @@ namespace ifog {
 class SensorCheck {
  public:
   // A coarsely quantised sensor repeats values at rest. So a run counts if it exceeds 100 samples and ten
-  // times the longest earlier run.
+  // times the second longest earlier run: the longest may be a fault.
   [[nodiscard]] bool stuck(std::size_t axis, double value) noexcept {
     Run& run = runs_[axis];
     if (value != run.value) {
-      if (run.length > run.longest) run.longest = run.length;
+      run.second = std::max(run.second, std::min(run.length, run.longest));
+      run.longest = std::max(run.longest, run.length);
       run.value = value;
       run.length = 0;
     }
     ++run.length;
-    return run.length > kShortest && run.length > kTimesLongest * run.longest;
+    return run.length > kShortest && run.length > kTimesSecond * run.second;
   }
 
  private:
   static constexpr std::int64_t kShortest = 100;
-  static constexpr std::int64_t kTimesLongest = 10;
+  static constexpr std::int64_t kTimesSecond = 10;
 
   struct Run {
     double value = std::nan("");
-    std::int64_t length = 0, longest = 0;
+    std::int64_t length = 0, longest = 0, second = 0;
   };
   std::array<Run, kMaxAxes> runs_{};
 };

@@ -47,6 +47,31 @@ TEST(Incrementer, AGapIsCountedFlaggedAndAddsNoAngle) {
   EXPECT_EQ(incrementer.counts().missing, 4U);
 }
 
+// More than half a rollover, of a coarse sensor at rest, whose frames are all equal; and of a recording whose
+// arrivals do not show the loss, but counter and clock do.
+TEST(Incrementer, ALossIsNoneOfAFrameThatCameBefore) {
+  for (const bool clocked : {false, true}) {
+    for (const std::uint64_t lost : {10U, 64U, 80U, 100U, 126U}) {
+      Incrementer incrementer(counting_rate_sensor());
+      Increment increment;
+      double sum_s = 0.0;
+      for (std::uint64_t n = 0; n < 3000; ++n) {
+        const std::uint64_t at = n < 1000 ? n : n + lost;
+        Reading reading = sample(at, 2.0 + (clocked ? 1e-6 * static_cast<double>(n) : 0.0));
+        if (clocked) {
+          reading.device_time_ns = static_cast<std::int64_t>(at) * kPeriod_ns;
+          reading.arrival_ns = kStart_ns + static_cast<std::int64_t>(n) * kPeriod_ns;
+        }
+        ASSERT_TRUE(incrementer.next(reading, increment)) << lost;
+        sum_s += increment.dt_s;
+      }
+      EXPECT_EQ(incrementer.counts().missing, lost) << clocked;
+      EXPECT_EQ(incrementer.counts().restarts, 0U) << clocked << ' ' << lost;
+      EXPECT_NEAR(sum_s, 1e-3 * static_cast<double>(3000 + lost), 1e-9) << clocked << ' ' << lost;
+    }
+  }
+}
+
 TEST(Incrementer, AfterReopeningTheNextSampleIsFlaggedEvenWhereTheCounterFits) {
   Incrementer incrementer(counting_rate_sensor());
   Increment increment;
