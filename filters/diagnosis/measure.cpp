@@ -137,11 +137,20 @@ class Measuring {
     return effects;
   }
 
+  // What no measurement gives, such as the reach of a curve.
+  static void keep_further(const Effect& given, Effect& effect) {
+    for (const ModelParameter& each : given.parameters)
+      if (std::none_of(effect.parameters.begin(), effect.parameters.end(),
+                       [&](const ModelParameter& other) { return other.name == each.name; }))
+        effect.parameters.push_back(each);
+  }
+
   void report(const JointFit& joint) {
     const auto count = static_cast<Eigen::Index>(model_.size());
     const Eigen::Index first = data_.grid.constants();
     // Without a bias in the model, rates count from the mean that the effects leave.
-    const double rates_from = mean_left(data_.grid, design(data_, all()), joint.values);
+    const Columns columns = design(data_, all());
+    const double rates_from = mean_left(data_.grid, columns, joint.values);
     std::vector<FoundEffect> found;
     for (Eigen::Index i = 0; i < count; ++i) {
       Effect effect = effect_of(data_, model_[static_cast<std::size_t>(i)]);
@@ -151,10 +160,15 @@ class Measuring {
       effect.parameters.front().value = joint.values[first + i];
       effect.parameters.front().std_error = std::sqrt(joint.covariance(first + i, first + i));
       if (static_cast<std::size_t>(i) < place_.size())
+        keep_further(wanted_.together[place_[static_cast<std::size_t>(i)]], effect);
+      if (static_cast<std::size_t>(i) < place_.size())
         result_.together[place_[static_cast<std::size_t>(i)]].effect = effect;
       else
         result_.others.push_back(effect);
       found.push_back({effect, 1.0, 0.0, 0.0});
+      Eigen::VectorXd more = joint.values;
+      more[first + i] += 1.0;
+      result_.means.push_back(rates_from - mean_left(data_.grid, columns, more));
       for (Eigen::Index j = 0; j < count; ++j)
         result_.covariance.push_back(joint.covariance(first + i, first + j));
     }

@@ -37,6 +37,7 @@ struct MeasuredEffects {
   std::vector<MeasuredEffect> together;
   std::vector<Effect> others;      // those with one coefficient that were fitted too
   std::vector<double> covariance;  // of the coefficients of `together`, then of `others`; row-major
+  std::vector<double> means;       // of the rate for a coefficient of one, in the same order
   std::vector<ChannelRange> ranges;
 };
 

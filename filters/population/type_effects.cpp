@@ -11,6 +11,7 @@
 #include <tuple>
 
 #include "filters/effects/form.h"
+#include "filters/effects/meaning.h"
 
 namespace ifog {
 namespace {
@@ -72,7 +73,8 @@ Effect typical(const FormFound& form) {
   for (ModelParameter& each : effect.parameters) each.value = each.std_error = 0.0;
   for (const auto& [name, values] : form.further)
     if (2 * values.size() > form.gyros.size())
-      effect.parameters.push_back({name, geometric_median(values), 0.0, "s"});
+      effect.parameters.push_back({name, geometric_median(values), 0.0,
+                                   name.ends_with("_s") ? "s" : std::string(unit_of(effect.channel))});
   return effect;
 }
 

@@ -141,7 +141,7 @@ void add_record(const Command& program) {
       .add_option("--lcm-channel", options->channels,
                   "Another LCM channel, with ifog.channel_t; may stand several times")
       .type_name("NAME");
-  command.add_option("--seconds", options->seconds, "Stop after this long").positive();
+  command.add_option("--seconds", options->seconds, "Stop after this long").within(1e-3, 1e9);
   command.add_option("--bytes", options->bytes, "Keep no more than this; the oldest goes")
       .within(1e6, 1e15)
       .shows_default();

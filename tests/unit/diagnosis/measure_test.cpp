@@ -7,6 +7,7 @@
 
 #include <Eigen/Dense>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <stdexcept>
 #include <vector>
@@ -123,6 +124,9 @@ TEST(Measure, InWhiteNoiseItIsLeastSquares) {
     const double ratio = static_cast<double>(kSamples) * std::log(without.square / both.square);
     EXPECT_LT(found.together[0].likelihood_ratio, 1.02 * ratio);
     EXPECT_GT(found.together[0].likelihood_ratio, 0.5 * ratio);  // without it, slow noise explains a part
+    const double mean = std::accumulate(sensor.temperature.begin(), sensor.temperature.end(), 0.0) /
+                        static_cast<double>(kSamples);
+    EXPECT_NEAR(found.means.at(0), mean - 25.0, 1e-3);
     ASSERT_EQ(found.covariance.size(), 4U);
     EXPECT_NEAR(found.covariance[0], coefficient.std_error * coefficient.std_error,
                 1e-6 * found.covariance[0]);

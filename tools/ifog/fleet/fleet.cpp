@@ -48,7 +48,12 @@ struct FleetArguments {
 };
 
 std::unique_ptr<Engine> engine_named(const FleetArguments& arguments, const Results& results) {
-  const bool slurm = arguments.engine == "slurm" || (arguments.engine == "auto" && is_there("sbatch"));
+  // An installed Slurm may have no controller.
+  const auto answers = [] {
+    return is_there("sbatch") &&
+           run_to_end({"sinfo", "--noheader"}, "", std::chrono::seconds(10)).ended.empty();
+  };
+  const bool slurm = arguments.engine == "slurm" || (arguments.engine == "auto" && answers());
   return slurm ? slurm_engine(results, arguments.jobs) : local_engine(results, arguments.jobs);
 }
 

@@ -102,6 +102,7 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
       axis.together.push_back({std::move(found.together[i]), numbers[i]});
     axis.others = std::move(found.others);
     axis.covariance = std::move(found.covariance);
+    axis.means = std::move(found.means);
     axis.ranges = std::move(found.ranges);
     refuse_without_error(axis);
     measured.axes.push_back(std::move(axis));

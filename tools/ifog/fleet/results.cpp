@@ -132,6 +132,7 @@ void fields(Io& io, T& of) {
   io("together", of.together);
   io("beside", of.others);
   io("covariance", of.covariance);
+  io("means", of.means);
   io("ranges", of.ranges);
 }
 

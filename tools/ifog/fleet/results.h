@@ -45,7 +45,7 @@ struct AxisMeasured {
   std::string axis;
   std::vector<EffectOfType> together;  // those of this axis
   std::vector<Effect> others;
-  std::vector<double> covariance;
+  std::vector<double> covariance, means;
   std::vector<ChannelRange> ranges;
 };
 

@@ -70,7 +70,7 @@ class SlurmEngine : public Engine {
   std::map<std::size_t, std::string> run(const std::vector<std::size_t>& gyros,
                                          const std::function<void(std::size_t)>& done) override {
     // Jobs of an interrupted run are not submitted twice.
-    if (under_way() > 0)
+    if (under_way(0.0) > 0)
       say("waiting for the array %s, which is under way\n", name_.c_str());
     else
       for (const std::string& script : scripts(gyros)) submit(script);
@@ -114,14 +114,14 @@ class SlurmEngine : public Engine {
     say("submitted the array %s\n", first_line(ran.said).c_str());
   }
 
-  // Number of this fleet's jobs that have not ended.
-  std::size_t under_way() {
+  // Number of this fleet's jobs that have not ended. patience_s: for a Slurm that does not answer.
+  std::size_t under_way(double patience_s) {
     const auto since = std::chrono::steady_clock::now();
     for (;;) {
       const Ran ran = run_to_end(
           {"squeue", "--noheader", "--array", "--me", "--name=" + name_, "--format=%i"}, "", kAnswer);
       if (ran.ended.empty()) return jobs_in(ran.said);
-      if (Seconds(std::chrono::steady_clock::now() - since).count() > kPatience_s)
+      if (Seconds(std::chrono::steady_clock::now() - since).count() >= patience_s)
         throw std::runtime_error("squeue: " + how(ran));
       pause(kFirstPause_s);
     }
@@ -129,7 +129,7 @@ class SlurmEngine : public Engine {
 
   void wait(std::size_t all, const std::function<void(std::size_t)>& done) {
     double pause_s = kFirstPause_s;
-    while (const std::size_t left = under_way()) {
+    while (const std::size_t left = under_way(kPatience_s)) {
       done(all - std::min(all, left));
       pause(pause_s);
       pause_s = std::min(1.3 * pause_s, kLongestPause_s);

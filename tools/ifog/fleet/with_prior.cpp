@@ -59,15 +59,31 @@ Fitted fit_with_prior(const AxisMeasured& axis, std::size_t gyro, std::vector<Ty
   return fitted;
 }
 
+bool alike(const Effect& a, const Effect& b) {
+  return a.form == b.form && a.channel == b.channel && a.with_form == b.with_form &&
+         a.with_channel == b.with_channel && a.period == b.period;
+}
+
+// Mean of the rate that the own coefficients correct and the new ones do not.
+double mean_moved(const Fitted& fitted, const AxisMeasured& axis, const std::vector<Effect>& own) {
+  double moved = 0.0;
+  for (std::size_t i = 0; i < fitted.effects.size(); ++i) {
+    double before = 0.0;
+    for (const Effect& effect : own)
+      if (effect.axis == axis.axis && alike(effect, fitted.effects[i]))
+        before = effect.parameters.front().value;
+    moved += (before - fitted.effects[i].parameters.front().value) *
+             axis.means.at(static_cast<std::size_t>(fitted.at[i]));
+  }
+  return moved;
+}
+
 // True if the effect was in the fit, even if the model does not contain it: of the type, or another one
 // fitted with them.
 bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effect& effect) {
-  const auto alike = [&](const Effect& other) {
-    return other.form == effect.form && other.channel == effect.channel &&
-           other.with_form == effect.with_form && other.with_channel == effect.with_channel &&
-           other.period == effect.period;
-  };
-  if (std::any_of(axis.others.begin(), axis.others.end(), alike)) return true;
+  if (std::any_of(axis.others.begin(), axis.others.end(),
+                  [&](const Effect& other) { return alike(other, effect); }))
+    return true;
   for (std::size_t i = 0; i < axis.together.size(); ++i)
     if (axis.together[i].not_measured.empty() && is_of(type.effects[axis.together[i].of_type], effect))
       return true;
@@ -116,6 +132,10 @@ Model model_with_prior(const Model& own, const TypeToMeasure& type, const GyroMe
         [&](const AxisMeasured& axis) { return axis.axis == effect.axis && was_fitted(type, axis, effect); });
     if (!fitted) model.effects.push_back(effect);
   }
+  for (Effect& effect : model.effects)
+    for (std::size_t a = 0; effect.form == "bias" && a < together.size(); ++a)
+      if (measured.axes[a].axis == effect.axis)
+        effect.parameters.front().value += mean_moved(together[a], measured.axes[a], own.effects);
   model.covariance = covariance_of(together, model.effects);
   // These figures belong to the model of the gyro's own diagnosis.
   model.source.before.clear();
