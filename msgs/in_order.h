@@ -20,7 +20,8 @@ class InOrder {
   // are waiting. A message that arrives still later is passed on at once.
   template <typename Sink>
   void take(Message message, Sink&& sink) {
-    const std::int64_t by = behind(message.seq);
+    message.seq = std::clamp<std::int64_t>(message.seq, 0, INT64_MAX / 2);  // of a foreign log
+    const std::int64_t by = message.seq - last_;
     const bool restarted = started_ && by <= -kRestart;
     if (restarted) flush(sink);
     const bool continues =
@@ -41,12 +42,8 @@ class InOrder {
   static constexpr std::size_t kWindow = 16;     // messages; larger than any reordering of a network
   static constexpr std::int64_t kRestart = 256;  // numbers back: the daemon restarted
 
-  // Messages from foreign logs have any number.
-  [[nodiscard]] std::int64_t behind(std::int64_t seq) const {
-    return static_cast<std::int64_t>(static_cast<std::uint64_t>(seq) - static_cast<std::uint64_t>(last_));
-  }
   [[nodiscard]] bool follows(const Message& message) const {
-    return behind(message.seq) <= std::max<std::int64_t>(1, message.merged) ||
+    return message.seq - last_ <= std::max<std::int64_t>(1, message.merged) ||
            (message.flags & rate_t::FLAG_GAP) != 0;
   }
   template <typename Sink>
@@ -56,8 +53,7 @@ class InOrder {
   }
   template <typename Sink>
   void hand_on(const Message& message, Sink&& sink) {
-    const std::int64_t by = behind(message.seq);
-    const bool late = started_ && by <= 0 && by > -kRestart;
+    const bool late = started_ && message.seq <= last_ && message.seq > last_ - kRestart;
     if (!late) last_ = message.seq;
     started_ = true;
     sink(message);

@@ -215,6 +215,7 @@ struct ChannelSources::Impl {
 
   // Throws std::runtime_error if LCM cannot use the URL now.
   void subscribe() {
+    if (lcm != nullptr) lcm_destroy(lcm);
     lcm = lcm_create(lcm_url.c_str());
     if (lcm == nullptr)
       throw std::runtime_error("lcm_url = \"" + printable(lcm_url) + "\": LCM cannot use it");
@@ -223,14 +224,6 @@ struct ChannelSources::Impl {
     std::sort(names.begin(), names.end());
     names.erase(std::unique(names.begin(), names.end()), names.end());
     for (const std::string& name : names) lcm_subscribe(lcm, as_written(name).c_str(), &Impl::received, this);
-  }
-
-  void subscribe_again() noexcept {
-    if (lcm != nullptr) lcm_destroy(std::exchange(lcm, nullptr));
-    try {
-      subscribe();
-    } catch (const std::exception&) {
-    }
   }
 
   void listen() {
@@ -251,7 +244,11 @@ struct ChannelSources::Impl {
       poll(wanted, 2, static_cast<int>(std::max<std::int64_t>(0, next_ns - now_ns + 999'999) / 1'000'000));
       if ((wanted[0].revents & POLLIN) != 0) return;
       if (wanted[1].revents != 0) lcm_handle(lcm);
-      if (away) subscribe_again();
+      if (away) try {
+          subscribe();
+        } catch (const std::exception&) {
+          continue;
+        }
     }
   }
 };

@@ -23,22 +23,6 @@ namespace {
   throw std::invalid_argument("state: " + in_quotes(name) + ", expected " + expected);
 }
 
-// "arma(2,1)" -> {2, 1}; empty if the text is not NAME(number[,number]).
-std::vector<int> orders(const std::string& text, const std::string& name) {
-  std::vector<int> found;
-  if (!text.starts_with(name + "(") || !text.ends_with(")")) return {};
-  const char* at = text.data() + name.size() + 1;
-  const char* const end = text.data() + text.size() - 1;
-  while (at < end) {
-    int value = 0;
-    const auto [rest, error] = std::from_chars(at, end, value);
-    if (error != std::errc{} || value < 0 || (rest != end && *rest != ',')) return {};
-    found.push_back(value);
-    at = rest == end ? end : rest + 1;
-  }
-  return found;
-}
-
 // Hands out parameters in order.
 class ParameterReader {
  public:
@@ -74,12 +58,9 @@ std::unique_ptr<StateModel> make_term(const std::string& term, ParameterReader& 
   if (term == "gauss-markov")
     return std::make_unique<GaussMarkov>(parameters.take_positive("correlation time in s"));
   if (term == "harmonic") return std::make_unique<Harmonic>(parameters.take_positive("frequency in Hz"));
-  const std::vector<int> ar = orders(term, "ar");
-  const std::vector<int> arma = orders(term, "arma");
-  if (ar.size() == 1 || arma.size() == 2) {
-    const int p = arma.empty() ? ar[0] : arma[0];
-    const int q = arma.empty() ? 0 : arma[1];
-    if (p + q < 1 || p > kMaxStates || q > kMaxStates - 1) {
+  if (const auto arma = arma_orders(term)) {
+    const auto [p, q] = *arma;
+    if (p > kMaxStates || q > kMaxStates - 1 || p + q < 1) {
       refuse(term, "at least one coefficient and at most " + std::to_string(kMaxStates) + " states");
     }
     std::vector<double> phi, theta;
@@ -100,35 +81,50 @@ std::string expected_state_model(const std::string& written) {
   return one_of(written, state_model_names(), ", or a sum of them with ' + '");
 }
 
-bool is_state_model(const std::string& name) {
+std::vector<std::string> terms_of(const std::string& name) {
   constexpr std::string_view kPlus = " + ";
-  constexpr std::array kPlain{"random-walk", "integrated-random-walk", "gauss-markov", "harmonic"};
+  std::vector<std::string> terms;
   for (std::size_t from = 0; from <= name.size();) {
     const std::size_t to = std::min(name.find(kPlus, from), name.size());
-    const std::string term = name.substr(from, to - from);
-    if (std::find(kPlain.begin(), kPlain.end(), term) == kPlain.end() && orders(term, "ar").size() != 1 &&
-        orders(term, "arma").size() != 2)
-      return false;
+    terms.push_back(name.substr(from, to - from));
     from = to + kPlus.size();
   }
-  return true;
+  return terms;
+}
+
+std::optional<ArmaOrders> arma_orders(const std::string& term) {
+  const auto behind = [&](char sign) {
+    unsigned value = 0;
+    const std::size_t at = std::min(term.find(sign), term.size() - 1) + 1;
+    std::from_chars(term.data() + at, term.data() + term.size(), value);
+    return static_cast<int>(std::min(value, 1000U));
+  };
+  const int p = behind('('), q = behind(',');
+  if (term == "ar(" + std::to_string(p) + ")") return ArmaOrders{p, 0};
+  if (term == "arma(" + std::to_string(p) + "," + std::to_string(q) + ")") return ArmaOrders{p, q};
+  return std::nullopt;
+}
+
+bool is_state_model(const std::string& name) {
+  constexpr std::array kPlain{"random-walk", "integrated-random-walk", "gauss-markov", "harmonic"};
+  const std::vector<std::string> terms = terms_of(name);
+  return std::all_of(terms.begin(), terms.end(), [&](const std::string& term) {
+    return std::find(kPlain.begin(), kPlain.end(), term) != kPlain.end() || arma_orders(term);
+  });
 }
 
 std::unique_ptr<StateModel> make_state_model(const std::string& name, std::span<const double> parameters,
                                              double nominal_period_s) {
-  constexpr std::string_view kPlus = " + ";
   ParameterReader reader(name, parameters);
   std::vector<Sum::Term> terms;
-  for (std::size_t from = 0; from <= name.size();) {
-    const std::size_t to = std::min(name.find(kPlus, from), name.size());
+  for (const std::string& each : terms_of(name)) {
     Sum::Term term;
-    term.model = make_term(name.substr(from, to - from), reader, nominal_period_s);
+    term.model = make_term(each, reader, nominal_period_s);
     if (!terms.empty()) {
       term.noise_ratio = reader.take("driving noise of the term over process_noise");
       if (term.noise_ratio < 0) refuse(name, "a driving noise ratio of at least 0");
     }
     terms.push_back(std::move(term));
-    from = to + kPlus.size();
   }
   reader.finish();
   std::unique_ptr<StateModel> model;

@@ -7,6 +7,7 @@
 
 #include "drivers/ifog/quoted.h"
 #include "filters/state_models/state_model.h"
+#include "filters/state_models/state_name.h"
 
 namespace ifog {
 namespace {
@@ -25,16 +26,11 @@ double under(const RecordSpectrum& spectrum, std::span<const double> shape) {
 
 ModelCandidate::ModelCandidate(std::string state, double period_s)
     : state_(std::move(state)), period_s_(period_s) {
-  constexpr std::string_view kWalk = "random-walk", kPlus = " + ";
-  bool good = state_.starts_with(kWalk);
+  const std::vector<std::string> names = terms_of(state_);
+  bool good = names.front() == "random-walk";
   size_ = static_cast<int>(kLevel);
-  for (std::size_t at = kWalk.size(); good && at < state_.size();) {
-    good = state_.compare(at, kPlus.size(), kPlus) == 0;
-    if (!good) break;
-    const std::size_t from = at + kPlus.size();
-    at = std::min(state_.find(kPlus, from), state_.size());
-    const std::string name = state_.substr(from, at - from);
-    auto term = make_noise_term(name);
+  for (std::size_t i = 1; good && i < names.size(); ++i) {
+    auto term = make_noise_term(names[i]);
     good = term != nullptr;
     if (!good) break;
     size_ += term->size();

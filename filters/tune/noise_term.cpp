@@ -3,11 +3,12 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <complex>
 #include <iterator>
 #include <numbers>
+
+#include "filters/state_models/state_name.h"
 
 namespace ifog {
 namespace {
@@ -174,27 +175,6 @@ class ArmaTerm final : public NoiseTerm {
   int p_, q_;
 };
 
-// "ar(2)" → 2, 0; "arma(3,1)" → 3, 1.
-bool orders(const std::string& term, int& p, int& q) {
-  constexpr int kMost = static_cast<int>(RecordSpectrum::kOrders);
-  const auto read = [](const char* from, const char* end, int& value) {
-    return std::from_chars(from, end, value).ptr;
-  };
-  const char* end = term.data() + term.size();
-  p = q = 0;
-  if (term.starts_with("ar(")) {
-    const char* at = read(term.data() + 3, end, p);
-    return p >= 1 && p <= kMost && std::string(at, end) == ")";
-  }
-  if (term.starts_with("arma(")) {
-    const char* at = read(term.data() + 5, end, p);
-    if (at == end || *at != ',') return false;
-    at = read(at + 1, end, q);
-    return p >= 1 && p <= kMost && q >= 1 && q < p && std::string(at, end) == ")";
-  }
-  return false;
-}
-
 }  // namespace
 
 std::vector<double> ar_from_partial(std::span<const double> partial) {
@@ -220,9 +200,10 @@ std::vector<double> partial_from_ar(std::vector<double> phi) {
 
 std::unique_ptr<NoiseTerm> make_noise_term(const std::string& name) {
   if (name == "gauss-markov") return std::make_unique<GaussMarkovTerm>();
-  int p = 0, q = 0;
-  if (orders(name, p, q)) return std::make_unique<ArmaTerm>(p, q);
-  return nullptr;
+  constexpr int kMost = static_cast<int>(RecordSpectrum::kOrders);
+  const auto arma = arma_orders(name);
+  if (!arma || arma->p < 1 || arma->p > kMost || arma->q >= arma->p) return nullptr;
+  return std::make_unique<ArmaTerm>(arma->p, arma->q);
 }
 
 }  // namespace ifog

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "filters/distributions/median.h"
+
 namespace ifog::report {
 
 static_assert(std::endian::native == std::endian::little, "a page's script reads them as they lie in memory");
@@ -45,9 +47,7 @@ void open_at_holes(std::vector<double>& time, std::vector<double>& y) {
   if (time.size() < 3) return;
   std::vector<double> steps;
   for (std::size_t i = 1; i < time.size(); ++i) steps.push_back(time[i] - time[i - 1]);
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  const double most = kHole * *middle;
+  const double most = kHole * median(std::move(steps));
   std::vector<double> open_time, open_y;
   for (std::size_t i = 0; i < time.size(); ++i) {
     if (i > 0 && time[i] - time[i - 1] > most) {
