@@ -73,6 +73,9 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
     const bool by_own_name = axis.empty() && !own.empty() && d.axes > 1;
     axis_of_.push_back(!axis.empty() ? driver_axis(d, axis) : by_own_name ? driver_axis(d, own) : 0);
   } else {
+    if (!axis.empty())
+      throw std::runtime_error("--axis is " + in_quotes(axis) +
+                               ", expected none for a capture of several axes");
     for (const std::string& name : capture.axes) axis_of_.push_back(driver_axis(d, name));
   }
   for (std::size_t i = 0; i < capture.axes.size(); ++i)

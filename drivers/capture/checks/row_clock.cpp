@@ -70,6 +70,21 @@ bool same_values(const RowBlock& rows, std::size_t a, std::size_t b) {
   return any;
 }
 
+// True if most rows that repeat the one before, with its time, do so by chance, as coarse values do: then rows
+// seven apart are equal, too. With r and c, the shares of these: (r - c) / (1 - c) true repeats against c of the rest.
+bool repeat_by_chance(const RowBlock& rows) {
+  constexpr std::size_t kApart = 7;
+  double all = 0.0, timed = 0.0, repeated = 0.0, equal = 0.0;
+  for (std::size_t i = kApart; i < rows.size(); ++i) {
+    const bool same_time = rows.time_s[i] == rows.time_s[i - 1];
+    all += 1.0;
+    timed += same_time ? 1.0 : 0.0;
+    repeated += same_time && same_values(rows, i, i - 1) ? 1.0 : 0.0;
+    equal += same_values(rows, i, i - kApart) ? 1.0 : 0.0;
+  }
+  return repeated * (all + equal) < 2.0 * equal * timed;
+}
+
 }  // namespace
 
 RowOrder::RowOrder(const std::string& path, std::string time, RowNotes& notes)
@@ -157,18 +172,33 @@ void RowClock::take(RowBlock& rows) {
   buffered_.append(rows);
   std::swap(buffered_, rows);
   order_.take(rows, known);
-  if (!std::exchange(begun_, true)) within_s_ = step_within_bursts(rows.time_s);
+  if (!std::exchange(begun_, true)) {
+    within_s_ = step_within_bursts(rows.time_s);
+    keep_repeats_ = keep_repeats_ || repeat_by_chance(rows);
+  }
   if (!keep_repeats_) drop_repeats(rows);
+  std::vector<double>& time_s = rows.time_s;
   std::size_t begin = 0;
-  for (std::size_t i = 1; i < rows.size(); ++i) {
-    // The first of spread rows keeps its stamp.
-    const double since_s = rows.time_s[i] - rows.time_s[i - 1];
-    if (since_s <= within_s_) continue;
-    spread(rows, begin, i, rows.time_s[i]);
-    begin = i;
+  for (std::size_t end; (end = end_of_burst(rows, begin)) < rows.size(); begin = end) {
+    if (!(period_s_ > 0.0)) {
+      // A first burst of fewer rows than the next one may have begun before the record.
+      const std::size_t next = end_of_burst(rows, end);
+      if (next == rows.size()) break;
+      const double next_step_s = (time_s[next] - time_s[end]) / static_cast<double>(next - end);
+      if (end > 1 && next - end > end)
+        time_s[0] = std::max(time_s[0], time_s[end] - static_cast<double>(end) * next_step_s);
+    }
+    spread(rows, begin, end, time_s[end]);
   }
   rows.split_off(begin, buffered_);
   if (rows.size() > 0) next_(rows);
+}
+
+std::size_t RowClock::end_of_burst(const RowBlock& rows, std::size_t begin) const {
+  // The first of spread rows keeps its stamp.
+  std::size_t end = begin + 1;
+  while (end < rows.size() && rows.time_s[end] - rows.time_s[end - 1] <= within_s_) ++end;
+  return end;
 }
 
 void RowClock::drop_repeats(RowBlock& rows) {
@@ -200,10 +230,15 @@ void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double
 void RowClock::finish() {
   order_.finish();
   const std::size_t rows = buffered_.size();
-  if (rows > 1) {
+  std::size_t last = 0;  // the last burst's first row
+  if (const std::size_t end = end_of_burst(buffered_, 0); end < rows) {
+    spread(buffered_, 0, end, buffered_.time_s[end]);
+    last = end;
+  }
+  if (rows > last + 1) {
     if (!(period_s_ > 0.0))
       fail_at(path_, 0, printable(time_) + " is the same in all rows, expected times, or --sample-rate HZ");
-    spread(buffered_, 0, rows, buffered_.time_s.front() + static_cast<double>(rows) * period_s_);
+    spread(buffered_, last, rows, buffered_.time_s[last] + static_cast<double>(rows - last) * period_s_);
   }
   if (rows > 0) next_(buffered_);
   say();

@@ -3,7 +3,7 @@
 //   - a rollover of a counter or clock of known length adds that length;
 //   - a row whose time goes back otherwise (clock set back, network reordering) or is too late is dropped and
 //   counted; the file is rejected if these exceed 1 %. A step of a year is a set clock, and reported;
-//   - a row that repeats the time and values of the one before is dropped and counted;
+//   - a row that repeats the time and values of the one before is dropped and counted, unless chance explains it;
 //   - rows with one stamp, or in bursts (several per packet, packets at even times), are spread evenly up to
 //   the next stamp.
 #pragma once
@@ -60,12 +60,14 @@ class RowClock {
 
  private:
   void drop_repeats(RowBlock& rows);
+  // End of the burst that starts at `begin`; the number of rows if more of it may follow.
+  [[nodiscard]] std::size_t end_of_burst(const RowBlock& rows, std::size_t begin) const;
   void spread(RowBlock& rows, std::size_t begin, std::size_t end, double next_s);
   void say();
 
   const std::string& path_;
   const std::string time_;
-  const bool keep_repeats_;
+  bool keep_repeats_;
   RowNotes& notes_;
   Next next_;
   RowOrder order_;

@@ -54,7 +54,7 @@ std::optional<RateCandidate> candidate_of(const Words& words, const std::string&
              angle = angle_unit(unit, false, false).has_value();
   if (!unit.empty() && !rate && !angle) return std::nullopt;
   const bool named = speaks_of_rate(words) || speaks_of_increment(words);
-  if (!named && !(rate && !words.axis.empty())) return std::nullopt;
+  if (!named && !(rate && (!words.axis.empty() || words.have(Role::truth)))) return std::nullopt;
   RateCandidate found;
   found.unit = rate_unit(words, unit);
   found.axis = words.axis;

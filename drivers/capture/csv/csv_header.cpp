@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <set>
 #include <utility>
 
@@ -66,6 +67,7 @@ class Chooser {
 
   CsvHeader choose() {
     header_.cells = names_;
+    for (const CsvColumn& asked : header_.layout.columns) (void)place(asked.header);
     if (header_.layout.only_header.empty()) look_what_alternates();
     if (!header_.layout.only_header.empty()) keep_only(place(header_.layout.only_header));
     choose_columns();
@@ -87,7 +89,12 @@ class Chooser {
       const bool is_text = std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
         return std::isalpha(static_cast<unsigned char>(cell.c_str()[0])) != 0;
       });
-      if (!is_text && !words.have(Role::one)) continue;
+      // A measured value is no sensor's number: "imu_gyr[1]", 0.00106.
+      const bool is_number = words.have(Role::one) && words.axis.empty() &&
+                             std::ranges::none_of(cells, [](const std::string& cell) {
+                               return std::fmod(finite_number(cell).value_or(0.0), 1.0) != 0.0;
+                             });
+      if (!is_text && !is_number) continue;
       const std::set<std::string> values(cells.begin(), cells.end());
       std::size_t changes = 0;
       for (std::size_t row = 1; row < cells.size(); ++row) changes += cells[row] != cells[row - 1] ? 1 : 0;

@@ -63,7 +63,8 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
   if (separator == ' ') line = trimmed(line);
   for (;;) {
     const std::size_t end = cell_end(line, separator);
-    cells.emplace_back(unquoted(line.substr(0, end)));
+    std::string& cell = cells.emplace_back(unquoted(line.substr(0, end)));
+    for (std::size_t at = 0; (at = cell.find("\"\"", at)) != std::string::npos; ++at) cell.erase(at, 1);
     if (end == line.size()) break;
     line.remove_prefix(end + 1);
     while (separator == ' ' && !line.empty() && line.front() == ' ') line.remove_prefix(1);
@@ -79,6 +80,8 @@ bool Lines::next(std::string_view& line) {
   line = rest_.substr(0, end);
   rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
+  // The checksum of NMEA 0183 and its relatives: $VNYMR,…*69.
+  if (line.size() > 3 && line.front() == '$' && line[line.size() - 3] == '*') line.remove_suffix(3);
   ++number_;
   return true;
 }

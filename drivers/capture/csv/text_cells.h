@@ -30,7 +30,7 @@ class Lines {
 [[nodiscard]] std::string_view unquoted(std::string_view cell);
 // End of the first cell: a separator outside quotes, or the row's end.
 [[nodiscard]] std::size_t cell_end(std::string_view row, char separator);
-// Cells of a line, without surrounding blanks and quotes. Several blanks are one separator.
+// Cells of a line, without surrounding blanks and quotes; doubled quotes are one. Several blanks are one separator.
 [[nodiscard]] std::vector<std::string> cells_of(std::string_view line, char separator);
 
 // Removes a comment mark: "#", "%", "//".

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "drivers/capture/capture.h"
@@ -55,6 +56,14 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       {rows_of("", "$VNIMU,-0.0350,+0.4222,-0.6643,-0.015,+0.019,+9.80{digit},{x},{y},{z},+20.7,+84.322*00"),
        {"to read it: --sample-rate HZ --column 'rate_x_radps=#8:rad/s' --column 'rate_y_radps=#9:rad/s' "
         "--column 'rate_z_radps=#10:rad/s'; in"}},
+      // The same, $VNYMR: angles, magnetic field, acceleration, rates, which a checksum follows.
+      {rows_of("",
+               "$VNYMR,-165.9,-037.2,+001.2,+0.289,+0.070,+0.748,-05.96,-00.18,-07.7{digit},{x},{y},{z}*69"),
+       {"or: --sample-rate HZ --column 'rate_x_radps=#11:rad/s' --column 'rate_y_radps=#12:rad/s' "
+        "--column 'rate_z_radps=#13:rad/s'"}},
+      // A reference of one axis under the capture's name.
+      {rows_of("t_s,rate_radps,reference_rate_radps\n", "0.{i},{x},{y}"),
+       {"reference_rate 'reference_rate_radps' in radps"}},
       // OxIOD data set, imu.csv: roll, pitch, yaw, rates, gravity.
       {rows_of("", "1505306516.{i},0.01,0.02,{angle},{x},{y},{z},0.1,0.2,0.97"),
        {"--column 'rate_x_radps=#5:rad/s' --column 'rate_y_radps=#6:rad/s' --column 'rate_z_radps=#7:rad/s'; "
@@ -219,6 +228,44 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       EXPECT_NE(all.find(part), std::string::npos) << part << "\nnot in\n"
                                                    << all << "\nof\n"
                                                    << each.text.substr(0, 300);
+  }
+}
+
+TEST(OtherPrograms, WholeNumbersNameASensorAndMeasuredValuesDoNot) {
+  for (const auto& [name, one, other, are_sensors] :
+       std::initializer_list<std::tuple<const char*, const char*, const char*, bool>>{
+           {"imu", "0", "1", true},
+           {"imu_temperature_degC", "25.1", "25.2", false},
+           {"imu_gyr[1]", "-0.00106", "0.00213", false},
+           {"imu_gyr[1]", "3", "4", false}}) {
+    std::string text = "time_s,rate_radps," + std::string(name) + "\n";
+    for (int i = 0; i < 40; ++i)
+      text += std::to_string(i) + ",0.00" + std::to_string(i) + "," + (i % 2 == 0 ? one : other) + "\n";
+    std::string all;
+    for (const std::string& notice : parse_capture(text, "a.csv").notices) all += notice;
+    EXPECT_EQ(all.find("rows of several sensors") != std::string::npos, are_sensors) << name << one;
+  }
+}
+
+// Whole seconds as stamps, five rows each, the first and the last second being cut: no row is taken for a repeat of
+// the one before because coarse values are often equal, and all are as far apart.
+TEST(OtherPrograms, CoarseValuesUnderCoarseStampsAreNoRepeats) {
+  for (const bool doubled : {false, true}) {
+    std::string text = "time_s,rate_radps\n";
+    std::uint32_t dice = 1;
+    for (int i = 3; i < 998; ++i) {
+      dice = dice * 1664525U + 1013904223U;
+      for (int times = 0; times < (doubled ? 2 : 1); ++times)
+        text += std::to_string(i / 5) + ",0.00" + std::to_string(dice >> 30U) + "\n";
+    }
+    const Capture read = parse_capture(text, "a.csv");
+    if (doubled) {
+      EXPECT_LT(read.size(), 1000U);
+      continue;
+    }
+    ASSERT_EQ(read.size(), 995U);
+    for (std::size_t i = 0; i < read.size(); ++i)
+      EXPECT_NEAR(read.time_s[i], 0.2 * static_cast<double>(i + 3), 1e-9);
   }
 }
 
