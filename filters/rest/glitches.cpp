@@ -22,6 +22,7 @@ constexpr double kOfMedian = 1.4826 / 1.224744871391589;
 // kLeast its error reaches a fifth.
 constexpr std::size_t kNear = 64, kLeast = 16;
 constexpr double kLocalAbove = 2.0;
+constexpr std::size_t kAround = 4;  // samples on either side that do not leap
 constexpr std::size_t kOneInAtMost = 1000;
 constexpr std::size_t kLongest = 7;       // samples; a longer run is a repeated value
 constexpr double kRounding = 1e-12;       // relative
@@ -63,6 +64,14 @@ class Yardstick {
   [[nodiscard]] bool is_placeholder(const Run& run) const {
     return std::abs(run.value) == largest_ && 2.0 * second_ < largest_ &&
            (times_ > 1 || (run.length > 2 && repeats_.are_rare()));
+  }
+  // The samples around a blow or the start of motion leap, too.
+  [[nodiscard]] bool is_alone(const Run& run, double between) const {
+    const double most = 0.25 * std::abs(run.value - between);
+    const std::size_t end = std::min(run.begin + kAround + 1, rate_.size());
+    for (std::size_t i = run.begin - std::min(run.begin, kAround); i < end; ++i)
+      if (std::abs(rate_.at(i) - between) > most && std::abs(rate_.at(i) - run.value) > most) return false;
+    return true;
   }
   // Lower limit of at().
   [[nodiscard]] double least() const { return std::max(all_, least_); }
@@ -132,6 +141,7 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
     const bool placeholder = of == LeapOf::kOneValue && yardstick.is_placeholder(run);
     if (run.length > kLongest || !(of == LeapOf::kOneValue ? placeholder : run.length == 1)) return;
     if (!(away > kFar * yardstick.least()) || std::abs(run.after - run.before) >= 0.5 * away) return;
+    if (of == LeapOf::kOneSample && !yardstick.is_alone(run, between)) return;
     const double deviation = yardstick.at(run.begin);
     if (!(deviation > 0.0) || away <= kFar * deviation) return;
     // The sample between two outliers looks like one too.

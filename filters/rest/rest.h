@@ -53,8 +53,8 @@ struct Rest {
 // "the rate leaps by up to 118 °/h, 4 times, first at 35 s: …"; empty if it does not.
 [[nodiscard]] std::string slow_turns_in_words(const Rest& rest, double period_s, double first_s);
 
-// Throws std::invalid_argument with a message unless the sensor was longer at rest than it was turned. Of a record
-// that was only shaken the quieter part can be used.
+// Throws std::invalid_argument with a message unless the sensor was longer at rest than it was turned, and for a tenth
+// of the record. Of a record that was only shaken the quieter part can be used.
 void require_rest(const Rest& rest, double period_s, double first_s);
 
 // Intersection of two lists of stretches, each in order.

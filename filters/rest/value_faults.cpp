@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
@@ -43,6 +44,25 @@ void find_held(const std::vector<double>& values, double period_s, std::vector<V
                                " Hz, and figures below that period are the logger's"});
 }
 
+// Most stretches hold two values while the noise is below 0.2 to 0.37 of their distance, by the level between them.
+void find_coarse(const std::vector<double>& values, std::vector<ValueFault>& found) {
+  constexpr std::size_t kSome = 100;
+  double step = std::numeric_limits<double>::infinity();
+  std::size_t stretches = 0, coarse = 0;
+  for (std::size_t i = 0; i + kSome <= values.size(); i += kSome, ++stretches) {
+    const std::span<const double> some = std::span(values).subspan(i, kSome);
+    const auto [least, most] = std::ranges::minmax(some);
+    if (!std::ranges::all_of(some, [&](double v) { return v == least || v == most; })) continue;
+    ++coarse;
+    if (most > least) step = std::min(step, most - least);
+  }
+  if (2 * coarse <= stretches || !std::isfinite(step)) return;
+  found.push_back({"coarse", "most stretches of 100 samples hold one or two values, " +
+                                 six(step * 3600.0 / kDegree) +
+                                 " °/h apart: the noise is below the resolution, and the figures are not "
+                                 "the sensor's"});
+}
+
 void find_clipped(const std::vector<double>& sorted, std::vector<ValueFault>& found) {
   std::vector<Run> values;  // in ascending order
   const Stretch all{0, sorted.size()};
@@ -65,7 +85,9 @@ void find_wrapped(const std::vector<double>& values, const std::vector<double>& 
   const double low = sorted.front(), high = sorted.back(), range = high - low;
   const auto inside = std::lower_bound(sorted.begin(), sorted.end(), high - 0.2 * range) -
                       std::upper_bound(sorted.begin(), sorted.end(), low + 0.2 * range);
-  if (inside > 0 || !(range > 0.0)) return;
+  const bool two_values = std::upper_bound(sorted.begin(), sorted.end(), low) ==
+                          std::lower_bound(sorted.begin(), sorted.end(), high);
+  if (inside > 0 || two_values) return;
   const auto above = sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), low + 0.5 * range);
   std::size_t across = 0;
   for (std::size_t i = 1; i < values.size(); ++i)
@@ -119,6 +141,7 @@ void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, d
   if (sorted.front() == sorted.back()) return;
   const std::size_t before = found.size();
   find_held(values, period_s, found);
+  if (found.size() == before) find_coarse(values, found);
   find_wrapped(values, sorted, found);
   if (found.size() == before) find_interleaved(values, found);
   find_clipped(sorted, found);

@@ -14,16 +14,17 @@
 namespace ifog {
 
 struct ValueFault {
-  std::string name;  // held, clipped, wrapped, interleaved, unit; leaps and stuck from cleaned_rate.h
+  std::string name;  // held, coarse, clipped, wrapped, interleaved, unit; leaps and stuck from cleaned_rate.h
   std::string text;
 };
 
 // Appends what it finds to `found`. rate: rad/s, NaN where missing; parts: its stretches at rest, without
 // NaN. Only the first million samples of each stretch are examined.
 //   - held: nine of ten values repeat for the same number of samples, two or more;
+//   - coarse: most stretches of 100 samples hold at most two values;
 //   - clipped: an extreme value is 1 % of the samples, and thrice as frequent as the next and the average one;
-//   - wrapped: 1 % of the steps are most of the range, and the middle of the range is empty: signed counts
-//   read as unsigned;
+//   - wrapped: 1 % of the steps are most of the range, and the middle of the range is empty, of more than
+//   two values: signed counts read as unsigned;
 //   - interleaved: the scatter of every second, third or fourth sample about its mean is less than half of
 //   the total scatter;
 //   - unit: the mean at rest exceeds 5 °/s, the largest bias of a MEMS gyro.

@@ -155,6 +155,32 @@ TEST(Glitches, NoiseStepsAndBlowsAreNone) {
   EXPECT_EQ(find_glitches(std::vector<double>(1000, 1e-5), std::vector<Stretch>{{0, 1000}}).count, 0U);
 }
 
+// A tap rings for some samples, and the first turn of a record begins at once.
+TEST(Glitches, TheCrestOfABlowIsNone) {
+  std::vector<double> rate = white(20000, 10);
+  const std::vector<double> ring{0.020, 0.0425, -0.0119, 0.0236, 0.0121, -0.01};
+  for (std::size_t i = 0; i < ring.size(); ++i) rate[5000 + i] += ring[i];
+  const std::vector<Stretch> all{{0, rate.size()}};
+  EXPECT_EQ(find_glitches(rate, all).count, 0U);
+  rate[9000] = 0.05;
+  EXPECT_EQ(find_glitches(rate, all).first, 9000U);
+}
+
+// By the level between them 0.2 to 0.37 of the step; noise of half a step is resolved.
+TEST(ValueFaults, NoiseBelowTheResolutionIsSaid) {
+  for (const auto& [deviation, level, names] :
+       std::initializer_list<std::tuple<double, double, std::vector<std::string>>>{
+           {0.15, 0.0, {"coarse"}}, {0.3, 0.5, {"coarse"}}, {0.5, 0.0, {}}, {0.5, 0.5, {}}}) {
+    std::vector<double> rate = white(20000, 11);
+    for (double& value : rate) value = 1e-2 * std::round(level + deviation * (value - 7e-5) / 1e-5);
+    std::vector<ValueFault> faults;
+    find_value_faults(rate, std::vector<Stretch>{{0, rate.size()}}, 0.01, faults);
+    std::vector<std::string> found;
+    for (const ValueFault& fault : faults) found.push_back(fault.name);
+    EXPECT_EQ(found, names) << deviation << ' ' << level;
+  }
+}
+
 // A motor that runs for a while, a sensor that is switched on halfway: the noise is another there.
 TEST(Glitches, LouderNoiseIsNone) {
   for (unsigned seed = 1; seed <= 20; ++seed) {

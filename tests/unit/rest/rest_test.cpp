@@ -83,6 +83,21 @@ TEST(Rest, WithoutRestThereIsNone) {
   EXPECT_EQ(rest_of_motion(64.0, 33.0, 2.5, 0.04, 0.03).resting(), 0U);  // a Roomba that starts after 2 s
 }
 
+// Vibration that ceases for eight seconds of a hundred.
+TEST(Rest, AFewQuietSecondsAreNoRest) {
+  for (const bool quiet_half : {false, true}) {
+    auto rate = ifog::simulate::noise({.N = 1e-5}, kRate, 10000, 8);
+    for (std::size_t i = quiet_half ? 5000 : 800; i < rate.size(); ++i) rate[i] *= 8.0;
+    const Rest rest = rest_of(rate);
+    EXPECT_EQ(rest.turned, 0U);
+    EXPECT_NEAR(static_cast<double>(rest.resting()), quiet_half ? 5000.0 : 800.0, 51.0);
+    if (quiet_half)
+      EXPECT_NO_THROW(ifog::require_rest(rest, 1.0 / kRate, 0.0));
+    else
+      EXPECT_THROW(ifog::require_rest(rest, 1.0 / kRate, 0.0), std::invalid_argument);
+  }
+}
+
 TEST(Rest, AStepOfTheBiasAndOutliersAreNoMotion) {
   auto rate = ifog::simulate::noise({.N = 1e-5}, kRate, 60000, 3);
   for (std::size_t i = 30000; i < rate.size(); ++i) rate[i] += 1e-4;

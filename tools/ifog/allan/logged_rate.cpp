@@ -190,7 +190,7 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   // A filter's gain makes jumps of its own; faults of the logger are visible in the raw rate.
   record.findings.assign(logged.repeats.begin(), logged.repeats.end());
   std::optional<LongSeries> cleaned;
-  if (signal != "denoised")
+  if (signal != "denoised" && !options.keep_motion)
     cleaned = without_leaps(logged.rate, logged.rate, parts, shown_time_s, record.findings);
   const SeriesView rate = cleaned ? SeriesView(*cleaned) : logged.rate;
   if (signal == "rate") find_value_faults(rate, parts, period, record.findings);
