@@ -10,7 +10,6 @@
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/driver.h"
 #include "drivers/ifog/quoted.h"
-#include "drivers/system/shell_word.h"
 #include "drivers/units/turn.h"
 
 namespace ifog {
@@ -47,21 +46,6 @@ void differentiate(std::vector<double>& angle_rad, const std::vector<double>& ti
   }
 }
 
-// True if the rates are differences of white noise (autocorrelation at lag 1 of -1/2 within 0.1): then the
-// values were no angle.
-bool undo_each_other(const std::vector<double>& rate) {
-  constexpr std::size_t kFew = 100;
-  double squares = 0.0, products = 0.0;
-  std::size_t count = 0;
-  for (std::size_t i = 1; i < rate.size(); ++i) {
-    if (std::isnan(rate[i]) || std::isnan(rate[i - 1])) continue;
-    squares += rate[i] * rate[i];
-    products += rate[i] * rate[i - 1];
-    ++count;
-  }
-  return count >= kFew && products < -0.45 * squares;
-}
-
 // Converts to the capture's units; angles stay in rad until as_rates().
 void convert(RowBlock& rows, const CsvLayout& layout) {
   for (std::size_t i = 0; i < layout.columns.size(); ++i) {
@@ -83,11 +67,6 @@ void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std
       for (double& value : values) value /= period_s;
     } else {
       differentiate(values, all.time_s);
-      if (undo_each_other(values))
-        notes.notices.push_back(
-            path + ": differences of " + printable(column.header) +
-            " undo each other, as those of increments do; if each value is the turn within a sample: " +
-            option_for(column, column.unit + "/sample"));
     }
     // A glitch of an angle gives two outliers, and the wrong cell is ambiguous.
     for (std::size_t row = 0; row < values.size(); ++row)

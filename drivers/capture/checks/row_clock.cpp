@@ -14,7 +14,6 @@ namespace ifog {
 namespace {
 
 constexpr double kLate_s = 2.0;  // limit for a rollover
-constexpr double kYear_s = 365.0 * 86'400.0;
 
 struct Rollover {
   double length_s;
@@ -74,15 +73,14 @@ bool same_values(const RowBlock& rows, std::size_t a, std::size_t b) {
 // seven apart are equal, too. With r and c, the shares of these: (r - c) / (1 - c) true repeats against c of the rest.
 bool repeat_by_chance(const RowBlock& rows) {
   constexpr std::size_t kApart = 7;
-  double all = 0.0, timed = 0.0, repeated = 0.0, equal = 0.0;
-  for (std::size_t i = kApart; i < rows.size(); ++i) {
+  std::size_t all = 0, timed = 0, repeated = 0, equal = 0;
+  for (std::size_t i = kApart; i < rows.size(); ++i, ++all) {
     const bool same_time = rows.time_s[i] == rows.time_s[i - 1];
-    all += 1.0;
-    timed += same_time ? 1.0 : 0.0;
-    repeated += same_time && same_values(rows, i, i - 1) ? 1.0 : 0.0;
-    equal += same_values(rows, i, i - kApart) ? 1.0 : 0.0;
+    timed += same_time ? 1 : 0;
+    repeated += same_time && same_values(rows, i, i - 1) ? 1 : 0;
+    equal += same_values(rows, i, i - kApart) ? 1 : 0;
   }
-  return repeated * (all + equal) < 2.0 * equal * timed;
+  return repeated * (all + equal) < 2 * equal * timed;
 }
 
 }  // namespace
@@ -101,15 +99,6 @@ double RowOrder::rolled_over_s(double now_s, std::size_t line) {
   return found->length_s;
 }
 
-void RowOrder::look_for_set_clock() {
-  if (set_ || !(last_s_ - before_s_ >= kYear_s)) return;
-  set_ = true;
-  notes_.notices.push_back(path_ + ":" + std::to_string(line_) + ": its time continues " +
-                           std::to_string(std::llround(last_s_ - before_s_)) +
-                           " s later, as after a clock was set or where two recordings are joined: treated "
-                           "as a hole, behind which times are coarser");
-}
-
 void RowOrder::take(RowBlock& rows, std::size_t known) {
   const auto line_of = [&](std::size_t row) { return rows.lines.empty() ? 0 : rows.lines[row]; };
   std::size_t kept = known;
@@ -126,12 +115,9 @@ void RowOrder::take(RowBlock& rows, std::size_t known) {
       if (!last_is_late) continue;
       --kept;
       last_s_ = before_s_;
-    } else {
-      look_for_set_clock();
     }
     before_s_ = rows_ > 1 ? last_s_ : before_s_;
     last_s_ = now_s;
-    line_ = line_of(i);
     rows.move_row(i, kept);
     rows.time_s[kept++] = now_s;
   }
@@ -149,7 +135,6 @@ void RowOrder::drop(const RowBlock& rows, std::size_t row, bool late) {
 }
 
 void RowOrder::finish() {
-  look_for_set_clock();
   const std::size_t count = dropped_.count;
   if (count == 0) return;
   if (rows_ < kRowsAFault * count)

@@ -268,11 +268,6 @@ class Checks:
         assert "signed counts read as unsigned" in ran("allan", wrapped).stderr
         assert "interleaved" in findings("interleaved.csv", [v + 20 * SIGMA_DPS * (i % 2) for i, v in enumerate(noise)])
         assert "unit" in findings("unit.csv", [v + 500 for v in noise])
-        angle = self.file("angle.csv", ["time_s,angle", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x / RATE_HZ))])
-        _, said = typed(angle, "--column", "rate_x_radps=angle:deg")
-        assert "undo each other" in said, said
-        densities, _ = typed(angle, *shlex.split(re.search(r"--column \S+/sample", said).group(0)))
-        assert abs(densities["x"] / N - 1) < 0.05, densities
 
     def check_nothing_is_made_of_motion(self):
         """Of a gyro that was never at rest there is neither a figure nor a model."""
