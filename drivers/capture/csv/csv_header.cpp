@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 #include <set>
 #include <utility>
 
@@ -86,15 +85,11 @@ class Chooser {
     for (std::size_t i = 0; i < names_.size(); ++i) {
       const Words words(names_[i]);
       const std::vector<std::string>& cells = form_.sample.cells[i];
+      // A topic's name may begin with a slash. A measured value is no sensor's number: "imu_gyr[1]", 0.00106.
       const bool is_text = std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
-        return std::isalpha(static_cast<unsigned char>(cell.c_str()[0])) != 0;
+        return std::isalpha(static_cast<unsigned char>(cell.c_str()[0])) != 0 || cell.starts_with('/');
       });
-      // A measured value is no sensor's number: "imu_gyr[1]", 0.00106.
-      const bool is_number = words.have(Role::one) && words.axis.empty() &&
-                             std::ranges::none_of(cells, [](const std::string& cell) {
-                               return std::fmod(finite_number(cell).value_or(0.0), 1.0) != 0.0;
-                             });
-      if (!is_text && !is_number) continue;
+      if (!is_text && !(words.have(Role::one) && words.axis.empty() && is_whole(cells))) continue;
       const std::set<std::string> values(cells.begin(), cells.end());
       std::size_t changes = 0;
       for (std::size_t row = 1; row < cells.size(); ++row) changes += cells[row] != cells[row - 1] ? 1 : 0;

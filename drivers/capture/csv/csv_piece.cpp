@@ -77,11 +77,6 @@ struct RowTime {
   }
 };
 
-// "1.2e-0" is a truncated "1.2e-05".
-bool ends_within_exponent(std::string_view line) {
-  return line.ends_with("e-0") || line.ends_with("e+0") || line.ends_with("E-0") || line.ends_with("E+0");
-}
-
 // Appends rows to the columns of a piece.
 class Rows {
  public:
@@ -119,7 +114,6 @@ class Rows {
   // ended: the line is complete.
   void add(std::string_view line, std::size_t number, bool ended) {
     try {
-      if (!ended && ends_within_exponent(line)) throw Unreadable{"ends within a number"};
       add_cells(line, number);
     } catch (const Unreadable& row) {
       drop();

@@ -74,6 +74,14 @@ std::vector<std::string> cells_of(std::string_view line, char separator) {
   return cells;
 }
 
+std::string as_cell(const std::string& text) {
+  const bool plain = !text.empty() && text.front() != ' ' && text.back() != ' ';
+  if (plain && text.find_first_of(",\"") == std::string::npos) return text;
+  std::string out = "\"";
+  for (const char c : text) out += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return out + "\"";
+}
+
 bool Lines::next(std::string_view& line) {
   if (rest_.empty()) return false;
   const std::size_t end = rest_.find('\n');

@@ -32,6 +32,8 @@ class Lines {
 [[nodiscard]] std::size_t cell_end(std::string_view row, char separator);
 // Cells of a line, without surrounding blanks and quotes; doubled quotes are one. Several blanks are one separator.
 [[nodiscard]] std::vector<std::string> cells_of(std::string_view line, char separator);
+// A name as one cell of a comma-separated header, in quotes if it needs them (RFC 4180).
+[[nodiscard]] std::string as_cell(const std::string& text);
 
 // Removes a comment mark: "#", "%", "//".
 [[nodiscard]] std::string_view without_mark(std::string_view line);

@@ -117,15 +117,6 @@ std::string one_line(std::string text) {
   return text;
 }
 
-std::string as_cell(const std::string& name) {
-  if (name.empty() || name.find_first_of(",\"\n\r") != std::string::npos || name.front() == ' ' ||
-      name.back() == ' ')
-    throw std::runtime_error(
-        "a dataset is called " + in_quotes(name) +
-        ", expected a name as a CSV file's header has it, without comma, quote or line end");
-  return name;
-}
-
 void print_head(const Hdf5Columns& columns, Pipe& out) {
   for (const std::string& comment : columns.comments()) out.add("# " + one_line(comment) + "\n");
   std::string names, units;
@@ -134,7 +125,7 @@ void print_head(const Hdf5Columns& columns, Pipe& out) {
     // An unknown unit could not be mistaken for a row of numbers.
     const bool known = is_unit(column.unit);
     any_unit = any_unit || known;
-    names += (names.empty() ? "" : ",") + as_cell(column.name);
+    names += (names.empty() ? "" : ",") + as_cell(one_line(column.name));
     units += (units.empty() ? "" : ",") + (known ? as_cell(column.unit) : "-");
   }
   out.add(names + "\n");
