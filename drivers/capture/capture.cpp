@@ -105,14 +105,4 @@ CaptureShape capture_shape(const std::vector<std::string>& names, const std::str
   return shape;
 }
 
-Capture read_capture(const std::string& path) {
-  InputFile file(path);
-  return capture_of(read_table(file), path);
-}
-
-Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout) {
-  InputFile file(path, std::string(text));
-  return capture_of(read_table(file, layout), path);
-}
-
 }  // namespace ifog

@@ -39,13 +39,9 @@ std::size_t driver_axis(const ifog_description& d, const std::string& name) {
 
 }  // namespace
 
-double sample_rate_hz(const Capture& capture) {
-  return capture.size() < 2 ? 0.0 : sample_rate_hz(median_step_s(capture.time_s));
-}
-
 double sample_rate_hz(double step_s) {
   // Decimal times are not exact in binary: 1 / (0.015 − 0.010) is not quite 200.
-  return std::strtod(seven_digits(1.0 / step_s).c_str(), nullptr);
+  return std::isnan(step_s) ? 0.0 : std::strtod(seven_digits(1.0 / step_s).c_str(), nullptr);
 }
 
 DriverSettings with_rate(double rate_hz, const Plugin& plugin, DriverSettings settings) {
@@ -167,29 +163,19 @@ bool CaptureEncoder::encode_next(Out& out, void (DriverInstance::*encode)(const 
   if (rows_.at == capture_.size()) return false;
   ifog_sample sample = next_sample();
   const ifog_description& d = driver_.description();
-  const auto refuse = [&](const std::runtime_error& error) {
-    std::string at;
-    append_time(at, capture_.origin, capture_.time_s[rows_.at]);
-    throw std::runtime_error("at " + at + " s: " + error.what());
-  };
-  try {
-    (driver_.*encode)(sample, out);
-  } catch (const std::runtime_error& error) {
-    if (sample.valid_axes == 0) {
-      ++rows_.dropped;
-    } else if (d.kind == IFOG_ANGLE && d.angle_wrap_rad > 0.0) {
-      // An unsigned angle starts at 0 instead of minus half a turn.
+  // An unsigned angle starts at 0 instead of minus half a turn.
+  for (bool once_more = d.kind == IFOG_ANGLE && d.angle_wrap_rad > 0.0;; once_more = false) try {
+      (driver_.*encode)(sample, out);
+      break;
+    } catch (const std::runtime_error& error) {
+      std::string at;
+      append_time(at, capture_.origin, capture_.time_s[rows_.at]);
+      rows_.dropped += sample.valid_axes == 0 ? 1 : 0;
+      if (sample.valid_axes == 0) break;
+      if (!once_more) throw std::runtime_error("at " + at + " s: " + error.what());
       for (double& value : sample.value)
         if (value < 0.0) value += d.angle_wrap_rad;
-      try {
-        (driver_.*encode)(sample, out);
-      } catch (const std::runtime_error& again) {
-        refuse(again);
-      }
-    } else {
-      refuse(error);
     }
-  }
   before_s_ = capture_.time_s[rows_.at++];
   return true;
 }

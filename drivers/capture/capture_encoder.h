@@ -12,10 +12,7 @@
 
 namespace ifog {
 
-// Sample rate in Hz: 1 / median time step, to seven digits. 0 for a single row.
-double sample_rate_hz(const Capture& capture);
-
-// The same for a known median step.
+// Sample rate in Hz: 1 / median time step, to seven digits. 0 without a step.
 double sample_rate_hz(double step_s);
 
 // Settings with `rate_hz` from the capture, if it is known (not 0), the driver has this option and the user

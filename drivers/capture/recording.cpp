@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
+#include "drivers/capture/columns/column_roles.h"
 #include "drivers/capture/files/file_kind.h"
 #include "drivers/ifog/quoted.h"
 
@@ -90,22 +91,18 @@ bool is_hdf5(const InputFile& file) {
 
 FileKind file_kind(const std::string& path) {
   using enum FileKind;
-  constexpr std::array<std::pair<std::string_view, FileKind>, 12> kEndings{{{".csv", capture},
-                                                                            {".h5", capture},
-                                                                            {".hdf5", capture},
-                                                                            {".log", candump},
-                                                                            {".candump", candump},
-                                                                            {".lcm", lcm_log},
-                                                                            {".ifr", flight},
-                                                                            {".bin", bytes},
-                                                                            {".kvh", bytes},
-                                                                            {".raw", bytes},
-                                                                            {".dat", bytes},
-                                                                            {".txt", bytes}}};
+  constexpr std::array<std::pair<std::string_view, FileKind>, 5> kEndings = {
+      {{".csv .h5 .hdf5 ", capture},
+       {".log .candump ", candump},
+       {".lcm ", lcm_log},
+       {".ifr ", flight},
+       {".bin .kvh .raw .dat .txt ", bytes}}};
   const std::string_view name = unpacked_name(path);
-  const auto* const found = std::find_if(kEndings.begin(), kEndings.end(),
-                                         [&](const auto& each) { return has_ending(name, each.first); });
-  return found == kEndings.end() ? unknown : found->second;
+  const std::string ending = lower(std::string(name.substr(std::min(name.rfind('.'), name.size())))) + " ";
+  const auto* const found = std::find_if(kEndings.begin(), kEndings.end(), [&](const auto& each) {
+    return each.first.find(ending) != std::string_view::npos;
+  });
+  return ending == " " || found == kEndings.end() ? unknown : found->second;
 }
 
 FileKind file_kind(const InputFile& file) {

@@ -24,14 +24,8 @@ constexpr std::string_view kRateUnit = "radps";
 constexpr std::string_view kPerSample = "/sample";
 
 // A single letter is a unit only after its quantity.
-constexpr std::array<std::pair<std::string_view, std::string_view>, 8> kOneLetter = {{{"K", "temp"},
-                                                                                      {"C", "temp"},
-                                                                                      {"F", "temp"},
-                                                                                      {"V", "supply"},
-                                                                                      {"V", "volt"},
-                                                                                      {"A", "supply"},
-                                                                                      {"A", "current"},
-                                                                                      {"g", "accel"}}};
+constexpr std::array<std::pair<std::string_view, std::string_view>, 5> kOneLetter = {
+    {{"KCF", "temp"}, {"VA", "supply"}, {"V", "volt"}, {"A", "current"}, {"g", "accel"}}};
 
 [[noreturn]] void refuse(const std::string& text, const std::string& expected) {
   throw std::runtime_error(in_quotes(text) + ", expected " + expected);
@@ -141,7 +135,8 @@ std::string unit_in_name(const std::string& name) {
   if (last.size() == 1)
     return std::any_of(kOneLetter.begin(), kOneLetter.end(),
                        [&](const auto& each) {
-                         return each.first == last && header.find(each.second) != std::string::npos;
+                         return each.first.find(last) != std::string_view::npos &&
+                                header.find(each.second) != std::string::npos;
                        })
                ? last
                : "";

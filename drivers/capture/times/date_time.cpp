@@ -58,19 +58,16 @@ std::optional<std::chrono::sys_days> valid_day(int year, int month, int day) {
 std::optional<std::chrono::sys_days> day_of(TextCursor& rest, DateOrder order) {
   int first = 0, second = 0, third = 0;
   if (!rest.number(1, 4, first)) return std::nullopt;
-  const char* const between = rest.text("-")   ? "-"
-                              : rest.text("/") ? "/"
-                              : rest.text(".") ? "."
-                              : rest.text("_") ? "_"
-                                               : nullptr;
-  if (between == nullptr) return std::nullopt;
+  char between = '-';
+  for (const char each : {'/', '.', '_'}) between = rest.at(each) ? each : between;
+  if (!rest.literal(between)) return std::nullopt;
   const bool named = month_name(rest, second);
-  if ((!named && !rest.number(1, 2, second)) || !rest.one_of(between) || !rest.number(1, 4, third))
+  if ((!named && !rest.number(1, 2, second)) || !rest.literal(between) || !rest.number(1, 4, third))
     return std::nullopt;
-  if (first > 31) return *between == '.' ? std::nullopt : valid_day(first, second, third);
-  if (third < 1000 || (*between == '-' && !named) || *between == '_') return std::nullopt;
+  if (first > 31) return between == '.' ? std::nullopt : valid_day(first, second, third);
+  if (third < 1000 || (between == '-' && !named) || between == '_') return std::nullopt;
   const auto month_first = valid_day(third, first, second);
-  if (*between != '/' || order == DateOrder::day_first || (order == DateOrder::either && !month_first))
+  if (between != '/' || order == DateOrder::day_first || (order == DateOrder::either && !month_first))
     return valid_day(third, second, first);
   return month_first;
 }

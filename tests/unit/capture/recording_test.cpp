@@ -52,9 +52,10 @@ class Recording : public testing::Test, protected ifog::test::OwnFolder {
   // Encodes with one instance of the driver and decodes with another.
   Capture there_and_back(const Capture& capture, const std::string& driver, const DriverSettings& settings) {
     const auto plugin = ifog::find_plugin(driver, ifog::plugin_folders());
-    const DriverSettings all = ifog::with_rate(ifog::sample_rate_hz(capture), *plugin, settings);
+    const DriverSettings all =
+        ifog::with_rate(ifog::sample_rate_hz(ifog::median_step_s(capture.time_s)), *plugin, settings);
     ifog::DriverInstance out(plugin, all);
-    ifog::CaptureEncoder encoder(capture, out, ifog::sample_rate_hz(capture));
+    ifog::CaptureEncoder encoder(capture, out, ifog::sample_rate_hz(ifog::median_step_s(capture.time_s)));
     std::string file;
     if (out.takes_can()) {
       file = path("frames.log");
@@ -272,7 +273,7 @@ TEST_F(Recording, ARateOutOfTheFormatsRangeIsRefusedWithItsTime) {
   capture.rate_radps[0][4] = 1e6;
   const auto plugin = ifog::find_plugin("template", ifog::plugin_folders());
   ifog::DriverInstance driver(plugin, {});
-  ifog::CaptureEncoder encoder(capture, driver, ifog::sample_rate_hz(capture));
+  ifog::CaptureEncoder encoder(capture, driver, ifog::sample_rate_hz(ifog::median_step_s(capture.time_s)));
   std::vector<std::uint8_t> bytes;
   const auto encode = [&] {
     while (encoder.next(bytes)) {

@@ -119,7 +119,7 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
     throw std::runtime_error(source.path +
                              ": a capture in columns needs --driver NAME, whose frames its rows become");
   const Capture capture = source.input.read_columns(file);
-  const double rate_hz = sample_rate_hz(capture);
+  const double rate_hz = sample_rate_hz(median_step_s(capture.time_s));
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
   DriverInstance driver(plugin, with_rate(rate_hz, *plugin, source.input.settings()));
   CaptureEncoder encoder(capture, driver, rate_hz, source.axis);
