@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/flight/flight_input.h"
 
-#include <sys/mman.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <limits>
 #include <map>
@@ -15,6 +12,7 @@
 #include "daemon/sensor/noise_memory.h"
 #include "daemon/sensor/sensor_parts.h"
 #include "drivers/capture/capture_builder.h"
+#include "drivers/system/unnamed_file.h"
 #include "filters/model_file/kept_noise.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/naming.h"
@@ -22,24 +20,6 @@
 
 namespace ifog::tools {
 namespace {
-
-// A text as an unnamed file, for code that opens files by path.
-class NamedText {
- public:
-  explicit NamedText(std::string_view text) : fd_(memfd_create("of the recording", MFD_CLOEXEC)) {
-    if (fd_ < 0 || ::write(fd_, text.data(), text.size()) != static_cast<ssize_t>(text.size()))
-      throw std::runtime_error("no memory for a file that the recording carries");
-  }
-  ~NamedText() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  NamedText(const NamedText&) = delete;
-  NamedText& operator=(const NamedText&) = delete;
-  [[nodiscard]] std::string name() const { return "/proc/self/fd/" + std::to_string(fd_); }
-
- private:
-  int fd_;
-};
 
 // A driver's options with their values and the content of the files that they name.
 std::map<std::string, std::pair<std::string, std::string>> options_in(const FlightHeader& header) {
@@ -105,7 +85,7 @@ DriverInstance FlightInput::made() const {
     DriverSettings own;
     if (configured_ != nullptr)
       own = with_files_in(configured_->folder, plugin->table(), configured_->options);
-    std::vector<std::unique_ptr<NamedText>> carried;
+    std::vector<UnnamedFile> carried;
     for (const auto& [key, value] : header().options) {
       const bool names_file = std::find(files.begin(), files.end(), key) != files.end();
       const auto found = header().files.find(value);
@@ -113,10 +93,11 @@ DriverInstance FlightInput::made() const {
       if (names_file && found == header().files.end() && !own.contains(key))
         throw std::runtime_error("does not carry the file of its driver's option " + key + ", expected " +
                                  (key == "dbc" ? "--dbc FILE" : "--option " + key + "=FILE"));
-      settings[key] = !names_file ? value
-                      : found == header().files.end()
-                          ? own.at(key)
-                          : carried.emplace_back(std::make_unique<NamedText>(found->second))->name();
+      settings[key] = !names_file || found != header().files.end() ? value : own.at(key);
+      if (!names_file || found == header().files.end()) continue;
+      UnnamedFile& text = carried.emplace_back();
+      text.write(0, found->second.data(), found->second.size());
+      settings[key] = "/proc/self/fd/" + std::to_string(text.descriptor());
     }
     return driver_of_run(header().driver, settings, folders_);
   });

@@ -76,7 +76,7 @@ class PeerReader {
 
   const PeerType* type_;
   std::vector<PeerSample> samples_;
-  std::optional<Place> first_, last_;
+  std::optional<Place> last_;
   std::vector<double> steps_us_;  // between successive samples
   double advance_us_ = 0.0, device_advance_us_ = 0.0;
   std::optional<double> period_s_;

@@ -3,9 +3,9 @@
 // distinguishes the two for writing.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "drivers/capture/csv/csv_writer.h"
@@ -18,29 +18,19 @@ class ColumnWriter {
  public:
   // Throws std::runtime_error with one line.
   ColumnWriter(const std::string& path, const std::string& comments, const std::vector<std::string>& names) {
-    if (is_hdf5(path))
-      file_.emplace<Hdf5Writer>(path, comments, names);
-    else
-      file_.emplace<CsvWriter>(path, comments, names);
+    is_hdf5(path) ? void(hdf5_.emplace(path, comments, names)) : void(csv_.emplace(path, comments, names));
   }
   // One block, by column in the order of the names, all of one length. origin: of the time in the first
   // column.
   void rows(std::span<const std::span<const double>> columns, const TimeOrigin& origin = {}) {
-    if (auto* const csv = std::get_if<CsvWriter>(&file_))
-      csv->rows(columns, origin);
-    else if (auto* const hdf5 = std::get_if<Hdf5Writer>(&file_))
-      hdf5->rows(columns, origin);
+    hdf5_ ? hdf5_->rows(columns, origin) : csv_->rows(columns, origin);
   }
   // Until then an existing regular file is unchanged.
-  void finish() {
-    if (auto* const csv = std::get_if<CsvWriter>(&file_))
-      csv->finish();
-    else if (auto* const hdf5 = std::get_if<Hdf5Writer>(&file_))
-      hdf5->finish();
-  }
+  void finish() { hdf5_ ? hdf5_->finish() : csv_->finish(); }
 
  private:
-  std::variant<std::monostate, CsvWriter, Hdf5Writer> file_;
+  std::optional<CsvWriter> csv_;
+  std::optional<Hdf5Writer> hdf5_;
 };
 
 }  // namespace ifog::tools
