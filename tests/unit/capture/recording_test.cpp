@@ -282,6 +282,9 @@ TEST_F(Recording, ARateOutOfTheFormatsRangeIsRefusedWithItsTime) {
   EXPECT_EQ(ifog::test::refusal(encode),
             "at 0.02 s: driver template: rate is 1000000.000000 rad/s, expected within ±37");
   EXPECT_EQ(bytes.size(), 4U * 8U);
+  const Capture three = wave({"x", "y", "z"});
+  EXPECT_EQ(ifog::test::refusal([&] { ifog::CaptureEncoder(three, driver, 200.0, "q"); }),
+            "--axis is 'q', expected none for a capture of several axes");
 }
 
 // A device whose clock shows the time since 1970, as one that is set by PTP: an angle's steps are divided by

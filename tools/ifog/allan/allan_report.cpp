@@ -2,7 +2,6 @@
 // An Allan analysis as JSON (SI) and as a table (the field's units).
 #include <array>
 #include <cmath>
-#include <string_view>
 
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
@@ -91,9 +90,9 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
     axis["gauss_markov"] = record.fit ? report::markov_json(record.fit->markov) : ordered_json(nullptr);
     axis["noise_changes"] = report::noise_changes_json(record.noise_changes);
     axis["findings"] = ordered_json::array();
-    // Jumps are in the notes only: version 1 of the schema has no such finding.
+    // Jumps and the resolution are in the notes only: version 1 of the schema has no such findings.
     for (const ValueFault& found : record.findings)
-      if (std::string_view(found.name) != "leaps")
+      if (found.name != "leaps" && found.name != "coarse")
         axis["findings"].push_back({{"name", found.name}, {"text", found.text}});
     axis["notes"] = record.notes;
     out["axes"].push_back(axis);
