@@ -99,10 +99,9 @@ FileKind file_kind(const std::string& path) {
        {".bin .kvh .raw .dat .txt ", bytes}}};
   const std::string_view name = unpacked_name(path);
   const std::string ending = lower(std::string(name.substr(std::min(name.rfind('.'), name.size())))) + " ";
-  const auto* const found = std::find_if(kEndings.begin(), kEndings.end(), [&](const auto& each) {
-    return each.first.find(ending) != std::string_view::npos;
-  });
-  return ending == " " || found == kEndings.end() ? unknown : found->second;
+  for (const auto& [endings, kind] : kEndings)
+    if (ending != " " && endings.find(ending) != std::string_view::npos) return kind;
+  return unknown;
 }
 
 FileKind file_kind(const InputFile& file) {

@@ -14,6 +14,7 @@ namespace ifog {
 namespace {
 
 constexpr double kLate_s = 2.0;  // limit for a rollover
+constexpr double kYear_s = 365.0 * 86'400.0;
 
 struct Rollover {
   double length_s;
@@ -115,9 +116,16 @@ void RowOrder::take(RowBlock& rows, std::size_t known) {
       if (!last_is_late) continue;
       --kept;
       last_s_ = before_s_;
+    } else if (last_s_ - before_s_ >= kYear_s && !std::exchange(set_, true)) {
+      notes_.notices.push_back(
+          path_ + ":" + std::to_string(line_) + ": its time continues " +
+          std::to_string(std::llround(last_s_ - before_s_)) +
+          " s later, as after a clock was set or where two recordings are joined: treated "
+          "as a hole, behind which times are coarser");
     }
     before_s_ = rows_ > 1 ? last_s_ : before_s_;
     last_s_ = now_s;
+    line_ = line_of(i);
     rows.move_row(i, kept);
     rows.time_s[kept++] = now_s;
   }
@@ -180,7 +188,6 @@ void RowClock::take(RowBlock& rows) {
 }
 
 std::size_t RowClock::end_of_burst(const RowBlock& rows, std::size_t begin) const {
-  // The first of spread rows keeps its stamp.
   std::size_t end = begin + 1;
   while (end < rows.size() && rows.time_s[end] - rows.time_s[end - 1] <= within_s_) ++end;
   return end;
@@ -215,11 +222,9 @@ void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double
 void RowClock::finish() {
   order_.finish();
   const std::size_t rows = buffered_.size();
-  std::size_t last = 0;  // the last burst's first row
-  if (const std::size_t end = end_of_burst(buffered_, 0); end < rows) {
-    spread(buffered_, 0, end, buffered_.time_s[end]);
-    last = end;
-  }
+  std::size_t last = end_of_burst(buffered_, 0);  // first row of the last burst
+  if (last >= rows) last = 0;
+  if (last > 0) spread(buffered_, 0, last, buffered_.time_s[last]);
   if (rows > last + 1) {
     if (!(period_s_ > 0.0))
       fail_at(path_, 0, printable(time_) + " is the same in all rows, expected times, or --sample-rate HZ");

@@ -2,7 +2,7 @@
 // Converts the times of logged rows to times that increase from row to row:
 //   - a rollover of a counter or clock of known length adds that length;
 //   - a row whose time goes back otherwise (clock set back, network reordering) or is too late is dropped and
-//   counted; the file is rejected if these exceed 1 %;
+//   counted; the file is rejected if these exceed 1 %. A step of a year is a set clock, and reported;
 //   - a row that repeats the time and values of the one before is dropped and counted, unless chance explains it;
 //   - rows with one stamp, or in bursts (several per packet, packets at even times), are spread evenly up to
 //   the next stamp.
@@ -40,8 +40,9 @@ class RowOrder {
   double offset_s_ = 0.0;  // sum of rollovers
   // Times of the last row and the one before, if any.
   double last_s_ = 0.0, before_s_ = std::numeric_limits<double>::infinity();
-  std::size_t rows_ = 0;
+  std::size_t rows_ = 0, line_ = 0;  // line_: of the last row
   Fault dropped_;
+  bool set_ = false;  // a set clock was reported
 };
 
 class RowClock {
