@@ -22,7 +22,6 @@ constexpr double kOfMedian = 1.4826 / 1.224744871391589;
 // kLeast its error reaches a fifth.
 constexpr std::size_t kNear = 64, kLeast = 16;
 constexpr double kLocalAbove = 2.0;
-constexpr std::size_t kAround = 4;  // samples on either side that do not leap
 constexpr std::size_t kOneInAtMost = 1000;
 constexpr std::size_t kLongest = 7;       // samples; a longer run is a repeated value
 constexpr double kRounding = 1e-12;       // relative
@@ -68,8 +67,8 @@ class Yardstick {
   // The samples around a blow or the start of motion leap, too.
   [[nodiscard]] bool is_alone(const Run& run, double between) const {
     const double most = 0.25 * std::abs(run.value - between);
-    const std::size_t end = std::min(run.begin + kAround + 1, rate_.size());
-    for (std::size_t i = run.begin - std::min(run.begin, kAround); i < end; ++i)
+    const std::size_t end = std::min(run.begin + kLongest + 1, rate_.size());
+    for (std::size_t i = run.begin - std::min(run.begin, kLongest); i < end; ++i)
       if (std::abs(rate_.at(i) - between) > most && std::abs(rate_.at(i) - run.value) > most) return false;
     return true;
   }

@@ -35,7 +35,7 @@ enum class LeapOf { kOneSample, kOneValue };
 
 // Finds outliers in `parts`, which hold no NaN and, for kOneSample, are at rest, because a shock is one
 // sample too. A leap exceeds 30 standard deviations, its two neighbours differ by less than half of it, and
-// none of four samples on either side leaps elsewhere. The deviation is the record's, from second differences; the local one (about a hundred samples) if that is
+// none of seven samples on either side leaps elsewhere. The deviation is the record's, from second differences; the local one (about a hundred samples) if that is
 // more than twice as high; and at least half the sensor's smallest step.
 [[nodiscard]] Glitches find_glitches(const SeriesView& rate_radps, std::span<const Stretch> parts,
                                      LeapOf of = LeapOf::kOneSample);

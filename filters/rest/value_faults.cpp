@@ -44,20 +44,19 @@ void find_held(const std::vector<double>& values, double period_s, std::vector<V
                                " Hz, and figures below that period are the logger's"});
 }
 
-// Most stretches hold two values while the noise is below 0.2 to 0.37 of their distance, by the level between them.
+// Most stretches hold two values while the noise is below 0.18 to 0.33 of their distance, by the level between them.
 void find_coarse(const std::vector<double>& values, std::vector<ValueFault>& found) {
-  constexpr std::size_t kSome = 100;
   double step = std::numeric_limits<double>::infinity();
   std::size_t stretches = 0, coarse = 0;
-  for (std::size_t i = 0; i + kSome <= values.size(); i += kSome, ++stretches) {
-    const std::span<const double> some = std::span(values).subspan(i, kSome);
+  for (std::size_t i = 0; i + kFewSamples <= values.size(); i += kFewSamples, ++stretches) {
+    const std::span<const double> some = std::span(values).subspan(i, kFewSamples);
     const auto [least, most] = std::ranges::minmax(some);
     if (!std::ranges::all_of(some, [&](double v) { return v == least || v == most; })) continue;
     ++coarse;
     if (most > least) step = std::min(step, most - least);
   }
   if (2 * coarse <= stretches || !std::isfinite(step)) return;
-  found.push_back({"coarse", "most stretches of 100 samples hold one or two values, " +
+  found.push_back({"coarse", "most stretches of 256 samples hold one or two values, " +
                                  six(step * 3600.0 / kDegree) +
                                  " °/h apart: the noise is below the resolution, and the figures are not "
                                  "the sensor's"});

@@ -21,7 +21,7 @@ struct ValueFault {
 // Appends what it finds to `found`. rate: rad/s, NaN where missing; parts: its stretches at rest, without
 // NaN. Only the first million samples of each stretch are examined.
 //   - held: nine of ten values repeat for the same number of samples, two or more;
-//   - coarse: most stretches of 100 samples hold at most two values;
+//   - coarse: most stretches of 256 samples hold at most two values;
 //   - clipped: an extreme value is 1 % of the samples, and thrice as frequent as the next and the average one;
 //   - wrapped: 1 % of the steps are most of the range, and the middle of the range is empty, of more than
 //   two values: signed counts read as unsigned;

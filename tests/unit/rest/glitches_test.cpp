@@ -166,7 +166,7 @@ TEST(Glitches, TheCrestOfABlowIsNone) {
   EXPECT_EQ(find_glitches(rate, all).first, 9000U);
 }
 
-// By the level between them 0.2 to 0.37 of the step; noise of half a step is resolved.
+// By the level between them 0.18 to 0.33 of the step; noise of half a step is resolved.
 TEST(ValueFaults, NoiseBelowTheResolutionIsSaid) {
   for (const auto& [deviation, level, names] :
        std::initializer_list<std::tuple<double, double, std::vector<std::string>>>{
