@@ -66,7 +66,6 @@ class Chooser {
 
   CsvHeader choose() {
     header_.cells = names_;
-    for (const CsvColumn& asked : header_.layout.columns) (void)place(asked.header);
     if (header_.layout.only_header.empty()) look_what_alternates();
     if (!header_.layout.only_header.empty()) keep_only(place(header_.layout.only_header));
     choose_columns();
@@ -196,6 +195,7 @@ class Chooser {
 
   // Adds what was not asked for, by names.
   void take_reading() {
+    for (const CsvColumn& asked : header_.layout.columns) (void)place(asked.header);
     Readings found;
     found.why = "no name surely stands above its column";
     if (form_.unused_names == 0 || !header_.layout.columns.empty())
