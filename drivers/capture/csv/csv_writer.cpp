@@ -6,6 +6,7 @@
 #include "drivers/capture/times/row_sink.h"
 
 namespace ifog {
+
 CsvWriter::CsvWriter(const std::string& path, const std::string& comments,
                      const std::vector<std::string>& names)
     : file_(path) {
