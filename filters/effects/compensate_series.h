@@ -7,7 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "filters/distributions/median.h"
 #include "filters/effects/compensator.h"
 #include "filters/series/series_view.h"
 
@@ -22,13 +21,7 @@ struct SeriesToCompensate {
 
 // Median step; a step more than half a step longer is a gap. 0 for fewer than two samples.
 inline double usual_step(std::span<const double> time_s) {
-  constexpr std::size_t kInMemory = std::size_t{1} << 20U;
-  if (time_s.size() > kInMemory) return median_step(time_s);
-  std::vector<double> steps;
-  steps.reserve(time_s.size());
-  for (std::size_t i = 1; i < time_s.size(); ++i) steps.push_back(time_s[i] - time_s[i - 1]);
-  if (steps.empty()) return 0.0;
-  return median(std::move(steps));
+  return time_s.size() < 2 ? 0.0 : median_step(time_s);
 }
 
 // Calls use(sample, output) for every sample in order. The first sample covers as much time as the second.

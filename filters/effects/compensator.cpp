@@ -11,8 +11,9 @@
 namespace ifog {
 namespace {
 
-// Scale factor errors are below 0.1, so each iteration gains a digit; twelve reach the last bit.
-constexpr int kRounds = 12;
+constexpr int kRounds = 12;  // three suffice for laws that are nearly linear
+// Of the rates: step for the slope. Of the true rate: below, what is measured of it is too little to solve for.
+constexpr double kSmall = 1e-4;
 
 }  // namespace
 
@@ -52,6 +53,8 @@ void Compensator::Value::doubt(double factor, const Shape& shape, const Reach& r
 std::optional<Reach> Compensator::reach_of_factor(Factor& factor, double dt_s,
                                                   std::uint32_t& flags) const noexcept {
   const Held& held = held_[factor.channel];
+  if (!held.seen || (factor.less != kNone && !held_[factor.less].seen)) return std::nullopt;
+  if (factor.less == kNone && !(factor.turn > 0.0)) return held.reach;
   double value = 0.0;
   if (factor.less == kNone) {
     value = nearest_on_arc(held.value, factor.range, factor.turn);
@@ -85,20 +88,9 @@ void Compensator::evaluate(Term& term, double dt_s) noexcept {
       term.channels.times(ramp ? reach.value : value, factor.shape, reach);
       continue;
     }
-    const Held& held = held_[factor.channel];
-    if (held.seen && factor.less == kNone && !(factor.turn > 0.0)) {
-      term.channels.times(factor.shape.step(held.reach, dt_s), factor.shape, held.reach);
-      continue;
-    }
-    if (!held.seen || (factor.less != kNone && !held_[factor.less].seen)) {
-      term.usable = false;
-      return;
-    }
     const std::optional<Reach> reach = reach_of_factor(factor, dt_s, term.flags);
-    if (!reach) {
-      term.usable = false;
-      return;
-    }
+    term.usable = reach.has_value();
+    if (!term.usable) return;
     term.channels.times(factor.shape.step(*reach, dt_s), factor.shape, *reach);
   }
 }
@@ -178,24 +170,35 @@ void Compensator::judge(std::size_t axis, const Axes& rates, CompensatorOutput& 
   of_axis_[axis].variance = parameter_variance(axis) + inflation;
 }
 
+// One step of Newton's method from rate `at`, exact for a constant scale factor error of any size, also for one
+// of -2 (reversed sign).
+double Compensator::better_rate(std::size_t axis, double measured, double at, Axes rates) const noexcept {
+  rates[axis] = at;
+  const double here = correction(axis, rates);
+  rates[axis] = at + kSmall * (std::abs(at) + std::abs(measured));
+  double slope = (correction(axis, rates) - here) / (rates[axis] - at);
+  if (!(std::abs(1.0 + slope) > kSmall)) slope = 0.0;
+  return (measured - here + slope * at) / (1.0 + slope);
+}
+
 // Only what depends on changed channels or on a rate is computed.
 void Compensator::solve(const CompensatorInput& in, ChannelSet moved, CompensatorOutput& out) noexcept {
   Axes rates = in.rate_radps;
   bool of_rate = false;
   for (std::size_t axis = 0; axis < axes_; ++axis) {
     AxisTerms& of = of_axis_[axis];
-    if (of.of_rate || (of.needs & moved) != 0) of.correction = correction(axis, rates);
-    rates[axis] = in.rate_radps[axis] - of.correction;
     of_rate |= of.of_rate;
+    if (!of.of_rate && (of.needs & moved) != 0) of.correction = correction(axis, rates);
+    if (!of.of_rate) rates[axis] = in.rate_radps[axis] - of.correction;
   }
-  // The iteration stops when the rates no longer change.
-  for (int round = 1; of_rate && round < kRounds; ++round) {
+  // The iteration stops when the rates no longer change. It starts at zero, which is within the fitted range.
+  for (int round = 0; of_rate && round < kRounds; ++round) {
     of_rate = false;
     for (std::size_t axis = 0; axis < axes_; ++axis) {
       AxisTerms& of = of_axis_[axis];
       if (!of.of_rate) continue;
-      of.correction = correction(axis, rates);
-      const double rate = in.rate_radps[axis] - of.correction;
+      const double rate = better_rate(axis, in.rate_radps[axis], round == 0 ? 0.0 : rates[axis], rates);
+      of.correction = in.rate_radps[axis] - rate;
       of_rate |= std::bit_cast<std::uint64_t>(rate) != std::bit_cast<std::uint64_t>(rates[axis]);
       rates[axis] = rate;
     }

@@ -158,13 +158,14 @@ class Compensator {
   void look_at(Term& term, double dt_s) noexcept;
   void solve(const CompensatorInput& in, ChannelSet moved, CompensatorOutput& out) noexcept;
   void subtract_ramps(const CompensatorInput& in, CompensatorOutput& out) noexcept;
-  // Reach of a factor's channel, which has had a value.
+  // Reach of a factor's channel; nullopt if it has had no value.
   [[nodiscard]] std::optional<Reach> reach_of_factor(Factor& factor, double dt_s,
                                                      std::uint32_t& flags) const noexcept;
   // The term at these rates; only its channels' part if it does not depend on rates. Zero while a needed axis
   // has no value.
   [[nodiscard]] Value at_rates(const Term& term, const Axes& rates) const noexcept;
   [[nodiscard]] double correction(std::size_t axis, const Axes& rates) const noexcept;
+  [[nodiscard]] double better_rate(std::size_t axis, double measured, double at, Axes rates) const noexcept;
   // Sets the axis's variance and flags.
   void judge(std::size_t axis, const Axes& rates, CompensatorOutput& out) noexcept;
   [[nodiscard]] double parameter_variance(std::size_t axis) const noexcept;

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
+#include "filters/effects/arc.h"
 #include "filters/effects/curve_reach.h"
 #include "filters/effects/meaning.h"
 
@@ -17,11 +18,6 @@ namespace {
 double share(double dt, double time_constant) {
   return time_constant > 0.0 ? -std::expm1(-dt / time_constant) : 1.0;
 }
-
-bool is_periodic(Form form) { return form == Form::kCosine || form == Form::kSine; }
-
-// Bounded forms need no limit of extrapolation.
-bool is_bounded(Form form) { return is_periodic(form) || form == Form::kTransition; }
 
 // How far beyond the range the form's own curve is used.
 double curve_reach(const ShapeSettings& settings) noexcept {
@@ -70,14 +66,14 @@ ShapeSettings shape_settings(const Effect& effect) {
   settings.table_y = effect.table_y;
   settings.period = effect.period;
   settings.angle = effect.angle;
-  settings.fringe = is_periodic(settings.form) && !is_angle_by_unit(effect.channel);
+  settings.fringe = is_of_angle(settings.form) && !is_angle_by_unit(effect.channel);
   settings.half_width = parameter(effect, name_of_width(settings.form));
   return settings;
 }
 
 ShapeSettings with_shape_settings(const Effect& effect) {
   const auto form = form_named(effect.with_form);
-  if (!form || *form == Form::kProduct || *form == Form::kLookup || is_periodic(*form) ||
+  if (!form || *form == Form::kProduct || *form == Form::kLookup || is_of_angle(*form) ||
       !has_channel(*form)) {
     throw std::invalid_argument("product with form " + in_quotes(effect.with_form) +
                                 ", expected a form of a channel other than product, lookup, cosine and sine");
@@ -102,14 +98,14 @@ double mean_in_dead_zone(double mean, double variance, double half_width) noexce
 
 Shape::Shape(ShapeSettings settings)
     : has_state_(has_memory(settings.form) || is_of_time(settings.form) || settings.angle),
-      bounded_(is_bounded(settings.form)),
+      bounded_(is_of_angle(settings.form) || settings.form == Form::kTransition),
       power_(power_of(settings.form)),
       settings_(std::move(settings)) {
   const bool lookup = settings_.form == Form::kLookup;
   if (lookup && (settings_.table_x.size() < 2 || settings_.table_x.size() != settings_.table_y.size())) {
     throw std::invalid_argument("a lookup needs a table of at least two knots");
   }
-  if (is_periodic(settings_.form) && !(settings_.period > 0.0))
+  if (is_of_angle(settings_.form) && !(settings_.period > 0.0))
     throw std::invalid_argument("a cosine or sine of an angle needs its period");
   if (settings_.time_constant_s < 0.0 || settings_.second_time_constant_s < 0.0) {
     throw std::invalid_argument("a time constant is negative");
@@ -138,7 +134,7 @@ double Shape::table(double value) const noexcept {
 double Shape::at(double value) const noexcept {
   if (settings_.form == Form::kLookup) return table(value);
   const double c = value - settings_.reference;
-  const double turns = is_periodic(settings_.form) ? c / settings_.period : 0.0;
+  const double turns = is_of_angle(settings_.form) ? c / settings_.period : 0.0;
   if (settings_.form == Form::kCosine) return std::cos(2.0 * std::numbers::pi * turns);
   if (settings_.form == Form::kSine) return std::sin(2.0 * std::numbers::pi * turns);
   if (settings_.form == Form::kDeadZone) return std::abs(c) < settings_.half_width ? c : 0.0;
@@ -224,7 +220,7 @@ double Shape::slope(double value) const noexcept {
 }
 
 double Shape::at(const Reach& channel) const noexcept {
-  if (is_periodic(settings_.form)) return at(settings_.fringe ? channel.value : channel.edge);
+  if (is_of_angle(settings_.form)) return at(settings_.fringe ? channel.value : channel.edge);
   if (bounded_) return at(channel.value + channel.beyond);
   if (!goes_on() || !channel.outside()) return at(channel.edge);
   const double curved = followed(settings_, channel);

@@ -33,6 +33,21 @@ TEST(Compensator, InvertsAScaleFactorThatDependsOnTemperatureAndRate) {
   }
 }
 
+// A reference of reversed sign, or in another unit. What leaves the fitted range stays a rate.
+TEST(Compensator, InvertsAScaleFactorErrorOfAnySize) {
+  for (const double error : {-2.0, -0.98, -0.5, 0.9}) {
+    Model model;
+    model.effects = {of_rate("linear", error)};
+    model.ranges = {{"reference_rate_radps", -5.0, 12.0}};
+    Compensator compensator(model, {""});
+    for (const double w : {-5.0, -0.3, 1e-4, 4.0, 12.0})
+      EXPECT_NEAR(step(compensator, (1.0 + error) * w, {}).compensated_radps[0], w, 1e-10)
+          << error << ' ' << w;
+    const double outside = 100.0 * (1.0 + error);
+    EXPECT_LT(std::abs(step(compensator, outside, {}).compensated_radps[0]), 300.0) << error;
+  }
+}
+
 // Three axes that see parts of each other's rotation: z = (1 + D) w + M w, solved by Cramer's rule.
 TEST(Compensator, SolvesMisalignmentForAllAxesAtOnce) {
   const double m = 3e-3;   // of y in x
