@@ -43,9 +43,7 @@ class EffectSearch {
 
   SearchResult run() {
     SearchResult result;
-    const Columns columns = design(data_, model_);
-    noise_ =
-        options_.noise ? fit_noise(data_.grid, columns, *options_.noise) : fit_noise(data_.grid, columns);
+    noise_ = first_noise(model_);
     count_tries();
     start_with_basics();
     improve();
@@ -135,27 +133,31 @@ class EffectSearch {
     return true;
   }
 
+  [[nodiscard]] NoiseFit first_noise(const std::vector<Candidate>& model) const {
+    const Columns columns = design(data_, model);
+    return options_.noise ? fit_noise(data_.grid, columns, *options_.noise) : fit_noise(data_.grid, columns);
+  }
+
   // First fits what every gyro has, before the noise model absorbs it: scale factor, misalignment,
-  // temperature to second order. Unprofitable ones are removed one by one. The noise fit starts both from the
-  // noise without them and from zero; the more likely result is used.
+  // temperature to second order. The kinds of noise are chosen beside all of them, then unprofitable ones are
+  // removed one by one. Each noise fit starts from the noise beside all and from zero; the likelier is used.
   void start_with_basics() {
     if (data_.reference < 0) return;
     Trial basics{model_, {}, 0.0};
     for (const Candidate& each : library(data_))
       if (is_basic(each)) basics.model.push_back(each);
     if (basics.model.empty()) return;
-    const auto fit = [&](Trial& trial, const NoiseShape& start) {
-      const Columns columns = design(data_, trial.model);
-      const NoiseFit one = fit_noise(data_.grid, columns, start), other = fit_noise(data_.grid, columns, {});
-      trial.noise = one.log_likelihood > other.log_likelihood ? one : other;
-      trial.score = score(trial.model, trial.noise);
-    };
-    fit(basics, noise_.shape);
+    basics.noise = first_noise(basics.model);
+    basics.score = score(basics.model, basics.noise);
     while (!basics.model.empty()) {
       Trial best;
       for (std::size_t i = 0; i < basics.model.size(); ++i) {
         Trial less{without(basics.model, i), {}, 0.0};
-        fit(less, basics.noise.shape);
+        const Columns columns = design(data_, less.model);
+        less.noise = fit_noise(data_.grid, columns, basics.noise.shape);
+        const NoiseFit other = fit_noise(data_.grid, columns, {});
+        if (other.log_likelihood > less.noise.log_likelihood) less.noise = other;
+        less.score = score(less.model, less.noise);
         if (less.score > best.score) best = std::move(less);
       }
       if (best.score < basics.score) break;
