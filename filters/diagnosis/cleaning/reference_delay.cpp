@@ -13,6 +13,7 @@
 #include <numbers>
 #include <optional>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 #include "filters/allan/stretches.h"
@@ -20,7 +21,7 @@
 #include "filters/diagnosis/cleaning/series_fit.h"
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/even_grid.h"
-#include "filters/distributions/median.h"
+#include "filters/diagnosis/record/figures.h"
 #include "filters/linear/fourier.h"
 #include "filters/units/told_time.h"
 
@@ -29,13 +30,12 @@ namespace {
 
 constexpr std::size_t kMostDelaySteps = 1U << 17U;  // steps of the series on which the delay is searched
 constexpr std::size_t kLeast = 200;                 // fewest steps
-constexpr int kRounds = 20;
+constexpr int kRounds = 40;
 constexpr double kSettled = 1e-5;       // in steps
 constexpr double kCertainDelay = 25.0;  // required gain of twice the log-likelihood beyond the number of lags
 constexpr std::size_t kPowers = 4;      // powers of the reference: constant to cubic
+constexpr double kAccuracy = 0.1;       // in steps; sufficient accuracy of the delay
 using Series = std::vector<double>;
-
-constexpr double kAccuracy = 0.1;  // in steps; sufficient accuracy of the delay
 
 struct Pair {
   Series rate, reference;
@@ -51,14 +51,8 @@ Series differences(const Series& series) {
 }
 
 Series means(std::span<const double> series, std::size_t count) {
-  if (count == 1) return {series.begin(), series.end()};
-  Series out(series.size() / count);
-  for (std::size_t i = 0; i < out.size(); ++i) {
-    double sum = 0.0;  // NaN if one is missing; a partial mean would be for another time
-    for (std::size_t k = i * count; k < (i + 1) * count; ++k) sum += series[k];
-    out[i] = sum / static_cast<double>(count);
-  }
-  return out;
+  const Samples found = means_over(series, count);
+  return {found.begin(), found.end()};
 }
 
 std::optional<Pair> pair_of(const Record& record) {
@@ -97,10 +91,13 @@ std::vector<std::complex<double>> transform(const Series& series, std::size_t si
   return spectrum;
 }
 
-// In whole steps, by the maximum cross-correlation of the whitened series.
+// In whole steps, by the maximum cross-correlation of the series, whitened by the sum of their spectra. By the
+// rate's alone, the noise of a reference differentiated from angles would hide the motion.
 double coarse_delay(const Pair& pair) {
   const Series rate = differences(pair.rate), reference = differences(pair.reference);
-  const Autoregression noise(rate);
+  Series both = rate;
+  both.insert(both.end(), reference.begin(), reference.end());
+  const Autoregression noise(both);
   const auto most = static_cast<std::ptrdiff_t>(longest_lag(pair));
   const std::size_t size = std::bit_ceil(rate.size() + static_cast<std::size_t>(most) + 1);
   std::vector<std::complex<double>> product = transform(noise.whitened(rate), size);
@@ -178,6 +175,7 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
   if (!(scale > 0.0)) return std::nullopt;
   Delay delay;
   delay.steps = steps;
+  double low = -HUGE_VAL, high = HUGE_VAL, reach = 0.5, last = 0.0;
   for (int round = 0; round < kRounds; ++round) {
     const std::vector<Series> columns = columns_of(pair, scale, delay.steps, true);
     if (columns.front().size() < kLeast) return std::nullopt;
@@ -202,7 +200,11 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
       delay.steps += step;  // accurate enough
       return delay;
     }
-    delay.steps += std::clamp(step, -1.0, 1.0);
+    // The reference's noise makes the steps too short: they grow while their sign stays, between known bounds.
+    (step > 0.0 ? low : high) = delay.steps;
+    reach = std::max(1.0, std::exchange(last, step) * step < 0.0 ? 0.5 * reach : 2.0 * reach);
+    delay.steps += std::clamp(reach * step, -1.0, 1.0);
+    if (!(delay.steps > low && delay.steps < high)) delay.steps = 0.5 * (low + high);
     if (std::abs(delay.steps) > static_cast<double>(longest_lag(pair))) return std::nullopt;
   }
   return std::nullopt;
@@ -274,25 +276,15 @@ constexpr std::size_t kRings = 12;      // samples on either side: half the widt
 constexpr double kMostOfJumps = 0.25;
 // Limit of the ratio of fourth to second difference: small for smooth motion, two to six at a jump or kink.
 constexpr double kRoughness = 1.0;
-constexpr std::size_t kEnough = 50000;  // steps for the noise estimate
-
-// Noise of one sample, from the median difference of neighbours.
-double noise_about_reference(const Samples& reference, std::span<const double> rate) {
-  std::vector<double> steps;
-  const std::size_t stride = std::max<std::size_t>(1, rate.size() / kEnough);
-  for (std::size_t i = 1; i < rate.size(); i += stride) {
-    const double step = (rate[i] - reference[i]) - (rate[i - 1] - reference[i - 1]);
-    if (std::isfinite(step)) steps.push_back(std::abs(step));
-  }
-  if (steps.empty()) return 0.0;
-  return median(steps) / (0.6745 * std::sqrt(2.0));
-}
 
 }  // namespace
 
 std::size_t leave_out_jumps(Samples& reference, std::span<const double> rate) {
   const std::size_t n = reference.size();
-  const double noise = noise_about_reference(reference, rate);
+  Record pair;
+  pair.rate_radps = rate;
+  pair.reference_radps = reference;
+  const double noise = std::sqrt(2.0 * white_variance({pair}));
   if (n < 5 || !(noise > 0.0)) return 0;
   std::vector<std::uint8_t> out(n, 0);
   const Samples& x = reference;

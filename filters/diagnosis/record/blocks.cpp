@@ -87,10 +87,6 @@ void check_columns(const std::vector<Record>& records) {
   }
 }
 
-namespace {
-
-// Noise variance of one sample from the median difference of neighbours, which ignores steps, ramps and
-// bursts.
 double white_variance(const std::vector<Record>& records) {
   std::vector<double> differences;
   for (const Record& record : records) {
@@ -106,6 +102,8 @@ double white_variance(const std::vector<Record>& records) {
   const double sigma = median(std::move(differences)) / 0.6744897501960817;
   return sigma * sigma / 2.0;
 }
+
+namespace {
 
 void describe(FineChannel& channel) {
   const auto [low, high] = std::minmax_element(channel.values.begin(), channel.values.end());

@@ -99,6 +99,10 @@ inline constexpr double kSlowest_s = 1.0;
 // some records only, time not increasing.
 void check_columns(const std::vector<Record>& records);
 
+// Noise variance of one sample of rate minus reference, from the median difference of neighbours, which ignores
+// steps, ramps and bursts.
+double white_variance(const std::vector<Record>& records);
+
 // Throws std::invalid_argument as diagnose() does.
 BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks = 4096);
 

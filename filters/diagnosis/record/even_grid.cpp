@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 
 #include "filters/series/finite_sum.h"
@@ -34,14 +33,9 @@ Samples error_of(const Record& record) {
   return error;
 }
 
-double variance_of(std::span<const double> values) {
-  const std::optional<double> variance = variance_of_two(values);
-  return variance ? *variance : 0.0;
-}
-
-std::optional<double> variance_of_two(std::span<const double> values) {
+double variance_of(std::span<const double> values, double of_fewer) {
   const auto [sum, n] = finite_sum(values);
-  if (n < 2.0) return std::nullopt;
+  if (n < 2.0) return of_fewer;
   double square = 0.0;
   const double mean = sum / n;
   for (const double v : values)

@@ -2,7 +2,6 @@
 // A record on its nominal equidistant grid, for spectra and Allan deviations.
 #pragma once
 
-#include <optional>
 #include <span>
 
 #include "filters/diagnosis/record.h"
@@ -17,8 +16,7 @@ Samples on_even_grid(const Record& record, double sample_s, std::span<const doub
 // rate - reference by sample.
 Samples error_of(const Record& record);
 
-// Variance about the mean, ignoring NaN; 0, or nullopt, for fewer than two values.
-double variance_of(std::span<const double> values);
-std::optional<double> variance_of_two(std::span<const double> values);
+// Variance about the mean, ignoring NaN; of_fewer for fewer than two values.
+double variance_of(std::span<const double> values, double of_fewer = 0.0);
 
 }  // namespace ifog

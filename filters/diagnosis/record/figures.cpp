@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <utility>
 
 #include "filters/allan/gapped_deviation.h"
@@ -16,10 +15,7 @@ namespace {
 
 const double kMissing = std::numeric_limits<double>::quiet_NaN();
 
-double rms_about_mean(std::span<const double> values) {
-  const std::optional<double> variance = variance_of_two(values);
-  return variance ? std::sqrt(*variance) : kMissing;
-}
+double rms_about_mean(std::span<const double> values) { return std::sqrt(variance_of(values, kMissing)); }
 
 double lag_one(std::span<const double> values) {
   const double rms = rms_about_mean(values);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <random>
+#include <utility>
 
 #include "filters/diagnosis/diagnose.h"
 
@@ -65,6 +66,25 @@ TEST(ReferenceDelay, IsFoundToAPartOfASampleAndShifted) {
           << delay_s << ' ' << i;
     // Where the reference was not yet, or no longer, logged there is none.
     EXPECT_TRUE(std::isnan(aligned.records[0].reference_radps[delay_s > 0.0 ? kSamples - 1 : 0]));
+  }
+}
+
+// Noise that grows with the frequency, as of a reference differentiated from angles, hides the motion from a filter
+// that whitens the rate, and shortens each Gauss-Newton step.
+TEST(ReferenceDelay, IsFoundWithAReferenceDifferentiatedFromNoisyAngles) {
+  const auto quick = [](double t) { return turning(t) + 0.3 * std::sin(9.1 * t) * std::sin(0.9 * t); };
+  for (const double delay_s : {0.62, -0.43}) {
+    Logged logged(8, delay_s, quick);
+    std::mt19937_64 random(9);
+    std::normal_distribution<double> normal;
+    double before = 0.0;
+    for (double& each : logged.reference) {
+      const double angle = 2e-3 * normal(random);
+      each += (angle - std::exchange(before, angle)) / kStep_s;
+    }
+    const OwnedRecords aligned = align_references(std::vector{logged.record});
+    ASSERT_EQ(aligned.delays.size(), 1U) << delay_s;
+    EXPECT_NEAR(aligned.delays[0].delay_s, delay_s, 0.1 * kStep_s) << delay_s;
   }
 }
 
