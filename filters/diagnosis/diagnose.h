@@ -20,8 +20,8 @@ namespace ifog {
 struct DiagnoseOptions {
   double significance = 0.01;  // probability of a false effect, corrected for the number of tries
   std::string axis;            // written into the effects found
-  // Part of each record that is fitted, as fractions of its time; the rest is for validation. Equal values:
-  // all of it is fitted, and validation is by cross-validation.
+  // Part of each record that is fitted, as fractions of its time; the rest is for validation. If that is all
+  // of it, validation is by cross-validation.
   double fit_from = 0.0, fit_to = 1.0;
   std::size_t most_effects = 8;
   bool subtract_earth_rate = false;  // subtract the effect of the Earth's rate; otherwise it is only reported

@@ -7,7 +7,7 @@
 
 namespace ifog {
 
-SampleRange samples_in(const Record& record, const TimeShare& share) {
+Stretch samples_in(const Record& record, const TimeShare& share) {
   const double start = record.time_s.front();
   const double span = record.time_s.back() - start;
   const auto at = [&](double fraction) {
@@ -17,20 +17,21 @@ SampleRange samples_in(const Record& record, const TimeShare& share) {
   return {at(share.from), share.to >= 1.0 ? record.time_s.size() : at(share.to)};
 }
 
-Record part_of(const Record& record, const SampleRange& samples) {
+Record part_of(const Record& record, const Stretch& samples) {
   Record part = record;
-  part.time_s = record.time_s.subspan(samples.from, samples.size());
-  part.rate_radps = record.rate_radps.subspan(samples.from, samples.size());
+  part.time_s = record.time_s.subspan(samples.begin, samples.size());
+  part.rate_radps = record.rate_radps.subspan(samples.begin, samples.size());
   if (!record.reference_radps.empty())
-    part.reference_radps = record.reference_radps.subspan(samples.from, samples.size());
+    part.reference_radps = record.reference_radps.subspan(samples.begin, samples.size());
   for (RecordChannel& channel : part.channels)
-    channel.values = channel.values.subspan(samples.from, samples.size());
-  for (RecordChannel& axis : part.other_axes) axis.values = axis.values.subspan(samples.from, samples.size());
+    channel.values = channel.values.subspan(samples.begin, samples.size());
+  for (RecordChannel& axis : part.other_axes)
+    axis.values = axis.values.subspan(samples.begin, samples.size());
   for (std::span<const double>& reference : part.other_references)
-    if (!reference.empty()) reference = reference.subspan(samples.from, samples.size());
-  const Stretch all{samples.from, samples.to};
-  part.at_rest = common(record.at_rest, {&all, 1});
-  for (Stretch& stretch : part.at_rest) stretch = {stretch.begin - samples.from, stretch.end - samples.from};
+    if (!reference.empty()) reference = reference.subspan(samples.begin, samples.size());
+  part.at_rest = common(record.at_rest, {&samples, 1});
+  for (Stretch& stretch : part.at_rest)
+    stretch = {stretch.begin - samples.begin, stretch.end - samples.begin};
   return part;
 }
 

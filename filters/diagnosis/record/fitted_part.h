@@ -2,9 +2,9 @@
 // Part of each record that is fitted; the rest is for validation.
 #pragma once
 
-#include <cstddef>
 #include <vector>
 
+#include "filters/allan/stretches.h"
 #include "filters/diagnosis/record.h"
 
 namespace ifog {
@@ -15,16 +15,10 @@ struct TimeShare {
   [[nodiscard]] bool whole() const { return from <= 0.0 && to >= 1.0; }
 };
 
-// Samples from … to - 1.
-struct SampleRange {
-  std::size_t from = 0, to = 0;
-  [[nodiscard]] std::size_t size() const { return to - from; }
-};
-
-SampleRange samples_in(const Record& record, const TimeShare& share);
+Stretch samples_in(const Record& record, const TimeShare& share);
 
 // Views of the same arrays.
-Record part_of(const Record& record, const SampleRange& samples);
+Record part_of(const Record& record, const Stretch& samples);
 std::vector<Record> fitted_parts(const std::vector<Record>& records, const TimeShare& share);
 
 }  // namespace ifog

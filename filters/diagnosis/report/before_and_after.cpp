@@ -121,15 +121,15 @@ void judge(const std::vector<Record>& records, const TimeShare& fitted, Diagnosi
   const double sample_s = 1.0 / diagnosis.sample_rate_hz;
   std::vector<EvenError> judged;
   for (const Record& record : records) {
-    const SampleRange part = samples_in(record, fitted);
+    const Stretch part = samples_in(record, fitted);
     const Samples raw = error_of(record);
     const Samples left = compensated_error(record, model);
     // The two parts outside the fitted one, separately.
-    for (const SampleRange range : {SampleRange{0, part.from}, SampleRange{part.to, record.time_s.size()}}) {
+    for (const Stretch range : {Stretch{0, part.begin}, Stretch{part.end, record.time_s.size()}}) {
       if (range.size() < 32) continue;
       const Record piece = part_of(record, range);
       const auto of = [&](std::span<const double> all) {
-        return on_even_grid(piece, sample_s, all.subspan(range.from, range.size()));
+        return on_even_grid(piece, sample_s, all.subspan(range.begin, range.size()));
       };
       EvenError& error = judged.emplace_back();
       error.before = of(raw);
