@@ -217,10 +217,11 @@ class Run {
     result_.channel_delays =
         delayed_channels(reconstructed_, candidates_of(found_.chosen), found_.noise.shape);
     for (const ChannelDelay& delay : result_.channel_delays) say(delay_in_words(delay));
-    result_.unexplained = describe_rest(errors_, lines_, found_.noise, data_.grid, options_.significance,
-                                        result_.noise_changes);
+    result_.unexplained = describe_rest(records_, errors_, lines_, found_.noise, data_.grid,
+                                        options_.significance, result_.noise_changes);
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
+    say(other_unit_in_words(result_));
     say(unexplained_despite_claims(result_, records_.size()));
     // With a held-out part, judge() checks it.
     if (TimeShare{options_.fit_from, options_.fit_to}.whole())

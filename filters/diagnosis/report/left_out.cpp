@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/report/left_out.h"
 
+#include "filters/effects/form.h"
+#include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace ifog {
 namespace {
@@ -16,6 +20,12 @@ constexpr double kMuch = 0.12;  // of the error's variance
 std::string named(const Effect& effect) {
   return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel) +
          (effect.with_channel.empty() ? "" : " with " + effect.with_channel);
+}
+
+bool has_a_value(const std::vector<Record>& records, const std::string& name) {
+  return std::ranges::any_of(records, [&](const Record& record) {
+    return std::ranges::any_of(values_of(record, name), [](double value) { return std::isfinite(value); });
+  });
 }
 
 }  // namespace
@@ -51,15 +61,18 @@ std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t c
                                : ". The coefficients are compared between the captures given");
 }
 
-namespace {
-
-bool has_a_value(const std::vector<Record>& records, const std::string& name) {
-  return std::ranges::any_of(records, [&](const Record& record) {
-    return std::ranges::any_of(values_of(record, name), [](double value) { return std::isfinite(value); });
-  });
+std::string other_unit_in_words(const Diagnosis& diagnosis) {
+  constexpr double kNear = 0.1;
+  for (const FoundEffect& found : diagnosis.effects) {
+    if (found.effect.form != "linear" || !is_reference_rate(found.effect.channel)) continue;
+    const double times = 1.0 + found.effect.parameters.front().value;
+    for (const auto& [expected, why] : std::initializer_list<std::pair<double, const char*>>{
+             {-1.0, "of reversed sign"}, {kDegree, "in degrees"}, {1.0 / kDegree, "in radians"}})
+      if (std::abs(times / expected - 1.0) < kNear)
+        return formatted("the rate is %.4g times the reference: perhaps the reference is %s", times, why);
+  }
+  return "";
 }
-
-}  // namespace
 
 std::string unused_channels(const std::vector<Record>& records, const BlockData& data,
                             const std::vector<std::string>& ramps) {

@@ -23,6 +23,9 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
 // or no effect uses a channel. captures: number diagnosed together.
 std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t captures);
 
+// Sentence on a reference that seems to have another sign or unit; empty if none does.
+std::string other_unit_in_words(const Diagnosis& diagnosis);
+
 // Sentence on the channels that cannot be used: not in every record, without a value, or constant; empty if
 // there is none. ramps: channels already used by a ramp.
 std::string unused_channels(const std::vector<Record>& records, const BlockData& data,

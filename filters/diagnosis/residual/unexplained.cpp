@@ -170,43 +170,35 @@ void describe_share(std::span<const double> error, std::span<const double> left,
 
 }  // namespace
 
-Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
-                                 double period_s, const NoiseFit& noise, const BlockGrid& grid,
-                                 const std::vector<SpectralLine>& peaks,
-                                 const std::vector<NoiseChangeIn>& changes) {
+Unexplained describe_rest(const std::vector<Record>& records, const std::vector<EvenError>& errors,
+                          const std::vector<LineOf>& lines, const NoiseFit& noise, const BlockGrid& grid,
+                          double significance, const std::vector<NoiseChangeIn>& noise_changes) {
+  const EvenError& longest = longest_of(errors);
+  const double period_s = grid.sample_s, start_s = longest.origin.in_s(longest.start_s);
   Unexplained found;
-  const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
-  describe_share(error, left, period_s, noise, grid, found);
-
+  describe_share(longest.before, longest.after, period_s, noise, grid, found);
+  std::vector<SpectralLine> peaks;
+  if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, period_s, significance);
+  const double length_s = static_cast<double>(longest.after.size()) * period_s;
+  const auto bin = [&](double hz) { return static_cast<std::size_t>(std::lround(hz * length_s)); };
   if (!peaks.empty()) {
     describe_peak(peaks.front(), found);
+    for (const auto& [record, line] : lines)
+      if (found.frequency_hz > 0.0 && are_one_peak(bin(found.frequency_hz), bin(line.frequency_hz)))
+        found.hint = formatted("what is left of the line at %.4g Hz, whose size or frequency is not steady",
+                               line.frequency_hz);
     return found;
   }
+  const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
   const std::size_t piece = std::max<std::size_t>(8, second / 4);
-  const std::vector<double> energy = energies(left, piece);
+  const std::vector<double> energy = energies(longest.after, piece);
   if (energy.size() >= 16 && describe_bursts(energy, piece, start_s, period_s, found)) return found;
-  if (changes.empty())
-    describe_slow_rest(slow_rest(left, period_s), found);
+  const auto mine = static_cast<std::size_t>(&longest - errors.data());
+  const auto change = std::ranges::find(noise_changes, records[mine].name, &NoiseChangeIn::capture);
+  if (change == noise_changes.end())
+    describe_slow_rest(slow_rest(longest.after, period_s), found);
   else
-    describe_noise_change(changes.front().change, found);
-  return found;
-}
-
-Unexplained describe_rest(const std::vector<EvenError>& errors, const std::vector<LineOf>& lines,
-                          const NoiseFit& noise, const BlockGrid& grid, double significance,
-                          const std::vector<NoiseChangeIn>& noise_changes) {
-  const EvenError& longest = longest_of(errors);
-  std::vector<SpectralLine> peaks;
-  if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, grid.sample_s, significance);
-  Unexplained found =
-      describe_unexplained(longest.before, longest.after, longest.origin.in_s(longest.start_s), grid.sample_s,
-                           noise, grid, peaks, noise_changes);
-  const double length_s = static_cast<double>(longest.after.size()) * grid.sample_s;
-  const auto bin = [&](double hz) { return static_cast<std::size_t>(std::lround(hz * length_s)); };
-  for (const auto& [record, line] : lines)
-    if (found.frequency_hz > 0.0 && are_one_peak(bin(found.frequency_hz), bin(line.frequency_hz)))
-      found.hint = formatted("what is left of the line at %.4g Hz, whose size or frequency is not steady",
-                             line.frequency_hz);
+    describe_noise_change(change->change, found);
   return found;
 }
 

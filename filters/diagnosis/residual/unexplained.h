@@ -2,7 +2,6 @@
 // Describes the residual in words on which a person can act.
 #pragma once
 
-#include <span>
 #include <string>
 #include <vector>
 
@@ -13,17 +12,10 @@
 
 namespace ifog {
 
-// error, left: before and after, equidistant with period_s from start_s, one record, NaN missing. peaks:
-// peaks of `left` without constant phase; changes: of its noise level.
-Unexplained describe_unexplained(std::span<const double> error, std::span<const double> left, double start_s,
-                                 double period_s, const NoiseFit& noise, const BlockGrid& grid,
-                                 const std::vector<SpectralLine>& peaks,
-                                 const std::vector<NoiseChangeIn>& changes = {});
-
 // Describes the longest record's residual, in which peaks are searched (not on a rate table). lines: taken out.
-Unexplained describe_rest(const std::vector<EvenError>& errors, const std::vector<LineOf>& lines,
-                          const NoiseFit& noise, const BlockGrid& grid, double significance,
-                          const std::vector<NoiseChangeIn>& noise_changes);
+Unexplained describe_rest(const std::vector<Record>& records, const std::vector<EvenError>& errors,
+                          const std::vector<LineOf>& lines, const NoiseFit& noise, const BlockGrid& grid,
+                          double significance, const std::vector<NoiseChangeIn>& noise_changes);
 
 // Replaces the description by that of the hysteresis.
 void describe_hysteresis(const Hysteresis& loop, Unexplained& found);
