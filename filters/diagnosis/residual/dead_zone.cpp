@@ -92,7 +92,9 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   const auto best = std::max_element(gained.begin(), gained.end());
   const auto inside = static_cast<std::size_t>(best - gained.begin()) + 1;
   DeadZone zone;
-  zone.half_width = std::abs(slow[inside - 1].rate);
+  const double last = std::abs(slow[inside - 1].rate);  // inside
+  const double next = std::abs(slow[std::min(inside, slow.size() - 1)].rate);
+  zone.half_width = 0.5 * (last + next);
   zone.ratio = *best / white_variance;
   const double tries = independent_columns(static_cast<std::size_t>(
       std::log(kWidestZone * most / std::max(std::abs(slow.front().rate), 1e-3 * most)) / std::log(kFactor)));
@@ -104,7 +106,7 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   const auto from = std::find_if(gained.begin(), gained.end(), close) - gained.begin();
   const auto to = gained.rend() - std::find_if(gained.rbegin(), gained.rend(), close);
   zone.half_width_error = 0.5 * (std::abs(slow[static_cast<std::size_t>(to) - 1].rate) -
-                                 std::abs(slow[static_cast<std::size_t>(from)].rate));
+                                 std::abs(slow[static_cast<std::size_t>(from)].rate) + next - last);
   slow.resize(inside);
   double square = 0.0, product = 0.0;
   for (const Slow& each : slow) square += each.rate * each.rate, product += each.product;

@@ -30,6 +30,8 @@ Periodogram periodogram(std::span<const double> error) {
   for (std::size_t i = 0; i < out.length; ++i)
     values[i] = std::isfinite(error[i]) ? error[i] - out.mean : 0.0;
   out.power = power_spectrum(values);
+  // Missing samples have no power.
+  for (double& power : out.power) power *= static_cast<double>(error.size()) / std::max(1.0, present);
   return out;
 }
 
