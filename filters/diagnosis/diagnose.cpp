@@ -97,17 +97,19 @@ class Run {
       result_.effects.emplace_back().effect = effect;
     for (const RampFit& ramp : ramps_) result_.effects.push_back(ramp.found);
     result_.ranges = ranges_of(data_, result_.effects);
-    if (data_.reference >= 0) result_.bias = ModelParameter{"coefficient", mean_of_corrected(), 0.0, "rad/s"};
+    const Eigen::RowVectorXd means = corrected_means();
+    const double left = means[0] - means.tail(means.size() - 1).dot(found_.coefficients);
+    if (data_.reference >= 0) result_.bias = ModelParameter{"coefficient", left, 0.0, "rad/s"};
     subtract_effects(records_, data_, found_, result_, errors_);
   }
 
-  // Mean rate of the corrected effects.
-  [[nodiscard]] double mean_of_corrected() const {
+  // Means of the error and of the corrected effects, by column of design().
+  [[nodiscard]] Eigen::RowVectorXd corrected_means() const {
     const std::vector<Candidate> chosen = candidates_of(found_.chosen);
-    Eigen::VectorXd coefficients = found_.coefficients;
+    Eigen::RowVectorXd means = means_of(data_, chosen);
     for (std::size_t i = 0; i < chosen.size(); ++i)
-      if (!chosen[i].corrected()) coefficients[column_of(data_.grid, i) - 1] = 0.0;
-    return mean_left(data_.grid, design(data_, chosen), coefficients);
+      if (!chosen[i].corrected()) means[column_of(data_.grid, i)] = 0.0;
+    return means;
   }
 
   // Removes effect `at` and fits the others again.
@@ -172,7 +174,7 @@ class Run {
   void fit_jointly() {
     joint_ = settle(reconstructed_, found_);
     report_effects();
-    if (data_.reference >= 0) name_bias(data_.grid, joint_, mean_of_corrected(), options_.axis, result_);
+    if (data_.reference >= 0) name_bias(data_.grid, joint_, corrected_means(), options_.axis, result_);
     result_.covariance = covariance_of(result_.effects, joint_, data_.grid.constants(), parts_.size());
     subtract_effects(records_, data_, found_, result_, errors_);
     write_before_and_after(errors_, data_.grid.sample_s, data_.reference >= 0, result_);

@@ -86,7 +86,7 @@ class Measuring {
   MeasuredEffects run() {
     noise_ = fit_noise(data_.grid, design(data_, all()));
     for (std::size_t at = 0; at < place_.size(); ++at) weigh(at);
-    report(joint_fit_at(data_, all(), noise_));
+    report(joint_fit(data_, all(), noise_));
     return std::move(result_);
   }
 
@@ -149,8 +149,9 @@ class Measuring {
     const auto count = static_cast<Eigen::Index>(model_.size());
     const Eigen::Index first = data_.grid.constants();
     // Without a bias in the model, rates count from the mean that the effects leave.
-    const Columns columns = design(data_, all());
-    const double rates_from = mean_left(data_.grid, columns, joint.values);
+    const Eigen::RowVectorXd means = means_of(data_, all());
+    const double rates_from =
+        means[0] - means.tail(means.size() - 1).dot(joint.values.head(means.size() - 1));
     std::vector<FoundEffect> found;
     for (Eigen::Index i = 0; i < count; ++i) {
       Effect effect = effect_of(data_, model_[static_cast<std::size_t>(i)]);
@@ -166,9 +167,7 @@ class Measuring {
       else
         result_.others.push_back(effect);
       found.push_back({effect, 1.0, 0.0, 0.0});
-      Eigen::VectorXd more = joint.values;
-      more[first + i] += 1.0;
-      result_.means.push_back(rates_from - mean_left(data_.grid, columns, more));
+      result_.means.push_back(means[first + i + 1]);
       for (Eigen::Index j = 0; j < count; ++j)
         result_.covariance.push_back(joint.covariance(first + i, first + j));
     }

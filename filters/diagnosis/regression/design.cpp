@@ -29,15 +29,14 @@ Eigen::Index column_of(const BlockGrid& grid, std::size_t effect) {
   return 1 + grid.constants() + static_cast<Eigen::Index>(effect);
 }
 
-double mean_left(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& coefficients) {
-  const Eigen::Index first = grid.constants();
-  const Eigen::Index effects = columns.cols() - 1 - first;
-  const Eigen::VectorXd left =
-      columns.col(0) - columns.rightCols(effects) * coefficients.segment(first, effects);
-  double sum = 0.0;
+Eigen::RowVectorXd means_of(const BlockData& data, const std::vector<Candidate>& effects) {
+  const BlockGrid& grid = data.grid;
+  const Columns columns = design(data, effects);
+  Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(columns.cols());
   for (std::size_t b = 0; b < grid.size(); ++b)
-    if (grid.valid[b]) sum += left[static_cast<Eigen::Index>(b)];
-  return grid.used() > 0 ? sum / static_cast<double>(grid.used()) : 0.0;
+    if (grid.valid[b]) sum += columns.row(static_cast<Eigen::Index>(b));
+  sum.segment(1, grid.constants()).setZero();
+  return sum / std::max(1.0, static_cast<double>(grid.used()));
 }
 
 std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns) {

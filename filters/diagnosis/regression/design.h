@@ -17,9 +17,8 @@ Columns design(const BlockData& data, const std::vector<Candidate>& effects);
 // Index of an effect's column in design(). Its coefficient has index − 1, as the measurement has none.
 Eigen::Index column_of(const BlockGrid& grid, std::size_t effect);
 
-// Mean over the valid blocks of the measurement minus the effects. columns: of design(); coefficients: of the
-// columns after the measurement; the constants are not subtracted.
-double mean_left(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& coefficients);
+// Means of design()'s columns over the valid blocks; zero for the constants.
+Eigen::RowVectorXd means_of(const BlockData& data, const std::vector<Candidate>& effects);
 
 // Fold of each block: short contiguous pieces, alternating, so that every fold covers the whole record.
 std::vector<int> folds_of(const BlockGrid& grid, int folds, std::size_t turns = 4);

@@ -14,7 +14,7 @@ namespace {
 // Noise parameters are tried logarithmically from negligible (1 % of the white noise's part in the record's
 // mean) to values that leave no white noise.
 constexpr double kNegligible = 0.03;
-constexpr double kMostRatio = 1e4;
+constexpr double kMostRatio = 1e6;
 constexpr double kCoarse = 6.0;    // ratio in the first grid
 constexpr double kFarBelow = 8.0;  // log-likelihood; smaller values are ignored
 constexpr int kFineGrid = 9;       // values per parameter in the second grid
@@ -182,40 +182,24 @@ void average(const BlockGrid& grid, const std::vector<Tried>& tried, JointFit& f
   }
 }
 
-// known: priors of the columns after the measurement, see solve_at().
-void fit_over_noise(const BlockGrid& grid, const Columns& columns, const Eigen::VectorXd& known,
-                    const NoiseFit& best, JointFit& fit) {
-  average(grid,
-          try_noise(grid, best.shape,
-                    [&](const NoiseShape& shape) {
-                      return solve_at(grid, columns, known, shape, best.white_variance);
-                    }),
-          fit);
-}
-
 }  // namespace
 
-JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
-                   const Eigen::VectorXd& coefficients, const NoiseFit& best) {
+JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects, const NoiseFit& best,
+                   const Eigen::VectorXd* coefficients) {
   const BlockGrid& grid = data.grid;
   JointFit fit;
   const Columns base = design(data, effects);
-  const Columns more = searched_columns(data, effects, coefficients, grid.constants(), &fit.searched);
+  Columns more(base.rows(), 0);
+  if (coefficients) more = searched_columns(data, effects, *coefficients, grid.constants(), &fit.searched);
   Columns columns(base.rows(), base.cols() + more.cols());
   columns << base, more;
   Eigen::VectorXd known =
       Eigen::VectorXd::Constant(columns.cols() - 1, std::numeric_limits<double>::infinity());
   known.tail(more.cols()).setConstant(kLogRange);
-  fit_over_noise(grid, columns, known, best, fit);
-  return fit;
-}
-
-JointFit joint_fit_at(const BlockData& data, const std::vector<Candidate>& effects, const NoiseFit& best) {
-  const Columns columns = design(data, effects);
-  JointFit fit;
-  const Eigen::VectorXd unknown =
-      Eigen::VectorXd::Constant(columns.cols() - 1, std::numeric_limits<double>::infinity());
-  fit_over_noise(data.grid, columns, unknown, best, fit);
+  const auto evaluate = [&](const NoiseShape& shape) {
+    return solve_at(grid, columns, known, shape, best.white_variance);
+  };
+  average(grid, try_noise(grid, best.shape, evaluate), fit);
   return fit;
 }
 

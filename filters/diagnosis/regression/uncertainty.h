@@ -25,12 +25,10 @@ struct JointFit {
   std::vector<std::size_t> searched;  // effects of the searched parameters
 };
 
-// effects: as the search left them; coefficients: of these; best: most likely noise.
-JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects,
-                   const Eigen::VectorXd& coefficients, const NoiseFit& best);
-
-// The same with the time constants of the effects fixed.
-JointFit joint_fit_at(const BlockData& data, const std::vector<Candidate>& effects, const NoiseFit& best);
+// effects: as the search left them; best: most likely noise; coefficients: of the effects, without which their time
+// constants are fixed.
+JointFit joint_fit(const BlockData& data, const std::vector<Candidate>& effects, const NoiseFit& best,
+                   const Eigen::VectorXd* coefficients = nullptr);
 
 // Derivatives of the sum of the effects by the searched parameters, one column each.
 Columns searched_columns(const BlockData& data, const std::vector<Candidate>& effects,

@@ -74,7 +74,7 @@ std::vector<Effect> effects_of(const BlockData& data, const std::vector<Candidat
 }
 
 JointFit settle(const BlockData& reconstructed, SearchResult& found) {
-  JointFit joint = joint_fit(reconstructed, candidates_of(found.chosen), found.coefficients, found.noise);
+  JointFit joint = joint_fit(reconstructed, candidates_of(found.chosen), found.noise, &found.coefficients);
   const Eigen::Index linear = found.coefficients.size();
   for (std::size_t j = 0; j < joint.searched.size(); ++j) {
     Candidate& candidate = found.chosen[joint.searched[j]].candidate;
@@ -91,7 +91,7 @@ JointFit settle(const BlockData& reconstructed, SearchResult& found) {
   // The searched parameters have moved, so the coefficients' covariance is taken from the joint one.
   joint.of_coefficients = joint.covariance.topLeftCorner(linear, linear);
   if (!joint.searched.empty()) {
-    const JointFit there = joint_fit_at(reconstructed, candidates_of(found.chosen), found.noise);
+    const JointFit there = joint_fit(reconstructed, candidates_of(found.chosen), found.noise);
     joint.values.head(linear) = there.values.head(linear);
     joint.of_coefficients = there.covariance.topLeftCorner(linear, linear);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <string_view>
 
@@ -174,6 +175,24 @@ double heading_variance(const NoisePosterior& posterior, double aligned_s, doubl
       const double f = std::exp(-step / tau);
       variance += brought_by(weight, f, flicker * (1.0 - f * f));
     }
+  }
+  return variance;
+}
+
+double mean_variance(const NoisePosterior& posterior, const std::vector<double>& spans_s) {
+  const double all_s = std::accumulate(spans_s.begin(), spans_s.end(), 0.0);
+  double variance = 0.0;
+  for (const double span_s : spans_s) {
+    // Of a first-order process of unit variance.
+    const auto of = [&](double tau) {
+      return tau > 0.0 ? 2.0 * tau / span_s * (1.0 + tau / span_s * std::expm1(-span_s / tau)) : 0.0;
+    };
+    double flicker = 0.0;
+    for (const double tau : posterior.flicker_s) flicker += of(tau);
+    for (const NoisePosterior::Part& part : posterior.parts)
+      variance += part.weight * std::pow(span_s / all_s, 2) *
+                  (part.white / span_s + part.walk * span_s / 3.0 + part.flicker * flicker +
+                   part.markov * of(part.markov_s));
   }
   return variance;
 }

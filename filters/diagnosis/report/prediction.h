@@ -21,4 +21,7 @@ HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::ve
 // Variance of the heading error by noise alone, rad^2, without motion of the sensor's support.
 double heading_variance(const NoisePosterior& posterior, double aligned_s, double after_s);
 
+// Variance by noise of the mean over records of these durations, whose walks start at zero, (rad/s)^2.
+double mean_variance(const NoisePosterior& posterior, const std::vector<double>& spans_s);
+
 }  // namespace ifog

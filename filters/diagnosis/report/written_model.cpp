@@ -9,6 +9,7 @@
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/record/figures.h"
+#include "filters/diagnosis/report/prediction.h"
 #include "filters/distributions/chi_squared.h"
 #include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
@@ -24,19 +25,23 @@ double error_in_means(std::span<const double> error) {
 
 }  // namespace
 
-void name_bias(const BlockGrid& grid, const JointFit& joint, double value, const std::string& axis,
-               Diagnosis& diagnosis) {
+void name_bias(const BlockGrid& grid, const JointFit& joint, const Eigen::RowVectorXd& means,
+               const std::string& axis, Diagnosis& diagnosis) {
   constexpr double kClear = 5.0;  // in standard deviations
-  // The mean of a walk from zero has a third of its final variance; each flicker process has its own.
-  const double span_s = static_cast<double>(grid.used()) * grid.block_s;
-  double variance = joint.covariance(0, 0) / static_cast<double>(grid.records.size());
-  for (const NoisePosterior::Part& part : joint.noise.parts)
-    variance += part.weight * (part.white / span_s + part.walk * span_s / 3.0 +
-                               part.flicker * static_cast<double>(joint.noise.flicker_s.size()));
+  std::vector<double> spans_s;
+  for (const BlockRange& record : grid.records)
+    spans_s.push_back(static_cast<double>(record.size()) * grid.block_s);
+  const double by_noise = mean_variance(joint.noise, spans_s);
+  const Eigen::Index p = means.size() - 1;
+  const Eigen::RowVectorXd of_effects = means.tail(p);
+  const double value = means[0] - of_effects.dot(joint.values.head(p));
+  const double variance =
+      by_noise + std::max(0.0, (of_effects * joint.covariance.topLeftCorner(p, p)).dot(of_effects));
   const double sigma = std::sqrt(variance);
   const bool clear = std::abs(value) > kClear * sigma;
-  // A bias that noise may have caused is corrected by the share of its square above the noise's.
-  const double share = clear ? 1.0 : value * value / (value * value + variance);
+  // A bias that noise may have caused is corrected by the share of its square above the noise's. The effects'
+  // errors are left out: these effects are corrected too, and their sum is known where it was measured.
+  const double share = clear ? 1.0 : value * value / (value * value + by_noise);
   diagnosis.bias = ModelParameter{"coefficient", share * value, sigma, "rad/s"};
   if (!clear) return;
   FoundEffect found;

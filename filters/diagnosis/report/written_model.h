@@ -13,10 +13,11 @@
 
 namespace ifog {
 
-// Sets the bias relative to a reference, which the model corrects. value: mean that the corrected effects
-// leave. It is also added as an effect `bias` if it exceeds five standard deviations of a record's mean.
-void name_bias(const BlockGrid& grid, const JointFit& joint, double value, const std::string& axis,
-               Diagnosis& diagnosis);
+// Sets the bias relative to a reference, which the model corrects: the mean that the corrected effects leave.
+// means: from means_of(), zero for effects that are not corrected. The bias is also added as an effect `bias` if
+// it exceeds five standard deviations.
+void name_bias(const BlockGrid& grid, const JointFit& joint, const Eigen::RowVectorXd& means,
+               const std::string& axis, Diagnosis& diagnosis);
 
 // Fills `written`, `after` and `held_out` of each error with the daemon's correction by the model from
 // add_to_model(). found: effects of the search; those not corrected online are also removed from `after`.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 #include "filters/diagnosis/channels/motion.h"
 #include "filters/diagnosis/diagnose.h"
@@ -53,6 +54,62 @@ TEST(Basics, AScaleFactorIsFoundBesideANoisyReference) {
     ASSERT_TRUE(found.bias);
     EXPECT_NEAR(found.bias->value, 0.02, 0.003) << seed;
   }
+}
+
+// Motion up to some hertz and a reference differentiated from noisy angles. Least squares of means of a second is
+// the oracle.
+TEST(Basics, AreFoundInBroadbandMotion) {
+  for (const double error : {0.0, -0.01, -0.14, -2.0}) {
+    std::mt19937_64 random(11);
+    std::normal_distribution<double> normal;
+    Rows rows;
+    double slow = 0.0, truth = 0.0, before = 0.0;
+    for (int i = 0; i < 30000; ++i) {
+      slow += 0.05 * (8.0 * normal(random) - slow);
+      truth += 0.05 * (slow - truth);
+      const double angle = 4e-4 * normal(random);
+      rows.time.push_back(0.005 * i);
+      rows.reference.push_back(truth + (angle - std::exchange(before, angle)) / 0.005);
+      rows.rate.push_back((1.0 + error) * truth + 8e-3 + 5e-3 * normal(random));
+    }
+    double x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, n = 0.0;
+    for (std::size_t i = 0; i < rows.time.size(); i += 200, n += 1.0) {
+      double of_reference = 0.0, of_error = 0.0;
+      for (std::size_t k = i; k < i + 200; ++k) {
+        of_reference += rows.reference[k] / 200.0;
+        of_error += (rows.rate[k] - rows.reference[k]) / 200.0;
+      }
+      x += of_reference, y += of_error, xx += of_reference * of_reference, xy += of_reference * of_error;
+    }
+    const double slope = (xy - x * y / n) / (xx - x * x / n);
+    const Diagnosis found = diagnose({rows.record()}, {});
+    const Effect* scale = effect_of(found, "linear");
+    EXPECT_NEAR(scale ? parameter(*scale, "coefficient") : 0.0, slope, 3e-3) << error;
+    ASSERT_TRUE(found.bias);
+    EXPECT_NEAR(found.bias->value, (y - slope * x) / n, 3e-4) << error;
+    EXPECT_LT(std::abs(found.after.at("bias_radps")), 3e-4) << error;
+    const bool said = std::ranges::any_of(found.remarks, [](const std::string& remark) {
+      return remark.find("perhaps the reference is of reversed sign") != std::string::npos;
+    });
+    EXPECT_EQ(said, error == -2.0);
+  }
+}
+
+// The coefficient of a temperature that hardly changed says little of the bias at 25 degC, but the mean where the
+// record was is known and corrected.
+TEST(Basics, AMeanFarFromTheReferenceTemperatureIsCorrected) {
+  std::mt19937_64 random(12);
+  std::normal_distribution<double> normal;
+  Rows rows;
+  for (int i = 0; i < 20000; ++i) {
+    rows.time.push_back(0.1 * i);
+    rows.channel.push_back(50.0 + 1.5 * std::sin(i / 1500.0));
+    rows.reference.push_back(0.0);
+    rows.rate.push_back(6e-5 + 2e-6 * (rows.channel.back() - 50.0) + 2e-5 * normal(random));
+  }
+  const Diagnosis found = diagnose({rows.record()}, {});
+  EXPECT_NE(effect_of(found, "linear", "temperature_degC"), nullptr);
+  EXPECT_LT(std::abs(found.after.at("bias_radps")), 1e-6) << "of 6e-5";
 }
 
 // Thirteen points of a calibration.
