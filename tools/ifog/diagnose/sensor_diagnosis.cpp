@@ -16,6 +16,7 @@
 #include "drivers/system/utc_now.h"
 #include "filters/diagnosis/channels/derived_channels.h"
 #include "filters/diagnosis/cleaning/steps.h"
+#include "filters/diagnosis/report/prediction.h"
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/sha256.h"
@@ -121,8 +122,10 @@ double mean_of(std::span<const double> values) {
 }
 
 // Earth's rate in a triad at rest: the mean rate along the mean specific force is its vertical component, for
-// any mounting. "" unless there are three gyros and three accelerometers.
-std::string vertical_rate(const CaptureView& capture, unsigned threads) {
+// any mounting. "" unless there are three gyros and three accelerometers, and the mean is known to a latitude of
+// six degrees.
+std::string vertical_rate(const CaptureView& capture, const std::vector<AxisDiagnosis>& found,
+                          unsigned threads) {
   if (capture.axes != std::vector<std::string>{"x", "y", "z"}) return "";
   std::array<std::span<const double>, 6> columns;  // rates, then accelerations
   for (std::size_t a = 0; a < 3; ++a) {
@@ -139,7 +142,12 @@ std::string vertical_rate(const CaptureView& capture, unsigned threads) {
   if (g < 9.0 || g > 10.5) return "";
   constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
   const double up = (rate[0] * force[0] + rate[1] * force[1] + rate[2] * force[2]) / g;
-  if (std::abs(up) > kEarth) return "";
+  constexpr double kWellKnown = 0.1;  // of the Earth's rate
+  const std::vector<double> span_s{capture.time_s.back() - capture.time_s.front()};
+  double variance = 0.0;  // of the noisiest axis
+  for (const AxisDiagnosis& each : found)
+    variance = std::max(variance, mean_variance(each.diagnosis.noise_posterior, span_s));
+  if (std::abs(up) > kEarth || variance > std::pow(kWellKnown * kEarth, 2)) return "";
   return formatted(
       "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
       "Earth's rate at latitude %.2f°",
@@ -258,7 +266,8 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
               " was dropped: \" - \" in a name stands for a difference of two columns; another name "
               "(--column) makes it a channel");
     }
-  const std::string earth = captures.size() == 1 ? vertical_rate(captures.front(), wanted.threads) : "";
+  const std::string earth =
+      captures.size() == 1 ? vertical_rate(captures.front(), found, wanted.threads) : "";
   if (!found.empty() && !earth.empty()) found.front().diagnosis.remarks.push_back(earth);
   return found;
 }
