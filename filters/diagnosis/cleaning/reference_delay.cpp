@@ -35,6 +35,12 @@ constexpr double kSettled = 1e-5;       // in steps
 constexpr double kCertainDelay = 25.0;  // required gain of twice the log-likelihood beyond the number of lags
 constexpr std::size_t kPowers = 4;      // powers of the reference: constant to cubic
 constexpr double kAccuracy = 0.1;       // in steps; sufficient accuracy of the delay
+// The fourth difference of a jump is six times the jump; that of white noise has 8.4 standard deviations.
+constexpr double kJumpOfFourth = 50.0;  // standard deviations of the noise, i.e. a jump of eight
+constexpr std::size_t kRings = 12;      // samples on either side: half the width of the interpolation
+constexpr double kMostOfJumps = 0.25;
+// Limit of the ratio of fourth to second difference: small for smooth motion, two to six at a jump or kink.
+constexpr double kRoughness = 1.0;
 using Series = std::vector<double>;
 
 struct Pair {
@@ -189,14 +195,17 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
     delay.error = std::sqrt(fit.last_variance) / of_reference;
     if (std::abs(step) < std::max(kSettled, 0.01 * delay.error)) {
       std::vector<Series> as_logged = whitened(columns_of(pair, scale, 0.0, false), noise);
-      const std::vector<std::uint8_t> known = complete_rows(as_logged);
+      // Interpolation attenuates noise near half the sample rate, and the mirrored shift does so alike.
+      const std::vector<Series> mirrored = whitened(columns_of(pair, scale, -delay.steps, false), noise);
+      const std::vector<std::uint8_t> known = complete_rows(as_logged), too = complete_rows(mirrored);
       for (std::size_t i = 0; i < rows.size(); ++i)
-        if (!known[i]) rows[i] = 0;
+        if (!known[i] || !too[i]) rows[i] = 0;
       const SeriesFit with = least_squares(white, rows);
-      const SeriesFit without = least_squares(as_logged, rows);
+      const double without =
+          std::min(least_squares(as_logged, rows).square, least_squares(mirrored, rows).square);
       for (const Series& each : once_a_turn(pair)) as_logged.push_back(noise.whitened(each));
       if (least_squares(as_logged, rows).square < with.square) return std::nullopt;
-      delay.gain = static_cast<double>(with.rows) * std::log(without.square / with.square);
+      delay.gain = static_cast<double>(with.rows) * std::log(without / with.square);
       delay.steps += step;  // accurate enough
       return delay;
     }
@@ -267,17 +276,6 @@ OwnedRecords align_references(OwnedRecords given) {
   }
   return given;
 }
-
-namespace {
-
-// The fourth difference of a jump is six times the jump; that of white noise has 8.4 standard deviations.
-constexpr double kJumpOfFourth = 50.0;  // standard deviations of the noise, i.e. a jump of eight
-constexpr std::size_t kRings = 12;      // samples on either side: half the width of the interpolation
-constexpr double kMostOfJumps = 0.25;
-// Limit of the ratio of fourth to second difference: small for smooth motion, two to six at a jump or kink.
-constexpr double kRoughness = 1.0;
-
-}  // namespace
 
 std::size_t leave_out_jumps(Samples& reference, std::span<const double> rate) {
   const std::size_t n = reference.size();
