@@ -151,12 +151,6 @@ std::int32_t SensorWatch::noticed() const {
   return out;
 }
 
-double SensorWatch::nearest_step() const {
-  double out = axes_.front().steps.nearest();
-  for (const Axis& axis : axes_) out = std::min(out, axis.steps.nearest());
-  return out;
-}
-
 std::string SensorWatch::words(std::int32_t only) const {
   const std::int32_t now = noticed() & only;
   std::string out;

@@ -61,8 +61,6 @@ class SensorWatch {
   [[nodiscard]] std::string words(std::int32_t only = ~0) const;
   // Last detected step, rad/s; 0: none.
   [[nodiscard]] double step_radps() const { return step_radps_; }
-  // Closest approach to an alarm: StepTest::nearest() of all axes.
-  [[nodiscard]] double nearest_step() const;
 
  private:
   struct Axis {

@@ -85,7 +85,7 @@ class Housekeeping {
   void say_what_needs_a_restart(const Config& fresh);
   // Error text with the place of the sensor's key.
   static std::string error_at(const Config& config, const SensorConfig& sensor, const std::exception& error);
-  static Renewed renew(Sensor& sensor, const SensorConfig& fresh);
+  Renewed renew(Sensor& sensor, const SensorConfig& fresh);
   void use(Renewed renewed);
   void stop_all();
   void notify(const std::string& state);

@@ -45,6 +45,8 @@ void Housekeeping::say_what_needs_a_restart(const Config& fresh) {
 // Builds everything for a sensor from the new configuration, before any of it is used. Throws
 // std::runtime_error with one line.
 Housekeeping::Renewed Housekeeping::renew(Sensor& sensor, const SensorConfig& fresh) {
+  // Also what only a restart will use.
+  (void)make_sensor_driver(fresh, config_.plugin_folders);
   // Only what can change between two samples.
   Renewed out{.sensor = &sensor, .config = sensor.config.reloaded(fresh)};
   const std::shared_ptr<const Model> model = read_sensor_model(out.config);
@@ -93,14 +95,6 @@ std::string Housekeeping::reload() {
     fresh = read_config(config_.file);
   } catch (const std::exception& error) {
     errors.emplace_back(error.what());
-  }
-  // Also what only a restart will use.
-  for (const SensorConfig& sensor : fresh.sensors) {
-    try {
-      (void)make_sensor_driver(sensor, fresh.plugin_folders);
-    } catch (const std::exception& error) {
-      errors.push_back(error_at(fresh, sensor, error));
-    }
   }
   for (const auto& sensor : sensors_) {
     const SensorConfig* const found = sensor_named(fresh, sensor->config.name);

@@ -6,10 +6,10 @@
 #include <cstring>
 #include <utility>
 
-#include "daemon/health/wrong_rate.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/transport.h"
+#include "filters/units/told_time.h"
 #include "msgs/counters.h"
 
 namespace ifog {
@@ -253,7 +253,12 @@ std::string StatusReport::newly_frozen() const {
 
 std::string StatusReport::wrong_rate() const {
   if (interval_error_ == 0.0 || interval_error_before_ != 0.0) return "";
-  return wrong_rate_in_words(nominal_rate_hz_, interval_error_);
+  // Intervals in use are 1/nominal, the true ones 1/rate.
+  const double rate_hz = nominal_rate_hz_ / (1.0 + interval_error_), off = rate_hz / nominal_rate_hz_ - 1.0;
+  return formatted(
+      "samples come at %.4g Hz by their arrival, expected %.4g Hz: intervals, and angles made of a "
+      "rate, are %.3g %% too %s",
+      rate_hz, nominal_rate_hz_, 100.0 * std::abs(off), off < 0.0 ? "small" : "large");
 }
 
 std::string StatusReport::moved() const {

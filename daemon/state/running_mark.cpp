@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "daemon/state/state_folder.h"
+#include "drivers/system/fd.h"
 
 namespace ifog {
 namespace {

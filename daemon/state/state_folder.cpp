@@ -16,6 +16,7 @@
 #include <system_error>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/system/fd.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {
@@ -64,10 +65,6 @@ std::string make_state_folder(const std::string& folder) {
 
 std::string adopted_model_path(const std::string& folder, const std::string& sensor) {
   return (std::filesystem::path(folder) / (sensor + ".model.toml")).string();
-}
-
-Fd::~Fd() {
-  if (fd_ >= 0) ::close(fd_);
 }
 
 namespace {

@@ -29,19 +29,6 @@ namespace ifog {
 // Model of a sensor whose configuration has none.
 [[nodiscard]] std::string adopted_model_path(const std::string& folder, const std::string& sensor);
 
-// File descriptor that is closed automatically.
-class Fd {
- public:
-  explicit Fd(int fd) : fd_(fd) {}
-  ~Fd();
-  Fd(const Fd&) = delete;
-  Fd& operator=(const Fd&) = delete;
-  operator int() const { return fd_; }
-
- private:
-  int fd_;
-};
-
 // Replaces a whole file: a new file with a random name is written and synced in the folder and renamed. A
 // link of the old name is replaced, not followed. The folder is opened once. Throws std::runtime_error with
 // one line: path and reason.

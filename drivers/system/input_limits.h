@@ -10,7 +10,7 @@ namespace ifog {
 struct InputLimits {
   // TOML: configurations, models, manifests, scenarios.
   std::size_t toml_bytes = std::size_t{16} << 20U;  // a model with its covariance has 0.3 MB
-  std::size_t toml_key_parts = 64;                  // of a dotted key: the parser is recursive
+  std::size_t toml_dots = 5000;                     // in a line: the parser of dotted keys is recursive
   std::size_t unknown_keys = 100;                   // per table, each listed by name
   std::size_t sensors = 256;                        // per configuration, two threads each
   std::size_t captures = 65'536;                    // per manifest, all gyros together

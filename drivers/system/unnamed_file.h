@@ -13,7 +13,8 @@
 #include <stdexcept>
 #include <string>
 #include <system_error>
-#include <utility>
+
+#include "drivers/system/fd.h"
 
 namespace ifog {
 
@@ -21,14 +22,6 @@ class UnnamedFile {
  public:
   // All functions throw std::runtime_error with one line: no space, or an I/O error.
   UnnamedFile() : fd_(opened()) {}
-  ~UnnamedFile() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  UnnamedFile(UnnamedFile&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-  UnnamedFile& operator=(UnnamedFile&& other) noexcept {
-    std::swap(fd_, other.fd_);
-    return *this;
-  }
 
   // first: position in the file, counted in numbers.
   void write(std::size_t first, std::span<const double> numbers) {
@@ -101,7 +94,7 @@ class UnnamedFile {
     return named;
   }
 
-  int fd_;
+  Fd fd_;
 };
 
 }  // namespace ifog

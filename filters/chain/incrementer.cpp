@@ -14,15 +14,13 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kClockMemory_s = 20.0;
-constexpr std::uint64_t kFramesThatTell = 64;        // of a rate
-constexpr double kTells_s = 5.0, kStretch_s = 60.0;  // shortest and longest stretch for a rate
-constexpr double kAccelerated = -0.95;               // samples from a recording, not at its pace
-constexpr double kLate_s = 0.25;                     // delay of a delivery that is no silence
-constexpr double kRight = 0.01;                      // relative; no quartz has a larger error
-constexpr int kEarly = 8;          // consecutive arrivals; a single wrong stamp does not count
-constexpr double kApart_s = 0.1;   // distance from the line of labels; less is scheduling
-constexpr double kScatters = 4.0;  // times the mean distance
-constexpr double kStands_s = 1.0;  // a delayed delivery is over within this time
+constexpr double kAccelerated = -0.95;  // samples from a recording, not at its pace
+constexpr double kLate_s = 0.25;        // delay of a delivery that is no silence
+constexpr double kRight = 0.01;         // relative; no quartz has a larger error
+constexpr int kEarly = 8;               // consecutive arrivals; a single wrong stamp does not count
+constexpr double kApart_s = 0.1;        // distance from the line of labels; less is scheduling
+constexpr double kScatters = 4.0;       // times the mean distance
+constexpr double kStands_s = 1.0;       // a delayed delivery is over within this time
 
 int clock_memory(double rate_hz) {
   return static_cast<int>(std::clamp(kClockMemory_s * rate_hz, 64.0, 100000.0));
@@ -53,20 +51,23 @@ double Incrementer::clock_offset_ppm() const noexcept {
 void Incrementer::look_at_rate(const Timeline::Frame& frame, const Step& now) noexcept {
   if (frame.arrival_ns <= 0) return;
   const double lasts_s = static_cast<double>(ns_between(stretch_.begin_ns, frame.arrival_ns)) * 1e-9;
-  if (stretch_.begin_ns == 0 || now.restarted || now.clock_moved || frame.reopened || lasts_s > kStretch_s)
+  if (stretch_.begin_ns == 0 || now.restarted || now.clock_moved || frame.reopened ||
+      lasts_s > kClockMemory_s) {
     stretch_ = {.begin_ns = frame.arrival_ns, .interval_error = stretch_.interval_error};
-  if (stretch_.begin_ns == frame.arrival_ns) return;
+    return;
+  }
   ++stretch_.frames;
   stretch_.gaps += now.gap ? 1 : 0;
   stretch_.samples += now.samples;
-  if (lasts_s < kTells_s || stretch_.frames < kFramesThatTell) return;
   // If nearly each frame seems to come after a gap, there are none.
   const bool no_gaps = 10 * stretch_.gaps > 9 * stretch_.frames;
-  if (!no_gaps && (!frame.counts || frame.clocked)) return;
+  if (lasts_s < 0.25 * kClockMemory_s || (!no_gaps && (!frame.counts || frame.clocked))) return;
   const auto samples = static_cast<double>(no_gaps ? stretch_.frames : stretch_.samples);
   const double error = lasts_s / (samples * period_s_) - 1.0;
-  stretch_.interval_error =
-      std::abs(error) > kRight + kLate_s / lasts_s && error > kAccelerated ? error : 0.0;
+  if (std::abs(error) < kRight || error < kAccelerated)
+    stretch_.interval_error = 0.0;
+  else if (std::abs(error) > kRight + kLate_s / lasts_s)
+    stretch_.interval_error = error;
 }
 
 Timeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {

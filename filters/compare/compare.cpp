@@ -9,6 +9,7 @@
 
 #include "filters/allan/deviation.h"
 #include "filters/compare/figures.h"
+#include "filters/distributions/median.h"
 #include "filters/rest/rest.h"
 
 namespace ifog {
@@ -156,9 +157,7 @@ void add_innovation_figures(ComparisonRow& row, std::span<const double> innovati
   row.whiteness_lag1 = white.lag1;
   row.whiteness_excess = white.excess;
   row.nis_mean = std::accumulate(nis.begin(), nis.end(), 0.0) / static_cast<double>(nis.size());
-  const auto middle = nis.begin() + static_cast<std::ptrdiff_t>(nis.size() / 2);
-  std::nth_element(nis.begin(), middle, nis.end());
-  row.nis_typical = *middle / kMedianSquare;
+  row.nis_typical = median({nis.begin(), nis.end()}) / kMedianSquare;
 }
 
 }  // namespace
@@ -208,10 +207,7 @@ double third_difference_noise(std::span<const double> rate) {
     const double third = rate[i] - 3.0 * rate[i - 1] + 3.0 * rate[i - 2] - rate[i - 3];
     if (std::isfinite(third)) squares.push_back(third * third / 20.0);
   }
-  if (squares.empty()) return 0.0;
-  const auto middle = squares.begin() + static_cast<std::ptrdiff_t>(squares.size() / 2);
-  std::nth_element(squares.begin(), middle, squares.end());
-  return *middle / 0.4549364;
+  return squares.empty() ? 0.0 : median(std::move(squares)) / kMedianSquare;
 }
 
 }  // namespace ifog

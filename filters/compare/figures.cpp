@@ -5,7 +5,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
+
+#include "filters/distributions/median.h"
 
 namespace ifog {
 
@@ -136,12 +139,9 @@ Whiteness whiteness(std::span<const double> innovations) {
 std::optional<double> median_reached(const std::vector<std::optional<double>>& values) {
   if (values.empty()) return std::nullopt;
   std::vector<double> order;
-  order.reserve(values.size());
   for (const auto& v : values) order.push_back(v ? *v : std::numeric_limits<double>::infinity());
-  const auto middle = order.begin() + static_cast<std::ptrdiff_t>(order.size() / 2);
-  std::nth_element(order.begin(), middle, order.end());
-  if (std::isinf(*middle)) return std::nullopt;
-  return *middle;
+  const double middle = median(std::move(order));
+  return std::isinf(middle) ? std::nullopt : std::optional(middle);
 }
 
 }  // namespace ifog

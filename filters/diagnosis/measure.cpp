@@ -140,8 +140,7 @@ class Measuring {
   // What no measurement gives, such as the reach of a curve.
   static void keep_further(const Effect& given, Effect& effect) {
     for (const ModelParameter& each : given.parameters)
-      if (std::none_of(effect.parameters.begin(), effect.parameters.end(),
-                       [&](const ModelParameter& other) { return other.name == each.name; }))
+      if (std::ranges::find(effect.parameters, each.name, &ModelParameter::name) == effect.parameters.end())
         effect.parameters.push_back(each);
   }
 

@@ -61,16 +61,6 @@ struct KalmanCore {
     }
   }
 
-  // A single state is the rate itself (h = 1), so no product is needed.
-  [[nodiscard]] double rate(int axis) const noexcept {
-    if constexpr (n == 1) return x(0, axis);
-    return h.dot(x.col(axis));
-  }
-  [[nodiscard]] double variance() const noexcept {
-    if constexpr (n == 1) return p(0, 0);
-    return h.dot(p.lazyProduct(h));
-  }
-
   // As correct_covariance(); a single state needs one division.
   void correct(double c) noexcept {
     if constexpr (n == 1) {

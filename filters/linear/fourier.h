@@ -4,6 +4,7 @@
 #pragma once
 
 #include <complex>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -26,6 +27,17 @@ class Fourier {
   struct Tables;
   std::unique_ptr<Tables> tables_;
 };
+
+// Largest length up to n with factors 2, 3, 5 only.
+inline std::size_t smooth_length(std::size_t n) {
+  for (; n > 1; --n) {
+    std::size_t left = n;
+    for (const std::size_t factor : {2U, 3U, 5U})
+      while (left % factor == 0) left /= factor;
+    if (left == 1) break;
+  }
+  return n;
+}
 
 // Squares of the first n/2 + 1 coefficients (frequencies from zero to half the sample rate).
 std::vector<double> power_spectrum(const std::vector<double>& values);

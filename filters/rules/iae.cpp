@@ -1,19 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // Innovation-based adaptive estimation: C is the mean of the last N squared innovations. Mehra, IEEE Trans.
 // AC 15(2), 1970; Mohamed and Schwarz, J. Geodesy 73, 1999. R only, as Q is not identifiable with it.
-#include "filters/rules/rule.h"
 #include "filters/rules/window.h"
 
 namespace ifog {
 namespace {
 
-class Iae final : public Rule {
+class Iae final : public WindowRule {
  public:
-  explicit Iae(const FilterSettings& settings)
-      : noise_(settings.measurement_noise),
-        least_(settings.floor * settings.measurement_noise),
-        window_(static_cast<std::size_t>(settings.window)),
-        estimate_(noise_) {}
+  using WindowRule::WindowRule;
 
   double innovation_covariance(const RuleInput& in) noexcept override {
     window_.insert(mean_square(in.innovations) / in.noise_scale);
@@ -22,16 +17,6 @@ class Iae final : public Rule {
     estimate_ = (c - in.projected) / in.noise_scale;
     return c;
   }
-  double measurement_noise() const noexcept override { return estimate_; }
-  void restart() noexcept override {
-    window_.clear();
-    estimate_ = noise_;
-  }
-
- private:
-  double noise_, least_;
-  Window window_;
-  double estimate_;
 };
 
 }  // namespace

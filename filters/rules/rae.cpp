@@ -2,19 +2,14 @@
 // Residual-based adaptive estimation: R = mean of the last N squared residuals z - h'x+ plus h'P+h, which is
 // always positive. Mohamed and Schwarz, J. Geodesy 73, 1999. The estimate is used for the next measurement,
 // since a residual is known only after its gain.
-#include "filters/rules/rule.h"
 #include "filters/rules/window.h"
 
 namespace ifog {
 namespace {
 
-class Rae final : public Rule {
+class Rae final : public WindowRule {
  public:
-  explicit Rae(const FilterSettings& settings)
-      : noise_(settings.measurement_noise),
-        least_(settings.floor * settings.measurement_noise),
-        window_(static_cast<std::size_t>(settings.window)),
-        estimate_(noise_) {}
+  using WindowRule::WindowRule;
 
   double innovation_covariance(const RuleInput& in) noexcept override {
     const double c =
@@ -24,16 +19,6 @@ class Rae final : public Rule {
     if (window_.full()) estimate_ = window_.mean();
     return c;
   }
-  double measurement_noise() const noexcept override { return estimate_; }
-  void restart() noexcept override {
-    window_.clear();
-    estimate_ = noise_;
-  }
-
- private:
-  double noise_, least_;
-  Window window_;
-  double estimate_;
 };
 
 }  // namespace

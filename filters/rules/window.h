@@ -7,6 +7,8 @@
 #include <span>
 #include <vector>
 
+#include "filters/rules/rule.h"
+
 namespace ifog {
 
 class Window {
@@ -44,5 +46,25 @@ class Window {
   for (const double v : innovations) sum += v * v;
   return sum / static_cast<double>(innovations.size());
 }
+
+// A rule whose R is a mean over a window.
+class WindowRule : public Rule {
+ public:
+  explicit WindowRule(const FilterSettings& settings)
+      : noise_(settings.measurement_noise),
+        least_(settings.floor * settings.measurement_noise),
+        window_(static_cast<std::size_t>(settings.window)),
+        estimate_(noise_) {}
+  double measurement_noise() const noexcept override { return estimate_; }
+  void restart() noexcept override {
+    window_.clear();
+    estimate_ = noise_;
+  }
+
+ protected:
+  double noise_, least_;
+  Window window_;
+  double estimate_;
+};
 
 }  // namespace ifog

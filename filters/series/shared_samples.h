@@ -44,13 +44,6 @@ class SharedSamples {
     others_ = {};
     return *values_;
   }
-  // Makes `size` uninitialised samples, all to be written.
-  [[nodiscard]] Samples& anew(std::size_t size) {
-    if (values_.use_count() != 1) values_ = std::make_shared<Samples>();
-    others_ = {};
-    values_->resize(size);
-    return *values_;
-  }
 
  private:
   explicit SharedSamples(std::nullptr_t) {}

@@ -92,7 +92,7 @@ std::vector<std::string> terms_of(const std::string& name) {
   return terms;
 }
 
-std::optional<ArmaOrders> arma_orders(const std::string& term) {
+std::optional<std::pair<int, int>> arma_orders(const std::string& term) {
   const auto behind = [&](char sign) {
     unsigned value = 0;
     const std::size_t at = std::min(term.find(sign), term.size() - 1) + 1;
@@ -100,15 +100,14 @@ std::optional<ArmaOrders> arma_orders(const std::string& term) {
     return static_cast<int>(std::min(value, 1000U));
   };
   const int p = behind('('), q = behind(',');
-  if (term == "ar(" + std::to_string(p) + ")") return ArmaOrders{p, 0};
-  if (term == "arma(" + std::to_string(p) + "," + std::to_string(q) + ")") return ArmaOrders{p, q};
+  if (term == "ar(" + std::to_string(p) + ")") return std::pair{p, 0};
+  if (term == "arma(" + std::to_string(p) + "," + std::to_string(q) + ")") return std::pair{p, q};
   return std::nullopt;
 }
 
 bool is_state_model(const std::string& name) {
   constexpr std::array kPlain{"random-walk", "integrated-random-walk", "gauss-markov", "harmonic"};
-  const std::vector<std::string> terms = terms_of(name);
-  return std::all_of(terms.begin(), terms.end(), [&](const std::string& term) {
+  return std::ranges::all_of(terms_of(name), [&](const std::string& term) {
     return std::find(kPlain.begin(), kPlain.end(), term) != kPlain.end() || arma_orders(term);
   });
 }

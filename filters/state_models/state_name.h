@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ifog {
@@ -15,9 +16,6 @@ bool is_state_model(const std::string& name);
 std::vector<std::string> terms_of(const std::string& name);
 
 // Of "ar(p)", with q = 0, or "arma(p,q)"; nullopt for other terms.
-struct ArmaOrders {
-  int p, q;
-};
-std::optional<ArmaOrders> arma_orders(const std::string& term);
+std::optional<std::pair<int, int>> arma_orders(const std::string& term);
 
 }  // namespace ifog

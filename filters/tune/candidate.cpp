@@ -32,8 +32,7 @@ ModelCandidate::ModelCandidate(std::string state, double period_s)
   for (std::size_t i = 1; good && i < names.size(); ++i) {
     auto term = make_noise_term(names[i]);
     good = term != nullptr;
-    if (!good) break;
-    size_ += term->size();
+    size_ += good ? term->size() : 0;
     terms_.push_back(std::move(term));
   }
   if (!good)

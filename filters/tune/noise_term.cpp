@@ -200,10 +200,9 @@ std::vector<double> partial_from_ar(std::vector<double> phi) {
 
 std::unique_ptr<NoiseTerm> make_noise_term(const std::string& name) {
   if (name == "gauss-markov") return std::make_unique<GaussMarkovTerm>();
-  constexpr int kMost = static_cast<int>(RecordSpectrum::kOrders);
-  const auto arma = arma_orders(name);
-  if (!arma || arma->p < 1 || arma->p > kMost || arma->q >= arma->p) return nullptr;
-  return std::make_unique<ArmaTerm>(arma->p, arma->q);
+  const auto [p, q] = arma_orders(name).value_or(std::pair{0, 0});
+  if (p < 1 || p > static_cast<int>(RecordSpectrum::kOrders) || q >= p) return nullptr;
+  return std::make_unique<ArmaTerm>(p, q);
 }
 
 }  // namespace ifog

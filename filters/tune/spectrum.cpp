@@ -17,16 +17,6 @@ constexpr std::size_t kSingle = 64;
 constexpr std::size_t kRelative = 50;
 constexpr std::size_t kAcross = 1024;
 
-// Largest length up to n with factors 2, 3, 5 only, for a fast transform.
-std::size_t smooth_length(std::size_t n) {
-  for (;; --n) {
-    std::size_t left = n;
-    for (const std::size_t factor : {2U, 3U, 5U})
-      while (left % factor == 0) left /= factor;
-    if (left == 1) return n;
-  }
-}
-
 std::vector<double> bridged(std::span<const double> values) {
   std::vector<double> out(values.begin(), values.end());
   std::size_t last = out.size();

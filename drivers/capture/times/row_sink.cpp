@@ -84,9 +84,7 @@ void RowNotes::add_lines(std::size_t rows, const RowBlock& block) {
 }
 
 std::size_t RowNotes::line_of_row(std::size_t row) const {
-  const auto behind =
-      std::upper_bound(lines.begin(), lines.end(), row,
-                       [](std::size_t wanted, const Lines& each) { return wanted < each.row; });
+  const auto behind = std::ranges::upper_bound(lines, row, {}, &Lines::row);
   return behind == lines.begin() ? 0 : std::prev(behind)->line + (row - std::prev(behind)->row);
 }
 

@@ -57,31 +57,14 @@ CanSocket::CanSocket(const std::string& interface)
   if (fd_ < 0)
     throw OpenError(interface, "cannot open a CAN socket", errno,
                     "a kernel with the modules can and can-raw");
-  try {
-    sockaddr_can address{};
-    address.can_family = AF_CAN;
-    address.can_ifindex = checked_interface(fd_, interface);
-    const int on = 1;
-    if (!set_raw(fd_, CAN_RAW_FD_FRAMES, on))
-      throw OpenError(interface, "cannot receive CAN FD", errno, "a kernel of 3.6 or later");
-    if (bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
-      throw OpenError(interface, "cannot bind", errno, "a CAN interface that is up");
-  } catch (...) {
-    close();
-    throw;
-  }
-}
-
-CanSocket::CanSocket(CanSocket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-
-CanSocket& CanSocket::operator=(CanSocket&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  return *this;
-}
-
-void CanSocket::close() noexcept {
-  if (fd_ >= 0) ::close(fd_);
-  fd_ = -1;
+  sockaddr_can address{};
+  address.can_family = AF_CAN;
+  address.can_ifindex = checked_interface(fd_, interface);
+  const int on = 1;
+  if (!set_raw(fd_, CAN_RAW_FD_FRAMES, on))
+    throw OpenError(interface, "cannot receive CAN FD", errno, "a kernel of 3.6 or later");
+  if (bind(fd_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0)
+    throw OpenError(interface, "cannot bind", errno, "a CAN interface that is up");
 }
 
 void CanSocket::receive_only(std::span<const CanId> ids, const std::string& interface) const {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "drivers/ifog/driver.h"
+#include "drivers/system/fd.h"
 #include "drivers/transport/transport.h"
 
 namespace ifog {
@@ -19,12 +20,7 @@ class CanSocket {
   CanSocket() = default;
   // Throws OpenError: no CAN in the kernel, no such interface, not a CAN interface, down.
   explicit CanSocket(const std::string& interface);
-  ~CanSocket() { close(); }
-  CanSocket(const CanSocket&) = delete;
-  CanSocket& operator=(const CanSocket&) = delete;
-  CanSocket(CanSocket&& other) noexcept;
-  CanSocket& operator=(CanSocket&& other) noexcept;
-  void close() noexcept;
+  void close() noexcept { fd_.close(); }
 
   [[nodiscard]] int fd() const { return fd_; }
 
@@ -33,7 +29,7 @@ class CanSocket {
   void receive_nothing() const noexcept;
 
  private:
-  int fd_ = -1;
+  Fd fd_;
 };
 
 enum class CanKind { data, remote, error, unknown };

@@ -17,20 +17,8 @@ IpSocket::IpSocket(int family, int type, const std::string& name)
 
 IpSocket IpSocket::accepted(const IpSocket& listener) noexcept {
   IpSocket out;
-  out.fd_ = accept4(listener.fd_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC);
+  out.fd_ = Fd(accept4(listener.fd_, nullptr, nullptr, SOCK_NONBLOCK | SOCK_CLOEXEC));
   return out;
-}
-
-IpSocket::IpSocket(IpSocket&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
-
-IpSocket& IpSocket::operator=(IpSocket&& other) noexcept {
-  std::swap(fd_, other.fd_);
-  return *this;
-}
-
-void IpSocket::close() noexcept {
-  if (fd_ >= 0) ::close(fd_);
-  fd_ = -1;
 }
 
 int IpSocket::set(int level, int option, int value) const noexcept {

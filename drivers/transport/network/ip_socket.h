@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "drivers/system/fd.h"
 #include "drivers/transport/network/ip_address.h"
 
 namespace ifog {
@@ -15,12 +16,7 @@ class IpSocket {
   IpSocket(int family, int type, const std::string& name);
   // Next connection of a listening TCP socket; not open if there is none, with errno set.
   static IpSocket accepted(const IpSocket& listener) noexcept;
-  ~IpSocket() { close(); }
-  IpSocket(const IpSocket&) = delete;
-  IpSocket& operator=(const IpSocket&) = delete;
-  IpSocket(IpSocket&& other) noexcept;
-  IpSocket& operator=(IpSocket&& other) noexcept;
-  void close() noexcept;
+  void close() noexcept { fd_.close(); }
 
   [[nodiscard]] int fd() const { return fd_; }
   [[nodiscard]] bool is_open() const { return fd_ >= 0; }
@@ -30,7 +26,7 @@ class IpSocket {
   [[nodiscard]] int connect(const sockaddr_storage& address, socklen_t size) const noexcept;
 
  private:
-  int fd_ = -1;
+  Fd fd_;
 };
 
 }  // namespace ifog

@@ -11,6 +11,7 @@
 
 #include "filters/diagnosis/residual/periodogram.h"
 #include "filters/distributions/median.h"
+#include "filters/series/finite_sum.h"
 
 namespace ifog {
 namespace {
@@ -85,7 +86,7 @@ double best_offset(const std::vector<Complex>& sums) {
 SpectralLine refine(const Search& in, std::size_t bin, double floor) {
   const auto& [error, start_s, period_s, significance, spectrum] = in;
   const auto n = static_cast<double>(error.size()), length = static_cast<double>(spectrum.length);
-  const double f0 = static_cast<double>(bin) / length;
+  const double f0 = static_cast<double>(bin) / length, present = finite_sum(error).count;
   const std::vector<Complex> sums =
       demodulate(error, spectrum.mean, f0, std::min<std::size_t>(256, error.size() / 4));
   const auto pieces = static_cast<double>(sums.size());
@@ -94,7 +95,7 @@ SpectralLine refine(const Search& in, std::size_t bin, double floor) {
 
   SpectralLine line;
   line.frequency_hz = (f0 + offset / n) / period_s;
-  line.ratio = std::norm(total) / (floor * n / length);
+  line.ratio = std::norm(total) / (floor * present / length);
   // Between the bins there are more maxima than bins (Rice).
   const double between = std::max(1.0, std::sqrt(std::numbers::pi * line.ratio / 3.0));
   line.p_value = std::min(1.0, between * static_cast<double>(spectrum.power.size()) * std::exp(-line.ratio));
@@ -108,15 +109,11 @@ SpectralLine refine(const Search& in, std::size_t bin, double floor) {
   }
   line.coherence = separate > 0.0 ? std::norm(together) / (separate * separate) : 0.0;
   const std::vector<Complex> whole = demodulate(error, spectrum.mean, line.frequency_hz * period_s, 1);
-  // Missing values contribute nothing, and floor is of as many.
-  const double present = static_cast<double>(std::count_if(error.begin(), error.end(),
-                                                           [](double v) { return std::isfinite(v); })) /
-                         n;
   const Complex amplitude =
-      2.0 / (present * n) * whole[0] * std::polar(1.0, -2.0 * std::numbers::pi * line.frequency_hz * start_s);
+      2.0 / present * whole[0] * std::polar(1.0, -2.0 * std::numbers::pi * line.frequency_hz * start_s);
   line.cosine = amplitude.real();
   line.sine = -amplitude.imag();
-  line.std_error = std::sqrt(2.0 * floor / length / n) / present;
+  line.std_error = std::sqrt(2.0 * floor / length / present);
   const double size = std::max(std::abs(amplitude), 1e-300);
   // Cramer-Rao bound of a tone's frequency in white noise (Rife and Boorstyn 1974).
   line.frequency_std_hz = std::sqrt(6.0) / std::numbers::pi * line.std_error / size / (n * period_s);

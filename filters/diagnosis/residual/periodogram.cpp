@@ -10,20 +10,9 @@
 #include "filters/series/finite_sum.h"
 
 namespace ifog {
-namespace {
-
-bool is_smooth(std::size_t length) {
-  for (const std::size_t prime : {2U, 3U, 5U})
-    while (length % prime == 0) length /= prime;
-  return length == 1;
-}
-
-}  // namespace
-
 Periodogram periodogram(std::span<const double> error) {
   Periodogram out;
-  out.length = std::min(error.size(), kMostTransformed);
-  while (out.length > 16 && !is_smooth(out.length)) --out.length;
+  out.length = smooth_length(std::min(error.size(), kMostTransformed));
   const auto [sum, present] = finite_sum(error);
   out.mean = present > 0.0 ? sum / present : 0.0;
   std::vector<double> values(out.length);

@@ -79,7 +79,6 @@ void months(int count, unsigned seed, const std::string& word) {
   for (const NoiseKind& kind : all) {
     if (kind.name.find(word) == std::string::npos) continue;
     int noise = 0, colour = 0, bias = 0;
-    double nearest = 1e9;
     for (int month = 0; month < count; ++month) {
       Blocks blocks(kind, seed + static_cast<unsigned>(month));
       std::int32_t before = 0;
@@ -90,11 +89,10 @@ void months(int count, unsigned seed, const std::string& word) {
         noise += (fresh & ifog::kNoticedNoise) != 0;
         colour += (fresh & ifog::kNoticedColour) != 0;
         bias += (fresh & ifog::kNoticedBias) != 0;
-        nearest = std::min(nearest, blocks.watch.nearest_step());
       }
     }
-    std::printf("%-18s %d months: false alarms noise %d, colour %d, bias %d; nearest step %.2f\n",
-                kind.name.c_str(), count, noise, colour, bias, nearest);
+    std::printf("%-18s %d months: false alarms noise %d, colour %d, bias %d\n", kind.name.c_str(), count,
+                noise, colour, bias);
     std::fflush(stdout);
   }
 }
@@ -206,8 +204,7 @@ void chain(double days, unsigned seed) {
     }
     before = watch.noticed();
   }
-  std::printf("chain at %.0f Hz, %.1f days: %d false alarms, nearest step %.2f, %.2f %% at rest, %.0f s\n",
-              kRate, days, alarms, watch.nearest_step(),
+  std::printf("chain at %.0f Hz, %.1f days: %d false alarms, %.2f %% at rest, %.0f s\n", kRate, days, alarms,
               100.0 * static_cast<double>(at_rest) / static_cast<double>(samples),
               std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
 }

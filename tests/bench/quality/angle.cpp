@@ -99,10 +99,10 @@ Filter angle_state(const ifog::FilterSettings& settings, double period) {
     Axes innovation{};
     for (std::size_t a = 0; a < 3; ++a) {
       state->angle[a] += rate[a] * period;
-      innovation[a] = state->angle[a] - core.rate(static_cast<int>(a));
+      innovation[a] = state->angle[a] - core.h.dot(core.x.col(static_cast<Eigen::Index>(a)));
     }
-    core.correct(
-        state->rule->innovation_covariance({core.variance(), 1.0, innovation, state->sequence++, 0}));
+    core.correct(state->rule->innovation_covariance(
+        {core.h.dot(core.p * core.h), 1.0, innovation, state->sequence++, 0}));
     Axes out{};
     for (int a = 0; a < 3; ++a) {
       core.update(a, innovation[static_cast<std::size_t>(a)]);

@@ -122,8 +122,9 @@ void core_and_rule(const std::vector<double>& z, ifog::Rule& rule) {
     } else {
       core.p = (m.transition * core.p * m.transition.transpose()).eval() + m.driving;
     }
-    const double innovation = measured - core.rate(0);
-    core.correct(rule.innovation_covariance({core.variance(), 1.0, {&innovation, 1}, sequence++, 0}));
+    const double innovation = measured - core.h.dot(core.x.col(0));
+    core.correct(
+        rule.innovation_covariance({core.h.dot(core.p * core.h), 1.0, {&innovation, 1}, sequence++, 0}));
     core.update(0, innovation);
   }
   sink = core.x(0, 0);

@@ -69,13 +69,15 @@ TEST(Lines, WhiteNoiseHasNoneAndItsSpectrumIsFlat) {
   EXPECT_NEAR(spectrum.density.back(), 2.0 * kPeriod, 0.05 * 2.0 * kPeriod);
 }
 
-Unexplained of(const std::vector<double>& left, const std::vector<SpectralLine>& peaks = {},
-               const std::vector<NoiseChangeIn>& changes = {}) {
+Unexplained of(const std::vector<double>& left, const std::vector<NoiseChangeIn>& changes = {}) {
   BlockGrid grid;
   grid.block_s = 1.0;
+  grid.sample_s = kPeriod;
+  EvenError error;
+  error.before = error.after = left;
   NoiseFit noise;
   noise.white_variance = kPeriod;  // of a mean of one second of unit noise
-  return describe_unexplained(left, left, 0.0, kPeriod, noise, grid, peaks, changes);
+  return describe_rest({Record{}}, {error}, {}, noise, grid, 0.01, changes);
 }
 
 // A piece with a hole has few differences left, and they scatter more than all would.
@@ -104,7 +106,7 @@ TEST(Unexplained, SaysWhatTheRestLooksLike) {
   EXPECT_NEAR(bursts.times_s[0], 100.0, 0.5);
   EXPECT_NEAR(bursts.times_s[2], 450.0, 0.5);
 
-  EXPECT_EQ(of(noise, {}, {NoiseChangeIn{"", {300.0, 600.0, 3.0, {}}}}).kind, "changing_variance");
+  EXPECT_EQ(of(noise, {NoiseChangeIn{"", {300.0, 600.0, 3.0, {}}}}).kind, "changing_variance");
 
   std::vector<double> drifting = noise;
   double walk = 0.0;
@@ -114,10 +116,11 @@ TEST(Unexplained, SaysWhatTheRestLooksLike) {
   EXPECT_EQ(slow.kind, "slow");
   EXPECT_GT(slow.fraction, 0.5);
 
-  SpectralLine peak;
-  peak.frequency_hz = 3.3;
-  EXPECT_EQ(of(noise, {peak}).kind, "line");
-  EXPECT_EQ(of(noise, {peak}).frequency_hz, 3.3);
+  std::vector<double> humming = noise;
+  for (std::size_t i = 0; i < humming.size(); ++i)
+    humming[i] += 0.2 * std::sin(2.0 * M_PI * 3.3 * kPeriod * static_cast<double>(i));
+  EXPECT_EQ(of(humming).kind, "line");
+  EXPECT_NEAR(of(humming).frequency_hz, 3.3, 1e-4);
 }
 
 }  // namespace

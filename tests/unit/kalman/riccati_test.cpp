@@ -21,7 +21,7 @@ Eigen::Matrix<double, n, 1> settled_gain(const char* name, double process_noise,
   core.p.diagonal() = measurement_noise * model->diffuse();
   for (int i = 0; i < 20000; ++i) {
     core.predict(transition, driving);
-    core.correct(core.variance() + measurement_noise);
+    core.correct(core.h.dot(core.p * core.h) + measurement_noise);
   }
   return core.gain;
 }

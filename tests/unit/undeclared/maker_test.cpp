@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The maker and its oracle measure the diagnosis, so they are themselves measured: against dense linear
-// algebra, the closed form of the spectrum, and an estimator that is given the truth.
+// The maker's noise against the closed form of its spectrum and dense linear algebra.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 #include <numbers>
 
-#include "tests/bench/undeclared/oracle_diagnosis.h"
-#include "tests/bench/undeclared/tally.h"
+#include "tests/bench/undeclared/noise.h"
 
 namespace {
 
@@ -67,63 +65,6 @@ TEST(UndeclaredNoise, VisibilityIsThatOfDenseLeastSquares) {
   const Visibility oracle(model, 1);
   EXPECT_NEAR(oracle.of(linear, {wave}) * std::sqrt(covariance(0, 0)), 1.0, 1e-6);
   EXPECT_NEAR(oracle.of(wave, {linear}) * std::sqrt(covariance(1, 1)), 1.0, 1e-6);
-}
-
-TEST(UndeclaredScore, AnEstimatorThatIsToldTheTruthIsScoredRightAndItsIntervalsHold) {
-  std::vector<Score> scores;
-  std::uint64_t seed = 100;
-  for (int round = 0; round < 2; ++round)
-    for (const Kind kind : kinds_with_effect()) {
-      const Sensor sensor = draw_sensor(seed++, kind, 25.0);
-      scores.push_back(score(sensor, oracle_diagnosis(sensor)));
-    }
-  const Totals t = total(scores);
-  EXPECT_EQ(t.right, t.sensors);
-  EXPECT_EQ(t.extra, 0);
-  EXPECT_EQ(t.made_worse, 0);
-  EXPECT_LE(t.error_median, 0.06);
-  EXPECT_LE(t.error_p90, 0.2);
-  // 28 intervals at 95 %: fewer than 23 inside happens less than once in 1000.
-  EXPECT_GE(t.coverage * t.intervals, 23.0) << t.intervals;
-}
-
-TEST(UndeclaredScore, FindingNothingMissesEverythingAndRaisesNoAlarm) {
-  std::vector<Score> scores;
-  for (const Kind kind :
-       {Kind::kTemperatureLinear, Kind::kLine, Kind::kTwo, Kind::kUncovered, Kind::kNothing})
-    scores.push_back(score(draw_sensor(5, kind, 25.0), blind_diagnosis()));
-  const Totals t = total(scores);
-  EXPECT_EQ(t.missed, 3);
-  EXPECT_EQ(t.uncovered_said, 0);
-  EXPECT_EQ(t.false_alarms, 0);
-}
-
-Finding claim(const std::string& form, const std::string& channel,
-              std::function<std::vector<double>(const ifog::Capture&)> waveform) {
-  Finding f;
-  f.effects.resize(1);
-  f.effects[0].effect.form = form;
-  f.effects[0].effect.channel = channel;
-  f.effects[0].waveform = std::move(waveform);
-  return f;
-}
-
-TEST(UndeclaredScore, AnotherNameIsRightOnlyWhenNobodyCouldTell) {
-  const Sensor sensor = draw_sensor(5, Kind::kSupply, 40.0);
-  const auto supply = [&](const ifog::Capture& c) { return c.channels[4].values; };
-  const auto humidity = [&](const ifog::Capture& c) { return c.channels[7].values; };
-  const auto under = [&](const Finding& f) {
-    return score(sensor, [&](const std::vector<ifog::Capture>&) { return f; });
-  };
-  const Score named = under(claim("linear", "supply_V", supply));
-  EXPECT_EQ(named.exact, 1);
-  const Score renamed = under(claim("lagged", "supply_V", supply));
-  EXPECT_EQ(renamed.exact, 0);
-  EXPECT_EQ(renamed.equivalent, 1);
-  EXPECT_EQ(renamed.extra, 0);
-  const Score wrong = under(claim("linear", "humidity_percent", humidity));
-  EXPECT_EQ(wrong.missed, 1);
-  EXPECT_EQ(wrong.extra, 1);
 }
 
 }  // namespace

@@ -142,12 +142,11 @@ std::string vertical_rate(const CaptureView& capture, const std::vector<AxisDiag
   if (g < 9.0 || g > 10.5) return "";
   constexpr double kEarth = 7.292115e-5;  // rad/s, WGS 84
   const double up = (rate[0] * force[0] + rate[1] * force[1] + rate[2] * force[2]) / g;
-  constexpr double kWellKnown = 0.1;  // of the Earth's rate
   const std::vector<double> span_s{capture.time_s.back() - capture.time_s.front()};
   double variance = 0.0;  // of the noisiest axis
   for (const AxisDiagnosis& each : found)
     variance = std::max(variance, mean_variance(each.diagnosis.noise_posterior, span_s));
-  if (std::abs(up) > kEarth || variance > std::pow(kWellKnown * kEarth, 2)) return "";
+  if (std::abs(up) > kEarth || variance > std::pow(0.1 * kEarth, 2)) return "";
   return formatted(
       "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
       "Earth's rate at latitude %.2f°",

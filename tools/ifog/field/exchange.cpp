@@ -100,18 +100,16 @@ void ModelExchange::exchange(const std::optional<Model>& model, const std::optio
   } catch (const std::exception& error) {
     why = error.what();
   }
+  std::string then;
   try {
     put(before);
-  } catch (const std::exception& error) {
-    throw std::runtime_error(why + "; it remains in place: " + error.what());
-  }
-  // Also if the first request failed: the daemon must use the model that is now in place.
-  try {
+    then = "; the model before is in place again";
+    // Also if the first request failed: the daemon must use the model that is now in place.
     ask_for_reload();
   } catch (const std::exception& error) {
-    why += std::string("; ") + error.what() + ", let it reload";
+    then = std::string("; ") + error.what() + ", let it reload" + then;
   }
-  throw std::runtime_error(why + "; the model before is in place again");
+  throw std::runtime_error(why + then);
 }
 
 }  // namespace ifog::tools

@@ -87,13 +87,9 @@ StateLock::StateLock(const std::string& folder)
     throw std::runtime_error(folder + ": cannot open: " + std::generic_category().message(errno) +
                              ", expected the daemon's state folder (--state)");
   if (::flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
-  const int error = errno;
-  ::close(fd_);
-  throw std::runtime_error(folder + (error == EWOULDBLOCK
+  throw std::runtime_error(folder + (errno == EWOULDBLOCK
                                          ? ": another command works in it just now, try again when it is done"
-                                         : ": cannot lock: " + std::generic_category().message(error)));
+                                         : ": cannot lock: " + std::generic_category().message(errno)));
 }
-
-StateLock::~StateLock() { ::close(fd_); }
 
 }  // namespace ifog::tools

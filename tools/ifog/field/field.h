@@ -6,6 +6,7 @@
 #include <string>
 
 #include "daemon/config/config.h"
+#include "drivers/system/fd.h"
 #include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
@@ -56,12 +57,9 @@ void share_with_the_group();
 class StateLock {
  public:
   explicit StateLock(const std::string& folder);
-  ~StateLock();
-  StateLock(const StateLock&) = delete;
-  StateLock& operator=(const StateLock&) = delete;
 
  private:
-  int fd_;
+  Fd fd_;
 };
 
 }  // namespace ifog::tools

@@ -49,11 +49,9 @@ struct FleetArguments {
 
 std::unique_ptr<Engine> engine_named(const FleetArguments& arguments, const Results& results) {
   // An installed Slurm may have no controller.
-  const auto answers = [] {
-    return is_there("sbatch") &&
-           run_to_end({"sinfo", "--noheader"}, "", std::chrono::seconds(10)).ended.empty();
-  };
-  const bool slurm = arguments.engine == "slurm" || (arguments.engine == "auto" && answers());
+  const bool slurm = arguments.engine == "slurm" ||
+                     (arguments.engine == "auto" && is_there("sbatch") &&
+                      run_to_end({"sinfo", "--noheader"}, "", std::chrono::seconds(10)).ended.empty());
   return slurm ? slurm_engine(results, arguments.jobs) : local_engine(results, arguments.jobs);
 }
 

@@ -17,6 +17,7 @@
 #include <system_error>
 #include <thread>
 
+#include "drivers/system/fd.h"
 #include "filters/units/told_time.h"
 
 namespace ifog::tools {
@@ -28,20 +29,10 @@ constexpr std::chrono::milliseconds kBetweenLooks{5};
   throw std::runtime_error(what + ": " + std::generic_category().message(error));
 }
 
-// Closes its descriptor.
-class OpenFile {
- public:
-  OpenFile(int fd, const std::string& name) : fd_(fd) {
-    if (fd_ < 0) refuse(name + ": cannot be opened", errno);
-  }
-  ~OpenFile() { ::close(fd_); }
-  OpenFile(const OpenFile&) = delete;
-  OpenFile& operator=(const OpenFile&) = delete;
-  operator int() const { return fd_; }
-
- private:
-  int fd_;
-};
+Fd opened(int fd, const std::string& name) {
+  if (fd < 0) refuse(name + ": cannot be opened", errno);
+  return Fd(fd);
+}
 
 struct Parent {
   pid_t process;
@@ -74,14 +65,15 @@ pid_t spawn(const std::vector<std::string>& words, int in, int out) {
   throw std::runtime_error(words.front() + ": cannot be started: " + owned->message);
 }
 
-OpenFile memory(const char* name) { return {memfd_create(name, MFD_CLOEXEC), name}; }
+Fd memory(const char* name) { return opened(memfd_create(name, MFD_CLOEXEC), name); }
 
 }  // namespace
 
 std::string own_path() { return std::filesystem::read_symlink("/proc/self/exe").string(); }
 
 pid_t start(const std::vector<std::string>& words, const std::string& said_path) {
-  const OpenFile said(::open(said_path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666), said_path);
+  const Fd said =
+      opened(::open(said_path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666), said_path);
   return spawn(words, -1, said);
 }
 
@@ -92,7 +84,7 @@ std::string ending(int status) {
 
 Ran run_to_end(const std::vector<std::string>& words, const std::string& input,
                std::chrono::milliseconds patience) {
-  const OpenFile in = memory("input"), out = memory("output");
+  const Fd in = memory("input"), out = memory("output");
   if (::write(in, input.data(), input.size()) != static_cast<ssize_t>(input.size()) ||
       ::lseek(in, 0, SEEK_SET) != 0)
     refuse(words.front() + ": no room for its input", errno);

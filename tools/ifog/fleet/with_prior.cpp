@@ -68,12 +68,11 @@ bool alike(const Effect& a, const Effect& b) {
 double mean_moved(const Fitted& fitted, const AxisMeasured& axis, const std::vector<Effect>& own) {
   double moved = 0.0;
   for (std::size_t i = 0; i < fitted.effects.size(); ++i) {
-    double before = 0.0;
+    double corrected = -fitted.effects[i].parameters.front().value;
     for (const Effect& effect : own)
       if (effect.axis == axis.axis && alike(effect, fitted.effects[i]))
-        before = effect.parameters.front().value;
-    moved += (before - fitted.effects[i].parameters.front().value) *
-             axis.means.at(static_cast<std::size_t>(fitted.at[i]));
+        corrected += effect.parameters.front().value;
+    moved += corrected * axis.means.at(static_cast<std::size_t>(fitted.at[i]));
   }
   return moved;
 }
@@ -81,8 +80,7 @@ double mean_moved(const Fitted& fitted, const AxisMeasured& axis, const std::vec
 // True if the effect was in the fit, even if the model does not contain it: of the type, or another one
 // fitted with them.
 bool was_fitted(const TypeToMeasure& type, const AxisMeasured& axis, const Effect& effect) {
-  if (std::any_of(axis.others.begin(), axis.others.end(),
-                  [&](const Effect& other) { return alike(other, effect); }))
+  if (std::ranges::any_of(axis.others, [&](const Effect& other) { return alike(other, effect); }))
     return true;
   for (std::size_t i = 0; i < axis.together.size(); ++i)
     if (axis.together[i].not_measured.empty() && is_of(type.effects[axis.together[i].of_type], effect))
@@ -122,8 +120,7 @@ Model model_with_prior(const Model& own, const TypeToMeasure& type, const GyroMe
     const Fitted& fitted = together.emplace_back(fit_with_prior(axis, gyro, effects));
     model.effects.insert(model.effects.end(), fitted.effects.begin(), fitted.effects.end());
     for (const ChannelRange& range : axis.ranges)
-      if (std::none_of(model.ranges.begin(), model.ranges.end(),
-                       [&](const ChannelRange& other) { return other.channel == range.channel; }))
+      if (std::ranges::find(model.ranges, range.channel, &ChannelRange::channel) == model.ranges.end())
         model.ranges.push_back(range);
   }
   for (const Effect& effect : own.effects) {

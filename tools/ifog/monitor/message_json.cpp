@@ -24,10 +24,21 @@ ordered_json of(const char* type, std::string_view sensor) {
   return {{"schema", "ifog.monitor/1"}, {"type", type}, {"sensor", sensor}};
 }
 
-ordered_json flag_words(std::int32_t flags) {
-  ordered_json out = ordered_json::array();
+// Of rate_t and imu_t.
+template <typename Message>
+ordered_json of_samples(const char* type, std::string_view sensor, const Message& message) {
+  ordered_json out = of(type, sensor), words = ordered_json::array();
   for (const FlagName& each : kFlagNames)
-    if ((flags & each.flag) != 0) out.push_back(each.name);
+    if ((message.flags & each.flag) != 0) words.push_back(each.name);
+  out["utime"] = message.utime;
+  out["seq"] = message.seq;
+  out["sensor_time_ns"] = message.sensor_time_ns;
+  out["dt"] = message.dt;
+  out["merged"] = message.merged;
+  out["flags"] = message.flags;
+  out["flag_words"] = words;
+  out["status"] = message.status;
+  out["delta_theta"] = message.delta_theta;
   return out;
 }
 
@@ -43,21 +54,12 @@ constexpr std::array<std::pair<const char*, double status_t::*>, 7> kFigures{
 }  // namespace
 
 std::string message_json(std::string_view sensor, const rate_t& message) {
-  ordered_json out = of("rate", sensor);
-  out["utime"] = message.utime;
-  out["seq"] = message.seq;
-  out["sensor_time_ns"] = message.sensor_time_ns;
+  ordered_json out = of_samples("rate", sensor, message);
   out["arrival_ns"] = message.arrival_ns;
-  out["dt"] = message.dt;
-  out["merged"] = message.merged;
-  out["flags"] = message.flags;
-  out["flag_words"] = flag_words(message.flags);
-  out["status"] = message.status;
   out["raw"] = message.raw;
   out["compensated"] = message.compensated;
   out["denoised"] = message.denoised;
   out["variance"] = message.variance;
-  out["delta_theta"] = message.delta_theta;
   out["covered"] = message.covered;
   out["angle"] = message.angle;
   out["innovation"] = message.innovation;
@@ -93,16 +95,7 @@ std::string message_json(std::string_view sensor, const status_t& message) {
 }
 
 std::string message_json(std::string_view sensor, const imu_t& message) {
-  ordered_json out = of("imu", sensor);
-  out["utime"] = message.utime;
-  out["seq"] = message.seq;
-  out["sensor_time_ns"] = message.sensor_time_ns;
-  out["dt"] = message.dt;
-  out["merged"] = message.merged;
-  out["flags"] = message.flags;
-  out["flag_words"] = flag_words(message.flags);
-  out["status"] = message.status;
-  out["delta_theta"] = message.delta_theta;
+  ordered_json out = of_samples("imu", sensor, message);
   out["turned_s"] = message.turned_s;
   out["delta_v"] = message.delta_v;
   out["moved_s"] = message.moved_s;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/monitor/sensor_view.h"
 
-#include <algorithm>
 #include <limits>
 #include <utility>
 
@@ -26,7 +25,7 @@ void SensorView::take(const rate_t& message) {
     if ((message.flags & kFlagNames[i].flag) != 0) ++flagged_[i];
   sums_.resize(static_cast<std::size_t>(message.axes));
   history_.resize(sums_.size());
-  axes_.resize(std::min(axes_.size(), sums_.size()));
+  if (axes_.size() > sums_.size()) axes_.clear();
   for (std::size_t a = 0; a < sums_.size(); ++a) {
     Sums& sums = sums_[a];
     sums.denoised.add(message.denoised[a]);

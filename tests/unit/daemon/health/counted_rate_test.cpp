@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "daemon/health/counted_rate.h"
-#include "daemon/health/wrong_rate.h"
 
 #include <gtest/gtest.h>
 
@@ -27,20 +26,6 @@ TEST(CountedRate, IsThatOfTheSensorHoweverSlowItIs) {
     for (int s = 0; s < 4.0 / rate_hz + 4.0; ++s) shown_hz = rate.of(last, 1.0, rate_hz);
     EXPECT_EQ(shown_hz, 0.0) << rate_hz << " Hz, silent";
   }
-}
-
-// The intervals in use are 1/200 s, so an angle is wrong by f / 200 - 1.
-TEST(WrongRate, TheFiguresAreOfTheIntervalsInUse) {
-  struct Row {
-    double true_hz;
-    const char *rate, *angles;
-  };
-  for (const Row& row : {Row{400.0, "400", "100 % too large"}, Row{220.0, "220", "10 % too large"},
-                         Row{180.0, "180", "10 % too small"}, Row{50.0, "50", "75 % too small"}})
-    EXPECT_EQ(wrong_rate_in_words(200.0, 200.0 / row.true_hz - 1.0),
-              std::string("samples come at ") + row.rate +
-                  " Hz by their arrival, expected 200 Hz: intervals, and angles made of a rate, are " +
-                  row.angles);
 }
 
 }  // namespace

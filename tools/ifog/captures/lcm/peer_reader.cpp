@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "filters/distributions/median.h"
+
 namespace ifog::tools {
 namespace {
 
@@ -79,9 +81,7 @@ double PeerReader::period_s() {
   if (period_s_) return *period_s_;
   period_s_ = 0.0;
   if (steps_us_.empty()) return 0.0;
-  const auto middle = steps_us_.begin() + static_cast<std::ptrdiff_t>(steps_us_.size() / 2);
-  std::nth_element(steps_us_.begin(), middle, steps_us_.end());
-  const double median_us = *middle;
+  const double median_us = median(steps_us_);
   double sum_us = 0.0, periods = 0.0;
   for (const double step_us : steps_us_) {
     sum_us += step_us;
