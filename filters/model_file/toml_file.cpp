@@ -26,8 +26,7 @@ void require_short_keys(std::string_view text, const std::string& name) {
       dots = 0;
     } else if (c == '.' && ++dots > kInputLimits.toml_dots) {
       throw std::runtime_error(name + ":" + std::to_string(line) + ": more than " +
-                               std::to_string(kInputLimits.toml_dots) +
-                               " dots in a line, expected a key of a few parts");
+                               std::to_string(kInputLimits.toml_dots) + " dots in a line, expected fewer");
     }
   }
 }

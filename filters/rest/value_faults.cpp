@@ -51,7 +51,7 @@ void find_coarse(const std::vector<double>& values, std::vector<ValueFault>& fou
   for (std::size_t i = 0; i + kFewSamples <= values.size(); i += kFewSamples, ++stretches) {
     const std::span<const double> some = std::span(values).subspan(i, kFewSamples);
     const auto [least, most] = std::ranges::minmax(some);
-    if (!std::ranges::all_of(some, [&](double v) { return v == least || v == most; })) continue;
+    if (std::ranges::count(some, least) + std::ranges::count(some, most) < std::ssize(some)) continue;
     ++coarse;
     if (most > least) step = std::min(step, most - least);
   }

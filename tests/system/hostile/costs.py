@@ -60,7 +60,7 @@ def large_files(place):
          "more than 64 multiplexors")
     write("lot.toml", 'type = "t"\n' + "".join(f'[[gyro]]\nserial = "g{i}"\ncaptures = ["none{i}.csv"]\n' for i in range(MANY)))
     ends(place, f"{MANY} gyros without captures", [place.ifog, "fleet", "lot.toml", "--engine", "local"], 1, "cannot open: No such file or directory")
-    write("one.toml", 'type = "t"\n[[gyro]]\nserial = "g"\ncaptures = [' + ", ".join(f'"none{i}.csv"' for i in range(MANY)) + "]\n")
+    write("one.toml", 'type = "t"\n[[gyro]]\nserial = "g"\ncaptures = [' + ",\n".join(f'"none{i}.csv"' for i in range(MANY)) + "]\n")
     ends(place, f"a gyro without {MANY} captures", [place.ifog, "fleet", "one.toml", "--engine", "local"], 1, "cannot open: No such file or directory")
     write("lot2.toml", 'type = "t"\n' + "".join(f'[[gyro]]\nserial = "g{i}"\ncaptures = ["none{i}.csv"]\n' for i in range(70_000)))
     ends(place, "more captures than a lot may have", [place.ifog, "fleet", "lot2.toml", "--engine", "local"], 1, "gyro.captures: more than 65536 in all")
