@@ -228,6 +228,7 @@ struct ChannelSources::Impl {
 
   void listen() {
     constexpr std::int64_t kAgain_ns = 5'000'000'000;
+    std::int64_t again_ns = monotonic_ns() + kAgain_ns;
     for (;;) {
       std::int64_t now_ns = monotonic_ns();
       std::int64_t next_ns = now_ns + 3'600'000'000'000;
@@ -239,16 +240,17 @@ struct ChannelSources::Impl {
       // Without a descriptor, the server of tcpq:// is away. LCM itself would wait for it in lcm_handle().
       const int socket = lcm != nullptr ? lcm_get_fileno(lcm) : -1;
       const bool away = socket < 0 && !messages.empty();
-      if (away) next_ns = std::min(next_ns, now_ns + kAgain_ns);
+      if (away) next_ns = std::min(next_ns, again_ns);
       pollfd wanted[2] = {{stop_event, POLLIN, 0}, {socket, POLLIN, 0}};
       poll(wanted, 2, static_cast<int>(std::max<std::int64_t>(0, next_ns - now_ns + 999'999) / 1'000'000));
       if ((wanted[0].revents & POLLIN) != 0) return;
       if (wanted[1].revents != 0) lcm_handle(lcm);
-      if (away) try {
-          subscribe();
-        } catch (const std::exception&) {
-          continue;
-        }
+      if (!away || monotonic_ns() < again_ns) continue;
+      again_ns = monotonic_ns() + kAgain_ns;
+      try {
+        subscribe();
+      } catch (const std::exception&) {  // tried again later
+      }
     }
   }
 };

@@ -138,7 +138,8 @@ SensorConfig read_sensor(const toml::table& table, ReadingContext& context) {
   if (const auto rate = out.options.find("rate_hz"); rate != out.options.end() && !context.recorded) {
     const double hz = std::strtod(rate->second.c_str(), nullptr);
     if (hz > 0.0 && out.nominal_rate_hz > 0.0 && std::abs(out.nominal_rate_hz / hz - 1.0) > 0.01)
-      in.complain("nominal_rate_hz", ": is not options.rate_hz; expected one of the two");
+      in.complain("nominal_rate_hz", ": options.rate_hz is " + in_quotes(rate->second) +
+                                         "; expected the same, or one of the two");
   }
   if (const toml::table* const filter = in.table("filter"))
     out.filter = read_filter(*filter, "sensor.filter", out.start_up_s, context);

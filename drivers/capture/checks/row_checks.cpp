@@ -61,7 +61,7 @@ void as_rates(RowBlock& all, const CsvLayout& layout, RowNotes& notes, const std
     const CsvColumn& column = layout.columns[i];
     if (!column.angle_rad()) continue;
     std::vector<double>& values = all.columns[i];
-    if (column.is_increment()) {
+    if (column.unit.ends_with("/sample")) {
       // Time of an increment, independent of the rows' times.
       const double period_s = median_step_s(all.time_s);
       for (double& value : values) value /= period_s;

@@ -222,8 +222,8 @@ void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double
 void RowClock::finish() {
   order_.finish();
   const std::size_t rows = buffered_.size();
-  std::size_t last = end_of_burst(buffered_, 0);  // first row of the last burst
-  if (last >= rows) last = 0;
+  const std::size_t end = end_of_burst(buffered_, 0),
+                    last = end < rows ? end : 0;  // the last burst's first row
   if (last > 0) spread(buffered_, 0, last, buffered_.time_s[last]);
   if (rows > last + 1) {
     if (!(period_s_ > 0.0))

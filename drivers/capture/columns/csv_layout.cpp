@@ -87,8 +87,6 @@ bool CsvColumn::is_rate() const {
          (name.starts_with("rate_") || name.starts_with("reference_rate_") || is_other_rate(name));
 }
 
-bool CsvColumn::is_increment() const { return unit.ends_with(kPerSample) && angle_rad().has_value(); }
-
 std::optional<double> CsvColumn::angle_rad() const {
   if (!is_rate() || angle_unit(unit, true, false)) return std::nullopt;
   return angle_unit(unit.substr(0, unit.size() - (unit.ends_with(kPerSample) ? kPerSample.size() : 0)), false,

@@ -25,7 +25,6 @@ struct CsvColumn {
   // Unit of `name`: "degC".
   [[nodiscard]] std::string own_unit() const;
   [[nodiscard]] bool is_rate() const;
-  [[nodiscard]] bool is_increment() const;
   // rad per unit of an angle or increment; nullopt otherwise.
   [[nodiscard]] std::optional<double> angle_rad() const;
   // Conversion to the capture's unit; of an angle to rad.

@@ -114,6 +114,10 @@ class Rows {
   // ended: the line is complete.
   void add(std::string_view line, std::size_t number, bool ended) {
     try {
+      // "1.2e-0" is a truncated "1.2e-05".
+      if (!ended &&
+          (line.ends_with("e-0") || line.ends_with("e+0") || line.ends_with("E-0") || line.ends_with("E+0")))
+        throw Unreadable{"ends within a number"};
       add_cells(line, number);
     } catch (const Unreadable& row) {
       drop();

@@ -178,7 +178,8 @@ TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
   }
   const std::string last = std::to_string(std::count(text.begin(), text.end(), '\n') + 2);
   // What power that goes leaves of the last line, and what a file system adds.
-  for (const std::string& rest : {std::string("900000"), std::string("900000,1,"), std::string(4096, '\0')})
+  for (const std::string& rest : {std::string("900000"), std::string("900000,1,"),
+                                  std::string("900000,1,2,3e-0"), std::string(4096, '\0')})
     for (const std::size_t piece : kPieces) {
       const Reading found = in_pieces(text + "\n" + rest, piece);
       ASSERT_EQ(found.refused, "");

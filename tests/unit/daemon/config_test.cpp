@@ -130,6 +130,7 @@ TEST(Config, NamesWhereAndWhat) {
            {"pace = \"slow\"\n", "8: sensor.transport.pace = 'slow': expected \"free\" | \"recorded\""},
            {"interface = \"\"\n", "8: sensor.transport.interface = '': "},
            {"await_writer = 1\n", "8: sensor.transport.await_writer = 1: "},
+           {"block_bytes = 65537\n", "8: sensor.transport.block_bytes = 65537: "},
            {"[sensor.filter]\nwindow = 1\n", "9: sensor.filter.window = 1: "},
            {"[sensor.filter]\nwindow = 5.5\n", "9: sensor.filter.window = 5.5: expected a whole number"},
            {"[sensor.filter]\nprocess_noise = -1e-9\n", "9: sensor.filter.process_noise = -1e-09: "},

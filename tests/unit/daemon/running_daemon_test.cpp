@@ -32,6 +32,10 @@ TEST_F(RunningDaemon, AReloadTakesEffectForAllSensorsOrForNone) {
   ASSERT_TRUE(await([&] { return listener_->last["IFOG_NOSE_STATUS"].samples_published == 20; })) << said();
   EXPECT_EQ(listener_->last["IFOG_NOSE_STATUS"].model, "");
   EXPECT_EQ(listener_->last["IFOG_NOSE_STATUS"].filter_resets, 0);
+  write("ifogd.toml", kDaemon + sensor("nose") + sensor("tail", "options.rate_hzz = 100\n"));
+  kill(child_, SIGHUP);
+  ASSERT_TRUE(await([&] { return times_said("reload refused: nothing has changed for any sensor") == 2; }))
+      << said();
   // Now both; and what a reload cannot do is said.
   write("bad.toml", kModel);
   write("ifogd.toml", std::string(kDaemon) + "log_level = \"debug\"\n" +
