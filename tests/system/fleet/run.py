@@ -4,9 +4,12 @@
 
 usage: run.py PATH_OF_IFOG SOURCE_DIR
 """
+import csv
 import json
+import math
 import os
 import pathlib
+import random
 import shutil
 import signal
 import subprocess
@@ -15,6 +18,7 @@ import tempfile
 import tomllib
 
 IFOG, SOURCE = sys.argv[1], pathlib.Path(sys.argv[2])
+DEG_PER_H = math.pi / 180 / 3600
 sys.path.insert(0, str(SOURCE / "tests/system/command_line"))
 import schema  # noqa: E402
 
@@ -100,6 +104,35 @@ coefficient = {scale}
     for seed in range(1, 7):
         (effect,) = [each for each in tomllib.loads((folder / f"table.results/gyros/R{seed}/with_prior.toml").read_text())["effect"] if each["form"] == "linear"]
         assert abs(effect["parameter"][0]["value"] - scale) < 0.02 * scale and abs(effect["reference"] - bias) < 1e-3 * bias, effect
+
+
+def check_a_bias_goes_with_the_coefficients(folder):
+    """Beside a reference, far from 25 °C: what the type changes of a coefficient, the bias takes up, and the mean that is left stays as small."""
+    draw = random.Random(4)
+    manifest = 'type = "T3"\n'
+    for n in range(5):
+        per_degC, rows = (0.4 + 0.05 * n) * DEG_PER_H, ["time_s,rate_radps,reference_rate_radps,temp_degC"]
+        for i in range(8000):
+            truth, degC = 1e-3 * math.sin(0.03 * i), 50 + 1.5 * math.sin(0.0011 * i)
+            rows.append(f"{i / 10},{truth + 6e-5 + per_degC * (degC - 50) + draw.gauss(0, 4e-5):.9g},{truth:.9g},{degC:.5f}")
+        (folder / f"hot{n}.csv").write_text("\n".join(rows) + "\n")
+        manifest += f'[[gyro]]\nserial = "H{n}"\ncaptures = ["hot{n}.csv"]\n'
+    (folder / "hot.toml").write_text(manifest)
+    subprocess.run([IFOG, "fleet", "hot.toml", "--engine", "local"], cwd=folder, check=True, capture_output=True, timeout=200)
+    moved = 0
+    for n in range(5):
+        gyro = folder / f"hot.results/gyros/H{n}"
+        coefficients, left = [], []
+        for name in ("model", "with_prior"):
+            model = gyro / f"{name}.toml"
+            coefficients.append(sum(e["parameter"][0]["value"] for e in tomllib.loads(model.read_text())["effect"] if e["form"] == "linear"))
+            subprocess.run([IFOG, "denoise", f"hot{n}.csv", "--model", model, "--output", "left.csv"], cwd=folder, check=True, capture_output=True, timeout=100)
+            with open(folder / "left.csv") as file:
+                rows = list(csv.DictReader(line for line in file if not line.startswith("#")))
+            left.append(sum(float(row["compensated_radps"]) for row in rows) / len(rows) / DEG_PER_H)
+        moved = max(moved, abs(coefficients[1] - coefficients[0]) * 25 / DEG_PER_H)
+        assert abs(left[1] - left[0]) < 0.02, f"H{n}: a mean of {left[1]:.3f} °/h instead of {left[0]:.3f} is left"
+    assert moved > 0.1, f"the type has moved the coefficients by {moved} °/h at most: nothing is tested"
 
 
 def stamps(folder):
@@ -299,7 +332,7 @@ def main():
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         lot.make(IFOG, folder)
-        for check in (check_the_lot, check_single_diagnosis_is_the_same, check_the_daemons_code_takes_the_model, check_a_scale_factor_counts_from_the_bias, check_restart_takes_up_what_is_missing,
+        for check in (check_the_lot, check_single_diagnosis_is_the_same, check_the_daemons_code_takes_the_model, check_a_scale_factor_counts_from_the_bias, check_a_bias_goes_with_the_coefficients, check_restart_takes_up_what_is_missing,
                       check_a_failed_gyro_is_one_line, check_a_damaged_result_is_made_again, check_a_measurement_of_other_inputs_is_none,
                       check_nothing_of_an_earlier_run_stays_when_none_is_diagnosed, check_another_option_is_another_diagnosis,
                       check_options_end_where_they_are_said_to, check_a_link_in_a_path_is_followed, check_what_squeue_warns_of_is_no_job,
