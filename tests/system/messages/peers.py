@@ -11,6 +11,7 @@ import math
 import os
 import random
 import shutil
+import statistics
 import struct
 import subprocess
 import sys
@@ -173,8 +174,9 @@ def judge_ins(channel, second, messages, began, ended):
     steps = [(b[1] - a[1]) / second for a, b in zip(messages, messages[1:])]
     check(all(abs(step - 1 / RATE_HZ) < 1e-9 for step in steps), f"{channel}: the device's clock goes on by {1 / RATE_HZ} s a message")
     times = [m[0] * 1e-6 for m in messages]
-    check(all(began - 1 <= t <= ended + 1 for t in times) and abs((times[-1] - times[0]) / (len(times) - 1) * RATE_HZ - 1) < 0.02,
-          f"{channel}: the time of each is the wall clock's, {1e3 * (times[-1] - times[0]) / (len(times) - 1):.4f} ms a message")
+    step = statistics.median(b - a for a, b in zip(times, times[1:]))
+    check(all(began - 1 <= t <= ended + 1 for t in times) and abs(step * RATE_HZ - 1) < 0.02,
+          f"{channel}: the time of each is the wall clock's, mostly {1e3 * step:.4f} ms a message")
 
 
 def judge_batches(messages):
@@ -187,19 +189,20 @@ def judge_batches(messages):
     check(sum(good) == len(good) > 0, f"BATCH: angle in rad a packet and specific force of {sum(good)} are what was sent")
 
 
-def judge_capture(what, found, expected_rows, columns, part, first=0, length=ROWS):
+def judge_capture(what, found, columns, part, samples=range(ROWS), by_period=False):
+    """The rows are these samples in this order. Their times are the daemon's fit of arrival times, which a busy machine delays;
+    by_period: the rates are angles divided by the period of those times."""
     code, said, header, rows = found
     if code != 0:
         return check(False, f"{what}: {said.strip()}")
     check(header == ["time_s"] + columns, f"{what}: {','.join(header)}")
-    check(len(rows) == expected_rows, f"{what}: {len(rows)} samples, expected {expected_rows}")
-    # Times are the daemon's fit of arrival times: on a busy machine they are off by up to a second.
-    def wrong(shift, some):
-        numbers = [round(row[0] * RATE_HZ) + first + shift for row in some]
-        return [n for n, row in zip(numbers, some) if not 0 <= n < length or not near(row[1:4], rates(n), part) or not near(row[4:7], forces(n), 1e-5)]
-    shift = min(range(-RATE_HZ, RATE_HZ + 1), key=lambda each: len(wrong(each, rows[::40])))
-    bad = wrong(shift, rows)
-    check(len(bad) <= RATE_HZ // 10, f"{what}: rates and specific force are those that were sent{'' if not bad else f', not {len(bad)} as {bad[:3]}'}")
+    check(len(rows) == len(samples), f"{what}: {len(rows)} samples, expected {len(samples)}")
+    period = statistics.median(row[1] / rates(n)[0] for n, row in zip(samples, rows)) if by_period else 1
+    check(abs(period - 1) < 0.05, f"{what}: the period is known to {abs(period - 1):.1g}")
+    bad = [n for n, row in zip(samples, rows) if not near([rate / period for rate in row[1:4]], rates(n), part) or not near(row[4:7], forces(n), 1e-5)]
+    check(not bad, f"{what}: rates and specific force are those that were sent{'' if not bad else f', not {len(bad)} as {bad[:3]}'}")
+    steps = [b[0] - a[0] for a, b in zip(rows, rows[1:])]
+    check(min(steps) > 0 and abs(statistics.median(steps) * RATE_HZ - 1) < 0.02, f"{what}: the time goes on, mostly by {statistics.median(steps):.6f} s")
     return None
 
 
@@ -210,19 +213,20 @@ def logged(build):
     """Messages of the daemon from a log; a batch log that loses datagrams."""
     events = read_log("all.lcm")
     first = ROWS - len([1 for channel, _, _ in events if channel == "INS"])
+    published = range(first, ROWS)
     for channel, part in (("INS", 1e-6), ("MICROSTRAIN", 1e-6), ("BATCH", 1e-4)):
-        judge_capture(f"log {channel}", capture(build, "all.lcm", "--channel", channel), ROWS - first, COLUMNS, part, first)
-    judge_capture("log FORCE", capture(build, "all.lcm", "--channel", "FORCE"), ROWS - first, COLUMNS + ["temperature_degC"], 1e-6, first)
+        judge_capture(f"log {channel}", capture(build, "all.lcm", "--channel", channel), COLUMNS, part, published, channel == "BATCH")
+    judge_capture("log FORCE", capture(build, "all.lcm", "--channel", "FORCE"), COLUMNS + ["temperature_degC"], 1e-6, published)
     batches = [event for event in events if event[0] == "BATCH"]
     dice = random.Random(7)
     lost = {at + k for at in dice.sample(range(50, len(batches) - 50, 40), 30) for k in range(14)}
     write_log("lossy.lcm", [event for n, event in enumerate(batches) if n not in lost])
     found = capture(build, "lossy.lcm")
-    judge_capture(f"{len(lost)} of {len(batches)} datagrams lost, never 15 in a row", found, ROWS - first, COLUMNS, 1e-4, first)
+    judge_capture(f"{len(lost)} of {len(batches)} datagrams lost, never 15 in a row", found, COLUMNS, 1e-4, published, True)
     check("missing" not in found[1], "nothing is said to be missing")
     write_log("more.lcm", [event for n, event in enumerate(batches) if not 1000 <= n < 1020])
     found = capture(build, "more.lcm")
-    judge_capture("20 datagrams lost in a row", found, ROWS - first - 6, COLUMNS, 1e-4, first)
+    judge_capture("20 datagrams lost in a row", found, COLUMNS, 1e-4, [*published[:1000], *published[1006:]], True)
     check("6 samples on BATCH are missing by their counts" in found[1], "the six that were in no other are counted: " + found[1].strip().split("\n")[-1])
     code, said = ran(build, "allan", "all.lcm", "--channel", "INS", "--axis", "x", "--moving", "keep")
     check(code == 0, "allan takes it: " + said.strip().split("\n")[0])
@@ -233,7 +237,8 @@ def logged(build):
 def foreign(build, modules):
     """Logs of acfr-lcm, made with lcm-gen's code for the public members."""
     senlcm = modules["senlcm"]
-    frames, lines, deltas, imus = [], [], [], []
+    frames, lines, deltas, angles, imus = [], [], [], [], []
+    angle = 0.0
     for row in range(ROWS):
         utime = EPOCH_us + row * 1_000_000 // RATE_HZ
         frame, line, imu = senlcm.kvh1750_t(), senlcm.kvh_dsp3000_t(), senlcm.IMU_t()
@@ -248,6 +253,10 @@ def foreign(build, modules):
         line.mode, line.data = 2, rates(row)[0] / RATE_HZ
         line.utime += row % 3 * 100  # a host's stamps jitter
         deltas.append(("KVH", utime, line.encode()))
+        angle += rates(row)[0] / RATE_HZ
+        line.mode, line.data = 3, angle
+        if not 1000 <= row < 1010:
+            angles.append(("KVH", utime, line.encode()))
         imus.append(("IMU", utime, imu.encode()))
     write_log("kvh1750.lcm", frames)
     code, said, header, rows = capture(build, "kvh1750.lcm")
@@ -261,8 +270,14 @@ def foreign(build, modules):
         code, said, header, rows = capture(build, f"{name}.lcm")
         check(code == 0 and header == ["time_s", "rate_radps"] and len(rows) == ROWS and all(near([row[1]], [rates(n)[0]], 1e-4) for n, row in enumerate(rows)),
               f"kvh_dsp3000_t, {name}: {len(rows)} rates")
+    write_log("angle.lcm", angles)
+    code, said, header, rows = capture(build, "angle.lcm")
+    after = [row[1] for row in rows[1:1000] + rows[1001:]]
+    check(code == 0 and len(rows) == ROWS - 10 and all(near([rate], [rates(n)[0]], 1e-4) for n, rate in zip([*range(1, 1000), *range(1011, ROWS)], after)),
+          f"kvh_dsp3000_t, integrated angle: {len(rows)} rates")
+    check(code == 0 and near([rows[1000][1]], [rates(1005)[0]], 1e-3), "and over ten lost messages their mean rate")
     write_log("imu.lcm", imus)
-    judge_capture("senlcm.IMU_t", capture(build, "imu.lcm"), ROWS, COLUMNS, 1e-9)
+    judge_capture("senlcm.IMU_t", capture(build, "imu.lcm"), COLUMNS, 1e-9)
     write_log("two.lcm", lines + imus)
     code, said = ran(build, "convert", "two.lcm", "two.csv")
     check(code == 1 and "expected --channel with one of IMU, KVH" in said, "two channels must be chosen from: " + said.strip())
@@ -282,7 +297,7 @@ def foreign(build, modules):
         batch.utime, batch.num_packets = EPOCH_us + row * 2000, len(batch.raw_imu)
         again.append(("BATCH", batch.utime, batch.encode()))
     write_log("again.lcm", again)
-    judge_capture("a sensor that was switched on again", capture(build, "again.lcm"), 800, COLUMNS, 1e-9)
+    judge_capture("a sensor that was switched on again", capture(build, "again.lcm"), COLUMNS, 1e-9, range(800))
     batch = modules["bot_core"].kvh_raw_imu_batch_t().encode()
     for name, data in [("senlcm.IMU_t", imus[0][2][:-8])] + [("bot_core.kvh_raw_imu_batch_t", batch[:16] + struct.pack(">i", n)) for n in (-1, 1, 2**31 - 1)]:
         write_log("cut.lcm", [("IMU", EPOCH_us, data)])
@@ -310,8 +325,8 @@ def raw_bytes(build, modules):
     write_log("lines.lcm", lines)
     write_log("both.lcm", pieces + lines)
     driver = ["--driver", "kvh1750", "--option", "format=b", "--option", f"rate_hz={RATE_HZ}"]
-    judge_capture("senlcm.raw_t through kvh1750", capture(build, "raw.lcm", *driver), ROWS, COLUMNS + ["temperature_degC"], 1e-6)
-    judge_capture("one channel of two", capture(build, "both.lcm", "--channel", "KVH_RAW", *driver), ROWS, COLUMNS + ["temperature_degC"], 1e-6)
+    judge_capture("senlcm.raw_t through kvh1750", capture(build, "raw.lcm", *driver), COLUMNS + ["temperature_degC"], 1e-6)
+    judge_capture("one channel of two", capture(build, "both.lcm", "--channel", "KVH_RAW", *driver), COLUMNS + ["temperature_degC"], 1e-6)
     code, said, header, rows = capture(build, "lines.lcm", "--driver", "dsp3000", "--option", "output=rate", "--option", "rate_hz=100")
     # The first line may be truncated, so the driver waits for the next.
     check(code == 0 and header == ["time_s", "rate_radps"] and len(rows) == ROWS - 1 and all(near([row[1]], [rates(n + 1)[0]], 1e-5) for n, row in enumerate(rows)),
