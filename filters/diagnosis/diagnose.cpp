@@ -87,6 +87,9 @@ class Run {
     found_ = search_effects(reconstructed_, search);
     read_as_earth_rate(reconstructed_, earth_, found_);
     if (!options_.allow_proxies) doubt_proxies(reconstructed_, found_);
+    for (Chosen& each : found_.chosen)
+      if (long_past_s(data_.grid, each.candidate) > 0.0)
+        each.candidate.first_reading = FirstReading::kSettlingShown;
   }
 
   // Subtracts the ramps and the effects of the search from the errors.

@@ -159,12 +159,13 @@ class Measuring {
       if (is_reference_rate(effect.with_channel)) effect.with_reference = rates_from;
       effect.parameters.front().value = joint.values[first + i];
       effect.parameters.front().std_error = std::sqrt(joint.covariance(first + i, first + i));
-      if (static_cast<std::size_t>(i) < place_.size())
-        keep_further(wanted_.together[place_[static_cast<std::size_t>(i)]], effect);
-      if (static_cast<std::size_t>(i) < place_.size())
-        result_.together[place_[static_cast<std::size_t>(i)]].effect = effect;
-      else
+      if (static_cast<std::size_t>(i) < place_.size()) {
+        Effect& mine = result_.together[place_[static_cast<std::size_t>(i)]].effect;
+        keep_further(mine, effect);
+        mine = effect;
+      } else {
         result_.others.push_back(effect);
+      }
       found.push_back({effect, 1.0, 0.0, 0.0});
       result_.means.push_back(means[first + i + 1]);
       for (Eigen::Index j = 0; j < count; ++j)

@@ -39,8 +39,9 @@ struct Record {
   // Rates of the sensor's other axes, by column name. The sensor rests when all axes do.
   std::vector<RecordChannel> other_axes;
   std::vector<std::span<const double>> other_references{};  // of other_axes, in their order; empty: none
-  std::vector<Stretch> at_rest;  // in samples, in order; empty: not determined, all
-  RecordOrigin origin;           // of time_s
+  std::vector<Stretch> at_rest;   // in samples, in order; empty: not determined, all
+  RecordOrigin origin;            // of time_s
+  double since_power_up_s = 0.0;  // at the first sample; 0 if not known: the record is taken to begin there
 };
 
 // Values of a channel by name; empty if the record has none.

@@ -14,7 +14,7 @@ double chi_squared_exceeded(double chance, double degrees) {
 }
 
 double chi_squared_above(double value, double degrees) {
-  return cdf(complement(boost::math::chi_squared(degrees), value));
+  return value > 0.0 ? cdf(complement(boost::math::chi_squared(degrees), value)) : 1.0;
 }
 
 }  // namespace ifog

@@ -11,7 +11,7 @@ namespace ifog {
 // Value that is exceeded with probability `chance`, also for very small ones.
 [[nodiscard]] double chi_squared_exceeded(double chance, double degrees);
 
-// Probability of exceeding `value` (>= 0).
+// Probability of exceeding `value`; 1 below 0.
 [[nodiscard]] double chi_squared_above(double value, double degrees);
 
 }  // namespace ifog

@@ -38,13 +38,9 @@ ChannelRange range_of_reference(const std::vector<ChannelRange>& known) {
   return found;
 }
 
-std::string label_of(const Effect& effect) {
-  return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel);
-}
-
 // For error messages; with the line in the model file.
 std::string place_of(const Effect& effect) {
-  return "effect " + label_of(effect) + (effect.line > 0 ? " in line " + std::to_string(effect.line) : "");
+  return "effect " + name_of(effect) + (effect.line > 0 ? " in line " + std::to_string(effect.line) : "");
 }
 
 [[noreturn]] void refuse_axis(const Effect& effect) {
@@ -97,17 +93,17 @@ void Compensator::add_effect(const Effect& effect, std::size_t first_row,
   const auto form = form_named(effect.form);
   if (!form) throw std::invalid_argument("effect form " + in_quotes(effect.form) + " is unknown");
   if (describes_noise(*form) || !carries_over(*form) || effect.shown_only) {
-    left_out_.push_back(label_of(effect));
+    left_out_.push_back(name_of(effect));
     if (*form == Form::kDeadZone) add_zone(effect, axes);
     return;
   }
   if (*form == Form::kWarmUp && !since_power_up_s_) {
-    left_out_.push_back(label_of(effect) + " (the time since power-up is not known)");
+    left_out_.push_back(name_of(effect) + " (the time since power-up is not known)");
     return;
   }
   const std::string channel = *form == Form::kRateRamp ? std::string(kTimeRange) : effect.channel;
   if (*form == Form::kRateRamp && !std::isfinite(range_of(channel, ranges).high)) {
-    left_out_.push_back(label_of(effect) + " (for how long it was fitted is not known)");
+    left_out_.push_back(name_of(effect) + " (for how long it was fitted is not known)");
     return;
   }
   if (*form == Form::kRebuiltRamp) return add_ramp(effect, axes);

@@ -4,11 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <initializer_list>
-#include <iomanip>
 #include <numbers>
-#include <sstream>
+
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -38,18 +37,9 @@ std::string form_unit(Form form, const std::string& unit) {
 }
 
 std::string order_of(Form form) {
-  switch (form) {
-    case Form::kQuadratic:
-      return "quadratic ";
-    case Form::kCubic:
-      return "cubic ";
-    case Form::kQuintic:
-      return "fifth-order ";
-    case Form::kSeptic:
-      return "seventh-order ";
-    default:
-      return "";
-  }
+  constexpr std::array<const char*, 8> kByPower{
+      "", "", "quadratic ", "cubic ", "", "fifth-order ", "", "seventh-order "};
+  return kByPower[static_cast<std::size_t>(power_of(form))];
 }
 
 std::string of_gradient(Form form) {
@@ -79,10 +69,8 @@ std::string of_angle(const Effect& effect) {
 }
 
 std::string of_fringe(const Effect& effect) {
-  std::array<char, 32> period{};
-  std::snprintf(period.data(), period.size(), "%.3g ", effect.period);
-  return std::string("fringe: light of a second path interferes, and the bias swings once for every ") +
-         period.data() + unit_of(effect.channel);
+  return formatted("fringe: light of a second path interferes, and the bias swings once for every %.3g %s",
+                   effect.period, unit_of(effect.channel).c_str());
 }
 
 std::string of_temperature(Form form) {
@@ -199,12 +187,11 @@ std::string of_product(const Effect& effect, Form with_form) {
 // and 1.45.
 std::string of_rebuilt_ramp(const Effect& effect) {
   const double k = std::abs(parameter(effect, "cycles_per_rad"));
-  std::ostringstream words;
-  words << "nonlinearity of the closed loop's feedback ramp (phase modulator, 2 pi reset), which was not "
-           "logged: its phase is rebuilt from the angle turned, "
-        << std::lround(k) << " cycles a radian, as a coil of " << std::setprecision(2)
-        << 100.0 * k * 1.55e-6 * 1.45 << " cm at 1.55 um has";
-  return words.str();
+  return formatted(
+      "nonlinearity of the closed loop's feedback ramp (phase modulator, 2 pi reset), which was not logged: "
+      "its "
+      "phase is rebuilt from the angle turned, %ld cycles a radian, as a coil of %.2g cm at 1.55 um has",
+      std::lround(k), 100.0 * k * 1.55e-6 * 1.45);
 }
 
 }  // namespace
@@ -282,6 +269,11 @@ std::string unit_of(std::string_view channel) {
   return std::string(unit);
 }
 
+std::string name_of(const Effect& effect) {
+  return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel) +
+         (effect.with_form.empty() ? "" : " with " + effect.with_form + " of " + effect.with_channel);
+}
+
 std::string meaning_of(const Effect& effect) {
   const auto form = form_named(effect.form);
   if (!form) return "";
@@ -297,8 +289,8 @@ std::string meaning_of(const Effect& effect) {
     case Form::kBias:
       return "constant bias: what the rate reads beyond the reference";
     case Form::kWarmUp:
-      return "warm-up: the bias settles exponentially after the start of the record, which is assumed to be "
-             "power-up";
+      return "warm-up: the bias settles exponentially after power-up, which is the start of the record "
+             "unless a recording or --since-power-up says otherwise";
     case Form::kRebuiltRamp:
       return of_rebuilt_ramp(effect);
     case Form::kGaussMarkov:

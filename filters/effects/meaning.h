@@ -38,6 +38,9 @@ enum class Motion { kNone, kAngle, kRate, kPosition, kVelocity, kAcceleration };
 // Unit of NAME_UNIT: "degC" of "case_temperature_degC"; "" if none.
 [[nodiscard]] std::string unit_of(std::string_view channel);
 
+// "linear of temperature_degC", and of a product both factors.
+[[nodiscard]] std::string name_of(const Effect& effect);
+
 // Meaning in one line.
 [[nodiscard]] std::string meaning_of(const Effect& effect);
 

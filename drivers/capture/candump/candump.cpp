@@ -181,7 +181,7 @@ std::int64_t CandumpClock::time_ns(const CandumpEntry& entry) noexcept {
   if (entry.stamp != CandumpStamp::since) return stamp;
   if (stamp < last_stamp_ns_) differences_ = true;
   last_stamp_ns_ = stamp;
-  now_ns_ = differences_ ? now_ns_ + stamp : stamp;
+  now_ns_ = differences_ ? std::min(now_ns_ + stamp, INT64_MAX / 2) : stamp;
   return now_ns_ + kShortStampsFrom_ns;
 }
 

@@ -48,9 +48,7 @@ FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::
 }
 
 const EvenError& longest_of(const std::vector<EvenError>& errors) {
-  return *std::max_element(errors.begin(), errors.end(), [](const EvenError& a, const EvenError& b) {
-    return a.before.size() < b.before.size();
-  });
+  return *std::ranges::max_element(errors, {}, [](const EvenError& error) { return error.before.size(); });
 }
 
 void refuse_constant(const std::vector<Record>& records) {

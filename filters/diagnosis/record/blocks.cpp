@@ -163,8 +163,8 @@ BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_
   for (const Record& record : records) span += record.time_s.back() - record.time_s.front() + grid.sample_s;
   const double samples = span / grid.sample_s;
   auto a_block = static_cast<std::size_t>(std::ceil(samples / static_cast<double>(most_blocks)));
-  const bool all_referenced = std::all_of(
-      records.begin(), records.end(), [](const Record& record) { return !record.reference_radps.empty(); });
+  const bool all_referenced =
+      std::ranges::none_of(records, [](const Record& record) { return record.reference_radps.empty(); });
   if (all_referenced && grid.sample_s <= kSlowest_s) {
     const std::size_t least = long_enough(records);
     grid.noisy_reference = least > 1;
@@ -181,7 +181,7 @@ BlockGrid steps_and_blocks(const std::vector<Record>& records, std::size_t most_
 StepStarts add_blocks_of(const Record& record, BlockGrid& grid, std::vector<double>& error) {
   const std::size_t steps = fine_index(record, record.time_s.size() - 1, grid.fine_s) + 1;
   const std::size_t blocks = (steps + grid.fine - 1) / grid.fine;
-  grid.records.push_back({grid.size(), grid.size() + blocks});
+  grid.records.push_back({grid.size(), grid.size() + blocks, record.time_s[0] - record.since_power_up_s});
   grid.origin.push_back(record.origin);
   StepStarts first = step_starts(record, grid.fine_s, blocks * grid.fine);
   const double full = grid.block_s / grid.sample_s;

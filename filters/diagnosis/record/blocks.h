@@ -19,6 +19,7 @@ namespace ifog {
 // Blocks first … end - 1 of the grid, all of one record.
 struct BlockRange {
   std::size_t first = 0, end = 0;
+  double power_up_s = 0.0;  // of the sensor, in the record's time
 
   [[nodiscard]] std::size_t size() const { return end - first; }
   // As rows of a matrix with one row per block.

@@ -8,7 +8,7 @@
 namespace ifog {
 
 Samples compensated_error(const Record& record, const Model& model) {
-  Compensator compensator(model, {""}, std::numeric_limits<double>::infinity(), 0.0);
+  Compensator compensator(model, {""}, std::numeric_limits<double>::infinity(), record.since_power_up_s);
   SeriesToCompensate series{record.time_s, {record.rate_radps}, {}};
   series.channels.reserve(compensator.channels().size());
   for (const std::string& name : compensator.channels()) series.channels.push_back(values_of(record, name));

@@ -9,7 +9,7 @@
 namespace ifog {
 
 // Rate minus the model's effects minus the reference, if any, by sample. Causal, with lags initialised as
-// online. The effects name no axis; a warm_up counts from the first sample. Throws as Compensator does.
+// online. The effects name no axis; a warm_up counts from power-up. Throws as Compensator does.
 Samples compensated_error(const Record& record, const Model& model);
 
 }  // namespace ifog

@@ -22,12 +22,10 @@ double lag_one(std::span<const double> values) {
   const auto [all, n] = finite_sum(values);
   if (n < 4.0 || !(rms > 0.0)) return 0.0;
   const double mean = all / n;
-  double sum = 0.0;
-  double pairs = 0.0;
+  double sum = 0.0, pairs = 0.0;
   for (std::size_t i = 1; i < values.size(); ++i) {
-    if (!std::isfinite(values[i]) || !std::isfinite(values[i - 1])) continue;
-    sum += (values[i] - mean) * (values[i - 1] - mean);
-    pairs += 1.0;
+    const double product = (values[i] - mean) * (values[i - 1] - mean);
+    if (std::isfinite(product)) sum += product, pairs += 1.0;
   }
   return pairs > 0.0 ? sum / pairs / (rms * rms) : 0.0;
 }

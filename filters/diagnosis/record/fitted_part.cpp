@@ -20,6 +20,7 @@ Stretch samples_in(const Record& record, const TimeShare& share) {
 Record part_of(const Record& record, const Stretch& samples) {
   Record part = record;
   part.time_s = record.time_s.subspan(samples.begin, samples.size());
+  part.since_power_up_s += part.time_s.front() - record.time_s.front();
   part.rate_radps = record.rate_radps.subspan(samples.begin, samples.size());
   if (!record.reference_radps.empty())
     part.reference_radps = record.reference_radps.subspan(samples.begin, samples.size());

@@ -17,11 +17,8 @@ struct OwnedRecords {
   // The caller keeps the arrays of the given records alive.
   OwnedRecords(std::vector<Record> given) : records(std::move(given)) {}
   // Not copyable: the copy's spans would refer to the columns of the original.
-  OwnedRecords(const OwnedRecords&) = delete;
-  OwnedRecords& operator=(const OwnedRecords&) = delete;
   OwnedRecords(OwnedRecords&&) = default;
   OwnedRecords& operator=(OwnedRecords&&) = default;
-  ~OwnedRecords() = default;
 
   // Suffix that names the record if there are several.
   [[nodiscard]] std::string of_several(const Record& record) const {

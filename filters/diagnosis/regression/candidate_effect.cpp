@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Conversion of a candidate to regression columns and to an effect and back; price of a form.
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -49,6 +50,13 @@ double complexity_of_form(const Candidate& candidate) {
 
 }  // namespace
 
+double long_past_s(const BlockGrid& grid, const Candidate& candidate) {
+  if (candidate.form != Form::kWarmUp) return 0.0;
+  const auto on_for = [&](const BlockRange& record) { return grid.time_s[record.first] - record.power_up_s; };
+  const double least_s = on_for(std::ranges::min(grid.records, {}, on_for));
+  return least_s > 3.0 * candidate.time_constant_s ? least_s : 0.0;  // of which 5 % are left
+}
+
 Eigen::VectorXd regressor(const BlockData& data, const Candidate& candidate) {
   const BlockGrid& grid = data.grid;
   if (candidate.channel != Candidate::kNone) {
@@ -65,17 +73,18 @@ Eigen::VectorXd regressor(const BlockData& data, const Candidate& candidate) {
     return column(data, settings, candidate.channel);
   }
   Eigen::VectorXd values = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(grid.size()));
+  const double later_s = long_past_s(grid, candidate);
   for (std::size_t r = 0; r < grid.records.size(); ++r) {
     const double start = grid.time_s[grid.records[r].first];
     for (std::size_t b = grid.records[r].first; b < grid.records[r].end; ++b) {
       const auto row = static_cast<Eigen::Index>(b);
-      const double t = grid.time_s[b] - start;
       switch (candidate.form) {
         case Form::kRateRamp:
-          values[row] = t;
+          values[row] = grid.time_s[b] - start;
           break;
         case Form::kWarmUp:
-          values[row] = std::exp(-t / candidate.time_constant_s);
+          values[row] =
+              std::exp((later_s + grid.records[r].power_up_s - grid.time_s[b]) / candidate.time_constant_s);
           break;
         case Form::kStep:
           values[row] = r == candidate.record && grid.time_s[b] > candidate.time_s ? 1.0 : 0.0;
@@ -125,6 +134,10 @@ Effect effect_of(const BlockData& data, const Candidate& candidate) {
   if (candidate.is_earth_rate() && candidate.form == Form::kLinear) effect.form = name_of(Form::kEarthRate);
   effect.shown_only = candidate.shown();
   effect.meaning = candidate.is_earth_rate() ? meaning_of_earth_rate(effect) : meaning_of(effect);
+  if (candidate.first_reading == FirstReading::kSettlingShown)
+    effect.meaning =
+        "the bias settles exponentially after the start of the record; the sensor had long been on, so a "
+        "record from power-up on is needed to correct it";
   if (candidate.first_reading == FirstReading::kProxyShown)
     effect.meaning = "a proxy: larger than any gyro's " + std::string(name_of(candidate.form)) +
                      " effect of " + effect.channel + ", which moves or drifts with the cause";

@@ -11,10 +11,10 @@
 
 namespace ifog {
 
-// First interpretation of an effect: an error; the Earth's rate in a tilting axis, which is rotation; or a
-// proxy of another channel, with a coefficient that no gyro has. Rotation and proxies are only shown, unless
-// the options say otherwise.
-enum class FirstReading { kError, kEarthRateShown, kEarthRateSubtracted, kProxyShown };
+// First interpretation of an effect: an error; the Earth's rate in a tilting axis, which is rotation; a proxy
+// of another channel, with a coefficient that no gyro has; or a warm-up whose start is long past. Rotation and
+// proxies are only shown, unless the options say otherwise.
+enum class FirstReading { kError, kEarthRateShown, kEarthRateSubtracted, kProxyShown, kSettlingShown };
 
 struct Candidate {
   static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
@@ -44,7 +44,7 @@ struct Candidate {
   // True if the model corrects it in this record and the next.
   [[nodiscard]] bool corrected() const { return carries_over(form) && !shown(); }
   [[nodiscard]] bool shown() const {
-    return first_reading == FirstReading::kEarthRateShown || first_reading == FirstReading::kProxyShown;
+    return first_reading != FirstReading::kError && first_reading != FirstReading::kEarthRateSubtracted;
   }
   [[nodiscard]] bool is_earth_rate() const {
     return first_reading == FirstReading::kEarthRateShown ||
@@ -82,6 +82,10 @@ std::vector<NaturalPair> natural_pairs(const BlockData& data);
 // Products of a channel with the others, tried after the channel has an effect, whose size may depend on a
 // second channel.
 std::vector<Candidate> products_of(const BlockData& data, std::size_t channel);
+
+// Not zero for a warm-up of which every record has only the end: the time from power-up to the earliest start
+// of a record, s. Its regressor is 1 there instead of at power-up.
+double long_past_s(const BlockGrid& grid, const Candidate& candidate);
 
 // Regressor of an effect, in the unit of the form's value.
 Eigen::VectorXd regressor(const BlockData& data, const Candidate& candidate);

@@ -7,6 +7,7 @@
 
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/diagnosis/search/scan.h"
+#include "filters/distributions/chi_squared.h"
 #include "filters/effects/curve_reach.h"
 #include "filters/effects/meaning.h"
 #include "filters/model_file/channel_names.h"
@@ -169,7 +170,8 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
     if (joint.of_coefficients(at, at) > 0.0) {
       const double z = joint.values[at] / std::sqrt(joint.of_coefficients(at, at));
       const double tries = chosen.of_a_law ? 1.0 : found.tries;
-      effect.p_value = std::max(effect.p_value, std::min(1.0, kProfiled * tail(z * z, 1) * tries));
+      effect.p_value =
+          std::max(effect.p_value, std::min(1.0, kProfiled * chi_squared_above(z * z, 1.0) * tries));
     }
     const double share = total > 0.0 ? variance_of(used_values(grid, part)) / total : 0.0;
     effect.variance_explained = std::min(1.0, share);
@@ -209,8 +211,7 @@ void add_earth_rate(Findings& findings) {
     pair.separate_by =
         "the same capture with the heading reversed: the horizontal part of the Earth's rate changes its "
         "sign, g-sensitivity does not; its vertical part, along the gyro's own axis, only an acceleration "
-        "without "
-        "tilt tells";
+        "without tilt tells";
     findings.pairs.push_back(std::move(pair));
   }
 }

@@ -2,6 +2,7 @@
 #include "filters/diagnosis/report/left_out.h"
 
 #include "filters/effects/form.h"
+#include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 
@@ -17,11 +18,6 @@ namespace {
 
 constexpr double kMuch = 0.12;  // of the error's variance
 
-std::string named(const Effect& effect) {
-  return effect.form + (effect.channel.empty() ? "" : " of " + effect.channel) +
-         (effect.with_channel.empty() ? "" : " with " + effect.with_channel);
-}
-
 bool has_a_value(const std::vector<Record>& records, const std::string& name) {
   return std::ranges::any_of(records, [&](const Record& record) {
     return std::ranges::any_of(values_of(record, name), [](double value) { return std::isfinite(value); });
@@ -31,7 +27,7 @@ bool has_a_value(const std::vector<Record>& records, const std::string& name) {
 }  // namespace
 
 std::string harmful_in_words(const Effect& effect) {
-  return "the innovations suggest " + named(effect) +
+  return "the innovations suggest " + name_of(effect) +
          ", but by its own error bar it is chance, or the daemon's own correction by it would leave a larger "
          "error than none: not used";
 }
@@ -39,7 +35,7 @@ std::string harmful_in_words(const Effect& effect) {
 std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffects& denied,
                             const std::vector<Record>& records) {
   std::string words;
-  for (const Effect& effect : effects) words += (words.empty() ? "" : " and ") + named(effect);
+  for (const Effect& effect : effects) words += (words.empty() ? "" : " and ") + name_of(effect);
   words += std::isfinite(denied.share)
                ? formatted(": of what the other captures predict %.2g ± %.2g is there in ", denied.share,
                            denied.share_error) +
@@ -50,9 +46,7 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
 
 std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t captures) {
   const auto traced = [](const FoundEffect& found) { return !found.effect.channel.empty(); };
-  if (diagnosis.unexplained.fraction <= kMuch ||
-      std::none_of(diagnosis.effects.begin(), diagnosis.effects.end(), traced))
-    return "";
+  if (diagnosis.unexplained.fraction <= kMuch || std::ranges::none_of(diagnosis.effects, traced)) return "";
   const std::string share = formatted(
       "besides what was traced %.0f %% of the error is unexplained: what was not logged may be the cause of "
       "both, and a channel named here only run along with it",

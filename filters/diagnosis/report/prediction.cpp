@@ -232,9 +232,7 @@ HeadingPrediction predict_heading(const Diagnosis& diagnosis, const Record& next
 
 HeadingPrediction predict_like_longest(const Diagnosis& diagnosis, const std::vector<Record>& records) {
   const auto span_of = [](const Record& record) { return record.time_s.back() - record.time_s.front(); };
-  const Record& longest =
-      *std::max_element(records.begin(), records.end(),
-                        [&](const Record& a, const Record& b) { return span_of(a) < span_of(b); });
+  const Record& longest = *std::ranges::max_element(records, {}, span_of);
   const double aligned = std::min(300.0, span_of(longest) / 10.0);
   std::vector<double> after_s = {60.0, 300.0, 600.0, 1800.0, 3600.0};
   // Beyond 100 times the record's length the noise is unknown and the computation too long.

@@ -8,6 +8,7 @@
 #include "filters/allan/confidence.h"
 #include "filters/allan/gapped_deviation.h"
 #include "filters/diagnosis/residual/periodogram.h"
+#include "filters/effects/meaning.h"
 #include "filters/series/finite_sum.h"
 
 namespace ifog {
@@ -53,10 +54,7 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
   series.contribution_radps.resize(parts.size());
   series.channel.resize(parts.size());
   series.origin = grid.origin_of(0);
-  for (std::size_t i = 0; i < parts.size(); ++i) {
-    const Effect& effect = effects[i].effect;
-    series.names.push_back(effect.form + (effect.channel.empty() ? "" : " of " + effect.channel));
-  }
+  for (std::size_t i = 0; i < parts.size(); ++i) series.names.push_back(name_of(effects[i].effect));
   for (std::size_t r = 0; r < grid.records.size(); ++r) {
     const BlockRange& record = grid.records[r];
     // The first record in its own time, each other one from the end of the one before, since their clocks may

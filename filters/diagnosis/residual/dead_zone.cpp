@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "filters/diagnosis/search/scan.h"
+#include "filters/distributions/chi_squared.h"
 #include "filters/distributions/median.h"
 
 namespace ifog {
@@ -99,7 +100,7 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   const double tries = independent_columns(static_cast<std::size_t>(
       std::log(kWidestZone * most / std::max(std::abs(slow.front().rate), 1e-3 * most)) / std::log(kFactor)));
   // The width is a second parameter.
-  zone.p_value = std::min(1.0, kProfiled * tail(zone.ratio, 2) * tries);
+  zone.p_value = std::min(1.0, kProfiled * chi_squared_above(zone.ratio, 2.0) * tries);
   if (zone.p_value > kShare * significance) return std::nullopt;
   // True if twice the log-likelihood is within one of the maximum.
   const auto close = [&](double value) { return value > *best - white_variance; };

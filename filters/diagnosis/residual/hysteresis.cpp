@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "filters/diagnosis/search/scan.h"
+#include "filters/distributions/chi_squared.h"
 
 namespace ifog {
 namespace {
@@ -97,7 +98,7 @@ std::optional<Hysteresis> find_hysteresis(const BlockData& data, const std::vect
     others.push_back(linear);
     auto [loop, with] = likeliest_loop(data, others, c, noise.shape);
     loop.likelihood_ratio = 2.0 * (with.log_likelihood - noise.log_likelihood);
-    const bool certain = tail(loop.likelihood_ratio, 2) * tries <= kCertainLoop * significance;
+    const bool certain = chi_squared_above(loop.likelihood_ratio, 2.0) * tries <= kCertainLoop * significance;
     if (!certain && !(bends && loop.likelihood_ratio + each_parameter * saved > 0.0)) continue;
     if (!found || loop.likelihood_ratio > found->likelihood_ratio) found = loop;
   }

@@ -33,13 +33,10 @@ double usual_of(std::vector<double> values) {
 std::vector<double> energies(std::span<const double> left, std::size_t piece) {
   std::vector<double> found;
   for (std::size_t from = 0; from + piece <= left.size(); from += piece) {
-    double square = 0.0;
-    double n = 0.0;
+    double square = 0.0, n = 0.0;
     for (std::size_t i = from + 1; i < from + piece; ++i) {
       const double d = left[i] - left[i - 1];
-      if (!std::isfinite(d)) continue;
-      square += d * d;
-      n += 1.0;
+      if (std::isfinite(d)) square += d * d, n += 1.0;
     }
     found.push_back(3.0 * n >= 2.0 * static_cast<double>(piece - 1) ? square / n : kNaN);
   }

@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "filters/diagnosis/search/search.h"
-#include "filters/distributions/chi_squared.h"
 #include "filters/linear/projection.h"
 
 namespace ifog {
@@ -187,11 +186,6 @@ std::vector<Scored> Scan::steps(const std::vector<Candidate>& base, const NoiseF
     }
   }
   return found;
-}
-
-double tail(double ratio, int parameters) {
-  if (ratio <= 0.0) return 1.0;
-  return chi_squared_above(ratio, parameters);
 }
 
 }  // namespace ifog

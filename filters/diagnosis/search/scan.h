@@ -66,10 +66,6 @@ class Scan {
 // without effects had one found at a level of 1 %.
 inline constexpr double kProfiled = 5.0;
 
-// Probability that pure chance gains `ratio` of twice the log-likelihood with this many parameters
-// (chi-square with 1 or 2 d.o.f.).
-double tail(double ratio, int parameters);
-
 // Number of independent columns: neighbouring lags, powers and products of a channel correlate above 0.9, so
 // a third counts.
 inline double independent_columns(std::size_t columns) {

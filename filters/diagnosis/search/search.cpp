@@ -8,6 +8,7 @@
 #include "filters/diagnosis/checks/cross_validation.h"
 #include "filters/diagnosis/search/refine.h"
 #include "filters/diagnosis/search/scan.h"
+#include "filters/distributions/chi_squared.h"
 #include "filters/effects/meaning.h"
 
 namespace ifog {
@@ -22,9 +23,8 @@ constexpr double kShareOfChannels = 0.7;  // share of the significance; the rest
 constexpr double kAlike = 0.98;           // sufficient correlation of the whitened regressors
 
 // Half a fringe is no law: with a free period it replaces the other half.
-bool swings(const std::vector<Candidate>& model, const Candidate& half) {
-  return std::any_of(model.begin(), model.end(),
-                     [&](const Candidate& each) { return each.swings_with(half); });
+bool swings(std::span<const Candidate> model, const Candidate& half) {
+  return std::ranges::any_of(model, [&](const Candidate& each) { return each.swings_with(half); });
 }
 
 std::vector<Candidate> without(std::vector<Candidate> model, std::size_t at) {
@@ -65,7 +65,7 @@ class EffectSearch {
 
   [[nodiscard]] double p_value(const Candidate& candidate, double ratio) const {
     const double tries = candidate.form == Form::kStep ? tries_of_steps_ : tries_of_channels_;
-    return std::min(1.0, kProfiled * tail(ratio, 1) * tries);
+    return std::min(1.0, kProfiled * chi_squared_above(ratio, 1.0) * tries);
   }
 
   // Likelihood ratio that chance reaches in `significance` of all searches.
@@ -78,15 +78,12 @@ class EffectSearch {
   // True if `candidate` forms one law with an effect in `others`. Then it needs no separate proof, only the
   // gain that the Bayesian information criterion requires of one coefficient.
   [[nodiscard]] bool completes_a_law(const Candidate& candidate, std::span<const Candidate> others) const {
-    if (std::any_of(others.begin(), others.end(),
-                    [&](const Candidate& each) { return each.swings_with(candidate); }))
-      return true;
-    return std::any_of(laws_.begin(), laws_.end(), [&](const NaturalPair& law) {
-      const auto other = candidate.same_shape(law.second)  ? &law.first
-                         : candidate.same_shape(law.first) ? &law.second
-                                                           : nullptr;
-      return other && has_shape(others, *other);
-    });
+    return swings(others, candidate) || std::ranges::any_of(laws_, [&](const NaturalPair& law) {
+             const auto other = candidate.same_shape(law.second)  ? &law.first
+                                : candidate.same_shape(law.first) ? &law.second
+                                                                  : nullptr;
+             return other && has_shape(others, *other);
+           });
   }
 
   [[nodiscard]] double score(const std::vector<Candidate>& model, const NoiseFit& noise) const {
@@ -260,8 +257,9 @@ class EffectSearch {
       Chosen chosen{model_[i], 2.0 * (noise_.log_likelihood - noise.log_likelihood), 1.0};
       chosen.of_a_law = completes_a_law(model_[i], rest);
       // The other term of the law is proven, so only this term was tried.
-      chosen.p_value = chosen.of_a_law ? std::min(1.0, kProfiled * tail(chosen.likelihood_ratio, 1))
-                                       : p_value(model_[i], chosen.likelihood_ratio);
+      chosen.p_value = chosen.of_a_law
+                           ? std::min(1.0, kProfiled * chi_squared_above(chosen.likelihood_ratio, 1.0))
+                           : p_value(model_[i], chosen.likelihood_ratio);
       result.chosen.push_back(chosen);
       find_alternatives(result, i, rest, noise);
     }

@@ -57,5 +57,57 @@ TEST(WarmUp, WhatNoChannelExplainsIsAWarmUp) {
   }
 }
 
+// A record of 1e-6 rad/s exp(-t / 500 s) and noise of 1e-7 rad/s that begins so long after power-up.
+struct Settling {
+  std::vector<double> time, rate;
+  explicit Settling(double on_s, std::uint64_t seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    for (int i = 0; i < 7200; ++i) {
+      time.push_back(i);
+      rate.push_back(1e-6 * std::exp(-(on_s + i) / 500.0) + 1e-7 * normal(random));
+    }
+  }
+  [[nodiscard]] Record on_for(double on_s) const {
+    Record record = made_record("settling", time, rate, {});
+    record.since_power_up_s = on_s;
+    return record;
+  }
+};
+
+void expect_the_law(const Diagnosis& found) {
+  ASSERT_EQ(named(found), std::vector<std::string>{"warm_up"});
+  const std::vector<ModelParameter>& is = found.effects[0].effect.parameters;
+  EXPECT_NEAR(is[0].value, 1e-6, 5.0 * is[0].std_error);
+  EXPECT_NEAR(is[1].value, 500.0, 5.0 * is[1].std_error);
+  EXPECT_LT(is[0].std_error, 1e-7);
+}
+
+TEST(WarmUp, ItCountsFromPowerUp) {
+  const Settling late(400.0, 1);
+  expect_the_law(diagnose({late.on_for(400.0)}, {}));
+  const Settling early(0.0, 2);
+  expect_the_law(diagnose({early.on_for(0.0), late.on_for(400.0)}, {}));
+}
+
+// Judged by the daemon's compensator on the whole record, whose first twentieth was not fitted.
+TEST(WarmUp, TheFirstPartMayBeKeptBack) {
+  DiagnoseOptions options;
+  options.fit_from = 0.05;
+  const Diagnosis found = diagnose({Settling(0.0, 3).on_for(0.0)}, options);
+  expect_the_law(found);
+  EXPECT_LT(found.after.at("rms_10s_radps"), 0.3 * found.before.at("rms_10s_radps"));
+}
+
+// After six time constants nobody knows what it was at power-up.
+TEST(WarmUp, NoneIsCorrectedThatIsLongPast) {
+  const Settling settling(0.0, 4);
+  const Diagnosis found = diagnose({settling.on_for(3000.0)}, {});
+  ASSERT_EQ(named(found), std::vector<std::string>{"warm_up"});
+  EXPECT_TRUE(found.effects[0].effect.shown_only);
+  EXPECT_NEAR(found.effects[0].effect.parameters[0].value, 1e-6, 1e-7);
+  EXPECT_EQ(found.after.at("rms_100s_radps"), found.before.at("rms_100s_radps"));
+}
+
 }  // namespace
 }  // namespace ifog

@@ -3,6 +3,7 @@
 #include <array>
 
 #include "filters/effects/form.h"
+#include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/report/pages/account.h"
@@ -10,13 +11,6 @@
 
 namespace ifog::tools {
 namespace {
-
-std::string named(const Effect& effect) {
-  std::string name = effect.form;
-  if (!effect.channel.empty()) name += " of " + effect.channel;
-  if (!effect.with_form.empty()) name += " with " + effect.with_form + " of " + effect.with_channel;
-  return name;
-}
 
 std::string percent(double share) {
   return share >= 0.001 ? formatted("%.3g %%", 100.0 * share) : "under 0.1 %";
@@ -34,7 +28,7 @@ std::string value_of(const ModelParameter& parameter) {
 
 std::string effect_lines(const FoundEffect& found, std::size_t number, bool overlap) {
   const Effect& effect = found.effect;
-  std::string lines = formatted("  %zu. %s%s\n     %s\n", number, named(effect).c_str(),
+  std::string lines = formatted("  %zu. %s%s\n     %s\n", number, name_of(effect).c_str(),
                                 effect.shown_only ? " (shown, not subtracted)" : "", effect.meaning.c_str());
   for (const ModelParameter& parameter : report::shown_parameters(found)) {
     std::string name = parameter.name;
@@ -129,7 +123,7 @@ std::string diagnosis_text(const AxisDiagnosis& axis) {
   if (!diagnosis.indistinguishable.empty()) report += "\nCannot be distinguished on this data:\n";
   for (const Indistinguishable& pair : diagnosis.indistinguishable) {
     for (std::size_t i = 0; i < pair.effects.size(); ++i)
-      report += (i ? "  or  " : "  ") + named(pair.effects[i]);
+      report += (i ? "  or  " : "  ") + name_of(pair.effects[i]);
     report +=
         formatted("\n     correlation %.3f; would tell: %s\n", pair.correlation, pair.separate_by.c_str());
   }

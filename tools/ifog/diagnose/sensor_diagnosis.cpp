@@ -27,7 +27,6 @@
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/progress.h"
-#include "tools/ifog/diagnose/power_up.h"
 #include "tools/report/pages/diagnosis_page.h"
 
 namespace ifog::tools {
@@ -41,6 +40,7 @@ Record record_of(const CaptureView& capture, const std::string& name, std::size_
   record.name = name;
   record.time_s = capture.time_s;
   record.origin = {static_cast<double>(capture.origin.s), static_cast<double>(capture.origin.ns) / 1e9};
+  record.since_power_up_s = capture.since_power_up_s.value_or(0.0);
   record.rate_radps = capture.rate_radps[axis];
   if (!capture.reference_rate_radps[axis].empty())
     record.reference_radps = capture.reference_rate_radps[axis];
@@ -244,16 +244,12 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
       throw std::runtime_error(names[0] + ": --axis is " + in_quotes(axis) + ", expected " +
                                expected_axes(axes));
   require_each_once(captures, names);
-  const bool part = wanted.fit_from != wanted.fit_to;
-  const std::optional<double> power_up_s = began_after_power_up(captures, part ? wanted.fit_from : 0.0);
   std::vector<std::size_t> chosen;
   for (std::size_t axis = 0; axis < axes.size(); ++axis)
     if (wanted.axes.empty() ||
         std::find(wanted.axes.begin(), wanted.axes.end(), axes[axis]) != wanted.axes.end())
       chosen.push_back(axis);
   std::vector<AxisDiagnosis> found = diagnose_each(captures, names, chosen, wanted);
-  if (power_up_s)
-    for (AxisDiagnosis& each : found) count_from_power_up(each.diagnosis, *power_up_s);
   if (!found.empty())
     for (const CaptureView& capture : captures) {
       auto& remarks = found.front().diagnosis.remarks;

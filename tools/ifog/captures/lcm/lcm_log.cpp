@@ -70,6 +70,15 @@ struct ChosenLog {
   std::optional<PeerReader> peer;  // set if the messages are not ifog.rate_t
 };
 
+// Limit of received times, so that differences do not overflow: 146 years.
+constexpr std::int64_t kMostTime_ns = std::numeric_limits<std::int64_t>::max() / 2;
+
+bool times_can_be(const rate_t& message) {
+  return std::abs(message.utime / 1000) < kMostTime_ns / 1'000'000 &&
+         std::abs(message.sensor_time_ns / 2) < kMostTime_ns / 2 &&
+         std::abs(message.seq / 2) < kMostTime_ns / 2;
+}
+
 // Time from the sensor's clock if it has one, from the first message. If that clock jumps back while the
 // fitted time advances, it restarted or was set, and the fitted time continues it. If the fitted time stops
 // or was set too, the message's own step is used.
@@ -78,24 +87,24 @@ class SensorSeconds {
   // Later than the previous one; -1 if neither clock advances.
   double of(const rate_t& message) {
     const std::int64_t fitted_ns = message.utime * 1000;
-    std::int64_t now_ns = (message.sensor_time_ns != -1 ? message.sensor_time_ns : fitted_ns) + shift_ns_;
     const bool sensor = message.sensor_time_ns != -1, set = (message.flags & rate_t::FLAG_CLOCK_STEP) != 0;
+    const std::int64_t now_ns = sensor ? message.sensor_time_ns : fitted_ns;
     const std::int32_t own =
         sensor ? std::int32_t{rate_t::FLAG_SENSOR_CLOCK_SET} : std::int32_t{rate_t::FLAG_CLOCK_STEP};
-    const bool own_set = (message.flags & own) != 0;
-    if (started_ && (now_ns <= last_ns_ || own_set)) {
+    std::int64_t step_ns = now_ns - last_ns_;
+    if (started_ && (step_ns <= 0 || (message.flags & own) != 0)) {
       const bool goes_on = !set && fitted_ns > last_fitted_ns_;
-      const std::int64_t step_ns = goes_on ? fitted_ns - last_fitted_ns_ : step_of(message);
-      if (step_ns <= 0) return -1.0;
-      const std::int64_t back_ns = last_ns_ + step_ns - now_ns;
-      shift_ns_ += back_ns;
-      now_ns += back_ns;
+      step_ns = goes_on ? fitted_ns - last_fitted_ns_ : step_of(message);
     }
-    if (!std::exchange(started_, true)) start_ns_ = now_ns;
+    if (!std::exchange(started_, true))
+      step_ns = 0;
+    else if (step_ns <= 0 || step_ns > kMostTime_ns - elapsed_ns_)
+      return -1.0;
+    elapsed_ns_ += step_ns;
     last_ns_ = now_ns;
     last_fitted_ns_ = fitted_ns;
     last_seq_ = message.seq;
-    return static_cast<double>(now_ns - start_ns_) / 1e9;
+    return static_cast<double>(elapsed_ns_) / 1e9;
   }
 
  private:
@@ -105,7 +114,7 @@ class SensorSeconds {
     return known ? std::llround(message.dt * 1e9) : 0;
   }
   bool started_ = false;
-  std::int64_t start_ns_ = 0, last_ns_ = 0, last_fitted_ns_ = 0, last_seq_ = 0, shift_ns_ = 0;
+  std::int64_t elapsed_ns_ = 0, last_ns_ = 0, last_fitted_ns_ = 0, last_seq_ = 0;
 };
 
 // Suffixes of the axes' names; three axes are x, y, z, because messages do not name them.
@@ -147,6 +156,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
       if (axes == 0) axes = message.raw.size();
       if (axes == 0 || axes > 3) refuse("has " + std::to_string(axes) + " axes, expected 1 to 3");
       if (message.raw.size() != axes) refuse("has another number of axes");
+      if (!times_can_be(message)) refuse("has a time or number that cannot be");
       way.take(message);
       order.take(std::move(message), hand_on);
     };

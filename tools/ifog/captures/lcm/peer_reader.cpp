@@ -104,6 +104,9 @@ bool PeerReader::take(std::span<const std::uint8_t> message,
   for (const PeerSample& sample : samples_) {
     if (again(sample)) continue;
     const std::int64_t count = unwrapped(sample);
+    double over_s = period_s();  // an accumulated angle: as many periods as have passed
+    if (sample.kind == PeerSample::Kind::angle && last_ && over_s > 0.0)
+      over_s *= std::max(1.0, std::round(static_cast<double>(sample.utime - last_->utime) * 1e-6 / over_s));
     last_ = {count, sample.utime, sample.device_ns};
     MeasuredRate out;
     static_cast<rate_t&>(out) = rate_t();
@@ -117,7 +120,7 @@ bool PeerReader::take(std::span<const std::uint8_t> message,
     out.raw.assign(sample.value.begin(), sample.value.begin() + static_cast<std::ptrdiff_t>(type_->axes));
     if (sample.kind == PeerSample::Kind::angle) out.raw[0] -= std::exchange(angle_, sample.value[0]);
     if (sample.kind != PeerSample::Kind::rate)
-      for (double& value : out.raw) value = period_s() > 0.0 ? value / period_s() : PeerSample::kUnknown;
+      for (double& value : out.raw) value = over_s > 0.0 ? value / over_s : PeerSample::kUnknown;
     if (type_->specific_force)
       out.extra.assign(sample.specific_force_mps2.begin(), sample.specific_force_mps2.end());
     if (type_->temperature) out.extra.push_back(sample.temperature_degC);
