@@ -22,7 +22,7 @@ Engine::Engine(const FilterSettings& settings, const KnownNoise& known, std::uni
                int axes, double period_s)
     : settings_(settings),
       smooths_(settings.wideband == "noise"),
-      follows_(settings.follow_manoeuvres && rest->rate_alone()),
+      follows_(settings.follow_manoeuvres && (rest->rate_alone() || rest->rule().hypotheses().size() == 1)),
       axes_(static_cast<std::size_t>(axes)),
       period_s_(period_s),
       rest_(std::move(rest)),
