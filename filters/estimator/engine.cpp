@@ -75,8 +75,7 @@ void Engine::step(const EstimatorInput& in, EstimatorOutput& out) noexcept {
   if (follow_.in_manoeuvre()) out.flags |= kManoeuvre;
   if (rests(s)) out.flags |= kAtRest;
   learn(s);
-  unmeasured_.take(s.sample, s.rate, s.variance, s.gain, grown * noise_.walk_share(), started_,
-                   follow_.moving);
+  unmeasured_.take(s.sample, s.rate, s.variance, s.gain, grown * noise_.walk_share(), started_);
   follow_.published = s.rate;
   if (settings_.conserve_angle) pay(s);
   publish(s);
@@ -152,23 +151,33 @@ void Engine::follow(Step& s) noexcept {
               ? Outliers::Verdict::usual
               : f.outliers.take(f.trackers, s.sample, allowed, f.moving, !smooths_, f.lag())) {
     case Outliers::Verdict::waits:
-      s.out.flags |= kGated;
-      ++health_.gated;
       s.outlier = true;
       rest_->skip();
       follow_.moving ? publish_mix(s) : publish_rest(s);
-      // It may be the first sample of a jump.
-      s.variance += s.sample.innovation * s.sample.innovation;
-      return;
+      return wait(s);
     case Outliers::Verdict::jump:
       return jump(s);
     case Outliers::Verdict::usual:
-      if (f.outliers.run() > 0) break;
       // In a manoeuvre an outlier may be rotation.
       f.in_manoeuvre() ? f.ledger.admit() : f.ledger.dismiss();
       break;
   }
   follow_.moving ? follow_manoeuvre(s) : follow_rest(s);
+}
+
+// An unpredicted measurement may be an outlier, or the first sample of a motion. What is more probable in this run
+// is published.
+void Engine::wait(Step& s) noexcept {
+  const Lanes square = s.sample.innovation * s.sample.innovation;
+  const double chance = follow_.outliers.chance();
+  if (chance < 0.5) {
+    s.rate = (s.sample.mask > 0.0).select(s.sample.rate, s.rate);
+    s.variance = (s.sample.mask > 0.0).select(s.sample.scale + chance * square, s.variance);
+    return;
+  }
+  s.out.flags |= kGated;
+  ++health_.gated;
+  s.variance += square;
 }
 
 // Enough unpredicted measurements are a new rate.
@@ -314,12 +323,10 @@ void Engine::pay(Step& s) noexcept {
   const bool follows = settings_.follow_manoeuvres;
   // Before it has settled, the filter does not recover its lag by itself.
   f.at_rest_for = f.moving ? 0.0 : f.at_rest_for + 1.0;
-  if (!s.outlier) {
-    const bool settled =
-        follows && f.at_rest_for >= kYoungLags * std::max(f.settled_lag, 1.0 / rest_->rate().gain);
-    if (settled && !f.settled) f.change.forget_angle();
-    f.settled = settled;
-  }
+  const bool settled =
+      follows && f.at_rest_for >= kYoungLags * std::max(f.settled_lag, 1.0 / rest_->rate().gain);
+  if (settled && !f.settled) f.change.forget_angle();
+  f.settled = settled;
   const Lanes fell_short = (s.sample.rate - s.rate) * s.sample.mask * s.sample.covered_s;
   // In a manoeuvre the filter at rest has a share according to its weight.
   const double rests = s.outlier ? 0.0 : f.moving ? f.mix.rest_weight() : 1.0;

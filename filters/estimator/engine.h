@@ -101,6 +101,7 @@ class Engine {
   void weigh(Step& s) noexcept;
   void begin_axes(const Step& s) noexcept;
   void follow(Step& s) noexcept;
+  void wait(Step& s) noexcept;
   void jump(Step& s) noexcept;
   void follow_rest(Step& s) noexcept;
   void follow_manoeuvre(Step& s) noexcept;

@@ -44,12 +44,8 @@ class Ledger {
   }
   // The outliers were rotation.
   void admit() noexcept { debt_ += std::exchange(doubt_, Lanes::Zero()); }
-  // A normal measurement at rest: the outliers before were no rotation, with certainty growing in time.
-  void dismiss() noexcept {
-    const Lanes dismissed = doubt_ / kShortGap;
-    doubt_ -= dismissed;
-    at_rest_ += dismissed;
-  }
+  // A normal measurement at rest: the outliers before were no rotation.
+  void dismiss() noexcept { at_rest_ += std::exchange(doubt_, Lanes::Zero()); }
   // Angle error of the filter at rest since the last call.
   [[nodiscard]] Lanes shortfall_at_rest() noexcept { return std::exchange(at_rest_, Lanes::Zero()); }
   // Takes over another filter's debt.

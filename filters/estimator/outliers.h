@@ -27,20 +27,20 @@ class Outliers {
     }
     Eigen::Index axis = 0;
     const bool at_rest = (now.surprise <= kMostSquare).all();  // the usual case
-    const double least = at_rest ? 0.0 : (least_surprise(trackers, now) / allowed).maxCoeff(&axis);
+    const Lanes each = at_rest ? Lanes::Zero() : (least_surprise(trackers, now) / allowed).eval();
+    const double least = each.maxCoeff(&axis);
     const Lanes& rate = now.rate;
     seen_ = std::min(seen_ + 1.0, kTailMemory);
     // Frequent outliers at rest may be shocks, whose angle counts.
     const double most = !moving && share_ > kRare ? kFarSquare : kMostSquare;
     if (least <= most) {
-      // A run continues until its own axis is measured again, if that is soon.
-      if (run_ > 0 && (now.valid >> axis_ & 1U) == 0 && ++waited_ < kShortGap) return Verdict::usual;
       if (!moving) share_ += ((least > kMostSquare ? 1.0 : 0.0) + static_cast<double>(run_) - share_) / seen_;
+      if (run_ > 0 && !moving) rejected_ += 1.0;
       run_ = 0;
       return Verdict::usual;
     }
     if (run_ == 0) {
-      nearness_ = 0.0;
+      nearness_ = unlikely_ = 0.0;
       squares_ = least;
     } else {
       squares_ += least;
@@ -49,17 +49,19 @@ class Outliers {
                                    std::max(2.0, apart * apart / now.scale[axis]));
     }
     last_ = rate;
-    axis_ = axis;
-    waited_ = 0;
     ++run_;
     // Where many seem to be outliers, they are a motion that begins.
-    const double evidence = static_cast<double>(run_) * std::max(rarity(), -logarithm(kRare));
+    unlikely_ += static_cast<double>((each > most).count());
+    const double evidence = unlikely_ * std::max(rarity(), -logarithm(kRare));
     const bool near = moving || scattered || nearness_ >= 0.5 * logarithm(lag);
-    return evidence > kEvidence && near ? Verdict::jump : Verdict::waits;
+    if (!(evidence > kEvidence && near)) return Verdict::waits;
+    jumps_ += 1.0;
+    return Verdict::jump;
   }
+  // Probability that a waiting measurement is an outlier and no jump, by those before it (Laplace's rule).
+  [[nodiscard]] double chance() const noexcept { return (rejected_ + 1.0) / (rejected_ + jumps_ + 2.0); }
   // Evidence of one outlier at rest in nats. It is limited because two may coincide by chance.
   [[nodiscard]] double rarity() const noexcept { return std::min(kMostNats, -logarithm(share_ + 1e-6)); }
-  [[nodiscard]] std::size_t run() const noexcept { return run_; }
   void end_run() noexcept { run_ = 0; }
 
  private:
@@ -80,10 +82,9 @@ class Outliers {
   static constexpr double kRare = 2e-4;
 
   Lanes last_ = Lanes::Zero();  // of the run
-  double seen_ = 0.0, share_ = 0.0, nearness_ = 0.0, squares_ = 0.0;
+  double seen_ = 0.0, share_ = 0.0, nearness_ = 0.0, squares_ = 0.0, unlikely_ = 0.0, rejected_ = 0.0,
+         jumps_ = 0.0;
   std::size_t run_ = 0;
-  int waited_ = 0;         // samples of other axes since then
-  Eigen::Index axis_ = 0;  // of the run's last measurement
 };
 
 }  // namespace ifog

@@ -32,8 +32,7 @@ inline constexpr double kMostNats = 0.5 * kMostSquare;
 // Limit if outliers are frequent, and for comparisons of size: 20 standard deviations.
 inline constexpr double kFarSquare = 400.0;
 inline constexpr double kEvidence = 18.0;  // nats for a decision: by chance once in 6e7 samples
-// Samples until a reset filter counts as at rest; samples that may be lost, or pass until an outlier is
-// explained.
+// Samples until a reset filter counts as at rest; samples that may be lost.
 inline constexpr double kRestMemory = 64.0, kShortGap = 16.0;
 inline constexpr double kTailMemory = 8192.0;  // averaging time of tails and outliers, samples
 

@@ -237,8 +237,7 @@ def logged(build):
 def foreign(build, modules):
     """Logs of acfr-lcm, made with lcm-gen's code for the public members."""
     senlcm = modules["senlcm"]
-    frames, lines, deltas, angles, imus = [], [], [], [], []
-    angle = 0.0
+    frames, lines, imus = [], [], []
     for row in range(ROWS):
         utime = EPOCH_us + row * 1_000_000 // RATE_HZ
         frame, line, imu = senlcm.kvh1750_t(), senlcm.kvh_dsp3000_t(), senlcm.IMU_t()
@@ -250,13 +249,6 @@ def foreign(build, modules):
         if not 1000 <= row < 1300:
             frames.append(("KVH1750", utime, frame.encode()))
         lines.append(("KVH", utime, line.encode()))
-        line.mode, line.data = 2, rates(row)[0] / RATE_HZ
-        line.utime += row % 3 * 100  # a host's stamps jitter
-        deltas.append(("KVH", utime, line.encode()))
-        angle += rates(row)[0] / RATE_HZ
-        line.mode, line.data = 3, angle
-        if not 1000 <= row < 1010:
-            angles.append(("KVH", utime, line.encode()))
         imus.append(("IMU", utime, imu.encode()))
     write_log("kvh1750.lcm", frames)
     code, said, header, rows = capture(build, "kvh1750.lcm")
@@ -265,17 +257,6 @@ def foreign(build, modules):
     numbers = [round(row[0] * RATE_HZ) for row in rows]
     check(all(near(row[2:4], rates(n)[1:], 1e-9) and near(row[4:7], forces(n), 1e-9) for n, row in zip(numbers, rows)), "kvh1750_t: rad/s and g become rad/s and m/s²")
     check([n for n, row in zip(numbers, rows) if math.isnan(row[1])] == [77], "kvh1750_t: an axis that the status says is invalid is missing")
-    for name, events in (("rate", lines), ("delta", deltas)):
-        write_log(f"{name}.lcm", events)
-        code, said, header, rows = capture(build, f"{name}.lcm")
-        check(code == 0 and header == ["time_s", "rate_radps"] and len(rows) == ROWS and all(near([row[1]], [rates(n)[0]], 1e-4) for n, row in enumerate(rows)),
-              f"kvh_dsp3000_t, {name}: {len(rows)} rates")
-    write_log("angle.lcm", angles)
-    code, said, header, rows = capture(build, "angle.lcm")
-    after = [row[1] for row in rows[1:1000] + rows[1001:]]
-    check(code == 0 and len(rows) == ROWS - 10 and all(near([rate], [rates(n)[0]], 1e-4) for n, rate in zip([*range(1, 1000), *range(1011, ROWS)], after)),
-          f"kvh_dsp3000_t, integrated angle: {len(rows)} rates")
-    check(code == 0 and near([rows[1000][1]], [rates(1005)[0]], 1e-3), "and over ten lost messages their mean rate")
     write_log("imu.lcm", imus)
     judge_capture("senlcm.IMU_t", capture(build, "imu.lcm"), COLUMNS, 1e-9)
     write_log("two.lcm", lines + imus)
@@ -303,6 +284,30 @@ def foreign(build, modules):
         write_log("cut.lcm", [("IMU", EPOCH_us, data)])
         code, said = ran(build, "convert", "cut.lcm", "cut.csv")
         check(code == 1 and f"is no {name} that can be" in said, "bytes that are none are refused: " + said.strip())
+
+
+def dsp3000(build, senlcm):
+    """kvh_dsp3000_t in its three modes."""
+    modes, angle = {"rate": [], "delta": [], "angle": []}, 0.0
+    for row in range(ROWS):
+        utime, rate = EPOCH_us + row * 1_000_000 // RATE_HZ, rates(row)[0]
+        angle += rate / RATE_HZ
+        for mode, (name, data) in enumerate((("rate", rate), ("delta", rate / RATE_HZ), ("angle", angle)), 1):
+            line = senlcm.kvh_dsp3000_t()
+            line.utime, line.mode, line.data = utime + (row % 3 * 100 if mode > 1 else 0), mode, data  # a host's stamps jitter
+            if mode < 3 or not 1000 <= row < 1010:
+                modes[name].append(("KVH", utime, line.encode()))
+    for name in ("rate", "delta"):
+        write_log(f"{name}.lcm", modes[name])
+        code, said, header, rows = capture(build, f"{name}.lcm")
+        check(code == 0 and header == ["time_s", "rate_radps"] and len(rows) == ROWS and all(near([row[1]], [rates(n)[0]], 1e-4) for n, row in enumerate(rows)),
+              f"kvh_dsp3000_t, {name}: {len(rows)} rates")
+    write_log("angle.lcm", modes["angle"])
+    code, said, header, rows = capture(build, "angle.lcm")
+    after = [row[1] for row in rows[1:1000] + rows[1001:]]
+    check(code == 0 and len(rows) == ROWS - 10 and all(near([rate], [rates(n)[0]], 1e-4) for n, rate in zip([*range(1, 1000), *range(1011, ROWS)], after)),
+          f"kvh_dsp3000_t, integrated angle: {len(rows)} rates")
+    check(code == 0 and near([rows[1000][1]], [rates(1005)[0]], 1e-3), "and over ten lost messages their mean rate")
 
 
 def raw_bytes(build, modules):
@@ -371,6 +376,7 @@ def main():
         published(build)
         logged(build)
         foreign(build, modules)
+        dsp3000(build, modules["senlcm"])
         raw_bytes(build, modules)
     finally:
         os.chdir("/")
