@@ -231,7 +231,7 @@ void find_return(const NoiseSpectrum& measured, const Described& record, std::si
   const NoiseSpectrum* of = nullptr;
   const std::optional<GaussMarkovFit> fit =
       return_of(measured, record, found.R.present ? Ramp::kProjected : Ramp::kNone, longest, of);
-  if (!fit || !fit->weighed) return;
+  if (!fit || !fit->weighed || !(fit->variances[kK] > 0.0)) return;
   MarkovNoise markov;
   markov.fit = *fit;
   markov.chances = gauss_markov_chances(*of, *fit);

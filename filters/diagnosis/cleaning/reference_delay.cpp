@@ -97,9 +97,10 @@ std::vector<std::complex<double>> transform(const Series& series, std::size_t si
   return spectrum;
 }
 
-// In whole steps, by the maximum cross-correlation of the series, whitened by the sum of their spectra. By the
-// rate's alone, the noise of a reference differentiated from angles would hide the motion.
-double coarse_delay(const Pair& pair) {
+// In whole steps, by the cross-correlation of the series, whitened by the sum of their spectra: its peaks of at least half
+// the greatest size, from the nearest to no delay to the greatest. By the rate's spectrum alone, the noise of a reference
+// differentiated from angles would hide the motion.
+std::vector<std::ptrdiff_t> coarse_delays(const Pair& pair) {
   const Series rate = differences(pair.rate), reference = differences(pair.reference);
   Series both = rate;
   both.insert(both.end(), reference.begin(), reference.end());
@@ -111,13 +112,20 @@ double coarse_delay(const Pair& pair) {
   for (std::size_t i = 0; i < product.size(); ++i) product[i] = std::conj(product[i]) * other[i];
   Series likeness;
   Fourier().inverse(likeness, product);
-  std::ptrdiff_t best = 0;
   const auto at = [&](std::ptrdiff_t lag) {
-    return likeness[static_cast<std::size_t>(lag < 0 ? lag + static_cast<std::ptrdiff_t>(size) : lag)];
+    return std::abs(
+        likeness[static_cast<std::size_t>(lag < 0 ? lag + static_cast<std::ptrdiff_t>(size) : lag)]);
   };
+  std::ptrdiff_t greatest = 0;
   for (std::ptrdiff_t lag = -most; lag <= most; ++lag)
-    if (at(lag) > at(best)) best = lag;
-  return static_cast<double>(best);
+    if (at(lag) > at(greatest)) greatest = lag;
+  std::vector<std::ptrdiff_t> peaks;
+  for (std::ptrdiff_t apart = 0; apart < std::abs(greatest); ++apart)
+    for (const std::ptrdiff_t lag : {apart, -apart})
+      if (at(lag) >= 0.5 * at(greatest) && at(lag) >= std::max(at(lag - 1), at(lag + 1)))
+        peaks.push_back(lag);
+  peaks.push_back(greatest);
+  return peaks;
 }
 
 // Columns: rate, powers of the shifted reference, the other axes' references (misalignment, which in coning
@@ -159,21 +167,10 @@ Autoregression noise_about(const std::vector<Series>& columns) {
   return Autoregression(left);
 }
 
-// Harmonics of the turned angle, which over an arc resemble the slope.
-std::vector<Series> once_a_turn(const Pair& pair) {
-  std::vector<Series> columns(2, Series(pair.reference.size()));
-  double angle = 0.0;
-  for (std::size_t i = 0; i < pair.reference.size(); ++i) {
-    if (std::isfinite(pair.reference[i])) angle += pair.reference[i] * pair.step_s;
-    columns[0][i] = std::cos(angle);
-    columns[1][i] = std::sin(angle);
-  }
-  return columns;
-}
-
 struct Delay {
   double steps = 0.0, error = 0.0;
   double gain = 0.0;  // of twice the log-likelihood over no delay
+  double left = 0.0;  // mean square of the whitened residual
 };
 
 std::optional<Delay> refined(const Pair& pair, double steps) {
@@ -191,8 +188,8 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
     const SeriesFit fit = least_squares(white, rows);
     const double of_reference = fit.coefficients[1] / scale;
     const double step = fit.coefficients[fit.coefficients.size() - 1] / of_reference;
-    if (fit.rows < kLeast || !std::isfinite(step) || of_reference <= 0.0) return std::nullopt;
-    delay.error = std::sqrt(fit.last_variance) / of_reference;
+    if (fit.rows < kLeast || !std::isfinite(step)) return std::nullopt;
+    delay.error = std::sqrt(fit.last_variance) / std::abs(of_reference);
     if (std::abs(step) < std::max(kSettled, 0.01 * delay.error)) {
       std::vector<Series> as_logged = whitened(columns_of(pair, scale, 0.0, false), noise);
       // Interpolation attenuates noise near half the sample rate, and the mirrored shift does so alike.
@@ -203,9 +200,8 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
       const SeriesFit with = least_squares(white, rows);
       const double without =
           std::min(least_squares(as_logged, rows).square, least_squares(mirrored, rows).square);
-      for (const Series& each : once_a_turn(pair)) as_logged.push_back(noise.whitened(each));
-      if (least_squares(as_logged, rows).square < with.square) return std::nullopt;
       delay.gain = static_cast<double>(with.rows) * std::log(without / with.square);
+      delay.left = with.square / static_cast<double>(with.rows);
       delay.steps += step;  // accurate enough
       return delay;
     }
@@ -217,6 +213,18 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
     if (std::abs(delay.steps) > static_cast<double>(longest_lag(pair))) return std::nullopt;
   }
   return std::nullopt;
+}
+
+// A motion that repeats has a delay in each of its periods, and if it is like its mirror image in each half of them with
+// the sign reversed. The nearest of eight is taken that does not fit worse by 5 %.
+std::optional<Delay> likeliest_delay(const Pair& pair) {
+  const std::vector<std::ptrdiff_t> peaks = coarse_delays(pair);
+  const std::optional<Delay> best = refined(pair, static_cast<double>(peaks.back()));
+  for (std::size_t i = 0; i + 1 < peaks.size() && i < 8; ++i) {
+    const std::optional<Delay> near = refined(pair, static_cast<double>(peaks[i]));
+    if (near && (!best || near->left < 1.05 * best->left)) return near;
+  }
+  return best;
 }
 
 // Gain of twice the log-likelihood by chance with the lags tried, plus the required margin.
@@ -263,7 +271,7 @@ OwnedRecords align_references(OwnedRecords given) {
   for (Record& record : given.records) {
     std::optional<Pair> pair = pair_of(record);
     if (!pair || pair->rate.size() < kLeast || !(variance_of(pair->reference) > 0.0)) continue;
-    std::optional<Delay> delay = refined(*pair, coarse_delay(*pair));
+    std::optional<Delay> delay = likeliest_delay(*pair);
     if (!delay || delay->gain < price_of(*pair)) continue;
     settle_without_jumps(*pair, *delay);
     ReferenceDelay found{record.name, delay->steps * pair->step_s, delay->error * pair->step_s};

@@ -24,9 +24,8 @@ constexpr int kHighestFollowed = 3;  // higher powers are only a series expansio
 
 std::vector<double> used_values(const BlockGrid& grid, const Eigen::VectorXd& values) {
   std::vector<double> used;
-  for (std::size_t b = 0; b < grid.size(); ++b) {
+  for (std::size_t b = 0; b < grid.size(); ++b)
     if (grid.valid[b]) used.push_back(values[static_cast<Eigen::Index>(b)]);
-  }
   return used;
 }
 
@@ -49,8 +48,7 @@ std::string capture_that_separates(const BlockData& data, const Candidate& one, 
     return "a capture in which " + data.channels[one.channel].name + " changes while " +
            data.channels[other.channel].name + " stays";
   }
-  const bool memory = has_memory(one.form) || has_memory(other.form);
-  if (memory) {
+  if (has_memory(one.form) || has_memory(other.form)) {
     const double tau = std::max(one.time_constant_s, other.time_constant_s);
     return "a capture in which " + name + " changes and then rests for several times " +
            formatted("%.3g s", tau) + ", at different speeds";
@@ -162,9 +160,8 @@ void add_effects(const BlockData& data, const SearchResult& found, const JointFi
     if (chosen.candidate.searched()) {
       const double sigma = std::sqrt(joint.covariance(searched, searched));
       searched += chosen.candidate.is_transition() ? 2 : 1;
-      for (ModelParameter& parameter : effect.effect.parameters) {
+      for (ModelParameter& parameter : effect.effect.parameters)
         if (is_searched(parameter, effect.effect)) parameter.std_error = sigma * parameter.value;
-      }
     }
     // p-value from the fit's error bar, if that is less significant than the likelihood ratio.
     if (joint.of_coefficients(at, at) > 0.0) {

@@ -25,6 +25,12 @@ double turning(double t) {
   return rate;
 }
 
+// An arm that a motor turns to and fro (compute_relative_angle_between_two_IMUs), rad/s.
+double swinging(double t) {
+  t += 1e-3 * (std::sin(0.7 * t) + std::sin(1.9 * t));
+  return 0.1 * std::sin(3.0 * t) + 0.025 * std::sin(9.0 * t + 1.0);
+}
+
 struct Logged {
   std::vector<double> time, rate, reference, temperature;
   Record record;
@@ -52,18 +58,22 @@ struct Logged {
   Logged& operator=(const Logged&) = delete;
 };
 
-// The true rate itself is the oracle: no interpolation, a function of time.
+// The true rate itself is the oracle: no interpolation, a function of time. Of a motion that repeats the nearest delay is
+// taken. Every second axis is reversed.
 TEST(ReferenceDelay, IsFoundToAPartOfASampleAndShifted) {
-  for (const double delay_s : {0.31, -0.137, 3.705, 0.012, -21.6}) {
-    const Logged logged(7, delay_s);
+  double sign = 1.0;
+  for (const double delay_s : {0.31, -0.137, 3.705, 0.012, -21.6, 0.11, 0.09}) {
+    const auto truth = delay_s == 0.11 || delay_s == 0.09 ? swinging : turning;
+    Logged logged(7, delay_s, truth);
+    for (double& each : logged.rate) each *= sign;
+    sign = -sign;
     const OwnedRecords aligned = align_references(std::vector{logged.record});
     ASSERT_EQ(aligned.delays.size(), 1U) << delay_s;
     EXPECT_NEAR(aligned.delays[0].delay_s, delay_s, 4.0 * aligned.delays[0].std_error_s) << delay_s;
     EXPECT_LT(aligned.delays[0].std_error_s, 1e-3);
     const auto margin = static_cast<std::size_t>(std::ceil(std::abs(delay_s) / kStep_s)) + 1;
     for (std::size_t i = margin; i + margin < kSamples; ++i)
-      ASSERT_NEAR(aligned.records[0].reference_radps[i], turning(logged.time[i]), 6e-4)
-          << delay_s << ' ' << i;
+      ASSERT_NEAR(aligned.records[0].reference_radps[i], truth(logged.time[i]), 6e-4) << delay_s << ' ' << i;
     // Where the reference was not yet, or no longer, logged there is none.
     EXPECT_TRUE(std::isnan(aligned.records[0].reference_radps[delay_s > 0.0 ? kSamples - 1 : 0]));
   }

@@ -139,9 +139,7 @@ TEST(Changes, AMotionAfterARestFullOfOutliersIsFollowed) {
       if (i < 2990 && random() % 10 == 0) rate += 40.0 * normal(random);
       if (i >= 3000) rate += motion = 0.5 * motion + 52.0 * normal(random);
       const double denoised = filter.step({rate}).denoised_radps[0];
-      if (i < 3000) continue;
-      product += denoised * rate;
-      square += rate * rate;
+      if (i >= 3000) product += denoised * rate, square += rate * rate;
     }
   }
   EXPECT_GT(product / square, 0.6);
@@ -194,9 +192,7 @@ TEST(Changes, ATurnIsFollowedThoughTheKnownNoiseIsTenTimesTooLarge) {
     double square = 0.0;
     for (int i = 0; i < 2400; ++i) {
       const double turn = i < 400 ? 0.0 : 20.0 * std::sin(0.02 * (i - 400)), noise = 0.1 * normal(random);
-      const double measured = turn + noise,
-                   denoised = filter.step({measured, noise, -noise}).denoised_radps[0];
-      square += std::pow(denoised - turn, 2);
+      square += std::pow(filter.step({turn + noise, noise, -noise}).denoised_radps[0] - turn, 2);
     }
     EXPECT_LT(std::sqrt(square / 2400), 1.0) << seed;
   }
