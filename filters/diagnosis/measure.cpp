@@ -137,11 +137,11 @@ class Measuring {
     return effects;
   }
 
-  // What no measurement gives, such as the reach of a curve.
+  // What no measurement gives, such as the reach of a curve and the error of a time constant.
   static void keep_further(const Effect& given, Effect& effect) {
+    effect.parameters.resize(1);
     for (const ModelParameter& each : given.parameters)
-      if (std::ranges::find(effect.parameters, each.name, &ModelParameter::name) == effect.parameters.end())
-        effect.parameters.push_back(each);
+      if (each.name != effect.parameters.front().name) effect.parameters.push_back(each);
   }
 
   void report(const JointFit& joint) {

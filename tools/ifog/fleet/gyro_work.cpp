@@ -60,7 +60,11 @@ EffectsToMeasure effects_of_axis(const TypeToMeasure& type, const Model& model, 
     const std::vector<Effect>& forms = type.effects[i].forms;
     if (forms.empty() || forms.front().axis != axis) continue;
     numbers.push_back(i);
-    wanted.together.push_back(forms.front());
+    // With the gyro's own time constant, which differs from gyro to gyro; the type's where it has none.
+    const auto own = std::ranges::find_if(model.effects, [&](const Effect& effect) {
+      return effect.axis == axis && effect.form == forms.front().form && is_of(type.effects[i], effect);
+    });
+    wanted.together.push_back(own == model.effects.end() ? forms.front() : *own);
     wanted.instead.emplace_back(forms.begin() + 1, forms.end());
   }
   for (const Effect& effect : model.effects) {
