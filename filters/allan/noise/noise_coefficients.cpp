@@ -123,6 +123,15 @@ class TermSets {
     return std::max(best, -kNested);
   }
 
+  // Adds the likeliest set's terms if those needed do not suffice, as where each of two can replace the other.
+  [[nodiscard]] TermSet with_replaceable(TermSet needed) const {
+    const auto likeliest = std::ranges::max_element(sets_, {}, weight_of);
+    const auto those = std::ranges::find(sets_, needed, &Entry::set);
+    const bool suffice = those != sets_.end() && those->whole &&
+                         those->cost - likeliest->cost <= asked(needed.count(), likeliest->set.count());
+    return suffice ? needed : needed | likeliest->set;
+  }
+
   // Weighted mean of the coefficient over the sets with the term, and the scatter within and among the sets.
   struct Average {
     double value = 0.0, error = 0.0;
@@ -130,7 +139,7 @@ class TermSets {
   [[nodiscard]] Average average(std::size_t term) const {
     double weight = 0.0, first = 0.0, second = 0.0;
     for (const Entry& e : sets_) {
-      if (!e.whole || !e.set[term]) continue;
+      if (!e.set[term]) continue;
       const double w = weight_of(e), value = std::sqrt(e.fit.variances[term]);
       weight += w;
       first += w * value;
@@ -145,7 +154,6 @@ class TermSets {
     TermVariances mean{};
     double weight = 0.0;
     for (const Entry& e : sets_) {
-      if (!e.whole) continue;
       weight += weight_of(e);
       for (std::size_t t = 0; t < kTerms; ++t) mean[t] += weight_of(e) * e.fit.variances[t];
     }
@@ -162,8 +170,9 @@ class TermSets {
     TermVariances error{};
   };
   static double weight_of(const Entry& e) {
-    return e.cost < 30.0 ? std::exp(-0.5 * (e.cost + kCostInAverage * static_cast<double>(e.set.count())))
-                         : 0.0;
+    return e.whole && e.cost < 30.0
+               ? std::exp(-0.5 * (e.cost + kCostInAverage * static_cast<double>(e.set.count())))
+               : 0.0;
   }
   std::vector<Entry> sets_;  // the set of all terms first
 };
@@ -263,12 +272,15 @@ NoiseCoefficient not_seen(double upper) { return {.std_error = upper / kOneSided
 
 void write_terms(const NoiseLikelihood& likelihood, const TermSets& sets, TermSet allowed, double period_s,
                  NoiseCoefficients& found) {
+  TermSet needed;
+  for (std::size_t t = 0; t < kTerms; ++t) needed[t] = allowed[t] && sets.need(t) > 0.0;
+  const TermSet present = sets.with_replaceable(needed);
   for (std::size_t t = 0; t < kTerms; ++t) {
     NoiseCoefficient& c = found.*kMember[t];
     c = {};
     if (!allowed[t]) continue;
     const double need = sets.need(t), unit = coefficient_unit(t, period_s);
-    if (need > 0.0) {
+    if (present[t]) {
       const TermSets::Average average = sets.average(t);
       c.present = true;
       c.value = average.value * unit;
