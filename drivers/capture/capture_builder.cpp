@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "drivers/host/driver_instance.h"
 #include "drivers/units/turn.h"
 
 namespace ifog {
@@ -16,15 +17,6 @@ constexpr double kGap = 1.5;  // in periods
 
 double period_of(const ifog_description& description) {
   return description.nominal_rate_hz > 0.0 ? 1.0 / description.nominal_rate_hz : 1.0;
-}
-// Columns of a driver's samples: axes, then channels.
-std::vector<std::string> columns_of(const ifog_description& description) {
-  std::vector<std::string> out;
-  for (std::uint32_t i = 0; i < description.axes; ++i)
-    out.push_back(description.axis[i][0] == '\0' ? "rate_radps"
-                                                 : "rate_" + std::string(description.axis[i]) + "_radps");
-  for (std::uint32_t i = 0; i < description.environments; ++i) out.emplace_back(description.environment[i]);
-  return out;
 }
 
 // True if samples of both become rows in the same way.
@@ -40,7 +32,7 @@ bool same_samples(const ifog_description& a, const ifog_description& b) {
 CaptureBuilder::CaptureBuilder(const ifog_description& description, RowSink& sink,
                                const std::vector<std::string>& outside)
     : description_(description), times_(description), batch_(sink), before_(description.axes, kMissing) {
-  std::vector<std::string> names = columns_of(description);
+  std::vector<std::string> names = capture_columns(description);
   names.insert(names.end(), outside.begin(), outside.end());
   for (std::size_t i = description.axes; i < names.size(); ++i)
     channel_range_.push_back(measurable(names[i]));
@@ -48,7 +40,7 @@ CaptureBuilder::CaptureBuilder(const ifog_description& description, RowSink& sin
 }
 
 void CaptureBuilder::go_on_as(const ifog_description& description) {
-  if (columns_of(description) != columns_of(description_))
+  if (capture_columns(description) != capture_columns(description_))
     throw std::runtime_error(
         "continues with other axes or channels, as the driver's options changed; expected recordings of one");
   if (same_samples(description, description_)) return;

@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -66,7 +67,7 @@ struct Collected {
 };
 
 // Sizes and indices must be valid for any plugin.
-const char* impossible(const ifog_description& d) {
+std::string impossible(const ifog_description& d) {
   if (d.kind > IFOG_ANGLE) return "a kind that is none of rate, delta angle, angle";
   if (d.axes < 1 || d.axes > IFOG_MAX_AXES) return "a number of axes outside 1 … 3";
   for (std::uint32_t i = 0; i < d.axes; ++i)
@@ -81,16 +82,31 @@ const char* impossible(const ifog_description& d) {
   for (std::uint32_t i = 0; i < d.axes; ++i)
     if (!std::isfinite(d.full_scale[i]) || d.full_scale[i] < 0.0) return "a full scale that is no rate";
   if (d.opening_length > sizeof d.opening) return "more opening bytes than the interface holds";
-  return nullptr;
+  std::set<std::string> columns{"time_s"};
+  for (const std::string& name : capture_columns(d)) {
+    const bool of_rate = columns.size() > d.axes && name.starts_with("rate_") && name.ends_with("radps");
+    if (!columns.insert(name).second || of_rate)
+      return "a channel or an axis by the name of another, of a rate or of the time: " + in_quotes(name);
+  }
+  return "";
 }
 
 }  // namespace
 
+std::vector<std::string> capture_columns(const ifog_description& description) {
+  std::vector<std::string> out;
+  for (std::uint32_t i = 0; i < description.axes; ++i)
+    out.push_back(description.axis[i][0] == '\0' ? "rate_radps"
+                                                 : "rate_" + std::string(description.axis[i]) + "_radps");
+  for (std::uint32_t i = 0; i < description.environments; ++i) out.emplace_back(description.environment[i]);
+  return out;
+}
+
 DriverInstance::DriverInstance(std::shared_ptr<const Plugin> plugin, const DriverSettings& settings)
-    : plugin_(std::move(plugin)) {
+    : instance_(nullptr, Destroy{std::move(plugin)}) {
   const std::vector<ifog_setting> all = complete(table(), settings);
   ErrorText error{};
-  instance_ = table().create(all.data(), all.size(), error.data(), error.size());
+  instance_.reset(table().create(all.data(), all.size(), error.data(), error.size()));
   error.back() = '\0';
   if (instance_ == nullptr) {
     throw std::runtime_error(
@@ -103,72 +119,43 @@ DriverInstance::DriverInstance(std::shared_ptr<const Plugin> plugin, const Drive
                         printable(rest.substr(0, end), kLongestMessage));
     rest.remove_prefix(std::min(end + 1, rest.size()));
   }
-  table().describe(instance_, &description_);
-  if (const char* what = impossible(description_)) {
-    table().destroy(instance_);
+  table().describe(instance_.get(), &description_);
+  if (const std::string what = impossible(description_); !what.empty())
     throw std::runtime_error(std::string("driver ") + table().name + ": describes " + what);
-  }
   portion_.asked = description_.sequence_modulus == 0 && description_.has_device_time == 0;
-}
-
-DriverInstance::~DriverInstance() {
-  if (instance_ != nullptr) table().destroy(instance_);
-}
-
-DriverInstance::DriverInstance(DriverInstance&& other) noexcept
-    : plugin_(std::move(other.plugin_)),
-      portion_(other.portion_),
-      instance_(std::exchange(other.instance_, nullptr)),
-      description_(other.description_),
-      warnings_(std::move(other.warnings_)) {}
-
-DriverInstance& DriverInstance::operator=(DriverInstance&& other) noexcept {
-  std::swap(plugin_, other.plugin_);
-  std::swap(portion_, other.portion_);
-  std::swap(instance_, other.instance_);
-  std::swap(description_, other.description_);
-  std::swap(warnings_, other.warnings_);
-  return *this;
 }
 
 ifog_driver_counters DriverInstance::counters() const {
   ifog_driver_counters out{};
-  table().counters(instance_, &out);
+  table().counters(instance_.get(), &out);
   return out;
 }
 
-void DriverInstance::encode_bytes(const ifog_sample& sample, std::vector<std::uint8_t>& out) {
-  if (table().encode_bytes == nullptr)
-    throw std::runtime_error(std::string("driver ") + table().name + ": cannot encode to bytes");
+template <typename Item, typename Encode, typename Emit>
+void DriverInstance::encode(Encode encoder, const char* to, const ifog_sample& sample, std::vector<Item>& out,
+                            Emit emit) {
+  const std::string who = std::string("driver ") + table().name + ": ";
+  if (encoder == nullptr) throw std::runtime_error(who + "cannot encode to " + to);
   ErrorText error{};
-  Collected<std::uint8_t> collected{out, {}};
-  const auto emit = [](void* to, const std::uint8_t* bytes, std::size_t length) {
-    static_cast<Collected<std::uint8_t>*>(to)->take(bytes, length);
-  };
+  Collected<Item> collected{out, {}};
   const std::size_t before = out.size();
-  const int failed = table().encode_bytes(instance_, &sample, emit, &collected, error.data(), error.size());
+  const int failed = encoder(instance_.get(), &sample, emit, &collected, error.data(), error.size());
   if (collected.thrown) std::rethrow_exception(collected.thrown);
   if (failed == 0) return;
   out.resize(before);  // a sample is encoded completely or not at all
-  throw std::runtime_error(std::string("driver ") + table().name + ": " +
-                           printable(error.data(), kLongestMessage));
+  throw std::runtime_error(who + printable(error.data(), kLongestMessage));
+}
+
+void DriverInstance::encode_bytes(const ifog_sample& sample, std::vector<std::uint8_t>& out) {
+  encode(table().encode_bytes, "bytes", sample, out, [](void* to, const std::uint8_t* bytes, std::size_t n) {
+    static_cast<Collected<std::uint8_t>*>(to)->take(bytes, n);
+  });
 }
 
 void DriverInstance::encode_can(const ifog_sample& sample, std::vector<ifog_can_frame>& out) {
-  if (table().encode_can == nullptr)
-    throw std::runtime_error(std::string("driver ") + table().name + ": cannot encode to CAN frames");
-  ErrorText error{};
-  Collected<ifog_can_frame> collected{out, {}};
-  const auto emit = [](void* to, const ifog_can_frame* frame) {
+  encode(table().encode_can, "CAN frames", sample, out, [](void* to, const ifog_can_frame* frame) {
     static_cast<Collected<ifog_can_frame>*>(to)->take(frame, 1);
-  };
-  const std::size_t before = out.size();
-  const int failed = table().encode_can(instance_, &sample, emit, &collected, error.data(), error.size());
-  if (collected.thrown) std::rethrow_exception(collected.thrown);
-  if (failed == 0) return;
-  out.resize(before);
-  throw std::runtime_error(std::string("driver ") + table().name + ": " +
-                           printable(error.data(), kLongestMessage));
+  });
 }
 
 std::vector<std::string> file_settings(const ifog_driver& table, const DriverSettings& settings) {

@@ -24,20 +24,18 @@ namespace ifog {
 // Option keys and values as text: the sensor's [sensor.options] table, or `--option key=value`.
 using DriverSettings = std::map<std::string, std::string>;
 
+// Capture columns of a driver's samples: axes, then channels.
+std::vector<std::string> capture_columns(const ifog_description& description);
+
 class DriverInstance {
  public:
   // Checks the keys, fills in defaults, creates the instance. Throws std::runtime_error with one line
   // (driver, key, value, what was expected): unknown or missing key, a value that the plugin rejects, a
   // description outside the interface's limits.
   DriverInstance(std::shared_ptr<const Plugin> plugin, const DriverSettings& settings);
-  ~DriverInstance();
-  DriverInstance(DriverInstance&& other) noexcept;
-  DriverInstance& operator=(DriverInstance&& other) noexcept;
-  DriverInstance(const DriverInstance&) = delete;
-  DriverInstance& operator=(const DriverInstance&) = delete;
 
-  [[nodiscard]] const ifog_driver& table() const { return plugin_->table(); }
-  [[nodiscard]] const Plugin& plugin() const { return *plugin_; }
+  [[nodiscard]] const ifog_driver& table() const { return plugin().table(); }
+  [[nodiscard]] const Plugin& plugin() const { return *instance_.get_deleter().plugin; }
   [[nodiscard]] const ifog_description& description() const { return description_; }
   [[nodiscard]] bool takes_bytes() const { return (table().transports & IFOG_TRANSPORT_BYTES) != 0; }
   [[nodiscard]] bool takes_can() const { return (table().transports & IFOG_TRANSPORT_CAN) != 0; }
@@ -51,7 +49,7 @@ class DriverInstance {
   template <typename Sink>
   void decode_bytes(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, Sink&& sink) {
     Emission<std::remove_reference_t<Sink>> emission{sink, {}, portion_.at_once(bytes.size())};
-    table().decode_bytes(instance_, bytes.data(), bytes.size(), arrival_ns, &decltype(emission)::take,
+    table().decode_bytes(instance_.get(), bytes.data(), bytes.size(), arrival_ns, &decltype(emission)::take,
                          &emission);
     portion_.came(bytes.size(), emission.samples);
     emission.throw_on();
@@ -59,10 +57,10 @@ class DriverInstance {
   template <typename Sink>
   void decode_can(const ifog_can_frame& frame, Sink&& sink) {
     Emission<std::remove_reference_t<Sink>> emission{sink, {}, 0};
-    table().decode_can(instance_, &frame, &decltype(emission)::take, &emission);
+    table().decode_can(instance_.get(), &frame, &decltype(emission)::take, &emission);
     emission.throw_on();
   }
-  void reset() { table().reset(instance_); }
+  void reset() { table().reset(instance_.get()); }
 
   // Encodes a sample as the device would send it. Throw std::runtime_error: no encoder for that transport, or
   // the sample cannot be expressed in the format.
@@ -70,6 +68,9 @@ class DriverInstance {
   void encode_can(const ifog_sample& sample, std::vector<ifog_can_frame>& out);
 
  private:
+  template <typename Item, typename Encode, typename Emit>
+  void encode(Encode encoder, const char* to, const ifog_sample& sample, std::vector<Item>& out, Emit emit);
+
   // Passes samples to a sink through C.
   template <typename Sink>
   struct Emission {
@@ -119,9 +120,14 @@ class DriverInstance {
     }
   };
 
-  std::shared_ptr<const Plugin> plugin_;
+  // Keeps the plugin loaded for as long as its instance lives.
+  struct Destroy {
+    std::shared_ptr<const Plugin> plugin;
+    void operator()(void* instance) const { plugin->table().destroy(instance); }
+  };
+
   Portion portion_;
-  void* instance_ = nullptr;
+  std::unique_ptr<void, Destroy> instance_;
   ifog_description description_{};
   std::vector<std::string> warnings_;
 };

@@ -48,13 +48,17 @@ TEST(DriverHost, WhatIsNoDriverIsRefused) {
   EXPECT_EQ(refused_plugin("option_unsaid"), "its table lacks 'values and help of an option'");
   EXPECT_EQ(refused_plugin("too_many_axes"),
             "driver too_many_axes: describes a number of axes outside 1 … 3");
+  const std::string twice =
+      ": describes a channel or an axis by the name of another, of a rate or of the time: ";
+  EXPECT_EQ(refused_plugin("axes_unnamed"), "driver axes_unnamed" + twice + "'rate_radps'");
+  EXPECT_EQ(refused_plugin("channel_of_rate"), "driver channel_of_rate" + twice + "'rate_x_radps'");
 }
 
 TEST(DriverHost, AMissingDriverIsNamedWithThoseThereAre) {
   const std::string line = ifog::refusal("kvh", {}, {kRefused});
   EXPECT_EQ(line,
-            "driver is 'kvh', expected one of: misnamed, option_unsaid, other_version, too_many_axes, "
-            "without_create, without_entry (looked in " +
+            "driver is 'kvh', expected one of: axes_unnamed, channel_of_rate, misnamed, option_unsaid, "
+            "other_version, throwing, too_many_axes, without_create, without_entry (looked in " +
                 kRefused + ")");
   EXPECT_NE(ifog::refusal("other_verison", {}, {kRefused}).find("did you mean 'other_version'?"),
             std::string::npos);

@@ -2,6 +2,7 @@
 /* Plugins that the host must refuse, one by a macro each. */
 #include <ifog/driver.h>
 #include <stddef.h>
+#include <string.h>
 
 #ifdef OPTION_UNSAID
 static const ifog_option options[] = {{"format", NULL, "a", "no word of what is allowed"}, {NULL, NULL, NULL, NULL}};
@@ -19,6 +20,10 @@ static void destroy(void* instance) { (void)instance; }
 static void describe(const void* instance, ifog_description* out) {
   (void)instance;
   out->axes = AXES;
+#ifdef CHANNEL
+  out->environments = 1;
+  strcpy(out->environment[0], CHANNEL);
+#endif
 }
 static void decode(void* instance, const uint8_t* bytes, size_t length, int64_t arrival_ns, ifog_emit_sample emit,
                    void* sink) {
