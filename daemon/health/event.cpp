@@ -4,9 +4,9 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "drivers/ifog/quoted.h"
+#include "drivers/units/units.h"
 
 namespace ifog {
-
 std::string describe(const Event& event) {
   switch (event.kind) {
     case EventKind::gap:
@@ -38,6 +38,11 @@ std::string describe(const Event& event) {
           "the device's clock was set before number {}: sensor_time_ns moved, times of day, intervals and "
           "angles did not",
           event.sequence);
+    case EventKind::clock_refused:
+      return fmt::format(
+          "the device's clock {} by arrivals and number of samples: not used from number {} on; before, "
+          "intervals and angles are wrong by this factor",
+          clock_speed(event.a), event.sequence);
     case EventKind::label_moved:
       return fmt::format(
           "the device stood still for a while, or its deliveries take longer or shorter than before: times "

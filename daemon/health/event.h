@@ -20,6 +20,7 @@ enum class EventKind : std::uint8_t {
   divergence,        // the estimator restarted
   clock_step,        // the wall clock was set; a: its offset since start-up, s
   sensor_clock_set,  // the device's clock was set while it measured
+  clock_refused,     // it is not used any more; a: its time per time of arrival
   label_moved,       // the device paused, or the delivery time changed: labels follow
   beyond_stated,     // a: first value outside the range stated in the format, b: its limit
   publish_failed,

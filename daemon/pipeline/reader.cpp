@@ -2,6 +2,7 @@
 #include "daemon/pipeline/reader.h"
 
 #include <algorithm>
+#include <optional>
 #include <span>
 #include <thread>
 #include <utility>
@@ -54,34 +55,22 @@ void Reader::take(const ifog_sample& sample) noexcept {
 
 void Reader::report(const Increment& increment, const IncrementerCounts& before) noexcept {
   const IncrementerCounts& now = incrementer_.counts();
-  Event event;
-  event.sequence = increment.sequence;
-  if (now.restarts != before.restarts) {
-    event.kind = EventKind::device_restart;
-    links_.events.report(event);
-  } else if (now.missing != before.missing) {
-    event.kind = EventKind::gap;
-    event.count = now.missing - before.missing;
-    links_.events.report(event);
-  }
-  if (now.clock_steps != before.clock_steps) {
-    event.kind = EventKind::clock_step;
-    event.a = static_cast<double>(increment.wall_shift_ns) * 1e-9;
-    links_.events.report(event);
-  }
+  const auto tell = [&](EventKind kind, std::uint64_t count = 0, double a = 0.0) {
+    links_.events.report({.kind = kind, .sequence = increment.sequence, .count = count, .a = a});
+  };
+  if (now.restarts != before.restarts)
+    tell(EventKind::device_restart);
+  else if (now.missing != before.missing)
+    tell(EventKind::gap, now.missing - before.missing);
+  if (now.clock_steps != before.clock_steps)
+    tell(EventKind::clock_step, 0, static_cast<double>(increment.wall_shift_ns) * 1e-9);
   if (now.sensor_clock_sets != before.sensor_clock_sets) {
-    event.kind = EventKind::sensor_clock_set;
-    links_.events.report(event);
+    const std::optional<double> refused = incrementer_.refused_clock();
+    tell(refused ? EventKind::clock_refused : EventKind::sensor_clock_set, 0, refused.value_or(0.0));
   }
-  if (now.pauses != before.pauses) {
-    event.kind = EventKind::label_moved;
-    links_.events.report(event);
-  }
-  if (const std::uint64_t overflows = links_.queue.overflows(); overflows != reported_.overflows) {
-    reported_.overflows = overflows;
-    event.kind = EventKind::overflow;
-    links_.events.report(event);
-  }
+  if (now.pauses != before.pauses) tell(EventKind::label_moved);
+  const std::uint64_t overflows = links_.queue.overflows();
+  if (std::exchange(reported_.overflows, overflows) != overflows) tell(EventKind::overflow);
 }
 
 void Reader::tell_beyond(const ifog_driver_counters& driver) noexcept {

@@ -9,6 +9,7 @@
 
 #include "drivers/host/driver_instance.h"
 #include "drivers/units/turn.h"
+#include "drivers/units/units.h"
 
 namespace ifog {
 namespace {
@@ -138,6 +139,8 @@ std::vector<std::string> CaptureBuilder::remarks() const {
   say(counts().restarts, "the device's counter or clock jumped back ", " times: was it switched off and on?");
   say(counts().clock_sets, "the device's clock was set ",
       " times while it measured on; there its times are by its counter or its rate");
+  if (const std::string runs = clock_speed(times_.clock_runs()); !runs.empty())
+    lines.push_back("the device's clock " + runs + " by the number of samples: is rate_hz right?");
   say(counts().repeated, "", " samples came twice or after one that follows, and are dropped");
   say(counts().mixed, "", " samples come from two devices, mixed, and are dropped: which of them is wanted?");
   say(impossible_, "", " values of channels cannot be, in the unit of their name: dropped");

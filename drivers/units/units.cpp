@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "drivers/units/units.h"
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <numbers>
 #include <span>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -258,6 +261,18 @@ const QuantityUnit* find_in(const Quantity& quantity, std::string_view name) {
 
 std::optional<UnitConversion> convert_unit(std::string_view from, std::string_view wanted) {
   if (from == wanted) return UnitConversion{};
+std::string clock_speed(double runs) {
+  constexpr double kErrs = 0.02;  // relative
+  if (std::abs(runs - 1.0) < kErrs) return "";
+  if (!(runs > 0.0)) return "stands still or runs back";
+  std::ostringstream out;
+  out.precision(4);
+  out << "runs " << std::max(runs, 1.0 / runs) << " times too " << (runs < 1.0 ? "slow" : "fast");
+  for (const auto& [unit, ns] : {Unit{"us", 1e3}, {"ms", 1e6}, {"s", 1e9}})
+    if (std::abs(runs * ns - 1.0) < kErrs) out << " (perhaps in " << unit << ", expected ns)";
+  return out.str();
+}
+
   const std::string a = plain(from), b = plain(wanted);
   for (const Quantity& quantity : kQuantities) {
     const QuantityUnit* const to = find_in(quantity, b);

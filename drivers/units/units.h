@@ -19,6 +19,10 @@ std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rat
 // Seconds per unit.
 std::optional<double> time_unit(std::string_view text);
 
+// "runs 1000 times too slow (perhaps in us, expected ns)". runs: time by a clock in ns per true time; "" for
+// what a clock may err.
+std::string clock_speed(double runs);
+
 // value in the wanted unit = value * scale + offset
 struct UnitConversion {
   double scale = 1.0, offset = 0.0;

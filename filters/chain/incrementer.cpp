@@ -36,7 +36,7 @@ Incrementer::Incrementer(const SensorFacts& facts) noexcept
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
     rate_[axis] = PlausibleRate(facts.rate, facts.full_scale_radps[axis]);
   for (std::size_t c = 0; c < kMaxChannels; ++c)
-    channels_.plausible[c] = PlausibleValue(facts.channel[c], kMostChannel);
+    channels_.plausible[c] = PlausibleValue(facts.channel[c], IFOG_MAX_ENVIRONMENT_VALUE);
   channels_.value.fill(kNaN);
   channels_.age_s.fill(std::numeric_limits<float>::infinity());
 }
@@ -53,15 +53,21 @@ void Incrementer::look_at_rate(const Timeline::Frame& frame, const Step& now) no
   const double lasts_s = static_cast<double>(ns_between(stretch_.begin_ns, frame.arrival_ns)) * 1e-9;
   if (stretch_.begin_ns == 0 || now.restarted || now.clock_moved || frame.reopened ||
       lasts_s > kClockMemory_s) {
-    stretch_ = {.begin_ns = frame.arrival_ns, .interval_error = stretch_.interval_error};
+    stretch_ = {.begin_ns = frame.arrival_ns,
+                .begin_clock_ns = now.time_ns,
+                .interval_error = stretch_.interval_error};
     return;
   }
   ++stretch_.frames;
   stretch_.gaps += now.gap ? 1 : 0;
   stretch_.samples += now.samples;
+  stretch_.by_count += now.by_count ? 1 : 0;
+  stretch_.sum_s += now.dt_s;
+  if (lasts_s < 0.25 * kClockMemory_s) return;
+  if (frame.clocked) look_at_clock(now, lasts_s);
   // If nearly each frame seems to come after a gap, there are none.
   const bool no_gaps = 10 * stretch_.gaps > 9 * stretch_.frames;
-  if (lasts_s < 0.25 * kClockMemory_s || (!no_gaps && (!frame.counts || frame.clocked))) return;
+  if (!no_gaps && (!frame.counts || frame.clocked)) return;
   const auto samples = static_cast<double>(no_gaps ? stretch_.frames : stretch_.samples);
   const double error = lasts_s / (samples * period_s_) - 1.0;
   if (std::abs(error) < kRight || error < kAccelerated)
@@ -70,11 +76,27 @@ void Incrementer::look_at_rate(const Timeline::Frame& frame, const Step& now) no
     stretch_.interval_error = error;
 }
 
+// Refuses a clock whose intervals differ from the arrivals while the number of frames at the nominal rate agrees
+// with these far better, or that nearly no interval could use. Samples that are read late, or faster than they
+// were measured, differ from both alike.
+void Incrementer::look_at_clock(const Step& now, double lasts_s) noexcept {
+  const double by_clock = stretch_.sum_s / lasts_s;
+  const double by_rate = static_cast<double>(stretch_.frames) * period_s_ / lasts_s;
+  const bool off = std::abs(by_clock - 1.0) > kRight + kLate_s / lasts_s &&
+                   std::abs(std::log(by_rate)) < 0.5 * std::abs(std::log(by_clock));
+  if (!off && 10 * stretch_.by_count <= 9 * stretch_.frames) return;
+  refused_clock_ = static_cast<double>(ns_between(stretch_.begin_clock_ns, now.time_ns)) * 1e-9 / lasts_s;
+  timeline_ = Timeline(facts_.sequence_modulus, facts_.nominal_rate_hz);
+  labels_ = {.clock = {period_s_, clock_memory(facts_.nominal_rate_hz)}};
+  stretch_ = {};
+  begins_ = true;
+}
+
 Timeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
   Timeline::Frame frame;
   frame.counts = reading.has_sequence;
   frame.sequence = reading.sequence;
-  frame.clocked = reading.device_time_ns.has_value();
+  frame.clocked = reading.device_time_ns.has_value() && !refused_clock_;
   frame.stamp_ns = reading.device_time_ns.value_or(0);
   frame.wrap_ns = reading.device_wrap_ns;
   // A signed negative stamp: published times start at the rollover before it.
@@ -207,7 +229,7 @@ bool Incrementer::apart(double late_s, std::int64_t arrival_ns) noexcept {
 
 // Time of measurement, from a line through the arrival times.
 void Incrementer::label(const Reading& reading, const Step& step, Increment& out) noexcept {
-  const double periods = periods_of(step, reading.device_time_ns.has_value());
+  const double periods = periods_of(step, reading.device_time_ns && !refused_clock_);
   bool moved = step.clock_moved;
   bool unlike = false;
   if (reading.arrival_ns > 0 && step.late_s == 0.0 && !step.gap) {
@@ -256,7 +278,7 @@ void Incrementer::restart() noexcept {
 bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   const Timeline::Frame frame = frame_of(reading);
   Step now;
-  if (started_) {
+  if (!begins_) {
     now = timeline_.next(frame);
     if (now.out_of_turn) {
       ++counts_.repeated;
@@ -266,12 +288,14 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     sequence_ += now.samples;
   } else {
     now.dt_s = period_s_;
-    sequence_ = reading.has_sequence ? reading.sequence : 0;
+    now.gap = now.clock_set = started_;  // its clock has been refused
+    sequence_ = started_ ? sequence_ + 1 : reading.has_sequence ? reading.sequence : 0;
     now.time_ns = timeline_.first(frame);
   }
   out.flags = 0;
-  if (started_ && now.gap) pass_gap(now, out);
+  if (now.gap) pass_gap(now, out);
   if (now.restarted) restart();
+  begins_ = false;
   look_at_rate(frame, now);
   if (now.clock_set) {
     out.flags |= kSensorClockSet;

@@ -3,7 +3,8 @@
 //
 // Time step, in order of preference: the device's clock; nominal period times the difference of the device's
 // counter; the fitted period for a device with neither. So for devices that count, a replay of the same
-// frames gives the same bits, regardless of arrival times.
+// frames gives the same bits, regardless of arrival times. A clock against which arrivals and the number of
+// samples at the nominal rate agree (of another unit, stopped) is not used any more.
 //
 // New, duplicate and overtaken samples, and the number of missing ones: drivers/timeline/timeline.h.
 #pragma once
@@ -61,11 +62,14 @@ class Incrementer {
   // interval of a device with a counter and no clock, or for missing samples if each sample seems to follow
   // some. 0 for others, and until it is known.
   [[nodiscard]] double interval_error() const noexcept { return stretch_.interval_error; }
+  // Time by the device's clock per time of arrival, of a clock that is not used any more; nullopt: it is used.
+  [[nodiscard]] std::optional<double> refused_clock() const noexcept { return refused_clock_; }
 
  private:
   using Step = Timeline::Step;
   [[nodiscard]] Timeline::Frame frame_of(const Reading& reading) const noexcept;
   void look_at_rate(const Timeline::Frame& frame, const Step& now) noexcept;
+  void look_at_clock(const Step& now, double lasts_s) noexcept;
   void pass_gap(const Step& step, Increment& out) noexcept;
   void restart() noexcept;
   void label(const Reading& reading, const Step& step, Increment& out) noexcept;
@@ -87,7 +91,9 @@ class Incrementer {
     double clocked_periods = 0.0, clocked_samples = 0.0;
   } labels_;
   Timeline timeline_;
+  std::optional<double> refused_clock_;
   bool started_ = false;
+  bool begins_ = true;  // the next reading is the first of timeline_
   bool reopened_ = false;
   // Previous reading; its channels are kept below.
   struct Last {
@@ -95,8 +101,9 @@ class Incrementer {
   } last_;
   // From which the rate is measured.
   struct Stretch {
-    std::int64_t begin_ns = 0;
-    std::uint64_t frames = 0, gaps = 0, samples = 0;  // after the first frame
+    std::int64_t begin_ns = 0, begin_clock_ns = 0;
+    std::uint64_t frames = 0, gaps = 0, samples = 0, by_count = 0;  // after the first frame
+    double sum_s = 0.0;                                             // of the intervals
     double interval_error = 0.0;
   } stretch_;
   std::uint64_t sequence_ = 0;

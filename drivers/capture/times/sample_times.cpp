@@ -192,6 +192,7 @@ std::optional<SampleTimes::Stamped> SampleTimes::next(const ifog_sample& sample)
   stamped.period_s = stamped.elapsed_s / static_cast<double>(std::max<std::uint64_t>(steps, 1));
   if ((first || restarted || arrivals_.bunched) && description_.nominal_rate_hz > 0.0)
     stamped.period_s = 1.0 / description_.nominal_rate_hz;
+  if (first) first_s_ = now;
   last_s_ = now;
   arrivals_.last_ns = sample.arrival_ns;
   ++accepted_;

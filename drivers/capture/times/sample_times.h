@@ -60,6 +60,11 @@ class SampleTimes {
   // Origin of the times; known from the first sample on.
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
   [[nodiscard]] const SampleCounts& counts() const { return counts_; }
+  // Time by the device's clock, in use so far, per time of as many samples at the nominal rate; 1: unknown.
+  [[nodiscard]] double clock_runs() const {
+    const bool known = clock_ == Clock::device && count_ > 0 && description_.nominal_rate_hz > 0.0;
+    return known ? (last_s_ - first_s_) / static_cast<double>(count_) * description_.nominal_rate_hz : 1.0;
+  }
 
  private:
   enum class Clock { undecided, device, counter, arrival, number };
@@ -85,7 +90,7 @@ class SampleTimes {
   } arrivals_;
   std::size_t accepted_ = 0;
   SampleCounts counts_;
-  double last_s_ = 0.0;
+  double first_s_ = 0.0, last_s_ = 0.0;
   double offset_s_ = 0.0;  // of the clock since the last discontinuity
   bool broken_ = false, restarts_ = false;
 };

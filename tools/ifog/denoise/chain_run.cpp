@@ -97,6 +97,7 @@ OfflineResult ChainRun::finish() {
 void ChainRun::count(bool counts) {
   const IncrementerCounts& now = incrementer_->counts();
   if (counts) add(now, counted_, result_.counts);
+  if (counts && incrementer_->refused_clock()) result_.refused_clock = incrementer_->refused_clock();
   counted_ = now;
   counts_ = counts;
 }

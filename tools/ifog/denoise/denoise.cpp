@@ -15,6 +15,7 @@
 #include "drivers/capture/files/file_kind.h"
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
+#include "drivers/units/units.h"
 #include "filters/series/samples.h"
 #include "filters/series/series_view.h"
 #include "filters/smoother/smoother.h"
@@ -164,6 +165,9 @@ void tell_not_as_published(const DenoiseOptions& options, const DenoisedRows& ro
 void tell(const DenoiseOptions& options, const DenoisedRows& rows, const OfflineResult& result) {
   for (const std::string& effect : result.left_out)
     warn("%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
+  if (result.refused_clock)
+    warn("%s: the device's clock %s by arrivals and number of samples: not used once that was seen\n",
+         options.capture.c_str(), clock_speed(*result.refused_clock).c_str());
   if (result.counts.mixed > 0)
     warn("%s: %llu samples come from two devices, mixed, and are dropped: which of them is wanted?\n",
          options.capture.c_str(), static_cast<unsigned long long>(result.counts.mixed));

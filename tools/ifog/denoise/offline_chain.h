@@ -58,15 +58,16 @@ class OfflineTimes {
 
 struct OfflineResult {
   std::vector<std::string> axes;
-  IncrementerCounts counts;           // of the samples that count, see OfflineSink
-  FilterSettings filter;              // in use at the end
-  AxisShares shares;                  // ChainParts::shares()
-  bool learns_walk = false;           // ChainParts::learns_walk()
-  bool noise_learned = false;         // from the first seconds
-  bool noise_known = true;            // false: no stretch of the record shows it
-  std::vector<std::string> left_out;  // effects of the model that are not corrected
-  std::string model;                  // identity
-  double sample_rate_hz = 0.0;        // nominal
+  IncrementerCounts counts;             // of the samples that count, see OfflineSink
+  std::optional<double> refused_clock;  // Incrementer::refused_clock()
+  FilterSettings filter;                // in use at the end
+  AxisShares shares;                    // ChainParts::shares()
+  bool learns_walk = false;             // ChainParts::learns_walk()
+  bool noise_learned = false;           // from the first seconds
+  bool noise_known = true;              // false: no stretch of the record shows it
+  std::vector<std::string> left_out;    // effects of the model that are not corrected
+  std::string model;                    // identity
+  double sample_rate_hz = 0.0;          // nominal
   // From here on the state of the daemon's filter may have been different, because samples or the beginning
   // of its run are missing.
   std::optional<double> not_as_published_from_s;
