@@ -2,8 +2,11 @@
 #include "daemon/pipeline/reader.h"
 
 #include <algorithm>
+#include <exception>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <thread>
 #include <utility>
 
@@ -83,7 +86,7 @@ void Reader::tell_beyond(const ifog_driver_counters& driver) noexcept {
   links_.events.report(event);
 }
 
-void Reader::publish_counters() noexcept {
+void Reader::publish_counters() {
   const IncrementerCounts& counts = incrementer_.counts();
   counters_.samples.set(counts.samples);
   counters_.gaps.set(counts.gaps);
@@ -142,7 +145,7 @@ void Reader::record(const Delivery& delivery) noexcept {
       reading_.wall_shift_ns, links_.queue.merged());
 }
 
-bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
+bool Reader::turn(std::chrono::nanoseconds timeout) {
   const Delivery delivery = transport_->read(timeout);
   if (delivery.restarted) {
     driver_.reset();
@@ -170,15 +173,30 @@ bool Reader::turn(std::chrono::nanoseconds timeout) noexcept {
   return !transport_->stopped() && !(delivery.empty() && transport_->state() == TransportState::ended);
 }
 
-void Reader::run() noexcept {
-  while (turn(links_.queue.has_waiting() ? kImpatientTurn : kTurn)) {
-  }
+void Reader::end() {
   transport_->close_books();
   // Bytes of an incomplete last frame count as skipped.
   const std::uint64_t skipped = driver_.counters().bytes_skipped;
   driver_.reset();
   if (!transport_->stopped()) counters_.bytes_at_end.set(driver_.counters().bytes_skipped - skipped);
   publish_counters();
+}
+
+void Reader::run() noexcept {
+  const auto fail = [this](std::string_view thrown) {
+    transport_->report("the driver has thrown an exception and is not called any more", 0,
+                       std::string(driver_.table().name) + ": " + std::string(thrown));
+    transport_->end(0);
+  };
+  try {
+    while (turn(links_.queue.has_waiting() ? kImpatientTurn : kTurn)) {
+    }
+    end();
+  } catch (const std::exception& error) {
+    fail(error.what());
+  } catch (...) {
+    fail("of an unknown kind");
+  }
   links_.queue.close();
 }
 

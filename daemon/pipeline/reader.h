@@ -57,10 +57,11 @@ class Reader {
          std::shared_ptr<const ChannelTable> outside, const ReaderLinks& links,
          SharedProcessors* processors = nullptr);
 
-  // Runs until the transport is stopped or its file has ended. The caller opens it. Closes the queue.
+  // Runs until the transport is stopped or its file has ended, or the plugin throws, which ends the transport
+  // with the fault. The caller opens it. Closes the queue.
   void run() noexcept;
-  // One wait for the transport and its data. False: it has ended.
-  bool turn(std::chrono::nanoseconds timeout) noexcept;
+  // One wait for the transport and its data. False: it has ended. Throws what the plugin throws.
+  bool turn(std::chrono::nanoseconds timeout);
 
   [[nodiscard]] Transport& transport() noexcept { return *transport_; }
   [[nodiscard]] const Transport& transport() const noexcept { return *transport_; }
@@ -74,7 +75,8 @@ class Reader {
   void look_outside() noexcept;
   void record(const Delivery& delivery) noexcept;
   void report(const Increment& increment, const IncrementerCounts& before) noexcept;
-  void publish_counters() noexcept;
+  void publish_counters();
+  void end();
   void tell_beyond(const ifog_driver_counters& driver) noexcept;
   void stand_back() noexcept;
 

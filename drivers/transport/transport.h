@@ -113,6 +113,10 @@ class Transport {
   [[nodiscard]] TransportFault fault() const;
   // Messages from opening the device.
   [[nodiscard]] Notices& notices() { return notices_; }
+  // No more data: of the reading thread.
+  void end(int reason) noexcept { enter(TransportState::ended, reason); }
+  // A fault in the data, also counted as malformed. text: of the line. Of the reading thread.
+  void report(const char* what, std::uint64_t line, std::string_view text = {}) noexcept;
 
  protected:
   using Wake = StoppableWait::Wake;
@@ -134,10 +138,6 @@ class Transport {
   void lost(int reason) noexcept;
   // It is open, but without a sender until the next delivery.
   void left() noexcept;
-  void end(int reason) noexcept { enter(TransportState::ended, reason); }
-
-  // Also counts it as malformed. text: of the line.
-  void report(const char* what, std::uint64_t line, std::string_view text = {}) noexcept;
 
   struct Counters {
     Counter bytes, frames, kernel_drops, error_frames, reopened, malformed;

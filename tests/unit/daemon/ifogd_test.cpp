@@ -236,6 +236,22 @@ TEST_F(Ifogd, WhatComesTwiceOrUnfinishedIsCounted) {
   EXPECT_EQ(times_said("bus.dbc:10: '3+ (1,0) [0|0] \"\" X', expected one of 01"), 1) << said();
 }
 
+// A driver that throws ends its own sensor, and is named with what it threw.
+TEST_F(Ifogd, ADriverThatThrowsEndsItsSensorAlone) {
+  write("flight.kvh", recording(300));
+  configure(kFile +
+            std::string("[[sensor]]\nname = \"tail\"\ndriver = \"throwing\"\nnominal_rate_hz = 100\n") +
+            kFile);
+  setenv("IFOG_PLUGIN_PATH", IFOG_BINARY_DIR "/tests/unit/drivers/refused/plugins", 1);
+  EXPECT_EQ(ifogd(), 1);
+  EXPECT_EQ(
+      times_said("warning: tail: failed: " + path("flight.kvh") +
+                 ": the driver has thrown an exception and is not called any more, found 'throwing: boom'"),
+      1)
+      << said();
+  EXPECT_EQ(times_said("nose: 300 samples read, 300 published"), 1) << said();
+}
+
 // Of that process, as the kernel has it: bit n - 1 is signal n.
 std::uint64_t blocked_signals(pid_t process) {
   std::ifstream status("/proc/" + std::to_string(process) + "/status");

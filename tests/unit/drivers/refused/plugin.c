@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/* Plugins that the host must refuse, one by a macro each. */
+/* Plugins that the host must refuse, one by a macro each; and one in C++ that throws. */
 #include <ifog/driver.h>
 #include <stddef.h>
 #include <string.h>
@@ -28,6 +28,9 @@ static void describe(const void* instance, ifog_description* out) {
 static void decode(void* instance, const uint8_t* bytes, size_t length, int64_t arrival_ns, ifog_emit_sample emit,
                    void* sink) {
   (void)instance, (void)bytes, (void)length, (void)arrival_ns, (void)emit, (void)sink;
+#ifdef THROWN
+  throw std::runtime_error(THROWN);
+#endif
 }
 static void reset(void* instance) { (void)instance; }
 static void counters(const void* instance, ifog_driver_counters* out) { (void)instance, (void)out; }
