@@ -2,6 +2,7 @@
 #include "drivers/plugins/dbc/decoder.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <limits>
@@ -79,6 +80,25 @@ void Decoder::learn_order() {
     if (order(picks_.axes[i]) == first) beginning_axes_ |= bit(i);
 }
 
+// A mean of logarithms, so that neither a silence nor lost frames decide.
+void Decoder::learn_pause(std::uint32_t brings, std::int64_t arrival_ns) noexcept {
+  constexpr double kMemory = 256.0, kShortest_ns = 1e3, kLongest_ns = 1e9;  // samples; resolution of a log
+  const std::int64_t before_ns = std::exchange(arrived_ns_, arrival_ns);
+  if (beginning_axes_ == all_axes_ || before_ns < 0 || arrival_ns == 0) return;
+  const auto since_ns = static_cast<double>(arrival_ns - before_ns);
+  const double pause = std::log2(std::clamp(since_ns, kShortest_ns, kLongest_ns));
+  for (std::size_t i = 0; i < pause_.size(); ++i)
+    if ((brings & bit(i)) != 0) {
+      pause_[i].count = std::min(pause_[i].count + 1.0, kMemory);
+      pause_[i].mean += (pause - pause_[i].mean) / pause_[i].count;
+    }
+  const Pause& here = pause_[static_cast<std::size_t>(std::countr_zero(brings))];
+  const Pause& assumed = pause_[static_cast<std::size_t>(std::countr_zero(beginning_axes_))];
+  if (assumed.count == 0.0 || here.mean <= assumed.mean + 1.0) return;
+  give_up();
+  beginning_axes_ = brings;
+}
+
 void Decoder::begin_sample() noexcept {
   present_ = 0;
   good_ = 0;
@@ -104,6 +124,7 @@ void Decoder::give_up() noexcept {
 
 void Decoder::reset() noexcept {
   give_up();
+  arrived_ns_ = -1;
   last_.counted = false;
   sample_.environment_fresh = 0;
   timed_ = false;
@@ -148,6 +169,7 @@ void Decoder::take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_
       ++counters_.frames_repeated;
       return;
     }
+    learn_pause(brings, frame.arrival_ns);
     const bool other_count = counter != nullptr && counted_ && !same_count;
     if (present_ != 0 && (other_count || (present_ & brings) != 0)) give_up();
     if (present_ == 0 && (brings & beginning_axes_) == 0) {

@@ -15,8 +15,9 @@ namespace ifog::dbc {
 // samples are distinguished by
 //   - the counter, in frames that carry it;
 //   - an axis that arrives a second time;
-//   - if some axis's frame has no counter: the frame of the lowest id, which begins a sample, since queued
-//   frames are sent in the order of their ids (arbitration).
+//   - if some axis's frame has no counter: the frame that begins a sample. By arrival times it is the one that
+//   follows the longest pause, at least twice as long as before the frame assumed so far; at first that of the
+//   lowest id, since queued frames are sent in the order of their ids (arbitration).
 // So a lost frame never merges two samples: the incomplete one is dropped and counted. A repeated frame (same
 // counter, same values) is ignored and counted; a repeated sample of one frame is passed on and detected
 // later. A value beyond the range in the file ([min|max]) is kept, counted and flagged. Environment, status
@@ -51,6 +52,7 @@ class Decoder {
 
   void add(Role role, std::size_t index, const Pick& pick, double si_per_unit = 1.0);
   void learn_order();
+  void learn_pause(std::uint32_t brings, std::int64_t arrival_ns) noexcept;
   void take(const Wanted& wanted, const ifog_can_frame& frame, ifog_emit_sample emit, void* sink) noexcept;
   void set(const Entry& entry, std::uint64_t bits) noexcept;
   [[nodiscard]] bool repeats(const Wanted& wanted, std::span<const std::uint8_t> data,
@@ -65,10 +67,16 @@ class Decoder {
   std::vector<Wanted> wanted_;
   std::uint32_t all_axes_ = 0;        // bit i: axis i
   std::uint32_t beginning_axes_ = 0;  // any of these begins a sample
-  std::uint32_t present_ = 0;         // axes of the present sample
-  std::uint32_t good_ = 0;            // of these, axes with a plausible value
-  bool counted_ = false;              // its counter is known
-  std::uint32_t frames_ = 0;          // number of frames with its axes
+  // Mean of the base-2 logarithm of the time, ns, from any axis's frame to the next one, with this axis.
+  struct Pause {
+    double mean = 0.0, count = 0.0;
+  };
+  std::array<Pause, IFOG_MAX_AXES> pause_;
+  std::int64_t arrived_ns_ = -1;  // the last axis's frame; -1: none
+  std::uint32_t present_ = 0;     // axes of the present sample
+  std::uint32_t good_ = 0;        // of these, axes with a plausible value
+  bool counted_ = false;          // its counter is known
+  std::uint32_t frames_ = 0;      // number of frames with its axes
   // Last complete sample, if it had a counter. A counter that never changed does not distinguish samples.
   struct Last {
     bool counted = false;

@@ -3,6 +3,8 @@
 // counted.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <string>
 #include <vector>
 
@@ -82,6 +84,40 @@ TEST_F(DbcText, WithABadLineIsUsedAndTheLineNamed) {
   EXPECT_EQ(refusal(kGood + " SG_ 3Q : 0|16@1- (1,0)\n", {{"signal", "Q"}}),
             "driver dbc: signal is 'Q', expected a signal of F: A.R; 1 bad lines in it, the first: "
             "F:3: '3Q : 0|16@1- (1,0)', expected the name of a signal");
+}
+
+// Three messages, in any order of their ids, jittered, one in eleven lost, a counter in one of them or none: each
+// value is its cycle's number, and no sample waits for the next cycle.
+TEST_F(DbcText, FramesThatArriveTogetherAreOneSample) {
+  std::string text;
+  for (const char* id : {"1", "2", "3"})
+    text += "BO_ " + std::string(id) + " M" + id + ": 8 X\n SG_ R" + id +
+            " : 0|8@1+ (1,0) [0|0] \"rad/s\" X\n" + " SG_ N" + id + " : 8|8@1+ (1,0) [0|0] \"\" X\n";
+  constexpr std::int64_t kCycle_ns = 5'000'000, kFrame_ns = 300'000, kBegin_ns = 1'000'000'000;
+  for (const char* counter : {"", "N1", "N2"}) {
+    std::array<int, 3> order{1, 2, 3};
+    do {
+      ifog::DriverInstance d = driver(text, {{"x", "R1"}, {"y", "R2"}, {"z", "R3"}, {"counter", counter}});
+      std::vector<ifog_can_frame> sent;
+      std::size_t complete = 0;
+      for (int k = 0; k < 250; ++k) {
+        std::int64_t at_ns = kBegin_ns + k * kCycle_ns + k * 7919 % 1000 * 1000;
+        std::size_t before = sent.size();
+        for (const int id : order) {
+          at_ns += kFrame_ns + k * 104'729 % 100 * 1000;
+          if (k > 5 && (k * 3 + id) % 11 == 0) continue;
+          sent.push_back(frame(static_cast<std::uint32_t>(id), {k, k}, at_ns));
+        }
+        complete += sent.size() == before + 3 ? 1 : 0;
+      }
+      const std::vector<ifog_sample> got = decode(d, sent);
+      EXPECT_GE(got.size() + 1, complete) << order[0] << order[1] << order[2] << counter;
+      for (const ifog_sample& one : got) {
+        ASSERT_TRUE(one.value[0] == one.value[1] && one.value[1] == one.value[2]) << order[0] << order[1];
+        ASSERT_LT(static_cast<double>(one.arrival_ns - kBegin_ns), (one.value[0] + 0.6) * kCycle_ns);
+      }
+    } while (std::next_permutation(order.begin(), order.end()));
+  }
 }
 
 TEST_F(DbcText, ManyWarningsAreCountedInTheLast) {
