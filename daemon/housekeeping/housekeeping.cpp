@@ -58,8 +58,9 @@ Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
       AssembledSensor parts = assemble(sensor, config_, publisher(), processors);
       const ifog_description& description = parts.pipeline->reader().driver().description();
       int index = 0;
+      std::vector<std::string> units;
       for (const ChannelConfig& channel : outside_channels(sensor)) {
-        if (channel.source == ChannelConfig::Source::can) (void)can_channel(channel);
+        if (channel.source == ChannelConfig::Source::can) units.push_back(can_channel(channel).remark());
         wanted.push_back({channel, parts.outside, index++});
       }
       StatusReport report(sensor.name, parts.channels, axis_names(description),
@@ -73,6 +74,8 @@ Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
         sensors_.back()->log->warn("{}", absent);
       for (const std::string& remark : sensors_.back()->parts.remarks)
         sensors_.back()->log->warn("{}: {}", sensor.model, remark);
+      for (const std::string& remark : units)
+        if (!remark.empty()) sensors_.back()->log->warn("channel {}", remark);
       for (const std::string& warning : sensors_.back()->parts.pipeline->reader().driver().warnings())
         sensors_.back()->log->warn("{}", warning);
     } catch (const std::exception& error) {

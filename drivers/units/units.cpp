@@ -10,6 +10,8 @@
 #include <string>
 #include <utility>
 
+#include "drivers/ifog/quoted.h"
+
 namespace ifog {
 namespace {
 
@@ -259,8 +261,6 @@ const QuantityUnit* find_in(const Quantity& quantity, std::string_view name) {
 
 }  // namespace
 
-std::optional<UnitConversion> convert_unit(std::string_view from, std::string_view wanted) {
-  if (from == wanted) return UnitConversion{};
 std::string clock_speed(double runs) {
   constexpr double kErrs = 0.02;  // relative
   if (std::abs(runs - 1.0) < kErrs) return "";
@@ -273,6 +273,8 @@ std::string clock_speed(double runs) {
   return out.str();
 }
 
+std::optional<UnitConversion> convert_unit(std::string_view from, std::string_view wanted) {
+  if (from == wanted) return UnitConversion{};
   const std::string a = plain(from), b = plain(wanted);
   for (const Quantity& quantity : kQuantities) {
     const QuantityUnit* const to = find_in(quantity, b);
@@ -288,6 +290,15 @@ std::string clock_speed(double runs) {
   const auto to = angle_unit(wanted, true, false), is = angle_unit(from, true, false);
   if (to && is) return UnitConversion{*is / *to};
   return std::nullopt;
+}
+
+UnitConversion convert_to_column(std::string_view stated, std::string_view column, std::string& remark) {
+  const std::string_view wanted = column.substr(column.rfind('_') + 1);
+  const auto by = stated.empty() ? UnitConversion{} : convert_unit(stated, wanted);
+  if (!by)
+    remark = in_quotes(column) + ": its unit is stated as " + in_quotes(stated) +
+             ", which is not converted to " + in_quotes(wanted) + ": values are used as they are";
+  return by.value_or(UnitConversion{});
 }
 
 std::string other_units(std::string_view wanted) {

@@ -32,6 +32,9 @@ struct UnitConversion {
 // pressure, angular rate, time, spelled as above; identity for any unit. nullopt for different quantities or
 // unknown units.
 std::optional<UnitConversion> convert_unit(std::string_view from, std::string_view wanted);
+// From a stated unit to the one in which a column's name ends; identity, with a line in `remark`, if that is not
+// known.
+UnitConversion convert_to_column(std::string_view stated, std::string_view column, std::string& remark);
 // Units of the quantity of `wanted`, for messages: "degC, degF, K"; "" if unknown.
 std::string other_units(std::string_view wanted);
 

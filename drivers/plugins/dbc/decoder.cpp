@@ -226,7 +226,8 @@ void Decoder::set(const Entry& entry, std::uint64_t bits) noexcept {
       const double value = physical(*entry.signal, bits);
       if (!std::isfinite(value)) break;
       judge(*entry.signal, value);
-      sample_.environment[entry.index] = value;
+      const UnitConversion& by = picks_.environments[entry.index].to_column;
+      sample_.environment[entry.index] = value * by.scale + by.offset;
       sample_.environment_fresh |= bit(entry.index);
       break;
     }

@@ -96,8 +96,10 @@ std::uint64_t Encoder::bits_of(const Entry& entry, const ifog_sample& sample) co
       }
       return raw_of(s, units);
     }
-    case Role::kEnvironment:
-      return raw_of(*entry.signal, sample.environment[entry.index]);
+    case Role::kEnvironment: {
+      const UnitConversion& by = picks_.environments[entry.index].to_column;
+      return raw_of(*entry.signal, (sample.environment[entry.index] - by.offset) / by.scale);
+    }
   }
   return 0;
 }

@@ -38,7 +38,7 @@ constexpr std::array kOptions{
     ifog_option{"time", "[MESSAGE.]SIGNAL", "",
                 "the device's clock; its unit in the DBC file is s, ms, us or ns"},
     ifog_option{"environment", "COLUMN=[MESSAGE.]SIGNAL, …", "",
-                "environment channels by their capture column, e.g. temperature_degC=Box.Temperature"},
+                "environment channels by capture column, in its unit, e.g. temperature_degC=Box.Temperature"},
     ifog_option{"rate_hz", "a number >= 0", "0", "samples a second; 0: unknown"},
     ifog_option{nullptr, nullptr, nullptr, nullptr}};
 
@@ -240,8 +240,11 @@ class Reader {
         if (other.column == column) options_.fail("environment", "each column once");
       if (out_.environments.size() == IFOG_MAX_ENVIRONMENT)
         options_.fail("environment", "at most " + std::to_string(IFOG_MAX_ENVIRONMENT) + " channels");
+      const Pick pick = one("environment", trimmed(item.substr(equals + 1)));
+      std::string remark;
       out_.environments.push_back(
-          {std::string(column), one("environment", trimmed(item.substr(equals + 1)))});
+          {std::string(column), pick, convert_to_column(pick.signal->unit, column, remark)});
+      if (!remark.empty()) out_.database.warnings.push_back("environment: " + remark);
     }
   }
 

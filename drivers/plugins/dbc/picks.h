@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "drivers/dbc/database.h"
+#include "drivers/units/units.h"
 #include "ifog/driver.h"
 #include "ifog/options.h"
 
@@ -29,6 +30,7 @@ struct Axis {
 struct Environment {
   std::string column;  // as in a capture: "temperature_degC"
   Pick pick;
+  UnitConversion to_column;
 };
 
 struct Picks {

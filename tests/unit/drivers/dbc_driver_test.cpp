@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -253,6 +254,12 @@ TEST_F(DbcText, AValueBeyondTheStatedRangeIsKeptCountedAndFlagged) {
   EXPECT_EQ(d.counters().beyond_minimum, 0.0);
   EXPECT_EQ(d.counters().beyond_maximum, 50.0);
   EXPECT_EQ(d.description().full_scale[0], 0.0);
+  const ifog::DriverInstance unlike = driver(text, {{"signal", "R"}, {"environment", "supply_V=T"}});
+  ASSERT_EQ(unlike.warnings().size(), 1U);
+  EXPECT_EQ(
+      unlike.warnings()[0],
+      "driver dbc: environment: 'supply_V': its unit is stated as 'degC', which is not converted to 'V': "
+      "values are used as they are");
 }
 
 // Axes in one message, distinguished by a multiplexor; CAN FD; what is encoded decodes to the same sample.
@@ -261,7 +268,7 @@ TEST_F(DbcText, MultiplexedAxesAndLongFramesRoundTrip) {
       "BO_ 2147483904 M: 8 X\n SG_ S M : 0|8@1+ (1,0) [0|0] \"\" X\n SG_ N : 8|8@1+ (1,0) [0|0] \"\" X\n"
       " SG_ X m1 : 16|32@1- (1,0) [0|0] \"rad/s\" X\n SG_ Y m2 : 16|32@1- (1,0) [0|0] \"rad/s\" X\n"
       " SG_ Z m5 : 23|32@0- (1,0) [0|0] \"rad/s\" X\n"
-      "BO_ 300 L: 20 X\n SG_ T : 128|32@1- (1,0) [0|0] \"degC\" X\n"
+      "BO_ 300 L: 20 X\n SG_ T : 128|32@1- (1,0) [0|0] \"degF\" X\n"
       "SIG_VALTYPE_ 2147483904 X : 1;\nSIG_VALTYPE_ 2147483904 Y : 1;\nSIG_VALTYPE_ 2147483904 Z : "
       "1;\nSIG_VALTYPE_ 300 T : 1;\n";
   ifog::DriverInstance d = driver(
@@ -281,6 +288,9 @@ TEST_F(DbcText, MultiplexedAxesAndLongFramesRoundTrip) {
   EXPECT_EQ(frames[0].id, 300U);
   EXPECT_EQ(frames[0].flags, IFOG_CAN_FD);
   EXPECT_EQ(frames[0].length, 20U);
+  float sent = 0.0F;
+  std::memcpy(&sent, frames[0].data + 16, sizeof sent);
+  EXPECT_FLOAT_EQ(sent, 70.7F);  // degF, as the file states
   EXPECT_EQ(frames[1].id, 256U);
   EXPECT_EQ(frames[1].flags, IFOG_CAN_EXTENDED);
   EXPECT_EQ(frames[1].data[0], 1U);
@@ -290,7 +300,7 @@ TEST_F(DbcText, MultiplexedAxesAndLongFramesRoundTrip) {
   const std::vector<ifog_sample> back = decode(d, frames);
   ASSERT_EQ(back.size(), 1U);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(back[0].value[i], sample.value[i]);
-  EXPECT_EQ(back[0].environment[0], 21.5);
+  EXPECT_NEAR(back[0].environment[0], 21.5, 1e-5);
   EXPECT_EQ(back[0].sequence, 9U);
 }
 

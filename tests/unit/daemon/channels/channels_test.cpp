@@ -14,6 +14,7 @@
 #include <memory>
 #include <thread>
 
+#include "daemon/channels/can_channel.h"
 #include "drivers/transport/clock.h"
 #include "tests/unit/daemon/channels/awaited.h"
 #include "tests/unit/own_folder.h"
@@ -109,6 +110,32 @@ ifog_can_frame environment(std::uint32_t id, float temperature_degC, float suppl
   std::memcpy(out.data, &temperature_degC, 4);
   std::memcpy(out.data + 4, &supply_V, 4);
   return out;
+}
+
+// From the unit that the file states to the one of the channel's name, unless a scale is configured.
+TEST(CanChannel, HasTheUnitOfItsName) {
+  const test::OwnFolder folder;
+  folder.write("bus.dbc", "BO_ 1 A: 8 X\n SG_ T : 0|16@1- (0.1,0) [0|0] \"degF\" X\n");
+  ifog_can_frame frame{};
+  frame.id = 1;
+  frame.length = 8;
+  frame.data[0] = 0xC3;  // 707
+  frame.data[1] = 0x02;
+  const auto value = [&](const char* name, double scale) {
+    ChannelConfig channel = config(ChannelConfig::Source::can);
+    channel.name = name;
+    channel.dbc = folder.path("bus.dbc");
+    channel.signal = "T";
+    channel.scale = scale;
+    const CanChannel read = can_channel(channel);
+    double out = NAN;
+    EXPECT_TRUE(read.decode(frame, out));
+    EXPECT_EQ(read.remark().empty(), channel.name != "coil_V") << read.remark();
+    return out;
+  };
+  EXPECT_NEAR(value("coil_degC", 1.0), 21.5, 1e-9);
+  EXPECT_NEAR(value("coil_degC", 0.5), 70.7, 1e-9);  // what scale and offset then apply to
+  EXPECT_NEAR(value("coil_V", 1.0), 70.7, 1e-9);
 }
 
 TEST(ChannelSources, AFifoInTheFilesPlaceHoldsNothingUp) {
