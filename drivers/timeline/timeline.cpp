@@ -98,7 +98,9 @@ void Timeline::look_at_arrival(const Frame& frame, Look& now) const noexcept {
   const double period_s = pace_.known() ? pace_.period_s() : 0.0;
   now.elapsed_s = seconds(ns_between(due_ns_, frame.arrival_ns));
   now.quiet_s = seen_ns_ > 0 ? seconds(ns_between(seen_ns_, frame.arrival_ns)) : now.elapsed_s;
-  now.silent = std::min(now.quiet_s, now.elapsed_s) > kSilence_s + 2.0 * period_s;
+  // Deliveries of many samples are usual where neither counter nor clock tells what a silence was.
+  const double usual_s = now.tells() ? 0.0 : 1.5 * stall_s_;
+  now.silent = std::min(now.quiet_s, now.elapsed_s) > std::max(kSilence_s, usual_s) + 2.0 * period_s;
   // The first of many samples in one read was delayed by the time of those after it.
   if (now.silent && frame.at_once > 1 && now.counted)
     now.elapsed_s = std::max(kSilence_s, now.elapsed_s - (frame.at_once - 1.0) * period_s);
@@ -287,14 +289,17 @@ void Timeline::judge_delay(const Frame& frame, const Look& now, double late_s, S
   const bool shown = now.counted && now.ahead != 1;
   if ((now.silent && late_s > kSilence_s + scatter_s_) ||
       (shown && !delay_ && late_s > kPrompt_s + now.slack_s))
-    delay_ = {shown, late_s, frame.arrival_ns};
+    delay_ = {shown, late_s, late_s, frame.arrival_ns};
   if (!delay_) return;
-  if (late_s < kPrompt_s + scatter_s_) return delay_.reset();
+  if (late_s < kPrompt_s + scatter_s_) {
+    stall_s_ = std::clamp(delay_->most_late_s, stall_s_, kLatest_s);
+    return delay_.reset();
+  }
   // A device with neither counter nor clock is at its pace if a frame that is read alone comes a period after
   // the one before it.
-  const bool paced =
-      !now.counted && !now.clocked && alone(frame) && !now.silent && now.quiet_s > kPaced * pace_.period_s();
-  if (late_s < delay_->least_late_s - kShrinks_s) *delay_ = {delay_->shown, late_s, frame.arrival_ns};
+  const bool paced = !now.tells() && alone(frame) && !now.silent && now.quiet_s > kPaced * pace_.period_s();
+  if (late_s < delay_->least_late_s - kShrinks_s)
+    *delay_ = {delay_->shown, delay_->most_late_s, late_s, frame.arrival_ns};
   if (paced || seconds(ns_between(delay_->least_ns, frame.arrival_ns)) >= kStands_s)
     end_delay(frame, now, late_s, step);
 }
@@ -323,6 +328,7 @@ void Timeline::end_delay(const Frame& frame, const Look& now, double late_s, Ste
 // later ones, because crystals differ.
 void Timeline::follow(double late_s, std::int64_t arrival_ns) noexcept {
   constexpr double kFollows = 1.0 / 256.0, kForgets = 1.0 - 1.0 / 1024.0;
+  stall_s_ *= kForgets;
   if (late_s < -(kPrompt_s + scatter_s_) && ++early_ < kEarly) return;
   if (late_s < 0.0) {
     if (early_ >= kEarly) delay_.reset();
@@ -330,18 +336,21 @@ void Timeline::follow(double late_s, std::int64_t arrival_ns) noexcept {
     due_ns_ = arrival_ns;
   } else if (!delay_) {
     scatter_s_ = std::max(kForgets * scatter_s_, std::min(late_s, kSilence_s));
+    stall_s_ = std::max(stall_s_, std::min(late_s, kLatest_s));
     due_ns_ = ns_after(due_ns_, nanoseconds(kFollows * late_s));
     owed_s_ += kFollows * late_s;
   }
+  if (!pace_.measured()) owed_s_ = 0.0;  // the line may have begun with a late sample; no interval is by it
   early_ = 0;
 }
 
 void Timeline::learn(const Frame& frame, const Look& now, const Step& step) noexcept {
   if (now.clocked && !step.by_count && !step.restarted)
     each_s_ = step.dt_s / static_cast<double>(std::max<std::uint64_t>(now.ahead, 1));
-  if (frame.arrival_ns <= 0 || seen_ns_ <= 0 || now.silent || delay_ || step.gap) return;
+  const bool late = now.silent || delay_;
+  if (frame.arrival_ns <= 0 || seen_ns_ <= 0 || step.gap || (late && now.tells())) return pace_.interrupted();
   const double since_s = std::max(0.0, seconds(ns_between(seen_ns_, frame.arrival_ns)));
-  pace_.learn(since_s, step.dt_s, step.samples, now.timed && since_s <= kSilence_s);
+  pace_.learn(since_s, step.dt_s, step.samples, now.timed && !late);
 }
 
 void Timeline::keep(const Frame& frame, std::int64_t time_ns, std::uint64_t samples,

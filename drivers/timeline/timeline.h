@@ -77,6 +77,7 @@ class Timeline {
     std::int64_t time_ns = 0;
     std::uint64_t digest = 0;
 
+    [[nodiscard]] bool tells() const noexcept { return counted || clocked; }
     // True if claimed_s exceeds the elapsed time.
     [[nodiscard]] bool contradicts(double claimed_s) const noexcept;
   };
@@ -89,6 +90,7 @@ class Timeline {
   // An undecided silence.
   struct Delay {
     bool shown = false;         // the counter shows missing samples in it
+    double most_late_s = 0.0;   // at its start
     double least_late_s = 0.0;  // since its start
     std::int64_t least_ns = 0;  // when that last decreased
   };
@@ -127,6 +129,7 @@ class Timeline {
   int early_ = 0, strays_ = 0;  // consecutive frames
   std::optional<Delay> delay_;
   double scatter_s_ = 0.0;  // recent largest lateness of deliveries
+  double stall_s_ = 0.0;    // recent longest delay that drained
   double each_s_ = 0.0;     // of the last counted sample by the device's clock
 };
 

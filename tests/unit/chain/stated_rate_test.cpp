@@ -68,6 +68,29 @@ TEST(Rate, ADeviceWithAClockAloneThatSendsMoreSlowlyThanItShouldIsFound) {
   }
 }
 
+// Of a device with neither, from the beginning or later, within two seconds: no time is lost, no sample missing.
+TEST(Rate, DeliveriesOfManySamplesCostNoTime) {
+  for (const double rate_hz : {97.5, 100.0, 102.5}) {
+    for (const std::uint64_t together : {10U, 30U, 60U, 100U, 180U}) {
+      for (const std::uint64_t alone_until : {0U, 1800U}) {
+        Incrementer incrementer(facts_of(Tells::nothing, 0));
+        Increment increment;
+        double sum_s = 0.0;
+        for (std::uint64_t n = 0; n < 6000; ++n) {
+          const std::uint64_t many = n < alone_until ? 1 : together;
+          const double sent_s = static_cast<double>((n / many + 1) * many) / rate_hz;
+          Reading reading = reading_at(sent_s, n, false, std::nullopt);
+          reading.at_once = static_cast<std::uint32_t>(many);
+          ASSERT_TRUE(incrementer.next(reading, increment));
+          sum_s += increment.dt_s;
+        }
+        EXPECT_NEAR(sum_s, 6000.0 / rate_hz, 0.6) << rate_hz << ' ' << together << ' ' << alone_until;
+        EXPECT_EQ(incrementer.counts().missing, 0U) << rate_hz << ' ' << together;
+      }
+    }
+  }
+}
+
 // A clock in another unit, too fast, stopped, or that jumps: after six seconds the arrivals give the time.
 TEST(Rate, AClockThatArrivalsAndNominalRateContradictIsNotUsed) {
   for (const double runs : {1e-9, 1e-3, 0.8, 1.001, 1.2, 3.0, 1000.0, 0.0}) {
