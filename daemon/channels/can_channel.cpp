@@ -10,33 +10,31 @@
 
 namespace ifog {
 
-CanChannel::CanChannel(const std::string& dbc_file, const std::string& signal, const std::string& column) {
-  std::error_code ignored;
-  if (std::filesystem::exists(dbc_file, ignored) && !std::filesystem::is_regular_file(dbc_file, ignored))
-    throw std::runtime_error(dbc_file + ": is no regular file, expected a DBC file");
-  const dbc::Database database = dbc::parse_database(read_whole_file(dbc_file), dbc_file);
-  const std::vector<dbc::SignalInMessage> found = dbc::find_signals(database, signal);
-  if (found.empty())
-    throw std::runtime_error(
-        dbc_file + ": no signal \"" + printable(signal) + "\"; expected SIGNAL or MESSAGE.SIGNAL" +
-        (database.warnings.empty() ? "" : " (a bad line: " + database.warnings.front() + ")"));
-  if (found.size() > 1)
-    throw std::runtime_error(dbc_file + ": signal \"" + printable(signal) +
-                             "\" is in several messages; expected MESSAGE.SIGNAL");
-  dbc::check_fits(database, *found.front().message, *found.front().signal);
-  message_ = *found.front().message;
-  signal_ = static_cast<std::size_t>(found.front().signal - found.front().message->signals.data());
-  if (!column.empty()) to_column_ = convert_to_column(found.front().signal->unit, column, remark_);
-}
-
-CanChannel can_channel(const ChannelConfig& channel) {
+CanChannel::CanChannel(const ChannelConfig& channel) {
+  std::string key = ".dbc";
   try {
-    const bool own_unit = channel.scale != 1.0 || channel.offset != 0.0;
-    return {channel.dbc, channel.signal, own_unit ? "" : channel.name};
+    std::error_code ignored;
+    const std::string& file = channel.dbc;
+    if (std::filesystem::exists(file, ignored) && !std::filesystem::is_regular_file(file, ignored))
+      throw std::runtime_error(file + ": is no regular file, expected a DBC file");
+    const dbc::Database database = dbc::parse_database(read_whole_file(file), file);
+    key = ".signal";
+    const std::vector<dbc::SignalInMessage> found = dbc::find_signals(database, channel.signal);
+    if (found.empty())
+      throw std::runtime_error(
+          file + ": no signal \"" + printable(channel.signal) + "\"; expected SIGNAL or MESSAGE.SIGNAL" +
+          (database.warnings.empty() ? "" : " (a bad line: " + database.warnings.front() + ")"));
+    if (found.size() > 1)
+      throw std::runtime_error(file + ": signal \"" + printable(channel.signal) +
+                               "\" is in several messages; expected MESSAGE.SIGNAL");
+    const auto& [message, signal] = found.front();
+    dbc::check_fits(database, *message, *signal);
+    message_ = *message;
+    signal_ = static_cast<std::size_t>(signal - message->signals.data());
+    if (channel.scale == 1.0 && channel.offset == 0.0)
+      to_column_ = convert_to_column(signal->unit, channel.name, remark_);
   } catch (const std::exception& error) {
-    const bool of_signal = std::string(error.what()).find(": signal \"") != std::string::npos ||
-                           std::string(error.what()).find(": no signal \"") != std::string::npos;
-    throw KeyError("channel." + channel.name + (of_signal ? ".signal" : ".dbc"), error.what());
+    throw KeyError("channel." + channel.name + key, error.what());
   }
 }
 

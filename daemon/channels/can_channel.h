@@ -14,10 +14,10 @@ namespace ifog {
 
 class CanChannel {
  public:
-  // signal: "SIGNAL" or "MESSAGE.SIGNAL". Throws std::runtime_error with one line: an error of the file, a
-  // signal that is missing or in several messages.
-  // column: values are converted from the file's unit to the one in which this name ends; "": used as they are.
-  CanChannel(const std::string& dbc_file, const std::string& signal, const std::string& column = "");
+  // Values are in the unit of the channel's name; a configured scale or offset stands for the file's unit. Throws
+  // KeyError with one line and the sensor's key: an error of the file, a signal that is missing or in several
+  // messages.
+  explicit CanChannel(const ChannelConfig& channel);
 
   [[nodiscard]] CanId id() const { return {message_.id, message_.extended}; }
   // A line on a unit that could not be converted, or "".
@@ -31,8 +31,5 @@ class CanChannel {
   UnitConversion to_column_;
   std::string remark_;
 };
-
-// As configured; a scale or offset there stands for the file's unit. Throws KeyError with the sensor's key that causes the error.
-CanChannel can_channel(const ChannelConfig& channel);
 
 }  // namespace ifog

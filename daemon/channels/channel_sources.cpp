@@ -270,7 +270,7 @@ ChannelSources::ChannelSources(std::vector<Wanted> wanted, const std::string& lc
         impl_->messages.emplace_back(std::move(one));
         break;
       case ChannelConfig::Source::can: {
-        CanChannel channel = can_channel(one.config);
+        CanChannel channel(one.config);
         auto& on_the_bus = impl_->buses[one.config.interface].channels;
         on_the_bus.emplace_back(Entrance(std::move(one)), std::move(channel));
         break;

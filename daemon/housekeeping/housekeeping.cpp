@@ -60,7 +60,7 @@ Housekeeping::Housekeeping(Config config, const PublisherMaker& make_publisher)
       int index = 0;
       std::vector<std::string> units;
       for (const ChannelConfig& channel : outside_channels(sensor)) {
-        if (channel.source == ChannelConfig::Source::can) units.push_back(can_channel(channel).remark());
+        if (channel.source == ChannelConfig::Source::can) units.push_back(CanChannel(channel).remark());
         wanted.push_back({channel, parts.outside, index++});
       }
       StatusReport report(sensor.name, parts.channels, axis_names(description),

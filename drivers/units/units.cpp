@@ -21,47 +21,22 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 constexpr std::array kAngles{Unit{"rad", 1.0},
-                             Unit{"rads", 1.0},
                              Unit{"radian", 1.0},
-                             Unit{"radians", 1.0},
-                             Unit{"mrad", 1e-3},
                              Unit{"radiant", 1.0},
-                             Unit{"millirad", 1e-3},
-                             Unit{"milliradian", 1e-3},
-                             Unit{"milliradians", 1e-3},
-                             Unit{"urad", 1e-6},
-                             Unit{"microrad", 1e-6},
-                             Unit{"microradian", 1e-6},
-                             Unit{"microradians", 1e-6},
-                             Unit{"nrad", 1e-9},
                              Unit{"deg", kDegree},
-                             Unit{"degs", kDegree},
                              Unit{"degree", kDegree},
-                             Unit{"degrees", kDegree},
                              Unit{"degre", kDegree},
-                             Unit{"degres", kDegree},
                              Unit{"degreofarc", kDegree},
                              Unit{"degdeg", kDegree},  // sign and word
-                             Unit{"cdeg", kDegree * 1e-2},
-                             Unit{"mdeg", kDegree * 1e-3},
-                             Unit{"millideg", kDegree * 1e-3},
-                             Unit{"millidegree", kDegree * 1e-3},
-                             Unit{"millidegrees", kDegree * 1e-3},
-                             Unit{"udeg", kDegree * 1e-6},
                              Unit{"arcmin", kDegree / 60.0},
                              Unit{"arcminute", kDegree / 60.0},
-                             Unit{"arcminutes", kDegree / 60.0},
                              Unit{"arcsec", kDegree / 3600.0},
                              Unit{"arcsecond", kDegree / 3600.0},
-                             Unit{"arcseconds", kDegree / 3600.0},
                              Unit{"mas", kDegree / 3600.0e3},
                              Unit{"gon", kTurn / 400.0},
                              Unit{"rev", kTurn},
-                             Unit{"revs", kTurn},
                              Unit{"revolution", kTurn},
-                             Unit{"revolutions", kTurn},
                              Unit{"turn", kTurn},
-                             Unit{"turns", kTurn},
                              Unit{"umdr", kTurn}};
 
 // Revolution in "per minute" only. By ISO 80000-3 "1/min" is a rotational frequency, while "1/s" may be an
@@ -75,18 +50,26 @@ constexpr std::array kRates{
     Unit{"upm", kTurn / 60.0},    Unit{"minutinver", kTurn / 60.0}};
 
 constexpr std::array kTimes{
-    Unit{"s", 1.0},       Unit{"sec", 1.0},     Unit{"secs", 1.0},     Unit{"second", 1.0},
-    Unit{"seconds", 1.0}, Unit{"sek", 1.0},     Unit{"ms", 1e-3},      Unit{"msec", 1e-3},
-    Unit{"us", 1e-6},     Unit{"usec", 1e-6},   Unit{"ns", 1e-9},      Unit{"min", 60.0},
-    Unit{"minute", 60.0}, Unit{"h", 3600.0},    Unit{"hr", 3600.0},    Unit{"hour", 3600.0},
-    Unit{"secon", 1.0},   Unit{"sekunde", 1.0}, Unit{"mins", 60.0},    Unit{"minutes", 60.0},
-    Unit{"std", 3600.0},  Unit{"hrs", 3600.0},  Unit{"hours", 3600.0}, Unit{"d", 86400.0},
-    Unit{"day", 86400.0}, Unit{"days", 86400.0}};
+    Unit{"s", 1.0},       Unit{"sec", 1.0},    Unit{"second", 1.0},  Unit{"sek", 1.0},
+    Unit{"ms", 1e-3},     Unit{"msec", 1e-3},  Unit{"us", 1e-6},     Unit{"usec", 1e-6},
+    Unit{"ns", 1e-9},     Unit{"min", 60.0},   Unit{"minute", 60.0}, Unit{"h", 3600.0},
+    Unit{"hr", 3600.0},   Unit{"hrs", 3600.0}, Unit{"hour", 3600.0}, Unit{"secon", 1.0},
+    Unit{"sekunde", 1.0}, Unit{"std", 3600.0}, Unit{"d", 86400.0},   Unit{"day", 86400.0}};
 
 template <std::size_t N>
 std::optional<double> find(const std::array<Unit, N>& units, std::string_view text) {
   for (const auto& [name, value] : units)
-    if (name == text) return value;
+    if (name == text || (name.size() > 2 && text == std::string(name) + "s")) return value;
+  return std::nullopt;
+}
+
+// Also with a prefix: mrad, milliradians.
+std::optional<double> find_angle(std::string_view text) {
+  if (const std::optional<double> whole = find(kAngles, text)) return whole;
+  for (const auto& [prefix, value] :
+       {Unit{"milli", 1e-3}, {"micro", 1e-6}, {"m", 1e-3}, {"u", 1e-6}, {"n", 1e-9}, {"c", 1e-2}})
+    if (text.starts_with(prefix))
+      if (const std::optional<double> rest = find(kAngles, text.substr(prefix.size()))) return value * *rest;
   return std::nullopt;
 }
 
@@ -193,7 +176,7 @@ std::optional<double> time_unit(std::string_view text) { return find(kTimes, pla
 
 std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rate) {
   const std::string unit = plain(text);
-  const std::optional<double> bare = find(kAngles, unit);
+  const std::optional<double> bare = find_angle(unit);
   if (!rate || (bare && bare_rate)) return bare;
   if (const std::optional<double> known = find(kRates, unit)) return known;
   const std::optional<Quotient> parts = quotient(unit);
@@ -203,7 +186,7 @@ std::optional<double> angle_unit(std::string_view text, bool rate, bool bare_rat
   if (*time == 60.0)
     for (const std::string_view turn : kPerMinute)
       if (parts->angle == turn) return kTurn / *time;
-  const std::optional<double> angle = find(kAngles, parts->angle);
+  const std::optional<double> angle = find_angle(parts->angle);
   if (!angle) return std::nullopt;
   return *angle / *time;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Fields of frames in either byte order: reading and writing, numbers limited to a field, time stamps, and
-// environment channels, which hold their values between frames.
+// environment channels, which hold their values between frames; what a device of three axes describes.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,20 @@
 #include <string>
 
 #include "ifog/driver.h"
+#include "ifog/options.h"
 
 namespace ifog::framing {
+
+// Of a device with axes x, y and z of one full scale, rad/s, and environment channels of these names.
+inline ifog_description three_axes(double full_scale_radps, std::span<const char* const> channels) {
+  ifog_description out{};
+  for (const char* axis : {"x", "y", "z"}) {
+    out.full_scale[out.axes] = full_scale_radps;
+    plugin::set_name(out.axis[out.axes++], axis);
+  }
+  for (const char* channel : channels) plugin::set_name(out.environment[out.environments++], channel);
+  return out;
+}
 
 // Reads from bytes whose number has been checked.
 template <std::endian kOrder>

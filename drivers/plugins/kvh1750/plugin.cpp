@@ -111,20 +111,13 @@ class Driver {
   explicit Driver(const SetUp& set_up) : set_up_(set_up) {}
 
   void describe(ifog_description& out) const {
-    out = {};
+    const bool magnetic = !set_up_.format || set_up_.format == Format::kC;
+    out = framing::three_axes(set_up_.full_scale_radps,
+                              std::span(kEnvironmentNames).first(magnetic ? kEnvironments : kMagneticField));
     out.kind = set_up_.delta_angle ? IFOG_DELTA_ANGLE : IFOG_RATE;
-    out.axes = 3;
-    plugin::set_name(out.axis[0], "x");
-    plugin::set_name(out.axis[1], "y");
-    plugin::set_name(out.axis[2], "z");
     out.sequence_modulus = kSequenceModulus;
     out.has_device_time = set_up_.format == Format::kB ? 1 : 0;
     out.nominal_rate_hz = set_up_.rate_hz;
-    const bool magnetic = !set_up_.format || set_up_.format == Format::kC;
-    out.environments = magnetic ? kEnvironments : kMagneticField;
-    for (std::size_t i = 0; i < out.environments; ++i)
-      plugin::set_name(out.environment[i], kEnvironmentNames[i]);
-    for (double& each : out.full_scale) each = set_up_.full_scale_radps;
     out.baud = 921600;
   }
 

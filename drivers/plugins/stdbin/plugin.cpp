@@ -53,18 +53,11 @@ class Driver {
   }
 
   void describe(ifog_description& out) const {
-    out = {};
+    out = framing::three_axes(full_scale_radps_, kNames);
     out.kind = IFOG_RATE;
-    out.axes = 3;
-    plugin::set_name(out.axis[0], "x");
-    plugin::set_name(out.axis[1], "y");
-    plugin::set_name(out.axis[2], "z");
     out.sequence_modulus = kSequenceModulus;
     out.has_device_time = 1;
     out.nominal_rate_hz = rate_hz_;
-    for (double& each : out.full_scale) each = full_scale_radps_;
-    out.environments = kEnvironments;
-    for (std::size_t i = 0; i < kEnvironments; ++i) plugin::set_name(out.environment[i], kNames[i]);
   }
 
   void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,

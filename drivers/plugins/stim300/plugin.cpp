@@ -132,18 +132,11 @@ class Driver {
       : set_up_(read_set_up(options)), finder_(Protocol{set_up_.terminated}) {}
 
   void describe(ifog_description& out) const {
-    out = {};
+    out = framing::three_axes(kFullScale_radps, kNames);
     out.kind = set_up_.kind;
-    out.axes = 3;
-    plugin::set_name(out.axis[0], "x");
-    plugin::set_name(out.axis[1], "y");
-    plugin::set_name(out.axis[2], "z");
     out.sequence_modulus = set_up_.counter_step == 0 ? 0 : kCounterModulus / set_up_.counter_step;
     out.nominal_rate_hz = set_up_.rate_hz;
     out.angle_wrap_rad = set_up_.kind == IFOG_ANGLE ? kAngleWrap_rad : 0.0;
-    for (double& each : out.full_scale) each = kFullScale_radps;
-    out.environments = kEnvironments;
-    for (std::size_t i = 0; i < kEnvironments; ++i) plugin::set_name(out.environment[i], kNames[i]);
   }
 
   void decode(std::span<const std::uint8_t> bytes, std::int64_t arrival_ns, ifog_emit_sample emit,

@@ -127,7 +127,7 @@ TEST(CanChannel, HasTheUnitOfItsName) {
     channel.dbc = folder.path("bus.dbc");
     channel.signal = "T";
     channel.scale = scale;
-    const CanChannel read = can_channel(channel);
+    const CanChannel read(channel);
     double out = NAN;
     EXPECT_TRUE(read.decode(frame, out));
     EXPECT_EQ(read.remark().empty(), channel.name != "coil_V") << read.remark();
