@@ -36,7 +36,7 @@ class Entrance {
  public:
   explicit Entrance(ChannelSources::Wanted wanted)
       : wanted_(std::move(wanted)),
-        plausible_(channel_limits(wanted_.config.name, wanted_.config.limits), IFOG_MAX_ENVIRONMENT_VALUE) {}
+        plausible_(channel_limits(wanted_.config.name, wanted_.config.limits), kMostChannel) {}
   [[nodiscard]] const ChannelConfig& config() const { return wanted_.config; }
   [[nodiscard]] const std::shared_ptr<ChannelTable>& table() const { return wanted_.table; }
 

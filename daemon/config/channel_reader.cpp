@@ -72,7 +72,7 @@ ChannelConfig read_channel(const toml::table& table, const std::string& where, R
   ChannelConfig out;
   out.name = in.required_text("name", "a channel's name with its unit, \"temperature_degC\"");
   take(in.number("max_age_s", kNotNegative), out.max_age_s);
-  out.limits = read_limits(in, IFOG_MAX_ENVIRONMENT_VALUE, context);
+  out.limits = read_limits(in, kMostChannel, context);
   const auto source = in.choice("source", {"frame", "can", "lcm", "file"});
   if (!source) {
     if (!in.has("source"))
@@ -82,8 +82,8 @@ ChannelConfig read_channel(const toml::table& table, const std::string& where, R
   if (*source == "frame") {
     out.source = ChannelConfig::Source::frame;
   } else {
-    take(in.number("scale", {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE}), out.scale);
-    take(in.number("offset", {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE}), out.offset);
+    take(in.number("scale", {-kMostChannel, kMostChannel}), out.scale);
+    take(in.number("offset", {-kMostChannel, kMostChannel}), out.offset);
     if (out.scale == 0.0 && !context.recorded)
       in.complain("scale", " = 0: expected a number other than 0, of which every value would be the offset");
     if (!out.name.empty()) check_name(in, out.name, context);

@@ -111,8 +111,8 @@ SensorConfig read_sensor(const toml::table& table, ReadingContext& context) {
   out.driver = in.required_text("driver", "the name of a driver, see `ifog drivers`");
   out.model = context.absolute(in.text("model").value_or(""));
   take(in.number("nominal_rate_hz", {1e-3, 1e6}), out.nominal_rate_hz);
-  take(in.number("range_radps", {1e-9, IFOG_MAX_RATE}), out.range_radps);
-  out.limits = read_limits(in, IFOG_MAX_RATE, context);
+  take(in.number("range_radps", {1e-9, kMostRate_radps}), out.range_radps);
+  out.limits = read_limits(in, kMostRate_radps, context);
   if (out.range_radps > 0.0 && !context.recorded) {
     if (out.limits.minimum >= out.range_radps)
       in.complain("minimum", ": expected less than range_radps, or no rate is left");

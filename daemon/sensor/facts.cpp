@@ -14,6 +14,8 @@ namespace ifog {
 
 static_assert(kMaxAxes == IFOG_MAX_AXES && kMaxChannels >= IFOG_MAX_ENVIRONMENT,
               "the chain must hold whatever a plugin may deliver");
+static_assert(kMostRate_radps == IFOG_MAX_RATE && kMostChannel == IFOG_MAX_ENVIRONMENT_VALUE,
+              "the chain must check plugins against the interface");
 
 SensorFacts sensor_facts(const ifog_description& description, double nominal_rate_hz, int outside_channels) {
   SensorFacts facts;

@@ -50,7 +50,7 @@ class SamplePace {
     bunch_.elapsed_s += elapsed_s;
     bunch_.samples += static_cast<double>(samples);
     bunch_.whole = bunch_.whole && steady;
-    if (elapsed_s < kApart * nominal_s_) return;
+    if (elapsed_s < 0.5 * nominal_s_) return;  // sent together with the one before
     if (bunch_.whole) {
       const double keeps = std::max(0.0, 1.0 - bunch_.elapsed_s / kMemory_s);
       elapsed_s_ = keeps * elapsed_s_ + bunch_.elapsed_s;
@@ -62,7 +62,6 @@ class SamplePace {
  private:
   static constexpr double kMeasured_s = 1.0, kMeasuredSamples = 16.0;  // needed for a measurement
   static constexpr double kMemory_s = 60.0, kForgets = 0.998;
-  static constexpr double kApart = 0.5;        // periods between samples that were not sent together
   static constexpr double kCrystals = 1e-4;    // largest relative difference of two crystals
   static constexpr double kStatedRate = 0.02;  // largest relative error of a nominal rate (KVH DSP-3000)
 

@@ -36,7 +36,7 @@ Incrementer::Incrementer(const SensorFacts& facts) noexcept
   for (std::size_t axis = 0; axis < kMaxAxes; ++axis)
     rate_[axis] = PlausibleRate(facts.rate, facts.full_scale_radps[axis]);
   for (std::size_t c = 0; c < kMaxChannels; ++c)
-    channels_.plausible[c] = PlausibleValue(facts.channel[c], IFOG_MAX_ENVIRONMENT_VALUE);
+    channels_.plausible[c] = PlausibleValue(facts.channel[c], kMostChannel);
   channels_.value.fill(kNaN);
   channels_.age_s.fill(std::numeric_limits<float>::infinity());
 }
@@ -89,7 +89,7 @@ void Incrementer::look_at_clock(const Step& now, double lasts_s) noexcept {
   timeline_ = Timeline(facts_.sequence_modulus, facts_.nominal_rate_hz);
   labels_ = {.clock = {period_s_, clock_memory(facts_.nominal_rate_hz)}};
   stretch_ = {};
-  begins_ = true;
+  before_.timeline = false;
 }
 
 Timeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
@@ -104,7 +104,7 @@ Timeline::Frame Incrementer::frame_of(const Reading& reading) const noexcept {
   frame.arrival_ns = reading.arrival_ns;
   frame.recorded = reading.arrival_recorded;
   frame.at_once = reading.at_once;
-  frame.reopened = reopened_;
+  frame.reopened = before_.reopened;
   frame.values = {reading.value.data(), static_cast<std::size_t>(facts_.axes)};
   return frame;
 }
@@ -240,10 +240,10 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
     labels_.early = 0;
     labels_.late_since_ns = 0;
   }
-  moved = moved && started_;
+  moved = moved && before_.started;
   if (moved) labels_.clock.restart();
   // Stamps of a log are by a wall clock, which was set; with an unslewed clock the line moves.
-  if (started_ && (wall_was_set(reading) || (moved && reading.arrival_recorded))) {
+  if (before_.started && (wall_was_set(reading) || (moved && reading.arrival_recorded))) {
     out.flags |= kClockStep;
     ++counts_.clock_steps;
   } else if (moved) {
@@ -254,7 +254,7 @@ void Incrementer::label(const Reading& reading, const Step& step, Increment& out
       ns_after(labels_.clock.advance(periods, delayed ? 0 : reading.arrival_ns), reading.wall_shift_ns);
   // Later than the last label by at least the message's 1 us: a young line moves by as much as arrivals
   // scatter.
-  if (started_ && (out.flags & kClockStep) == 0)
+  if (before_.started && (out.flags & kClockStep) == 0)
     out.utime_ns = std::max(out.utime_ns, ns_after(last_.utime_ns, 1000));
 }
 
@@ -278,7 +278,7 @@ void Incrementer::restart() noexcept {
 bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   const Timeline::Frame frame = frame_of(reading);
   Step now;
-  if (!begins_) {
+  if (before_.timeline) {
     now = timeline_.next(frame);
     if (now.out_of_turn) {
       ++counts_.repeated;
@@ -288,14 +288,14 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
     sequence_ += now.samples;
   } else {
     now.dt_s = period_s_;
-    now.gap = now.clock_set = started_;  // its clock has been refused
-    sequence_ = started_ ? sequence_ + 1 : reading.has_sequence ? reading.sequence : 0;
+    now.gap = now.clock_set = before_.started;  // its clock has been refused
+    sequence_ = before_.started ? sequence_ + 1 : reading.has_sequence ? reading.sequence : 0;
     now.time_ns = timeline_.first(frame);
   }
   out.flags = 0;
   if (now.gap) pass_gap(now, out);
   if (now.restarted) restart();
-  begins_ = false;
+  before_.timeline = true;
   look_at_rate(frame, now);
   if (now.clock_set) {
     out.flags |= kSensorClockSet;
@@ -315,8 +315,8 @@ bool Incrementer::next(const Reading& reading, Increment& out) noexcept {
   hold_channels(reading, now.samples, out);
   ++counts_.samples;
   last_ = {reading.wall_shift_ns, out.utime_ns, reading.read_ns};
-  started_ = true;
-  reopened_ = false;
+  before_.started = true;
+  before_.reopened = false;
   return true;
 }
 

@@ -49,7 +49,7 @@ class Incrementer {
   // exception.
   bool next(const Reading& reading, Increment& out) noexcept;
   // The device was closed and opened: a gap of unknown length precedes the next sample.
-  void discontinuity() noexcept { reopened_ = true; }
+  void discontinuity() noexcept { before_.reopened = true; }
 
   [[nodiscard]] const IncrementerCounts& counts() const noexcept { return counts_; }
   // Bits of the axes that have been valid at least once.
@@ -92,9 +92,12 @@ class Incrementer {
   } labels_;
   Timeline timeline_;
   std::optional<double> refused_clock_;
-  bool started_ = false;
-  bool begins_ = true;  // the next reading is the first of timeline_
-  bool reopened_ = false;
+  // What precedes the next reading.
+  struct Before {
+    bool started = false;   // any reading
+    bool timeline = false;  // one of timeline_
+    bool reopened = false;  // and the device was closed and opened since
+  } before_;
   // Previous reading; its channels are kept below.
   struct Last {
     std::int64_t wall_shift_ns = 0, utime_ns = 0, read_ns = 0;

@@ -7,14 +7,16 @@
 #include <cstdint>
 #include <optional>
 
-#include "drivers/ifog/driver.h"
 #include "drivers/units/turn.h"
 #include "filters/chain/reading.h"
 
 namespace ifog {
 
-// No sensor exceeds it: beyond 1e9 rad a float32 resolves 64 rad.
+// Limits that no sensor exceeds: rad/s, rad, unit of the channel. A spinning projectile turns at 2e3 rad/s;
+// beyond 1e9 rad a float32 resolves 64 rad; a 64-bit counter is below 2e19.
+inline constexpr double kMostRate_radps = 1e4;
 inline constexpr double kMostAngle_rad = 1e9;
+inline constexpr double kMostChannel = 1e20;
 
 enum class Verdict : std::uint8_t { plausible, saturated, implausible };
 
@@ -49,7 +51,7 @@ class PlausibleValue {
 
  private:
   Limits limits_;
-  double most_ = IFOG_MAX_ENVIRONMENT_VALUE;
+  double most_ = kMostChannel;
   double last_ = 0.0, suspect_ = 0.0;
   bool known_ = false, suspected_ = false;
 };
@@ -59,7 +61,7 @@ class PlausibleRate {
  public:
   PlausibleRate() = default;
   PlausibleRate(const Limits& limits, double full_scale_radps) noexcept
-      : value_(limits, IFOG_MAX_RATE), full_scale_radps_(full_scale_radps) {}
+      : value_(limits, kMostRate_radps), full_scale_radps_(full_scale_radps) {}
 
   [[nodiscard]] Verdict take(double rate_radps) noexcept {
     if (full_scale_radps_ > 0.0 && std::abs(rate_radps) >= full_scale_radps_) return Verdict::saturated;

@@ -183,7 +183,7 @@ void ChainParts::compensate(const Increment& in, ChainOutput& out) noexcept {
 // Rejects an implausibly large correction (a wrong model), so that it does not reach the angle.
 void ChainParts::refuse_impossible(const Increment& in, ChainOutput& out) noexcept {
   for (std::size_t i = 0; i < static_cast<std::size_t>(facts_.axes); ++i) {
-    const double most = facts_.full_scale_radps[i] > 0.0 ? facts_.full_scale_radps[i] : IFOG_MAX_RATE;
+    const double most = facts_.full_scale_radps[i] > 0.0 ? facts_.full_scale_radps[i] : kMostRate_radps;
     const bool measured = in.covered_s[i] > 0.0;
     // NaN fails these comparisons.
     if (!measured || (std::abs(effects_.correction.correction_radps[i]) < most &&

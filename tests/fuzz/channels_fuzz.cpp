@@ -42,9 +42,9 @@ ifog::Limits limits(const std::uint8_t* data) {
   std::array<double, 3> number{};
   std::memcpy(number.data(), data, sizeof number);
   ifog::Limits out;
-  if (std::abs(number[0]) <= IFOG_MAX_ENVIRONMENT_VALUE) out.minimum = number[0];
-  if (std::abs(number[1]) <= IFOG_MAX_ENVIRONMENT_VALUE) out.maximum = number[1];
-  if (number[2] >= 0.0 && number[2] <= 2.0 * IFOG_MAX_ENVIRONMENT_VALUE) out.max_step = number[2];
+  if (std::abs(number[0]) <= ifog::kMostChannel) out.minimum = number[0];
+  if (std::abs(number[1]) <= ifog::kMostChannel) out.maximum = number[1];
+  if (number[2] >= 0.0 && number[2] <= 2.0 * ifog::kMostChannel) out.max_step = number[2];
   return out.minimum < out.maximum ? out : ifog::Limits{};
 }
 
@@ -67,7 +67,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const auto* const line_end = std::find(data + kLimits, end, '\n');
   const std::optional<ifog::LcmField> wanted = field({data + kLimits, line_end});
   if (!wanted || line_end == end) return 0;
-  ifog::PlausibleValue plausible(allowed, IFOG_MAX_ENVIRONMENT_VALUE);
+  ifog::PlausibleValue plausible(allowed, ifog::kMostChannel);
   std::optional<double> held, before;
   for (const auto* at = line_end + 1; end - at >= 2;) {
     const std::size_t length = std::min<std::size_t>(at[1], static_cast<std::size_t>(end - at - 2));
@@ -78,14 +78,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (!wanted->read(bytes, value, utime)) continue;
     expect(ifog::is_message(bytes));
     if (plausible.take(value)) {
-      expect(std::abs(value) <= IFOG_MAX_ENVIRONMENT_VALUE && value >= allowed.minimum &&
-             value <= allowed.maximum);
+      expect(std::abs(value) <= ifog::kMostChannel && value >= allowed.minimum && value <= allowed.maximum);
       expect(!held || std::abs(value - *held) <= allowed.max_step ||
              (before && std::abs(value - *before) <= allowed.max_step));
       held = value;
     }
     // Values beyond the limits neither confirm nor reject a jump.
-    if (std::abs(value) <= IFOG_MAX_ENVIRONMENT_VALUE && value >= allowed.minimum && value <= allowed.maximum)
+    if (std::abs(value) <= ifog::kMostChannel && value >= allowed.minimum && value <= allowed.maximum)
       before = value;
   }
   return 0;

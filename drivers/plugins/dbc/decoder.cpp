@@ -83,18 +83,18 @@ void Decoder::learn_order() {
 // A mean of logarithms, so that neither a silence nor lost frames decide.
 void Decoder::learn_pause(std::uint32_t brings, std::int64_t arrival_ns) noexcept {
   constexpr double kMemory = 256.0, kShortest_ns = 1e3, kLongest_ns = 1e9;  // samples; resolution of a log
-  const std::int64_t before_ns = std::exchange(arrived_ns_, arrival_ns);
+  const std::int64_t before_ns = std::exchange(pauses_.arrived_ns, arrival_ns);
   if (beginning_axes_ == all_axes_ || before_ns < 0 || arrival_ns == 0) return;
   const auto since_ns = static_cast<double>(arrival_ns - before_ns);
   const double pause = std::log2(std::clamp(since_ns, kShortest_ns, kLongest_ns));
-  for (std::size_t i = 0; i < pause_.size(); ++i)
+  for (std::size_t i = 0; i < pauses_.mean.size(); ++i)
     if ((brings & bit(i)) != 0) {
-      pause_[i].count = std::min(pause_[i].count + 1.0, kMemory);
-      pause_[i].mean += (pause - pause_[i].mean) / pause_[i].count;
+      pauses_.count[i] = std::min(pauses_.count[i] + 1.0, kMemory);
+      pauses_.mean[i] += (pause - pauses_.mean[i]) / pauses_.count[i];
     }
-  const Pause& here = pause_[static_cast<std::size_t>(std::countr_zero(brings))];
-  const Pause& assumed = pause_[static_cast<std::size_t>(std::countr_zero(beginning_axes_))];
-  if (assumed.count == 0.0 || here.mean <= assumed.mean + 1.0) return;
+  const auto here = static_cast<std::size_t>(std::countr_zero(brings));
+  const auto assumed = static_cast<std::size_t>(std::countr_zero(beginning_axes_));
+  if (pauses_.count[assumed] == 0.0 || pauses_.mean[here] <= pauses_.mean[assumed] + 1.0) return;
   give_up();
   beginning_axes_ = brings;
 }
@@ -124,7 +124,7 @@ void Decoder::give_up() noexcept {
 
 void Decoder::reset() noexcept {
   give_up();
-  arrived_ns_ = -1;
+  pauses_.arrived_ns = -1;
   last_.counted = false;
   sample_.environment_fresh = 0;
   timed_ = false;

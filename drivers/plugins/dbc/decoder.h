@@ -67,16 +67,15 @@ class Decoder {
   std::vector<Wanted> wanted_;
   std::uint32_t all_axes_ = 0;        // bit i: axis i
   std::uint32_t beginning_axes_ = 0;  // any of these begins a sample
-  // Mean of the base-2 logarithm of the time, ns, from any axis's frame to the next one, with this axis.
-  struct Pause {
-    double mean = 0.0, count = 0.0;
-  };
-  std::array<Pause, IFOG_MAX_AXES> pause_;
-  std::int64_t arrived_ns_ = -1;  // the last axis's frame; -1: none
-  std::uint32_t present_ = 0;     // axes of the present sample
-  std::uint32_t good_ = 0;        // of these, axes with a plausible value
-  bool counted_ = false;          // its counter is known
-  std::uint32_t frames_ = 0;      // number of frames with its axes
+  // Base-2 logarithm of the time, ns, from any axis's frame to the next one, with this axis.
+  struct Pauses {
+    std::array<double, IFOG_MAX_AXES> mean{}, count{};
+    std::int64_t arrived_ns = -1;  // the last axis's frame; -1: none
+  } pauses_;
+  std::uint32_t present_ = 0;  // axes of the present sample
+  std::uint32_t good_ = 0;     // of these, axes with a plausible value
+  bool counted_ = false;       // its counter is known
+  std::uint32_t frames_ = 0;   // number of frames with its axes
   // Last complete sample, if it had a counter. A counter that never changed does not distinguish samples.
   struct Last {
     bool counted = false;
