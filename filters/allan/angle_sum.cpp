@@ -3,52 +3,85 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <utility>
 
+#include "filters/allan/deviation.h"
 #include "filters/allan/two_sum.h"
 
 namespace ifog {
+namespace {
 
-AngleSum::AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
-  find_mean(rate_radps, stretches);
-  if (rate_radps.in_memory().size() < rate_radps.size() || rate_radps.size() > kMostInMemory) {
-    std::vector<double> some(LongSeries::kAtOnce);  // written in blocks
-    std::size_t held = 0, total = stretches.size();
-    for (const Stretch& s : stretches) total += s.size();
-    long_.expect(total);
-    sum_up(rate_radps, stretches, [&](double angle) {
-      some[held++] = angle;
-      if (held < some.size()) return;
-      long_.add(some);
-      held = 0;
-    });
-    long_.add(std::span(some).first(held));
-    return;
-  }
-  std::size_t total = stretches.size();
-  for (const Stretch& s : stretches) total += s.size();
-  angle_.reserve(total);
-  sum_up(rate_radps, stretches, [this](double angle) { angle_.push_back(angle); });
+// m σ²(m) at 1, 2, 4, … samples.
+std::vector<double> levels_of(const AngleSum& sum, Deviation kind) {
+  std::vector<std::size_t> m;
+  for (std::size_t each = 1; each == 1 || 16 * each <= sum.longest(); each *= 2) m.push_back(each);
+  std::vector<double> levels;
+  for (const DeviationPoint& point : deviation(sum, m, kind))
+    levels.push_back(static_cast<double>(point.m) * point.variance);
+  return levels;
 }
 
-AngleSum::AngleSum(std::vector<double>&& rate_radps, std::span<const Stretch> stretches) {
-  const std::size_t n = rate_radps.size();
-  if (stretches.size() != 1 || stretches[0].size() != n || rate_radps.capacity() == n) {
-    *this = AngleSum(SeriesView(rate_radps), stretches);
-    rate_radps = {};
-    return;
+// Mean of as many samples as are lost on either side of the hole before `after`.
+double mean_around(const SeriesView& rate, std::size_t end, const Stretch& after) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < after.lost; ++i) sum += rate.at(end - 1 - i) + rate.at(after.begin + i);
+  return sum / (2.0 * static_cast<double>(after.lost));
+}
+
+// Of the white part of the noise.
+double least_level(const AngleSum& sum) { return std::ranges::min(levels_of(sum, Deviation::kAllan)); }
+
+}  // namespace
+
+// Stretches without `lost` where the hole is not to be filled.
+//
+// The mean of h samples on either side replaces h samples. Its error e in their angle is half a third difference, of
+// variance 3/2 h² times the Hadamard variance at h. It is in 2m of the n differences of averages over m, so one hole
+// adds 2m e² / (2 m² n) to σ²(m), and all holes add the part Σe² / (n m σ²(m)): at most Σe² / n of the least m σ²(m).
+// For white noise that is 1.5 times the share of filled samples; averages shorter than a hole lose at most that share.
+std::vector<Stretch> AngleSum::negligible(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
+  constexpr double kMost = 0.02;  // of a variance; of the samples
+  std::vector<Stretch> apart(stretches.begin(), stretches.end());
+  std::vector<std::size_t> holes;  // the shortest first
+  for (std::size_t i = 0; i < apart.size(); ++i)
+    if (const std::size_t lost = std::exchange(apart[i].lost, 0);
+        lost > 0 && lost <= std::min(apart[i - 1].size(), apart[i].size()))
+      holes.push_back(i);
+  if (holes.empty()) return apart;
+  std::ranges::stable_sort(holes, {}, [&](std::size_t i) { return stretches[i].lost; });
+  const AngleSum sum(rate_radps, apart, Holes::kFilled);
+  const double most = kMost * static_cast<double>(sum.samples());
+  // A line has no error where h is a multiple of its period; so the largest one up to h counts.
+  std::vector<double> variance = levels_of(sum, Deviation::kHadamard);
+  for (std::size_t k = 0; k < variance.size(); ++k)
+    variance[k] =
+        std::max(1.5 * static_cast<double>(std::size_t{1} << k) * variance[k], k > 0 ? variance[k - 1] : 0.0);
+  for (double level = least_level(sum);;) {
+    std::vector<Stretch> chosen = apart;
+    double added = 0.0, filled = 0.0;
+    for (const std::size_t i : holes) {
+      const std::size_t lost = stretches[i].lost, octave = std::bit_width(lost - 1);
+      if (octave >= variance.size()) break;
+      added += variance[octave], filled += static_cast<double>(lost);
+      if (!(added <= most * level && filled <= most)) break;
+      chosen[i].lost = lost;
+    }
+    const double here = least_level(AngleSum(rate_radps, chosen, Holes::kFilled));
+    if (!(here < level)) return chosen;
+    level = here;  // longer averages show less noise
   }
+}
+
+AngleSum::AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches, Holes holes)
+    : angle_(rate_radps.in_memory().size() == rate_radps.size() ? kMostInMemory : LongSeries::kInMemory) {
+  std::vector<Stretch> chosen;
+  if (holes == Holes::kFilledIfNegligible) stretches = chosen = negligible(rate_radps, stretches);
   find_mean(rate_radps, stretches);
-  angle_ = std::move(rate_radps);
-  parts_.push_back({0, n + 1});
-  angle_.push_back(0.0);
-  double high = 0.0, low = 0.0, error = 0.0, rate = angle_[0];
-  angle_[0] = 0.0;
-  for (std::size_t i = 1; i <= n; ++i) {
-    two_sum(high, rate - mean_, high, error);
-    low += error;
-    rate = std::exchange(angle_[i], high + low);
-  }
+  std::size_t total = stretches.size();
+  for (const Stretch& s : stretches) total += s.size() + s.lost;
+  angle_.expect(total);
+  sum_up(rate_radps, stretches);
 }
 
 void AngleSum::find_mean(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
@@ -77,31 +110,35 @@ void AngleSum::find_mean(const SeriesView& rate_radps, std::span<const Stretch> 
   mean_ = total > 0 ? (all + left) / static_cast<double>(total) : 0.0;
 }
 
-template <typename Add>
-void AngleSum::sum_up(const SeriesView& rate_radps, std::span<const Stretch> stretches, Add add) {
-  std::size_t first = 0;
+void AngleSum::sum_up(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
+  double high = 0.0, low = 0.0, error = 0.0;
+  std::vector<double> angles;
+  // The error of the rounded mean is a constant, which a second difference cancels.
+  const auto add = [&](double rate) {
+    two_sum(high, rate - mean_, high, error);
+    low += error;
+    angles.push_back(high + low);
+  };
   for (const Stretch& s : stretches) {
-    parts_.push_back({first, s.size() + 1});
-    first += s.size() + 1;
-    double high = 0.0, low = 0.0, error = 0.0;
-    add(0.0);
+    if (s.lost == 0) {
+      parts_.push_back({angle_.size(), 1});
+      high = low = 0.0;
+      angle_.add(0.0);
+    }
+    const double fill = s.lost == 0 ? 0.0 : mean_around(rate_radps, (&s)[-1].end, s);
+    for (std::size_t i = 0; i < s.lost; ++i) add(fill);
     for_each_piece(rate_radps, s.begin, s.end, [&](std::span<const double> rates, std::size_t) {
-      for (const double rate : rates) {
-        // The error of the rounded mean is a constant, which a second difference cancels.
-        two_sum(high, rate - mean_, high, error);
-        low += error;
-        add(high + low);
-      }
+      for (const double rate : rates) add(rate);
+      angle_.add(angles);
+      angles.clear();
     });
+    parts_.back().angles += s.lost + s.size();
+    filled_ += s.lost;
   }
 }
 
-SeriesView AngleSum::angle() const { return angle_.empty() ? SeriesView(long_) : SeriesView(angle_); }
-
 std::size_t AngleSum::longest() const {
-  std::size_t n = 0;
-  for (const Part& part : parts_) n = std::max(n, part.angles - 1);
-  return n;
+  return parts_.empty() ? 0 : std::ranges::max(parts_, {}, &Part::angles).angles - 1;
 }
 
 }  // namespace ifog

@@ -12,39 +12,40 @@
 
 namespace ifog {
 
-// Angle at each instant in (rad/s × sample): running sum of the rate minus its mean; each stretch starts at
+// Angle at each instant in (rad/s × sample): running sum of the rate minus its mean; each part starts at
 // zero. Each entry is rounded once (sum in two doubles). So 10⁸ samples whose bias is a million times the
-// noise keep nine digits of the deviation at one sample.
+// noise keep nine digits of the deviation at one sample. A part is one stretch, or several with the holes
+// between them filled, where that changes no variance of the Allan family by more than 2 %.
 class AngleSum {
  public:
+  enum class Holes { kFilledIfNegligible, kFilled };  // Stretch::lost
   // Longer series are kept in a file.
   static constexpr std::size_t kMostInMemory = std::size_t{1} << 23U;
 
   // Needs 8 bytes per sample, in memory or in a file like the rates. No NaN inside a stretch.
-  AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches);
-  // Reuses the vector's memory if one stretch covers all samples and the vector has capacity for one more;
-  // else copies and then frees it.
-  AngleSum(std::vector<double>&& rate_radps, std::span<const Stretch> stretches);
+  AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches,
+           Holes holes = Holes::kFilledIfNegligible);
 
   struct Part {
     std::size_t first;  // index of its first angle
     std::size_t angles;
   };
-  [[nodiscard]] SeriesView angle() const;
+  [[nodiscard]] SeriesView angle() const { return angle_; }
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   [[nodiscard]] double mean_radps() const { return mean_; }
-  [[nodiscard]] std::size_t samples() const { return angle().size() - parts_.size(); }
-  [[nodiscard]] std::size_t longest() const;  // samples of the longest stretch
+  [[nodiscard]] std::size_t samples() const { return angle_.size() - parts_.size() - filled_; }
+  [[nodiscard]] std::size_t filled() const { return filled_; }  // samples in holes, besides samples()
+  [[nodiscard]] std::size_t longest() const;                    // samples of the longest part
 
  private:
+  static std::vector<Stretch> negligible(const SeriesView& rate_radps, std::span<const Stretch> stretches);
   void find_mean(const SeriesView& rate_radps, std::span<const Stretch> stretches);
-  template <typename Add>
-  void sum_up(const SeriesView& rate_radps, std::span<const Stretch> stretches, Add add);
+  void sum_up(const SeriesView& rate_radps, std::span<const Stretch> stretches);
 
-  std::vector<double> angle_;
-  LongSeries long_;  // used instead of angle_ for long series
+  LongSeries angle_;
   std::vector<Part> parts_;
   double mean_ = 0.0;
+  std::size_t filled_ = 0;
 };
 
 }  // namespace ifog

@@ -3,15 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "filters/allan/deviation.h"
 #include "filters/series/samples.h"
 
 namespace ifog {
 namespace {
-
-constexpr double kMissing = std::numeric_limits<double>::quiet_NaN();
 
 // Running sums relative to the first value, and counts of values.
 struct GappedSum {
@@ -28,8 +25,7 @@ struct GappedSum {
   }
 
   [[nodiscard]] double deviation(std::size_t m) const {
-    double square = 0.0;
-    double n = 0.0;
+    double square = 0.0, n = 0.0;
     const double least = 0.5 * static_cast<double>(m);
     for (std::size_t i = 0; i + 2 * m < sum.size(); ++i) {
       const double one = there[i + m] - there[i];
@@ -39,7 +35,7 @@ struct GappedSum {
       square += d * d;
       n += 1.0;
     }
-    return n > 0.0 ? std::sqrt(0.5 * square / n) : kMissing;
+    return n > 0.0 ? std::sqrt(0.5 * square / n) : std::nan("");
   }
 };
 
@@ -48,7 +44,7 @@ struct GappedSum {
 std::vector<double> gapped_deviation(std::span<const double> rate_radps, std::span<const std::size_t> m) {
   std::vector<double> found;
   found.reserve(m.size());
-  if (std::all_of(rate_radps.begin(), rate_radps.end(), [](double v) { return std::isfinite(v); })) {
+  if (std::ranges::all_of(rate_radps, [](double v) { return std::isfinite(v); })) {
     const std::vector<Stretch> whole = {{0, rate_radps.size()}};
     for (const DeviationPoint& point : deviation(AngleSum(rate_radps, whole), m, Deviation::kAllan))
       found.push_back(std::sqrt(point.variance));
@@ -56,9 +52,8 @@ std::vector<double> gapped_deviation(std::span<const double> rate_radps, std::sp
     const GappedSum sums(rate_radps);
     for (const std::size_t each : m) found.push_back(sums.deviation(each));
   }
-  for (std::size_t i = 0; i < m.size(); ++i) {
-    if (rate_radps.size() < 3 * m[i]) found[i] = kMissing;
-  }
+  for (std::size_t i = 0; i < m.size(); ++i)
+    if (rate_radps.size() < 3 * m[i]) found[i] = std::nan("");
   return found;
 }
 

@@ -242,26 +242,21 @@ std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_
                                const SampleClock& clock) {
   const std::vector<Hole> gaps = holes(time_s, clock);
   std::vector<Stretch> found;
-  Stretch now;
-  const auto close = [&](std::size_t next) {
-    if (now.size() > 0) found.push_back(now);
-    now = {next, next};
-  };
+  std::size_t lost = 0;  // since the last value
   auto gap = gaps.begin();
   for_each_piece(rate_radps, 0, rate_radps.size(), [&](std::span<const double> rate, std::size_t first) {
     for (std::size_t k = 0; k < rate.size(); ++k) {
       const std::size_t i = first + k;
-      const bool last = gap != gaps.end() && gap->after == i;
-      if (last) ++gap;
       if (std::isnan(rate[k])) {
-        close(i + 1);
-        continue;
+        ++lost;
+      } else {
+        if (found.empty() || lost > 0) found.push_back({i, i, found.empty() ? 0 : lost});
+        found.back().end = i + 1;
+        lost = 0;
       }
-      now.end = i + 1;
-      if (last) close(i + 1);
+      if (gap != gaps.end() && gap->after == i) lost += gap++->lost;
     }
   });
-  close(rate_radps.size());
   return found;
 }
 

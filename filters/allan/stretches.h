@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sample time and missing samples from a capture's time column. An Allan variance across a gap would compare
-// averages that are not adjacent, so a gap ends a stretch.
+// averages that are not adjacent, so a gap ends a stretch; AngleSum fills holes whose effect is negligible.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +14,7 @@ namespace ifog {
 // Samples begin … end − 1, equidistant and complete.
 struct Stretch {
   std::size_t begin = 0, end = 0;
+  std::size_t lost = 0;  // samples between the stretch before it and this one; 0: unknown
   [[nodiscard]] std::size_t size() const { return end - begin; }
   bool operator==(const Stretch&) const = default;
 };

@@ -96,8 +96,7 @@ double theo1_variance(std::span<const double> angle, std::size_t m) {
 
 std::vector<LongPoint> theo1(const AngleSum& sum, const TermVariances& terms, double confidence,
                              int per_decade) {
-  const auto part = std::max_element(sum.parts().begin(), sum.parts().end(),
-                                     [](const auto& a, const auto& b) { return a.angles < b.angles; });
+  const auto part = std::ranges::max_element(sum.parts(), {}, &AngleSum::Part::angles);
   if (part == sum.parts().end() || part->angles <= kFewestSamples) return {};
   const std::size_t step = std::max<std::size_t>(1, (part->angles - 1) / kPlaces);
   const double scale = static_cast<double>(step);

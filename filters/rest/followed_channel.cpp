@@ -32,9 +32,8 @@ Pairs pairs_of(const SeriesView& rate, std::span<const Stretch> parts, std::size
   for (std::size_t g = begin; (g + 1) * group <= channel.means().size(); ++g) {
     const std::size_t from = g * rows - first_row, to = from + rows;
     if (to > rate.size()) break;
-    const bool rests = std::any_of(parts.begin(), parts.end(),
-                                   [&](const Stretch& part) { return part.begin <= from && to <= part.end; });
-    if (!rests) continue;
+    const auto rests = [&](const Stretch& part) { return part.begin <= from && to <= part.end; };
+    if (std::ranges::none_of(parts, rests)) continue;
     double values = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < group; ++i) values += channel.means()[g * group + i];
     for_each_piece(rate, from, to, [&](std::span<const double> piece, std::size_t) {

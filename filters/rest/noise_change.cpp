@@ -317,7 +317,7 @@ void leave_out(const Found& found, std::vector<NoiseLevel>& all) {
 std::vector<NoiseChange> stands_still(std::vector<Stretch> held, std::size_t samples, double period_s,
                                       const std::function<double(std::size_t)>& time_s) {
   std::erase_if(held, [&](const Stretch& each) { return each.size() * kTimes < samples; });
-  std::sort(held.begin(), held.end(), [](const Stretch& a, const Stretch& b) { return a.size() > b.size(); });
+  std::ranges::sort(held, std::ranges::greater{}, &Stretch::size);
   held.resize(std::min(held.size(), kMostChanges));
   std::vector<NoiseChange> out;
   out.reserve(held.size());
@@ -350,8 +350,7 @@ std::vector<NoiseChange> noise_changes(const SeriesView& rate_radps, std::span<c
     changes.back().to_s = time_s(std::min(rate_radps.size() - 1, found.end * rate_radps.size() / kCells));
     leave_out(found, all);
   }
-  std::sort(changes.begin(), changes.end(),
-            [](const NoiseChange& a, const NoiseChange& b) { return a.from_s < b.from_s; });
+  std::ranges::sort(changes, {}, &NoiseChange::from_s);
   return changes;
 }
 

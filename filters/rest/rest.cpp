@@ -321,11 +321,9 @@ std::string in_words(const Rest& rest, double period_s, double first_s) {
                                 seconds(rest.turned), seconds(rest.shaken));
   constexpr std::size_t kShown = 4;
   std::vector<Stretch> longest = rest.at_rest;
-  std::stable_sort(longest.begin(), longest.end(),
-                   [](const Stretch& a, const Stretch& b) { return a.size() > b.size(); });
+  std::ranges::stable_sort(longest, std::ranges::greater{}, &Stretch::size);
   longest.resize(std::min(longest.size(), kShown));
-  std::sort(longest.begin(), longest.end(),
-            [](const Stretch& a, const Stretch& b) { return a.begin < b.begin; });
+  std::ranges::sort(longest, {}, &Stretch::begin);
   for (std::size_t i = 0; i < longest.size(); ++i) {
     words += (i > 0 ? ", " : " ") + told_time(first_s + seconds(longest[i].begin)) + " … " +
              told_time(first_s + seconds(longest[i].end)) + " s";
@@ -356,7 +354,9 @@ void require_rest(const Rest& rest, double period_s, double first_s) {
 std::vector<Stretch> common(std::span<const Stretch> a, std::span<const Stretch> b) {
   std::vector<Stretch> out;
   for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
-    const Stretch both{std::max(a[i].begin, b[j].begin), std::min(a[i].end, b[j].end)};
+    Stretch both{std::max(a[i].begin, b[j].begin), std::min(a[i].end, b[j].end)};
+    // Only a hole between whole ends is one of the samples alone.
+    if (!out.empty() && both.begin == a[i].begin && out.back().end == a[i - 1].end) both.lost = a[i].lost;
     if (both.begin < both.end) out.push_back(both);
     (a[i].end < b[j].end ? i : j) += 1;
   }

@@ -38,7 +38,8 @@ void LongSeries::unmap() {
 }
 
 void LongSeries::expect(std::size_t numbers) {
-  if (numbers > most_) file_ = take_spare_file(numbers * sizeof(double));
+  if (numbers <= most_) return recent_.reserve(numbers);
+  file_ = take_spare_file(numbers * sizeof(double));
 }
 
 void LongSeries::add(double value) {

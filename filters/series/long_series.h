@@ -31,8 +31,7 @@ class LongSeries {
   [[nodiscard]] bool will_write(std::size_t numbers) const {
     return recent_.size() + numbers >= (!file_ ? most_ + 1 : kAtOnce);
   }
-  // Announces the number of values, before the first is added, so that a released file of this size can be
-  // reused.
+  // Announces the number of values, before the first is added: reserves memory or reuses a released file.
   void expect(std::size_t numbers);
   // These throw std::runtime_error with one line: no space for the file, or an I/O error.
   void add(double value);

@@ -10,8 +10,6 @@
 namespace ifog {
 namespace {
 
-// One thread: the caller has its own.
-
 RateFigures figures_of(std::span<const double> rate, double period_s) {
   RateFigures out;
   double count = 0.0, mean = 0.0, square = 0.0;

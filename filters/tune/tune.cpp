@@ -72,12 +72,8 @@ Data scaled(std::span<const std::span<const double>> axes, double period_s) {
     const Differences of_axis = differences(axis);
     const double own = of_axis.squares > 0.0 ? std::sqrt(of_axis.variance()) : data.scale;
     // Subtracts the first value to keep digits; the level is in the model.
-    double level = 0.0;
-    for (const double v : axis)
-      if (std::isfinite(v)) {
-        level = v;
-        break;
-      }
+    const auto first = std::ranges::find_if(axis, [](double v) { return std::isfinite(v); });
+    const double level = first == axis.end() ? 0.0 : *first;
     auto& copy = data.axes.emplace_back();
     std::size_t samples = 0;
     for (const double v : axis) {
@@ -110,7 +106,7 @@ Fit fit(const ModelCandidate& candidate, const RecordSpectrum& spectrum, const R
     if (optima[i].cost > optima[0].cost + kFar) break;
     starts.push_back({optima[i].theta, objective(optima[i].theta), {}});
   }
-  std::sort(starts.begin(), starts.end(), [](const Fit& a, const Fit& b) { return a.cost < b.cost; });
+  std::ranges::sort(starts, {}, &Fit::cost);
   if (starts.size() > kFollowed) starts.resize(kFollowed);
   Fit best;
   for (Fit& start : starts) {
@@ -212,8 +208,8 @@ Tuning tune(std::span<const std::span<const double>> axes, double period_s, cons
   // Largest first, to balance the threads.
   std::vector<std::size_t> order(candidates.size());
   std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return candidates[a].size() > candidates[b].size(); });
+  std::ranges::stable_sort(order, std::ranges::greater{},
+                           [&](std::size_t i) { return candidates[i].size(); });
   std::vector<Fitted> fitted(candidates.size());
   std::mutex guard;
   std::size_t done = 0;
@@ -224,9 +220,7 @@ Tuning tune(std::span<const std::span<const double>> axes, double period_s, cons
     if (options.progress) options.progress(++done, candidates.size());
   });
   std::iota(order.begin(), order.end(), 0U);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-    return rank(fitted[a].model, period_s) < rank(fitted[b].model, period_s);
-  });
+  std::ranges::stable_sort(order, {}, [&](std::size_t i) { return rank(fitted[i].model, period_s); });
   if (options.hold_out) {
     const LikelihoodRecord first_half = record_of(data, length / 2);
     share_out(order.size(), options.threads, [&](std::size_t i) {

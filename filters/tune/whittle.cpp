@@ -117,11 +117,10 @@ std::vector<WhittleOptimum> whittle_optima(const ModelCandidate& candidate, cons
     start.cost = objective.cost(start.theta);
     starts.push_back(std::move(start));
   }
-  const auto better = [](const WhittleOptimum& a, const WhittleOptimum& b) { return a.cost < b.cost; };
-  std::sort(starts.begin(), starts.end(), better);
+  std::ranges::sort(starts, {}, &WhittleOptimum::cost);
   starts.resize(std::max<std::size_t>(1, draws / 3));
   for (WhittleOptimum& start : starts) descend(objective, candidate, start);
-  std::sort(starts.begin(), starts.end(), better);
+  std::ranges::sort(starts, {}, &WhittleOptimum::cost);
   std::vector<WhittleOptimum> distinct;
   for (WhittleOptimum& start : starts)
     if (distinct.empty() || start.cost > distinct.back().cost + kSame) distinct.push_back(std::move(start));

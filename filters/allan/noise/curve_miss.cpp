@@ -56,8 +56,7 @@ CurveMiss widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients
     before = here;
     if (!counts) continue;
     const auto shares = shares_at(found, tau_s);
-    const auto most = std::max_element(
-        shares.begin(), shares.end(), [](const Share& a, const Share& b) { return a.variance < b.variance; });
+    const auto most = std::ranges::max_element(shares, {}, &Share::variance);
     NoiseCoefficient& term = found.*most->term;
     const double share = most->variance / (modelled * modelled);
     const double error = term.value * std::abs(std::expm1(-off)) / share;

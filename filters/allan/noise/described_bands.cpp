@@ -148,8 +148,7 @@ Described described(NoiseSpectrum spectrum, TermSet allowed) {
     misfit = least;
     result.terms = terms_then;
   }
-  std::sort(result.left_out.begin(), result.left_out.end(),
-            [](const FrequencyRange& a, const FrequencyRange& b) { return a.low < b.low; });
+  std::ranges::sort(result.left_out, {}, &FrequencyRange::low);
   std::vector<FrequencyRange> joined;
   for (const FrequencyRange& range : result.left_out)
     if (!joined.empty() && range.low < 1.1 * joined.back().high)

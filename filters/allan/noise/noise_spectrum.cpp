@@ -275,8 +275,7 @@ NoiseSpectrum noise_spectrum(const AngleSum& sum) {
     for (std::size_t p = 0; p < means.size(); ++p) level.add(means[p], sum.parts()[p].angles - 1);
     for (const SpectralBin& bin : level.bins()) spectrum.bins.push_back(bin);
   }
-  std::sort(spectrum.bins.begin(), spectrum.bins.end(),
-            [](const SpectralBin& a, const SpectralBin& b) { return a.frequency < b.frequency; });
+  std::ranges::sort(spectrum.bins, {}, &SpectralBin::frequency);
   std::vector<std::size_t> slow(means.size());
   std::iota(slow.begin(), slow.end(), std::size_t{0});
   const auto samples = [&](std::size_t p) { return sum.parts()[p].angles - 1; };

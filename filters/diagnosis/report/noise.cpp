@@ -42,7 +42,7 @@ NoiseCoefficients coefficients_at_rest(const std::vector<Record>& records,
     const Samples left = error_at_rest(records[r], errors[r], sample_s);
     const std::span<const double> rate = left;
     for (const Stretch& part : stretches({}, rate, {}))
-      parts.push_back({all.size() + part.begin, all.size() + part.end});
+      parts.push_back({all.size() + part.begin, all.size() + part.end, part.lost});
     all.insert(all.end(), rate.begin(), rate.end());
   }
   return noise_coefficients(AngleSum(std::span<const double>(all), parts), sample_s);

@@ -47,9 +47,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   const std::size_t count = std::filesystem::file_size(argv[1]) / sizeof(double);
-  std::vector<double> rate;
-  rate.reserve(count + 1);
-  rate.resize(count);
+  std::vector<double> rate(count);
   std::ifstream samples(argv[1], std::ios::binary);
   samples.read(reinterpret_cast<char*>(rate.data()),
                static_cast<std::streamsize>(rate.size() * sizeof(double)));
@@ -63,7 +61,7 @@ int main(int argc, char** argv) {
 
   const ProcessorTime start = processor_time();
   const std::vector<ifog::Stretch> all{{0, rate.size()}};
-  const ifog::AngleSum sum(std::move(rate), all);
+  const ifog::AngleSum sum(rate, all);
   const auto points = ifog::deviation(sum, m);
   const ProcessorTime end = processor_time();
   std::printf("%.6f %.6f %zu %ld\n", end.user - start.user, end.all - start.all, count * sizeof(double),

@@ -81,7 +81,8 @@ void add_allan(const Command& program) {
       .shows_default();
   command
       .add_option("--gaps", a->gaps,
-                  "part: analyse the stretches between holes; refuse: any hole is an error")
+                  "part: analyse the stretches between holes, of which those are filled that change no "
+                  "variance by more than 2 %; refuse: any hole is an error")
       .one_of({"part", "refuse"})
       .shows_default();
   command
