@@ -46,8 +46,7 @@ std::optional<double> stated(const std::vector<std::string>& comments,
 // Without empty cells, i.e. rows of another sensor.
 std::vector<std::string> filled(const std::vector<std::string>& cells) {
   std::vector<std::string> out;
-  std::copy_if(cells.begin(), cells.end(), std::back_inserter(out),
-               [](const std::string& cell) { return !cell.empty(); });
+  std::ranges::copy_if(cells, std::back_inserter(out), [](const std::string& cell) { return !cell.empty(); });
   return out;
 }
 
@@ -73,7 +72,7 @@ bool counts(const std::vector<double>& values) {
   std::size_t other = 0;
   for (std::size_t i = 1; i < values.size(); ++i)
     if (values[i] - values[i - 1] != 1.0) ++other;
-  return other <= 1 && std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
+  return other <= 1 && std::ranges::all_of(values, [](double v) { return v == std::floor(v); });
 }
 
 struct UnitOfTime {
@@ -130,13 +129,12 @@ int rank_of(const std::string& name, const Words& words) {
     return word.ends_with("time") || word.ends_with("stamp") || says(word, Role::time);
   };
   if (words.has("header") && words.has("stamp")) return 4;  // measurement time in ROS
-  if (!words.words.empty() && std::all_of(words.words.begin(), words.words.end(), is_time)) return 3;
-  return std::any_of(words.words.begin(), words.words.end(), is_time) ? 2 : 0;
+  if (!words.words.empty() && std::ranges::all_of(words.words, is_time)) return 3;
+  return std::ranges::any_of(words.words, is_time) ? 2 : 0;
 }
 
 bool are_dates(const std::vector<std::string>& cells) {
-  return !cells.empty() &&
-         std::all_of(cells.begin(), cells.end(), [](const auto& cell) { return is_date(cell); });
+  return !cells.empty() && std::ranges::all_of(cells, [](const auto& cell) { return is_date(cell); });
 }
 
 std::string time_unit_by_name(const TableSample& table, std::size_t place, const Words& words) {
@@ -144,7 +142,9 @@ std::string time_unit_by_name(const TableSample& table, std::size_t place, const
   const std::vector<double> values = numbers_in(table.cells[place]);
   if (std::string stated = unit_by_stated_rate(table, mean_step(values)); !stated.empty()) return stated;
   if (const auto scale = stated(table.comments, {"tscale"})) return shortest(*scale) + "s";  // gcsv
-  if (words.has("sample") && words.has("time") && words.has("fine")) return "100us";  // Xsens: 10 kHz clock
+  // Xsens: a clock of 10 kHz; of a DOT, which sends 120 samples/s at most, of 1 MHz.
+  if (words.has("sample") && words.has("time") && words.has("fine"))
+    return mean_step(values) < 1e6 / 120.0 - 1.0 ? "100us" : "us";
   constexpr std::array<std::pair<const char*, Role>, 4> kUnits{
       {{"ms", Role::ms}, {"us", Role::us}, {"ns", Role::ns}, {"s", Role::s}}};
   for (const auto& [unit, role] : kUnits)
@@ -172,7 +172,7 @@ bool is_fraction_of_second(const TableSample& table, std::size_t place, const st
              second = finite_number(table.cells[place - 1][0]);
   return week && second && *week > 0.0 && *week < 1e4 && *week == std::floor(*week) && *second > 1.0 &&
          *second < kSecondsPerWeek &&
-         std::all_of(values.begin(), values.end(), [](double v) { return v >= 0.0 && v < 1.0; });
+         std::ranges::all_of(values, [](double v) { return v >= 0.0 && v < 1.0; });
 }
 
 std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place, const Words& words) {
@@ -234,10 +234,8 @@ std::optional<CsvTime> joined(const TableSample& table, std::size_t first, std::
   const auto is_whole = [](double v) { return v == std::floor(v); };
   const bool by_values = !table.named && whole.size() == a.size() && parts.size() == b.size() &&
                          whole.size() > 1 && whole.front() >= 9.4e8 && whole.back() < 5e9 &&
-                         std::all_of(whole.begin(), whole.end(), is_whole) &&
-                         std::all_of(parts.begin(), parts.end(), is_whole) &&
-                         *std::max_element(parts.begin(), parts.end()) > 1e6 &&
-                         *std::max_element(parts.begin(), parts.end()) < 1e9;
+                         std::ranges::all_of(whole, is_whole) && std::ranges::all_of(parts, is_whole) &&
+                         *std::ranges::max_element(parts) > 1e6 && *std::ranges::max_element(parts) < 1e9;
   return named || by_values ? std::optional(out) : std::nullopt;
 }
 
@@ -304,8 +302,8 @@ std::string counting_column(const TableSample& table) {
 
 bool varies(const std::vector<std::string>& cells) {
   const std::vector<double> values = numbers_in(cells);
-  return !values.empty() && (values.size() < 2 || std::any_of(values.begin(), values.end(),
-                                                              [&](double v) { return v != values[0]; }));
+  return !values.empty() &&
+         (values.size() < 2 || std::ranges::any_of(values, [&](double v) { return v != values[0]; }));
 }
 
 // Von Neumann's ratio: mean squared difference / variance; 2 for white noise.
@@ -325,7 +323,7 @@ bool is_smooth(const std::vector<std::string>& cells) {
 bool is_whole(const std::vector<std::string>& cells) {
   const std::vector<double> values = numbers_in(cells);
   return values.size() >= kFewRows && varies(cells) &&
-         std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
+         std::ranges::all_of(values, [](double v) { return v == std::floor(v); });
 }
 
 int digits_of_second(const std::string& name, const std::vector<std::string>& cells) {
@@ -342,7 +340,7 @@ std::string whole_times_notice(const TableSample& table, std::size_t place, cons
   const std::vector<std::string> cells = filled(table.cells[place]);
   const std::vector<double> values = numbers_in(cells);
   if (values.size() < std::max(kFew, cells.size()) || time.unit_s() != 1.0 ||
-      !std::all_of(values.begin(), values.end(), [](double t) { return t == std::floor(t); }))
+      !std::ranges::all_of(values, [](double t) { return t == std::floor(t); }))
     return "";
   const bool unit_known =
       time_unit(table.stated_unit(place)).has_value() || cells[0].find('.') != std::string::npos;

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "drivers/capture/capture.h"
+#include "tests/unit/capture/read_capture.h"
 
 namespace ifog {
 namespace {
@@ -96,6 +96,10 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       {rows_of("sep=,\nDeviceTag:,DOT1\nOutputRate:,100Hz\nPacketCounter,SampleTimeFine,Gyr_X\n",
                "{i},3{i}0000,{x}"),
        {"--time SampleTimeFine:us"}},
+      // The same without a stated rate (MoRPINet, raw_imu_g_4.csv), and an MTi, whose clock is of 100 us.
+      {rows_of("sep=,\nPacketCounter,SampleTimeFine,Gyr_X\n", "{i},3{i}0000,{x}"),
+       {"--time SampleTimeFine:us"}},
+      {rows_of("PacketCounter,SampleTimeFine,Gyr_X\n", "{i},3{i}00,{x}"), {"--time SampleTimeFine:100us"}},
       // TEX-CUP data set: week, second, fraction of the second.
       {rows_of("", "2051 240000 0.{i} {x} -0.0475 9.808 {x} {y} {z}"),
        {"--sample-rate HZ --column 'rate_x_radps=#7:"}},
