@@ -93,8 +93,7 @@ RowChecks::RowChecks(const std::string& path, const CsvLayout& layout, std::vect
       notes_(notes),
       clock_(path, layout.time.value_or(CsvTime{}).header, layout.keep_repeats, notes,
              [this](RowBlock& rows) { behind_clock(rows); }) {
-  if (std::any_of(layout.columns.begin(), layout.columns.end(),
-                  [](const auto& c) { return c.angle_rad().has_value(); }))
+  if (std::ranges::any_of(layout.columns, [](const auto& c) { return c.angle_rad().has_value(); }))
     all_.emplace();
 }
 

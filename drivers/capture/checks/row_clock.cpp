@@ -26,7 +26,7 @@ constexpr std::array<Rollover, 5> kRollovers{{{604'800.0, "a GPS week"},
                                               {0x1p32 * 1e-4, "a count of 100 µs in 32 bits"},
                                               {0x1p32 * 1e-3, "a count of ms in 32 bits"}}};
 
-constexpr std::size_t kFewBursts = 8;
+constexpr std::size_t kFewBursts = 8, kLateBursts = 16, kLateRows = 128;
 // No packet has as many rows; a logger that records for some seconds now and then has them, at even times.
 constexpr double kWindowRows = 32.0;
 constexpr double kHole = 1.5;  // times the usual step; longer steps are gaps
@@ -34,16 +34,28 @@ constexpr double kHole = 1.5;  // times the usual step; longer steps are gaps
 // True if four of five are within 20 % of the median: packets are even, gaps and jitter are not.
 bool are_even(const std::vector<double>& values) {
   const double usual = median_value(values);
-  const auto near = std::count_if(values.begin(), values.end(),
-                                  [&](double v) { return std::abs(v - usual) <= 0.2 * usual; });
+  const auto near =
+      std::ranges::count_if(values, [&](double v) { return std::abs(v - usual) <= 0.2 * usual; });
   return 5 * static_cast<std::size_t>(near) >= 4 * values.size();
 }
 
-// Longest step within a burst; 0 if rows do not come in bursts.
-double step_within_bursts(const std::vector<double>& time_s) {
-  if (time_s.size() < 2) return 0.0;
+// True if the number of rows stays near a line in time, because a long pause is followed by many rows: the departures at
+// the ends of bursts scatter over 16 bursts as over one. Those of losses add up, to 16 times the variance.
+bool are_late(const std::vector<double>& departure) {
+  const auto squares = [&](std::size_t apart) {
+    double sum = 0.0;
+    for (std::size_t i = apart; i < departure.size(); ++i)
+      sum += (departure[i] - departure[i - apart]) * (departure[i] - departure[i - apart]);
+    return sum;
+  };
+  return departure.size() > kLateBursts * kLateBursts &&
+         4.0 * squares(kLateBursts) < kLateBursts * squares(1);
+}
+
+Bursts bursts_of(const std::vector<double>& time_s) {
+  if (time_s.size() < 2) return {};
   const double mean_s = (time_s.back() - time_s.front()) / static_cast<double>(time_s.size() - 1);
-  std::vector<double> within, between, rows;
+  std::vector<double> within, between, rows, departure;
   std::size_t begin = 0;
   for (std::size_t i = 1; i < time_s.size(); ++i) {
     const double step_s = time_s[i] - time_s[i - 1];
@@ -53,11 +65,14 @@ double step_within_bursts(const std::vector<double>& time_s) {
     }
     between.push_back(time_s[i] - time_s[begin]);
     rows.push_back(static_cast<double>(i - begin));
+    departure.push_back(static_cast<double>(i) - time_s[i - 1] / mean_s);
     begin = i;
   }
-  if (between.size() < kFewBursts || within.size() < between.size()) return 0.0;
-  if (median_value(rows) >= kWindowRows && are_even(within)) return 0.0;
-  return median_value(within) < 0.25 * mean_s && are_even(between) && are_even(rows) ? mean_s : 0.0;
+  if (between.size() < kFewBursts || within.size() < between.size()) return {};
+  if (median_value(rows) >= kWindowRows && are_even(within)) return {};
+  if (median_value(within) >= 0.25 * mean_s) return {};
+  if (are_even(between) && are_even(rows)) return {mean_s};
+  return are_late(departure) ? Bursts{mean_s, kLateRows} : Bursts{};
 }
 
 bool same_values(const RowBlock& rows, std::size_t a, std::size_t b) {
@@ -90,7 +105,7 @@ RowOrder::RowOrder(const std::string& path, std::string time, RowNotes& notes)
     : path_(path), time_(std::move(time)), notes_(notes) {}
 
 double RowOrder::rolled_over_s(double now_s, std::size_t line) {
-  const auto found = std::find_if(kRollovers.begin(), kRollovers.end(), [&](const Rollover& each) {
+  const auto found = std::ranges::find_if(kRollovers, [&](const Rollover& each) {
     return now_s + each.length_s > last_s_ && now_s + each.length_s <= last_s_ + kLate_s;
   });
   if (found == kRollovers.end()) return 0.0;
@@ -166,7 +181,7 @@ void RowClock::take(RowBlock& rows) {
   std::swap(buffered_, rows);
   order_.take(rows, known);
   if (!std::exchange(begun_, true)) {
-    within_s_ = step_within_bursts(rows.time_s);
+    bursts_ = bursts_of(rows.time_s);
     keep_repeats_ = keep_repeats_ || repeat_by_chance(rows);
   }
   if (!keep_repeats_) drop_repeats(rows);
@@ -189,7 +204,9 @@ void RowClock::take(RowBlock& rows) {
 
 std::size_t RowClock::end_of_burst(const RowBlock& rows, std::size_t begin) const {
   std::size_t end = begin + 1;
-  while (end < rows.size() && rows.time_s[end] - rows.time_s[end - 1] <= within_s_) ++end;
+  while (end < rows.size() &&
+         (end - begin < bursts_.rows || rows.time_s[end] - rows.time_s[end - 1] <= bursts_.within_s))
+    ++end;
   return end;
 }
 
@@ -241,12 +258,10 @@ void RowClock::say() {
                              (repeated_ == 1 ? "is" : "are") +
                              " dropped; --repeats keep reads them as samples");
   if (spread_ == 0) return;
-  const double rate_hz = static_cast<double>(burst_rows_) / bursts_s_;
-  std::array<char, 32> rate{};
-  std::snprintf(rate.data(), rate.size(), "%.6g", rate_hz);
+  const double rate_hz = std::round(1e3 * static_cast<double>(burst_rows_) / bursts_s_) / 1e3;
   notes_.notices.push_back(path_ + ": " + std::to_string(spread_) + " rows " +
-                           (within_s_ > 0.0 ? "come in bursts" : "have the time of the row before") +
-                           " and are spread evenly up to the next time, at " + rate.data() +
+                           (bursts_.within_s > 0.0 ? "come in bursts" : "have the time of the row before") +
+                           " and are spread evenly up to the next time, at " + shortest(rate_hz) +
                            " Hz; --sample-rate HZ reads all rows as even");
 }
 

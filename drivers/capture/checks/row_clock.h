@@ -5,7 +5,7 @@
 //   counted; the file is rejected if these exceed 1 %. A step of a year is a set clock, and reported;
 //   - a row that repeats the time and values of the one before is dropped and counted, unless chance explains it;
 //   - rows with one stamp, or in bursts (several per packet, packets at even times), are spread evenly up to
-//   the next stamp.
+//   the next stamp; of bursts that are late by various times some 128 rows together.
 #pragma once
 
 #include <cstddef>
@@ -45,6 +45,11 @@ class RowOrder {
   bool set_ = false;  // a set clock was reported
 };
 
+struct Bursts {
+  double within_s = 0.0;  // longest step within a burst; 0: only equal stamps are spread
+  std::size_t rows = 1;   // least number that is spread together
+};
+
 class RowClock {
  public:
   using Next = std::function<void(RowBlock&)>;
@@ -69,8 +74,8 @@ class RowClock {
   RowNotes& notes_;
   Next next_;
   RowOrder order_;
-  RowBlock buffered_;      // rows of the last stamp or burst
-  double within_s_ = 0.0;  // longest step within a burst; 0: only equal stamps are spread
+  RowBlock buffered_;  // rows of the last stamp or burst
+  Bursts bursts_;
   double period_s_ = 0.0;  // sample period of the last burst or single row
   double bursts_s_ = 0.0;  // total duration of bursts, and their rows
   std::size_t burst_rows_ = 0, spread_ = 0, repeated_ = 0;

@@ -101,6 +101,22 @@ class Checks:
         self.reads("bias.csv", ["Date,Time (s),gyro_range_dps,gyro_bias_x_dps,gyro_x_dps,gyro_temp_degC",
                                 *self.rows(lambda i, x, y, z: ("2026-05-01", i / RATE_HZ, 250, 0.3, x, 24))], axes="x", unasked=True)
 
+    def check_rows_stamped_late_in_bursts_are_even(self):
+        """sunsided, set-2: a USB logger stamps some rows 1 ms apart when it gets round to them, and none is missing. Where the device
+        sleeps in the pauses, rows are missing."""
+        dice, polled, last, pause, late, asleep = random.Random(5), 0.0, 0.0, 0.0, [], []
+        for i in range(ROWS):
+            if polled < i / RATE_HZ:
+                polled = i / RATE_HZ + dice.uniform(0.01, 0.06)
+                pause += dice.uniform(0, 0.05)
+            last = max(last + 0.001, polled)
+            late.append(last)
+            asleep.append(0.001 * i + pause)
+        head = "time_s,gyro_x_dps,gyro_y_dps,gyro_z_dps"
+        self.reads("late.csv", [head, *self.rows(lambda i, *dps: (late[i], *dps))], says=("come in bursts",))
+        said = by_hand(self.file("asleep.csv", [head, *self.rows(lambda i, *dps: (asleep[i], *dps))]))[1]
+        assert "bursts" not in said and "samples missing" in said, said
+
     def check_counts_are_read_by_their_scale(self):
         path = self.file("counts.csv", ["t_ms,GyX,GyY,GyZ", *self.rows(lambda i, x, y, z: (5 * i, *(round(v * 13100) for v in (x, y, z))))])
         scale = ["--time", "t_ms:ms", *(word for a in "xyz" for word in ("--column", f"rate_{a}_radps=Gy{a.upper()}:{1 / 13100}deg/s"))]
