@@ -41,13 +41,12 @@ Capture known_part_of(Table table, const std::string& path) {
   std::string axis;
   std::vector<std::string> dead;
   std::erase_if(table.columns, [&](const CaptureColumn& column) {
-    const bool known =
-        std::any_of(column.values.begin(), column.values.end(), [](double v) { return !std::isnan(v); });
+    const bool known = std::ranges::any_of(column.values, [](double v) { return !std::isnan(v); });
     if (!known && axis_of(column.name, "rate", axis)) dead.push_back(axis);
     return !known;
   });
-  if (std::none_of(table.columns.begin(), table.columns.end(),
-                   [&](const CaptureColumn& column) { return axis_of(column.name, "rate", axis); }))
+  if (std::ranges::none_of(table.columns,
+                           [&](const CaptureColumn& column) { return axis_of(column.name, "rate", axis); }))
     throw std::runtime_error("the device marks every value of every axis invalid");
   Capture capture = capture_of(std::move(table), path);
   capture.dead_axes = std::move(dead);

@@ -8,7 +8,6 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "drivers/capture/columns/csv_layout.h"
@@ -66,21 +65,6 @@ Capture capture_of(Table table, const std::string& path);
 
 // A table needs no rate column.
 Table read_table(InputFile& file, const CsvLayout& layout = {});
-
-// Reads a capture. Throws std::runtime_error with one line: file, line, column, value, what was expected.
-// Errors: first column not time_s, no rate column, time not increasing, a cell that is no number, a line with
-// another number of cells, a .gz that ends early, more than 1 % impossible values in a column. Fewer
-// impossible values become missing (measurable.h) and are listed in `faults`. For other headers `layout` is
-// needed; if a header is nearly a capture's the message suggests the options.
-inline Capture read_capture(const std::string& path) {
-  InputFile file(path);
-  return capture_of(read_table(file), path);
-}
-// The same for a text; `path` names it in messages.
-inline Capture parse_capture(std::string_view text, const std::string& path, const CsvLayout& layout = {}) {
-  InputFile file(path, std::string(text));
-  return capture_of(read_table(file, layout), path);
-}
 
 // The same for a driver's samples, without axes and channels that never have a value. Throws if nothing is left.
 Capture known_part_of(Table table, const std::string& path);

@@ -80,8 +80,7 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
                          (capture.axes[i].empty() ? "" : " of axis " + capture.axes[i]));
 
   channels_.resize(d.environments, nullptr);
-  std::string without_place;
-  std::string without_column;
+  std::string without_place, without_column;
   const auto add = [](std::string& list, const std::string& name) {
     list += (list.empty() ? "" : ", ") + name;
   };

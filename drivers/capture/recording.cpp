@@ -45,18 +45,12 @@ FileKind begun_as(std::string_view head) {
 
 // True if a line near the beginning is a frame; the first line may be incomplete.
 bool has_candump_frame(std::string_view head) {
-  CandumpEntry entry;
-  while (!head.empty()) {
-    const std::size_t end = head.find('\n');
-    if (parse_candump_line(head.substr(0, end), entry) == CandumpLine::frame) return true;
-    head.remove_prefix(end == std::string_view::npos ? head.size() : end + 1);
-  }
-  return false;
+  return !first_interface(head, [](const ifog_can_frame&) { return true; }).empty();
 }
 
 // Text has no control characters except line ends, tabs and terminal colours.
 bool is_text(std::string_view head) {
-  return std::all_of(head.begin(), head.end(), [](char c) {
+  return std::ranges::all_of(head, [](char c) {
     const auto byte = static_cast<unsigned char>(c);
     return (byte >= 0x20 && byte != 0x7F) || (byte >= '\t' && byte <= '\r') || byte == 0x1B;
   });

@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "drivers/capture/capture.h"
+#include "tests/unit/capture/read_capture.h"
 
 namespace {
 

@@ -21,6 +21,7 @@ class Frames {
   enum class Is { frame, nothing, end };
   Is take(std::string_view line, bool ended) {
     ++number_;
+    if (line.size() > kLongestLine) refuse_long_line(path_, number_, line);
     const CandumpLine kind = parse_candump_line(line, entry_);
     if (kind == CandumpLine::malformed && (ended || !any_))
       throw std::runtime_error(path_ + ":" + std::to_string(number_) + ": " + in_quotes(line) + ", " +
@@ -118,13 +119,10 @@ std::string first_interface(std::string_view beginning,
 CandumpLosses for_each_candump_frame(InputFile& file, std::string_view interface, const CandumpSink& sink) {
   Frames frames(file.path(), interface, times_are_differences(file.head()));
   TextPieces pieces([&file](char* to, std::size_t most) { return file.read_what_is_there(to, most); });
-  std::size_t number = 0;
   for (std::string piece; pieces.next(piece);)
     for (std::string_view text = piece; !text.empty();) {
       const std::size_t end = std::min(text.find('\n'), text.size());
       const bool ended = end < text.size();
-      ++number;
-      if (end > kLongestLine) refuse_long_line(file.path(), number, text.substr(0, end));
       const Frames::Is is = frames.take(text.substr(0, end), ended);
       if (is == Frames::Is::end) return frames.losses();
       if (is == Frames::Is::frame) sink(frames.entry().frame, frames.entry().interface);

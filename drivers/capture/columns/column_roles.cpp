@@ -99,7 +99,7 @@ Sensors sensors_of(const TableSample& table, bool references) {
   // Three columns of the same name (a header that spans three cells) are axes.
   for (auto& [stem, columns] : sensors)
     if (columns.size() == 3 && columns[0].axis.empty() &&
-        std::all_of(columns.begin(), columns.end(), [&, &first = columns[0]](const RateCandidate& column) {
+        std::ranges::all_of(columns, [&, &first = columns[0]](const RateCandidate& column) {
           return table.names[column.place] == table.names[first.place];
         }))
       for (std::size_t i = 0; i < 3; ++i) columns[i].axis = std::string(1, static_cast<char>('x' + i));
@@ -126,7 +126,7 @@ std::vector<std::vector<RateCandidate>> choices_of(const Sensors& sensors) {
   // "norm of the rate" next to three axes is no axis.
   if (named_axes) std::erase_if(together, [](const RateCandidate& column) { return column.axis.empty(); });
   if (together.empty()) return {};
-  std::sort(together.begin(), together.end(), [](const auto& a, const auto& b) { return a.place < b.place; });
+  std::ranges::sort(together, {}, &RateCandidate::place);
   if (axes_differ(together)) return {together};
   std::vector<std::vector<RateCandidate>> choices;
   for (const auto& [stem, columns] : sensors) {
@@ -137,8 +137,7 @@ std::vector<std::vector<RateCandidate>> choices_of(const Sensors& sensors) {
     }
     for (const RateCandidate& column : columns) choices.push_back({column});
   }
-  std::sort(choices.begin(), choices.end(),
-            [](const auto& a, const auto& b) { return a[0].place < b[0].place; });
+  std::ranges::sort(choices, [](const auto& a, const auto& b) { return a[0].place < b[0].place; });
   return choices;
 }
 
@@ -160,13 +159,12 @@ void add_others(const TableSample& table, const std::vector<RateCandidate>& rate
   const auto add = [&](const std::string& name, std::size_t place, const std::string& unit) {
     const std::string header = table.header_of(place);
     const auto listed = [&](const CsvColumn& c) { return c.name == name || c.header == header; };
-    if (!name.empty() && std::none_of(columns.begin(), columns.end(), listed))
-      columns.push_back({name, header, unit});
+    if (!name.empty() && std::ranges::none_of(columns, listed)) columns.push_back({name, header, unit});
   };
   for (const auto& choice : choices_of(sensors_of(table, true)))
     for (const RateCandidate& column : choice)
-      if (!column.unit.empty() && std::any_of(rates.begin(), rates.end(),
-                                              [&](const RateCandidate& r) { return r.axis == column.axis; }))
+      if (!column.unit.empty() &&
+          std::ranges::any_of(rates, [&](const RateCandidate& r) { return r.axis == column.axis; }))
         add(capture_name(column), column.place, column.unit);
   for (std::size_t i = 0; i < table.names.size(); ++i)
     add(channel_name(Words(table.names[i]), table.unit_of(i)), i, table.unit_of(i));
@@ -246,7 +244,7 @@ std::string typed(const std::string& unit) {
 
 std::string TableSample::header_of(std::size_t place) const {
   const std::string& name = names[place];
-  const bool alone = !name.empty() && std::count(names.begin(), names.end(), name) == 1;
+  const bool alone = !name.empty() && std::ranges::count(names, name) == 1;
   return alone && printable(name, name.size()) == name ? name : "#" + std::to_string(place + 1);
 }
 
@@ -276,7 +274,7 @@ Readings readings_of(const TableSample& table, const CsvLayout& asked) {
     if (!scale.unit.empty() && are_counts(table, sensor))
       for (RateCandidate& rate : sensor)
         if (is_unit_unknown(rate)) rate.unit = scale.unit, rate.scale = scale.scale;
-    if (std::any_of(sensor.begin(), sensor.end(), is_unit_unknown)) {
+    if (std::ranges::any_of(sensor, is_unit_unknown)) {
       const std::vector<std::string> units = units_of(table, sensor);
       counts = counts || are_counts(table, sensor);
       if (rate_units.empty()) rate_units = instead_of(units);

@@ -134,7 +134,7 @@ std::string lower(std::string text) {
 
 bool says(std::string_view word, Role role) {
   const auto* const words =
-      std::find_if(kWords.begin(), kWords.end(), [role](const auto& each) { return each.first == role; });
+      std::ranges::find_if(kWords, [role](const auto& each) { return each.first == role; });
   return words->second.find(" " + std::string(word) + " ") != std::string_view::npos;
 }
 
@@ -165,13 +165,10 @@ Words::Words(const std::string& header) {
   }
 }
 
-bool Words::has(std::string_view word) const {
-  return std::find(words.begin(), words.end(), word) != words.end();
-}
+bool Words::has(std::string_view word) const { return std::ranges::find(words, word) != words.end(); }
 
 bool Words::have(Role role) const {
-  return std::any_of(words.begin(), words.end(),
-                     [role](const std::string& word) { return says(word, role); });
+  return std::ranges::any_of(words, [role](const std::string& word) { return says(word, role); });
 }
 
 }  // namespace ifog

@@ -131,11 +131,11 @@ std::string unit_in_name(const std::string& name) {
   }
   if (last == "s" || last == "S") return "s";
   if (last.size() == 1)
-    return std::any_of(kOneLetter.begin(), kOneLetter.end(),
-                       [&](const auto& each) {
-                         return each.first.find(last) != std::string_view::npos &&
-                                header.find(each.second) != std::string::npos;
-                       })
+    return std::ranges::any_of(kOneLetter,
+                               [&](const auto& each) {
+                                 return each.first.find(last) != std::string_view::npos &&
+                                        header.find(each.second) != std::string::npos;
+                               })
                ? last
                : "";
   return angle_unit(last, true, false) || time_unit(last) || !other_units(last).empty() ? last : "";
@@ -212,7 +212,7 @@ std::optional<std::string> name_with_unit(const std::string& header, const std::
     own = unit_of_name(header);
   const auto is_word = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; };
   if (own.empty())
-    return std::all_of(unit.begin(), unit.end(), is_word) ? header + "_" + unit : header + " [" + unit + "]";
+    return std::ranges::all_of(unit, is_word) ? header + "_" + unit : header + " [" + unit + "]";
   const auto by = convert_unit(unit, own);
   if (unit == own || (by && by->scale == 1.0 && by->offset == 0.0)) return header;
   return std::nullopt;

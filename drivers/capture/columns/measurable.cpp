@@ -39,13 +39,9 @@ Measurable measurable(const std::string& column) {
   if (column == "time_s") return {-kMostTime_s, kMostTime_s};
   if (is_rate_column(column)) return {-IFOG_MAX_RATE, IFOG_MAX_RATE};
   const std::string unit = unit_in_name(column);
-  if (unit.empty()) return {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE};
-  for (const auto& [known, range] : kUnits) {
-    const auto conversion = convert_unit(known, unit);
-    if (!conversion) continue;
-    const auto converted = [&](double value) { return value * conversion->scale + conversion->offset; };
-    return {converted(range.least), converted(range.most)};
-  }
+  for (const auto& [known, range] : kUnits)
+    if (const auto to = convert_unit(known, unit))
+      return {range.least * to->scale + to->offset, range.most * to->scale + to->offset};
   return {-IFOG_MAX_ENVIRONMENT_VALUE, IFOG_MAX_ENVIRONMENT_VALUE};
 }
 

@@ -16,9 +16,8 @@ constexpr double kGravity_mps2 = 9.80665;
 
 // True if the columns, together or one alone, hold gravity: then they are not the gyro's.
 bool holds_gravity(const TableSample& table, const Rates& axes) {
-  return is_gravity(table, axes) || std::any_of(axes.begin(), axes.end(), [&](const RateCandidate& axis) {
-           return is_gravity(table, {axis});
-         });
+  return is_gravity(table, axes) ||
+         std::ranges::any_of(axes, [&](const RateCandidate& axis) { return is_gravity(table, {axis}); });
 }
 
 bool are_neighbours(const Rates& axes) { return axes.back().place - axes.front().place + 1 == axes.size(); }
@@ -37,29 +36,29 @@ bool is_gravity(const TableSample& table, const Rates& columns) {
     lengths.push_back(std::sqrt(square));
   }
   if (lengths.empty()) return false;
-  std::sort(lengths.begin(), lengths.end());
+  std::ranges::sort(lengths);
   const auto at = [&](double share) {
     return lengths[static_cast<std::size_t>(share * static_cast<double>(lengths.size() - 1))];
   };
   const double middle = at(0.5);
   constexpr std::array<double, 7> kGravities{kGravity_mps2, 1.0, 1000.0, 16384.0, 8192.0, 4096.0, 2048.0};
-  return at(0.75) - at(0.25) < 0.05 * middle &&
-         std::any_of(kGravities.begin(), kGravities.end(),
-                     [&](double gravity) { return std::abs(middle / gravity - 1.0) < 0.05; });
+  return at(0.75) - at(0.25) < 0.05 * middle && std::ranges::any_of(kGravities, [&](double gravity) {
+           return std::abs(middle / gravity - 1.0) < 0.05;
+         });
 }
 
 bool are_counts(const TableSample& table, const Rates& rates) {
-  return std::all_of(rates.begin(), rates.end(),
-                     [&](const RateCandidate& rate) { return is_whole(table.cells[rate.place]); });
+  return std::ranges::all_of(rates,
+                             [&](const RateCandidate& rate) { return is_whole(table.cells[rate.place]); });
 }
 
 // Removes units in which no sensor measures one of the cells, unless that leaves none.
 template <typename RangeIn>
 void keep_possible(std::vector<std::string>& units, const std::vector<std::string>& cells, RangeIn range_in) {
   std::vector<std::string> possible;
-  std::copy_if(units.begin(), units.end(), std::back_inserter(possible), [&](const std::string& unit) {
+  std::ranges::copy_if(units, std::back_inserter(possible), [&](const std::string& unit) {
     const Measurable range = range_in(unit);
-    return std::all_of(cells.begin(), cells.end(), [&](const std::string& cell) {
+    return std::ranges::all_of(cells, [&](const std::string& cell) {
       return range.holds(finite_number(cell).value_or(range.least));
     });
   });
@@ -72,7 +71,7 @@ std::vector<std::string> units_of(const TableSample& table, const Rates& rates) 
   const auto is_summed = [&](const RateCandidate& rate) { return is_smooth(table.cells[rate.place]); };
   if (rates.front().increment)
     std::rotate(units.begin(), units.begin() + 2, units.end());
-  else if (std::any_of(rates.begin(), rates.end(), is_summed))
+  else if (std::ranges::any_of(rates, is_summed))
     units.insert(!table.named && rates.size() == 1 ? units.begin() : units.end(), {"rad", "deg"});
   for (const RateCandidate& rate : rates)
     keep_possible(units, table.cells[rate.place], [](const std::string& unit) {
@@ -108,15 +107,14 @@ std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<
     for (std::size_t i = 0; i < 3; ++i) axes[i].axis = std::string(1, static_cast<char>('x' + i));
   }
   const auto prefer = [&sensors](auto&& is_likely) {
-    if (std::any_of(sensors.begin(), sensors.end(), is_likely))
+    if (std::ranges::any_of(sensors, is_likely))
       std::erase_if(sensors, [&](const Rates& axes) { return !is_likely(axes); });
   };
   prefer([](const Rates& axes) { return are_neighbours(axes); });
   prefer([&](const Rates& axes) { return !holds_gravity(table, axes); });
   prefer([&](const Rates& axes) {
-    const auto smooth = std::count_if(axes.begin(), axes.end(), [&](const RateCandidate& axis) {
-      return is_smooth(table.cells[axis.place]);
-    });
+    const auto smooth = std::ranges::count_if(
+        axes, [&](const RateCandidate& axis) { return is_smooth(table.cells[axis.place]); });
     return smooth == 0 || smooth == 3;
   });
   return sensors;

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 #include <cctype>
-#include <charconv>
+#include <cstdlib>
 #include <set>
 #include <utility>
 
@@ -21,15 +21,11 @@ namespace {
 // Index of a column given by its header or number ("#3").
 std::size_t place_of(const std::string& wanted, const std::vector<std::string>& names,
                      const std::string& path, std::size_t line) {
-  const auto count = std::count(names.begin(), names.end(), wanted);
-  if (count == 1)
-    return static_cast<std::size_t>(std::find(names.begin(), names.end(), wanted) - names.begin());
-  std::size_t number = 0;
-  if (count == 0 && wanted.starts_with('#') &&
-      std::from_chars(wanted.data() + 1, wanted.data() + wanted.size(), number).ptr ==
-          wanted.data() + wanted.size() &&
-      number >= 1 && number <= names.size())
-    return number - 1;
+  const auto count = std::ranges::count(names, wanted);
+  if (count == 1) return static_cast<std::size_t>(std::ranges::find(names, wanted) - names.begin());
+  const std::size_t number =
+      count == 0 && is_number_of_column(wanted) ? std::strtoul(wanted.c_str() + 1, nullptr, 10) : 0;
+  if (number >= 1 && number <= names.size()) return number - 1;
   fail_at(path, line,
           (count == 0 ? "no column " : "more than one column ") + in_quotes(wanted) + ", the header has " +
               listed(names));
@@ -85,7 +81,7 @@ class Chooser {
       const Words words(names_[i]);
       const std::vector<std::string>& cells = form_.sample.cells[i];
       // A topic's name may begin with a slash. A measured value is no sensor's number: "imu_gyr[1]", 0.00106.
-      const bool is_text = std::all_of(cells.begin(), cells.end(), [](const std::string& cell) {
+      const bool is_text = std::ranges::all_of(cells, [](const std::string& cell) {
         return std::isalpha(static_cast<unsigned char>(cell.c_str()[0])) != 0 || cell.starts_with('/');
       });
       if (!is_text && !(words.have(Role::one) && words.axis.empty() && is_whole(cells))) continue;
@@ -122,8 +118,8 @@ class Chooser {
   // Time first and a rate, or a table without any possible rate.
   [[nodiscard]] bool reads_as_named() const {
     if (header_.layout.chooses() || names_.front() != "time_s") return false;
-    if (std::any_of(names_.begin(), names_.end(),
-                    [](const std::string& name) { return is_rate_column(name) || is_signal_column(name); }))
+    if (std::ranges::any_of(
+            names_, [](const std::string& name) { return is_rate_column(name) || is_signal_column(name); }))
       return true;
     CsvLayout timed = header_.layout;
     timed.time = CsvTime{};
@@ -156,9 +152,9 @@ class Chooser {
     const bool named = reads_as_named();
     if (named) expect_every_name_once();
     // With only --time, other columns keep their names.
-    const bool own_names = named || (layout.time && layout.columns.empty() &&
-                                     std::any_of(names_.begin(), names_.end(), is_rate_column));
-    if (!layout.time && !layout.sample_rate_hz && std::count(names_.begin(), names_.end(), "time_s") == 1)
+    const bool own_names =
+        named || (layout.time && layout.columns.empty() && std::ranges::any_of(names_, is_rate_column));
+    if (!layout.time && !layout.sample_rate_hz && std::ranges::count(names_, "time_s") == 1)
       layout.time = CsvTime{};
     if (own_names) {
       for (std::size_t i = 0; i < names_.size(); ++i)
@@ -176,8 +172,7 @@ class Chooser {
       const std::size_t at = place(column.header);
       if (column.unit.empty()) column.unit = own_unit(column, at);
       if (at == header_.time_place || at == header_.time_part ||
-          std::any_of(header_.columns.begin(), header_.columns.end(),
-                      [at](const FileColumn& chosen) { return chosen.place == at; }))
+          std::ranges::any_of(header_.columns, [at](const FileColumn& chosen) { return chosen.place == at; }))
         fail("column " + in_quotes(column.header) + " is chosen twice");
       take(at, column);
     }
@@ -225,7 +220,7 @@ class Chooser {
 
   void take_time(CsvTime& time) {
     const std::vector<std::string> parts = parts_of_time(time.header, [&](const std::string& name) {
-      return is_number_of_column(name) || std::count(names_.begin(), names_.end(), name) > 0;
+      return is_number_of_column(name) || std::ranges::count(names_, name) > 0;
     });
     header_.time_place = place(parts.front());
     if (const std::string unit = form_.sample.unit_of(header_.time_place);

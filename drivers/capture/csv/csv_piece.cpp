@@ -22,7 +22,7 @@ namespace {
 // Missing values of R, pandas, databases and spreadsheets.
 bool is_no_value(std::string_view cell) {
   constexpr std::array<std::string_view, 6> kWords{"na", "n/a", "#n/a", "null", "none", "-"};
-  return std::find(kWords.begin(), kWords.end(), lower(std::string(cell))) != kWords.end();
+  return std::ranges::find(kWords, lower(std::string(cell))) != kWords.end();
 }
 
 struct Unreadable {

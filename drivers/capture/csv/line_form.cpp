@@ -37,7 +37,7 @@ std::string_view word_before(std::string_view line) {
   const std::string_view word = line.substr(0, line.find(','));
   const auto in_words = [](char c) { return is_alphabetic(c) || is_decimal(c) || c == '_'; };
   const bool is_word = word.size() < line.size() && !word.empty() && is_alphabetic(word[0]) &&
-                       std::all_of(word.begin(), word.end(), in_words);
+                       std::ranges::all_of(word, in_words);
   return is_word ? line.substr(0, word.size() + 1) : std::string_view();
 }
 
@@ -60,7 +60,7 @@ std::vector<std::string> novatel_names(std::string_view log, std::string_view li
   else
     names.insert(names.end(), {"gps_week", "tow_s", "imu_status", "accel_z", "accel_minus_y", "accel_x",
                                "dtheta_z", "dtheta_minus_y", "dtheta_x"});
-  const auto ends = std::count_if(line.begin(), line.end(), [](char c) { return c == ',' || c == ';'; });
+  const auto ends = std::ranges::count_if(line, [](char c) { return c == ',' || c == ';'; });
   return static_cast<std::size_t>(ends) + 1 == names.size() ? names : std::vector<std::string>();
 }
 
@@ -113,7 +113,7 @@ std::string label_in(std::string_view between) {
   std::string_view label = between.substr(begin, between.find_last_not_of(kAround) - begin + 1);
   if (const std::size_t other = label.find_last_of(",;|:="); other != std::string_view::npos)
     label.remove_prefix(std::min(label.find_first_not_of(" \"'", other + 1), label.size()));  // "RAW: gyro"
-  return std::any_of(label.begin(), label.end(), is_alphabetic) ? std::string(label) : "";
+  return std::ranges::any_of(label, is_alphabetic) ? std::string(label) : "";
 }
 
 Values values_in(std::string_view line) {
@@ -222,7 +222,7 @@ LineForm::LineForm(std::string_view beginning, const std::string& path) {
   labels_ = std::move(labels);
   names_ = names_by(labels_);
   // If lines differ in their beginning, by sensor, only the gyro's are read.
-  const auto gyro = std::find_if(begins.begin(), begins.end(), [](const auto& each) {
+  const auto gyro = std::ranges::find_if(begins, [](const auto& each) {
     return each.second >= kAlike && each.first.find("gyr") != std::string::npos;
   });
   if (begins.size() > 1 && gyro != begins.end()) begin_ = gyro->first;

@@ -39,12 +39,10 @@ std::vector<std::string> wanted_names(const CsvLayout& layout) {
 }
 
 bool has_names(const std::vector<std::string>& cells, const std::vector<std::string>& wanted) {
-  const auto has = [&](const std::string& name) {
-    return std::find(cells.begin(), cells.end(), name) != cells.end();
-  };
-  return std::all_of(wanted.begin(), wanted.end(), [&](const std::string& name) {
+  const auto has = [&](const std::string& name) { return std::ranges::find(cells, name) != cells.end(); };
+  return std::ranges::all_of(wanted, [&](const std::string& name) {
     const std::vector<std::string> parts = parts_of_time(name, has);
-    return std::all_of(parts.begin(), parts.end(), has);
+    return std::ranges::all_of(parts, has);
   });
 }
 
@@ -76,11 +74,11 @@ std::vector<std::string> units_in(std::vector<std::string> units, const std::vec
                                   char separator) {
   const auto value = [&](const std::string& cell) { return cell != "1" && is_value(cell, separator); };
   for (std::string& unit : units) unit = without_brackets(unit);
-  if (std::any_of(units.begin(), units.end(), value)) return {};
-  const auto known = std::count_if(units.begin(), units.end(), is_unit);
+  if (std::ranges::any_of(units, value)) return {};
+  const auto known = std::ranges::count_if(units, is_unit);
   for (std::string& unit : units)
     if (unit == "-" || unit == "1") unit.clear();
-  const auto said = std::ssize(units) - std::count(units.begin(), units.end(), "");
+  const auto said = std::ssize(units) - std::ranges::count(units, "");
   return known == 0 || (2 * known < said && !are_names(names)) ? std::vector<std::string>() : units;
 }
 
@@ -159,9 +157,9 @@ std::vector<Header> headers_above(const std::vector<Line>& lines, const Grid& gr
 // "a[0]" to "a[3]": columns without names of their own, of which more than axes.
 bool are_of_one_matrix(const std::vector<std::string>& names) {
   const std::string stem = names[0].substr(0, names[0].rfind('[') + 1);
-  return names.size() > 3 && stem.size() > 1 &&
-         std::all_of(names.begin(), names.end(),
-                     [&](const auto& name) { return name.starts_with(stem) && name.ends_with(']'); });
+  return names.size() > 3 && stem.size() > 1 && std::ranges::all_of(names, [&](const auto& name) {
+           return name.starts_with(stem) && name.ends_with(']');
+         });
 }
 
 std::vector<Line> first_lines(std::string_view text, const std::string& path) {
@@ -235,7 +233,7 @@ bool take_header(const std::vector<Line>& lines, const Grid& grid, const CsvLayo
     if (!wanted.empty() && has_names(header.names, wanted)) return take(header), true;
   if (const auto header = header_asked_for(lines, grid, wanted)) return take(*header), true;
   if (above.empty()) return false;
-  const bool found = std::any_of(above.begin(), above.end(), [&](const Header& header) {
+  const bool found = std::ranges::any_of(above, [&](const Header& header) {
     take(header);
     return !readings_of(sample, layout).ways.empty();
   });
@@ -260,8 +258,7 @@ TableForm table_form(std::string_view text, const std::vector<std::string>& give
     if (!separator) separator = lines[0].text[4];
     lines.erase(lines.begin());
   }
-  const auto plain =
-      std::find_if(lines.begin(), lines.end(), [](const Line& line) { return !is_comment(line.text); });
+  const auto plain = std::ranges::find_if(lines, [](const Line& line) { return !is_comment(line.text); });
   if (plain == lines.end()) fail_at(path, 0, "no header line, expected 'time_s,rate_radps,…'");
   if (!separator && is_capture_header(plain->text) && plain->text.find(',') != std::string_view::npos)
     separator = ',';

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "drivers/capture/files/input_file.h"
 #include "drivers/capture/times/date_time.h"
 #include "drivers/ifog/decimal.h"
 
@@ -23,6 +24,25 @@ Row row_of(std::string_view line, char separator) {
     row.empty += cell.empty() ? 1 : 0;
   }
   return row;
+}
+
+// A quoted cell of at most kLongestQuoted bytes may hold line ends (RFC 4180). It begins and ends beside a separator.
+std::size_t line_end(std::string_view text) {
+  const auto is_beside = [&](std::size_t at) {
+    return at >= text.size() || std::string_view(",;\t|\r\n").find(text[at]) != std::string_view::npos;
+  };
+  std::size_t at = 0, end = std::min(text.find('\n'), text.size());
+  for (std::size_t open; (open = text.substr(0, end).find('"', at)) != std::string_view::npos;) {
+    at = open + 1;
+    if (open > 0 && !is_beside(open - 1)) continue;
+    const std::string_view near = text.substr(0, open + kLongestQuoted);
+    std::size_t close = near.find('"', at);
+    while (close < near.size() && near.substr(close).starts_with("\"\"")) close = near.find('"', close + 2);
+    if (close > near.size() || !is_beside(close + 1)) continue;
+    at = close + 1;
+    if (at > end) end = std::min(text.find('\n', at), text.size());
+  }
+  return end;
 }
 
 }  // namespace
@@ -84,9 +104,10 @@ std::string as_cell(const std::string& text) {
 
 bool Lines::next(std::string_view& line) {
   if (rest_.empty()) return false;
-  const std::size_t end = rest_.find('\n');
+  const std::size_t end = line_end(rest_);
   line = rest_.substr(0, end);
-  rest_.remove_prefix(end == std::string_view::npos ? rest_.size() : end + 1);
+  number_ += static_cast<std::size_t>(std::ranges::count(line, '\n'));
+  rest_.remove_prefix(std::min(end + 1, rest_.size()));
   if (!line.empty() && line.back() == '\r') line.remove_suffix(1);
   // The checksum of NMEA 0183 and its relatives: $VNYMR,…*69.
   if (line.size() > 3 && line.front() == '$' && line[line.size() - 3] == '*') line.remove_suffix(3);
@@ -138,7 +159,7 @@ void Grid::find_first() {
     const Row& row = rows_[i];
     plain += row.comment ? 0 : 1;
     if (!row.is_row()) continue;
-    auto of = std::find_if(tables.begin(), tables.end(), [&](const Table& table) {
+    auto of = std::ranges::find_if(tables, [&](const Table& table) {
       const Row& first = rows_[table.begin];
       return first.is_as_wide(row.cells.size()) || row.is_as_wide(first.cells.size());
     });
@@ -147,9 +168,8 @@ void Grid::find_first() {
     of->values += row.values, of->last = plain;
     if (++of->run == kSampleRows) break;
   }
-  const auto best = std::max_element(tables.begin(), tables.end(), [](const Table& a, const Table& b) {
-    return std::pair(std::min(a.run, kRunOfRows), a.values) <
-           std::pair(std::min(b.run, kRunOfRows), b.values);
+  const auto best = std::ranges::max_element(tables, {}, [](const Table& table) {
+    return std::pair(std::min(table.run, kRunOfRows), table.values);
   });
   if (best != tables.end()) first_ = best->begin;
 }

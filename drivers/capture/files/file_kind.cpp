@@ -61,7 +61,7 @@ std::string foreign_json(std::string_view head) {
 std::string foreign_text(std::string_view head) {
   const auto has = [&](std::string_view text) { return head.find(text) != std::string_view::npos; };
   if (begins_as_utf16(head)) return "is text in UTF-16, expected UTF-8; 'iconv -f UTF-16 -t UTF-8' makes it";
-  if (!has("\n") && std::count(head.begin(), head.end(), '\r') > 1)
+  if (!has("\n") && std::ranges::count(head, '\r') > 1)
     return "its lines end in a carriage return, expected a line feed; \"tr '\\r' '\\n'\" makes it";
   std::string_view line = head.substr(0, head.find_first_of("\r\n"));
   line = line.substr(0, line.find_last_not_of(' ') + 1);

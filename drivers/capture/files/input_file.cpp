@@ -42,7 +42,7 @@ std::deque<std::string> recordings_among(const std::string& folder, std::error_c
     if (name.ends_with(kOpenEnding)) name.remove_suffix(kOpenEnding.size());
     if (name.ends_with(kRecording)) out.push_back(entry.path().string());
   }
-  std::sort(out.begin(), out.end());
+  std::ranges::sort(out);
   return out;
 }
 
@@ -53,7 +53,7 @@ std::string such_as(const std::string& folder) {
   for (const auto& entry : std::filesystem::directory_iterator(folder, error))
     if (std::error_code unread; entry.is_directory(unread) && !recordings_among(entry.path(), unread).empty())
       of_a_sensor.push_back(entry.path().string());
-  const auto first = std::min_element(of_a_sensor.begin(), of_a_sensor.end());
+  const auto first = std::ranges::min_element(of_a_sensor);
   return first == of_a_sensor.end() ? "" : ", as " + *first;
 }
 
@@ -206,6 +206,15 @@ void InputFile::read_to_the_end() {
   }
 }
 
+// Of the last whole line; npos if there is none. In a quoted cell, which may hold line ends, the quotes are odd.
+static std::size_t last_line_end(std::string_view text) {
+  std::size_t last = text.rfind('\n');
+  for (std::size_t at = last; at < text.size() && last - at < kLongestQuoted;
+       at = text.substr(0, at).rfind('\n'))
+    if (std::ranges::count(text.substr(0, at), '"') % 2 == 0) return at;
+  return last;
+}
+
 TextPieces::TextPieces(ReadBytes read, std::size_t piece)
     : read_(std::move(read)), piece_(std::max<std::size_t>(1, piece)) {}
 
@@ -221,7 +230,7 @@ bool TextPieces::next(std::string& to) {
     const std::size_t n = read_(to.data() + before, piece_);
     to.resize(before + n);
     ended_ = n < piece_;
-    const std::size_t last = to.rfind('\n');
+    const std::size_t last = last_line_end(to);
     if (last == std::string::npos || last < before) {
       if (to.size() > kLongestLine) return true;
       before = to.size();

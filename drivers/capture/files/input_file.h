@@ -17,7 +17,7 @@ struct gzFile_s;  // zlib's
 namespace ifog {
 
 // Longer lines are not text.
-inline constexpr std::size_t kLongestLine = 1U << 20U;
+inline constexpr std::size_t kLongestLine = 1U << 20U, kLongestQuoted = 4096;
 // Rejects a longer line. Throws std::runtime_error.
 [[noreturn]] void refuse_long_line(const std::string& path, std::size_t number, std::string_view line);
 

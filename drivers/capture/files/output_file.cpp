@@ -32,8 +32,7 @@ struct Destination {
 };
 
 bool is_number(const std::string& text) {
-  return !text.empty() &&
-         std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isdigit(c); });
+  return !text.empty() && std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c); });
 }
 
 // Follows link by link, because realpath() needs an existing file, and a link in /proc/self/fd means an open

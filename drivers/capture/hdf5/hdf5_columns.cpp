@@ -107,7 +107,7 @@ std::string without_index(const std::string& name) {
 }
 
 bool contains(const std::vector<std::string>& names, std::string_view name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
+  return std::ranges::find(names, name) != names.end();
 }
 
 }  // namespace
@@ -171,7 +171,7 @@ void Hdf5Columns::choose(const Hdf5Wanted& wanted) {
   H5Pset_chunk_cache(access_, H5D_CHUNK_CACHE_NSLOTS_DEFAULT, std::clamp(kept, kLeastKept, kMostKept), 1.0);
   for (const std::string& name : asked) add(column_asked_for(name));
 
-  const auto time = std::find(others.begin(), others.end(), kHdf5Time);
+  const auto time = std::ranges::find(others, kHdf5Time);
   const bool capture = asked.empty() && time != others.end() && !record_.good();
   if (capture) std::rotate(others.begin(), time, time + 1);  // time first, as in CSV
   if (has_exact_time()) std::erase(others, kHdf5ExactTime);

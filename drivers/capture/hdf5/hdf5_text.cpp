@@ -112,8 +112,8 @@ class Pipe {
 
 // As in a comment of a CSV file.
 std::string one_line(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::ranges::replace_if(
+      text, [](char c) { return c == '\n' || c == '\r'; }, ' ');
   return text;
 }
 
@@ -173,9 +173,7 @@ void keep(std::string_view text, std::array<char, 4096>& to) {
   std::copy(text.begin(), text.end(), to.begin());
 }
 
-std::string kept(const std::array<char, 4096>& text) {
-  return {text.begin(), std::find(text.begin(), text.end(), '\0')};
-}
+std::string kept(const std::array<char, 4096>& text) { return {text.begin(), std::ranges::find(text, '\0')}; }
 
 // Text of a file, from a separate process that ends with this object.
 class Hdf5Text {

@@ -120,8 +120,7 @@ void Hdf5Writer::rows(std::span<const std::span<const double>> columns, const Ti
 
 // They are the last buffered rows.
 void Hdf5Writer::take_large_times(std::span<const double> since_s, const TimeOrigin& origin) {
-  times_are_large_ =
-      std::abs(origin.s) < kMostSecondsInNs && !std::count(names_.begin(), names_.end(), kHdf5ExactTime);
+  times_are_large_ = std::abs(origin.s) < kMostSecondsInNs && !std::ranges::count(names_, kHdf5ExactTime);
   std::vector<double>& time = held_.front();
   std::transform(since_s.begin(), since_s.end(), time.end() - static_cast<std::ptrdiff_t>(since_s.size()),
                  [&](double since) { return origin.in_s(since); });

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "tests/bench/undeclared/project_diagnosis.h"
+#include "tests/unit/capture/read_capture.h"
 
 using namespace ifog::undeclared;
 using Series = std::vector<double>;

@@ -104,6 +104,26 @@ class Noise:
         with_it, without = ({m["state"]: m["log_likelihood"] for m in self.json("tune", path)["models"]} for path in (glitch, self.capture))
         assert max(abs(with_it[state] - without[state]) for state in without) < 5.0, f"{with_it} beside a glitch, {without} without"
 
+    def check_few_missing_samples_do_not_cut_the_curve(self):
+        """ssong47, raw_yaw_medium: a logger loses one row a minute. The curve is that of the whole record, by definition. Of a dither
+        of 1000 times the noise no sample is made up."""
+        time, rate = (columns(self.capture)[name] for name in ("time_s", "rate_radps"))
+        lost = {*range(700, len(rate), 1100), 9001, 9020, 9021}
+        for name, dither in (("lost", 0.0), ("dither", 1e3 * N * math.sqrt(RATE_HZ))):
+            path = self.folder / f"{name}.csv"
+            rows = (f"{t!r},{r + dither * math.sin(1.3 * i)!r}\n" for i, (t, r) in enumerate(zip(time, rate)) if i not in lost)
+            path.write_text("time_s,rate_radps\n" + "".join(rows))
+            assert (f"holes of {len(lost)} samples" in ifog("allan", path)) == (dither == 0), name
+        angle = [0.0]
+        for r in rate:
+            angle.append(angle[-1] + r)
+        found = self.json("allan", self.folder / "lost.csv")["axes"][0]
+        assert found["tau_s"][-1] > 0.2 * SECONDS and found["samples"] == len(rate) - len(lost), found["tau_s"][-1]
+        for tau, deviation in zip(found["tau_s"], found["adev_radps"]):
+            m = round(tau * RATE_HZ)
+            squares = [(angle[i + 2 * m] - 2 * angle[i + m] + angle[i]) ** 2 for i in range(len(rate) - 2 * m + 1)]
+            near(deviation, math.sqrt(sum(squares) / len(squares) / 2) / m, 0.01 * deviation, f"deviation at {tau} s")
+
     def check_no_average_beyond_the_estimator(self):
         third = SECONDS / 3
         refused(1, "allan", self.capture, "--estimator", "hadamard", "--tau", math.ceil(third) + 1,

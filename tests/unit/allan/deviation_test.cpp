@@ -8,8 +8,8 @@
 #include <numbers>
 #include <vector>
 
-#include "drivers/capture/capture.h"
 #include "tests/unit/allan/nist_set.h"
+#include "tests/unit/capture/read_capture.h"
 #include "tools/simulate/noise.h"
 
 namespace {
@@ -86,24 +86,6 @@ TEST(Deviation, StretchesNeverMixAcrossAHole) {
   EXPECT_EQ(points[2].terms, 2U);
   EXPECT_EQ(points[3].terms, 0U);
   EXPECT_TRUE(std::isnan(points[3].variance));
-}
-
-// The logger of an MPU6050 at rest loses 28 samples of 150 000 (ssong47, raw_yaw_medium): the curve is that of the whole
-// record. A dither of 1000 times the noise is not cut out of any average.
-TEST(Deviation, ReachesAcrossFewLostSamplesUnlessTheyCount) {
-  const std::vector<double> whole = ifog::simulate::noise({.N = 1e-4, .B = 1e-5}, 100.0, 150000, 4);
-  std::vector<double> rate = whole, dithered = whole;
-  for (std::size_t i = 0; i < rate.size(); ++i) dithered[i] += std::sin(1.3 * static_cast<double>(i));
-  for (std::size_t i = 2000; i < rate.size(); i += 5200) rate[i] = dithered[i] = std::nan("");
-  for (const std::size_t i : {70001U, 70020U, 70021U}) rate[i] = std::nan("");
-  const AngleSum sum(rate, ifog::stretches({}, rate, {}));
-  EXPECT_EQ(sum.parts().size(), 1U);
-  EXPECT_EQ(sum.filled() + sum.samples(), rate.size());
-  const std::vector<std::size_t> m{1, 2, 10, 100, 1000, 10000, 37500};
-  const auto points = ifog::deviation(sum, m);
-  for (std::size_t i = 0; i < m.size(); ++i)
-    EXPECT_NEAR(std::sqrt(points[i].variance) / allan(whole, m)[i], 1.0, 0.01) << m[i];
-  EXPECT_EQ(AngleSum(dithered, ifog::stretches({}, dithered, {})).filled(), 0U);
 }
 
 TEST(Deviation, MatchesThePublishedFiguresOfARealGyro) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Samples of a driver as a capture: the devices that the chain's tests have, too
 // (tests/unit/drivers/timeline_truth_test.cpp).
-#include "tests/unit/capture/refusal.h"
+#include "tests/unit/capture/read_capture.h"
 
 #include <gtest/gtest.h>
 

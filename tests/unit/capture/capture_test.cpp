@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "drivers/capture/capture.h"
+#include "tests/unit/capture/read_capture.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -11,7 +11,6 @@
 
 #include "drivers/capture/csv/csv_writer.h"
 #include "drivers/capture/files/input_file.h"
-#include "tests/unit/capture/refusal.h"
 #include "tests/unit/own_folder.h"
 
 namespace {

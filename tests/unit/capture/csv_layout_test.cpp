@@ -10,8 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/capture.h"
-#include "tests/unit/capture/refusal.h"
+#include "tests/unit/capture/read_capture.h"
 
 namespace ifog {
 namespace {

@@ -86,8 +86,7 @@ void expect_same(const Reading& a, const Reading& b, std::size_t piece) {
 }
 
 std::ptrdiff_t count_of(const std::vector<std::string>& said, const std::string& beginning) {
-  return std::count_if(said.begin(), said.end(),
-                       [&](const std::string& each) { return each.starts_with(beginning); });
+  return std::ranges::count_if(said, [&](const std::string& each) { return each.starts_with(beginning); });
 }
 
 constexpr std::size_t kWhole = std::size_t{1} << 24U;
@@ -124,6 +123,19 @@ TEST(CsvRows, PiecesOfEverySizeAreTheWhole) {
   const Reading threaded = in_pieces(text, std::size_t{200} << 10U);
   expect_same(whole, threaded, 0);
   EXPECT_GT(threaded.got.blocks, 1U);
+}
+
+// EECE5554, shakedPunch_parsed.csv: the last cell is the device's line in quotes, with its line end. A stray quote costs
+// its own row.
+TEST(CsvRows, AQuotedCellMayHoldALineEnd) {
+  std::string text = "t_s,gyro_x_dps,\"Original,\nString\"\n";
+  for (int i = 0; i < 3000; ++i)
+    text += std::to_string(i) + ",0.5," + (i == 700 ? "\"$VN\n" : "\"$VN,\"\"1*6\r\n\"\r\n");
+  const Reading whole = in_pieces(text, kWhole);
+  ASSERT_EQ(whole.refused, "");
+  EXPECT_EQ(whole.got.rows.size(), 3000U);
+  EXPECT_EQ(whole.notes.line_of_row(10), 24U);
+  for (const std::size_t piece : kPieces) expect_same(whole, in_pieces(text, piece), piece);
 }
 
 TEST(CsvRows, ChosenColumnsAndAnglesAreTheWholesToo) {
@@ -176,7 +188,7 @@ TEST(CsvRows, ADamagedLineIsLeftOutAndManyAreRefused) {
     for (const std::size_t piece : kPieces)
       EXPECT_TRUE(in_pieces(rows, piece).refused.starts_with(first)) << in_pieces(rows, piece).refused;
   }
-  const std::string last = std::to_string(std::count(text.begin(), text.end(), '\n') + 2);
+  const std::string last = std::to_string(std::ranges::count(text, '\n') + 2);
   // What power that goes leaves of the last line, and what a file system adds.
   for (const std::string& rest : {std::string("900000"), std::string("900000,1,"),
                                   std::string("900000,1,2,3e-0"), std::string(4096, '\0')})
@@ -206,7 +218,7 @@ struct Choosy final : ifog::RowSink {
 
   void begin(const std::vector<std::string>&) override { values.resize(wanted.size()); }
   [[nodiscard]] bool wants(std::size_t column) const override {
-    return std::find(wanted.begin(), wanted.end(), column) != wanted.end();
+    return std::ranges::find(wanted, column) != wanted.end();
   }
   void take(RowBlock& rows) override {
     time_s.insert(time_s.end(), rows.time_s.begin(), rows.time_s.end());

@@ -6,8 +6,7 @@
 
 #include <cmath>
 
-#include "drivers/capture/capture.h"
-#include "tests/unit/capture/refusal.h"
+#include "tests/unit/capture/read_capture.h"
 
 namespace ifog {
 namespace {

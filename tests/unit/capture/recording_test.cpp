@@ -16,7 +16,7 @@
 
 #include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture_encoder.h"
-#include "tests/unit/capture/refusal.h"
+#include "tests/unit/capture/read_capture.h"
 #include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 
@@ -238,10 +238,10 @@ TEST_F(Recording, TimesBeforeZeroGoByWholeSecondsLaterAndSaySo) {
   for (const char* driver : {"kvh1750", "sbgecom"}) {
     const Capture back =
         there_and_back(early, driver, driver[0] == 'k' ? DriverSettings{{"format", "b"}} : DriverSettings{});
-    EXPECT_NE(
-        std::find(notices_.begin(), notices_.end(),
+    EXPECT_NE(std::ranges::find(
+                  notices_,
                   "begins at -1.25 s, and no clock of a device shows times before 0: all are sent 2 s later"),
-        notices_.end());
+              notices_.end());
     ASSERT_EQ(back.size(), early.size());
     for (std::size_t i = 0; i < back.size(); ++i) ASSERT_NEAR(back.time_s[i], early.time_s[i] + 2.0, 1.01e-6);
   }
@@ -357,9 +357,7 @@ TEST_F(Recording, APackedOneThatEndsEarlyIsReadAsFarAsItGoes) {
   EXPECT_GT(samples, 100U);
   EXPECT_LT(samples, 900U);
   const std::vector<std::string> said = ifog::losses(counts);
-  EXPECT_EQ(std::count(said.begin(), said.end(),
-                       "1 gzip stream ends early (truncated file); what is there was read"),
-            1);
+  EXPECT_EQ(std::ranges::count(said, "1 gzip stream ends early (truncated file); what is there was read"), 1);
 }
 
 // A real gyro's record through the frames of a device, where the shared captures are at hand.

@@ -11,9 +11,8 @@
 #include <sstream>
 #include <string>
 
-#include "drivers/capture/capture.h"
 #include "drivers/capture/csv/csv_rows.h"
-#include "tests/unit/capture/refusal.h"
+#include "tests/unit/capture/read_capture.h"
 
 namespace {
 

@@ -4,7 +4,7 @@
 
 #include <stdexcept>
 
-#include "tests/unit/capture/refusal.h"
+#include "tests/unit/capture/read_capture.h"
 #include "tests/unit/flight/recordings.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/flight/flight_input.h"

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <numbers>
 
-#include "drivers/capture/capture.h"
 #include "filters/units/field_units.h"
+#include "tests/unit/capture/read_capture.h"
 #include "tests/unit/estimator/drive.h"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <span>
 #include <tuple>
 
-#include "drivers/capture/capture.h"
+#include "tests/unit/capture/read_capture.h"
 #include "tests/unit/estimator/drive.h"
 
 namespace {

@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "drivers/capture/capture.h"
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/diagnosis/diagnose.h"
+#include "tests/unit/capture/read_capture.h"
 #include "tests/unit/refusal.h"
 #include "tools/simulate/noise.h"
 

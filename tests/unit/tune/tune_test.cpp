@@ -32,8 +32,7 @@ Tuning tuned(const std::vector<double>& rate, double period, std::vector<std::st
 }
 
 const ifog::TunedFigure& figure(const ifog::TunedModel& model, const std::string& name) {
-  return *std::find_if(model.figures.begin(), model.figures.end(),
-                       [&](const auto& f) { return f.name == name; });
+  return *std::ranges::find_if(model.figures, [&](const auto& f) { return f.name == name; });
 }
 
 std::vector<double> random_walk(unsigned seed, std::size_t n, double q_step, double r, double level) {
@@ -155,8 +154,8 @@ TEST(Tune, PicksTheOrderOfAFastColour) {
                             "random-walk + ar(2)", "random-walk + arma(3,2)"});
     if (t.models[0].settings.state == "random-walk + ar(1)") ++right;
     EXPECT_NE(t.models[0].settings.state, "random-walk + arma(3,2)") << seed;
-    const auto one = std::find_if(t.models.begin(), t.models.end(),
-                                  [](const auto& m) { return m.settings.state == "random-walk + ar(1)"; });
+    const auto one = std::ranges::find_if(
+        t.models, [](const auto& m) { return m.settings.state == "random-walk + ar(1)"; });
     EXPECT_NEAR(figure(*one, "phi_1").value, 0.5, 0.1) << seed;
   }
   EXPECT_GE(right, 2);

@@ -10,9 +10,9 @@
 #include <memory>
 #include <vector>
 
-#include "drivers/capture/capture.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/units/field_units.h"
+#include "tests/unit/capture/read_capture.h"
 #include "tests/unit/diagnosis/findings.h"
 
 namespace ifog {

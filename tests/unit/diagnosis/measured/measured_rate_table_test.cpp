@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "drivers/capture/capture.h"
 #include "filters/diagnosis/diagnose.h"
+#include "tests/unit/capture/read_capture.h"
 
 namespace ifog {
 namespace {
