@@ -22,7 +22,7 @@ std::vector<AllanInterval> allan_intervals(const AngleSum& sum, Deviation kind,
                                            std::span<const DeviationPoint> points, const TermVariances& terms,
                                            double confidence) {
   TermVariances noise = terms;
-  if (std::all_of(noise.begin(), noise.end(), [](double v) { return v <= 0.0; })) noise[kN] = 1.0;
+  if (std::ranges::all_of(noise, [](double v) { return v <= 0.0; })) noise[kN] = 1.0;
   std::vector<std::size_t> samples;
   for (const AngleSum::Part& part : sum.parts()) samples.push_back(part.angles - 1);
   std::vector<AllanInterval> intervals;

@@ -174,7 +174,7 @@ class Window {
 void add_together(const AngleSum& sum, const Kind& kind, std::span<const std::size_t> m,
                   std::vector<ExactSum>& squares) {
   if (m.empty()) return;
-  const std::size_t longest_m = *std::max_element(m.begin(), m.end());
+  const std::size_t longest_m = *std::ranges::max_element(m);
   // The modified deviation starts each block with m additions, so blocks grow with m.
   const std::size_t block = std::max(kBlock, kind.block_m * longest_m);
   const std::size_t reach = kind.span * longest_m + block;

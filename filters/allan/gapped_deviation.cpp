@@ -15,7 +15,7 @@ struct GappedSum {
   Samples sum, there;
 
   explicit GappedSum(std::span<const double> rate) : sum(rate.size() + 1, 0.0), there(rate.size() + 1, 0.0) {
-    const auto first = std::find_if(rate.begin(), rate.end(), [](double v) { return std::isfinite(v); });
+    const auto first = std::ranges::find_if(rate, [](double v) { return std::isfinite(v); });
     const double offset = first == rate.end() ? 0.0 : *first;
     for (std::size_t i = 0; i < rate.size(); ++i) {
       const bool finite = std::isfinite(rate[i]);

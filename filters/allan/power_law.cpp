@@ -107,7 +107,7 @@ class LagSum {
       bends.push_back(k * step + 1);  // spike at k·m
     }
     for (const double p : places) bends.push_back(static_cast<long long>(p));
-    std::sort(bends.begin(), bends.end());
+    std::ranges::sort(bends);
     bends.erase(std::unique(bends.begin(), bends.end()), bends.end());
     for (std::size_t i = 0; i + 1 < bends.size(); ++i)
       if (bends[i] >= 0 && bends[i + 1] <= end) between(bends[i], bends[i + 1]);

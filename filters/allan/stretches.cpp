@@ -115,8 +115,8 @@ Extremes extremes_of(const SeriesView& time_s) {
       least[i % kLanes] = step < least[i % kLanes] ? step : least[i % kLanes];
       most[i % kLanes] = step > most[i % kLanes] ? step : most[i % kLanes];
     }
-    found.least_s = *std::min_element(least.begin(), least.end());
-    found.most_s = *std::max_element(most.begin(), most.end());
+    found.least_s = *std::ranges::min_element(least);
+    found.most_s = *std::ranges::max_element(most);
   }
   return found;
 }

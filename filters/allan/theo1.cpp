@@ -79,7 +79,7 @@ std::vector<std::size_t> spans(double from, double to, int per_decade) {
     if (m.empty() || even < m.back()) m.push_back(even);
     tau /= step;
   }
-  std::reverse(m.begin(), m.end());
+  std::ranges::reverse(m);
   return m;
 }
 
@@ -105,7 +105,7 @@ std::vector<LongPoint> theo1(const AngleSum& sum, const TermVariances& terms, do
     angle.push_back(sum.angle().at(part->first + i) / scale);
   // Averages over `step` samples have the same terms with these variances.
   TermVariances averaged{terms[kQ] / (scale * scale), terms[kN] / scale, terms[kB], terms[kK] * scale};
-  if (std::all_of(averaged.begin(), averaged.end(), [](double v) { return v <= 0.0; })) averaged[kN] = 1.0;
+  if (std::ranges::all_of(averaged, [](double v) { return v <= 0.0; })) averaged[kN] = 1.0;
   const Eigen::MatrixXd c = covariance(angle.size(), averaged);
   const double samples = static_cast<double>(angle.size() - 1);
   std::vector<LongPoint> points;

@@ -31,7 +31,7 @@ std::string in_words(const std::vector<Stretch>& stuck, const TimeOfSample& time
   const std::size_t longest = std::ranges::max_element(stuck, {}, &Stretch::size)->size();
   return "stands still for up to " + std::to_string(longest) + " samples, " + std::to_string(stuck.size()) +
          (stuck.size() == 1 ? " time" : " times") + ", first at " + told_time(time_s(stuck.front().begin)) +
-         " s: the sensor or the logger repeated a value, not used in these figures";
+         " s: the sensor or the logger repeated a value, dropped";
 }
 
 struct Replacement {
@@ -78,11 +78,6 @@ void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector
   if (!stuck.empty()) faults.push_back({"stuck", in_words(stuck, time_s)});
   for (const Stretch& each : stuck) missing.push_back({each, std::nan("")});
   if (std::optional<LongSeries> cleaned = with(rate, std::move(missing))) rate = *std::move(cleaned);
-}
-
-void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
-  auto cleaned = with(rate, leaps_in(rate, rate, stretches({}, rate, {}), LeapOf::kOneValue, time_s, faults));
-  if (cleaned) rate = *std::move(cleaned);
 }
 
 std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,

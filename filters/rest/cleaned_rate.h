@@ -22,9 +22,6 @@ using TimeOfSample = std::function<double(std::size_t)>;  // s, for the text
 // such as -999 (LeapOf::kOneValue, glitches.h).
 void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
-// Sets only placeholders to NaN, for commands that pass the rate on.
-void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
-
 // Rate in which single outliers of `error` are replaced by the median of their neighbours. nullopt if there
 // are none, or too many to be outliers (glitches.h). error: rate minus reference, or the rate; parts: at
 // rest.

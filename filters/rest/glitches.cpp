@@ -27,14 +27,17 @@ constexpr std::size_t kLongest = 7;       // samples; a longer run is a repeated
 constexpr double kRounding = 1e-12;       // relative
 constexpr std::size_t kEnough = 100'000;  // enough second differences for the median
 
-// Calls use(i, away) for each sample that has both neighbours, with its distance from their mean.
+// Calls use(i, away) for each sample that has both neighbours, with its distance from their mean, except where one of
+// the three has the magnitude `without`.
 template <typename Use>
-void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use use) {
+void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, double without, Use use) {
   for (const Stretch& part : parts) {
     double before = 0.0, middle = 0.0;
     for_each_piece(rate, part.begin, part.end, [&](std::span<const double> values, std::size_t first) {
       for (std::size_t k = 0; k < values.size(); ++k) {
-        if (first + k >= part.begin + 2) use(first + k - 1, std::abs(middle - 0.5 * (before + values[k])));
+        const bool all = std::abs(before) != without && std::abs(middle) != without &&
+                         std::abs(values[k]) != without && first + k >= part.begin + 2;
+        if (all) use(first + k - 1, std::abs(middle - 0.5 * (before + values[k])));
         before = middle;
         middle = values[k];
       }
@@ -45,15 +48,16 @@ void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, Use
 // Noise deviation that a leap is compared with.
 class Yardstick {
  public:
-  Yardstick(const SeriesView& rate, std::span<const Stretch> parts) : rate_(rate), parts_(parts) {
+  Yardstick(const SeriesView& rate, std::span<const Stretch> parts, LeapOf of) : rate_(rate), parts_(parts) {
+    for_each_run(rate, parts, [&](const Run& run) { add(run); });
+    if (of == LeapOf::kOneValue) without_ = largest_;
     std::vector<double> some;
     const std::size_t stride = rate.size() / kEnough + 1;
     std::size_t next = 0;  // multiple of the stride
-    for_each_middle(rate, parts, [&](std::size_t i, double away) {
+    for_each_middle(rate, parts, without_, [&](std::size_t i, double away) {
       while (next < i) next += stride;
       if (i == next) some.push_back(away);
     });
-    for_each_run(rate, parts, [&](const Run& run) { add(run); });
     if (some.size() < 3) return;
     all_ = kOfMedian * median(some);
     // Most neighbours of a sensor with coarse resolution are equal except for rounding.
@@ -61,7 +65,9 @@ class Yardstick {
   }
   // A rate has magnitudes up to its largest, in a crest of two samples at most where values do not repeat.
   [[nodiscard]] bool is_placeholder(const Run& run) const {
-    return std::abs(run.value) == largest_ && 2.0 * second_ < largest_ &&
+    int power = 0;  // -1 as an unsigned count is one less than a power of two
+    const bool wraps = std::frexp(std::round(largest_ / smallest_step_) + 1.0, &power) == 0.5 && power > 8;
+    return std::abs(run.value) == largest_ && 2.0 * second_ < largest_ && !wraps &&
            (times_ > 1 || (run.length > 2 && repeats_.are_rare()));
   }
   // The samples around a blow or the start of motion leap, too.
@@ -101,7 +107,7 @@ class Yardstick {
       if (part.end > begin && part.begin < end)
         here.push_back({std::max(part.begin + 1, begin) - 1, std::min(part.end, end + 1)});
     std::vector<double> away;
-    for_each_middle(rate_, here, [&](std::size_t, double each) { away.push_back(each); });
+    for_each_middle(rate_, here, without_, [&](std::size_t, double each) { away.push_back(each); });
     known = {block, away.size() >= kLeast ? kOfMedian * median(away) : 0.0};
     return known.deviation;
   }
@@ -120,6 +126,7 @@ class Yardstick {
   std::span<const Stretch> parts_;
   Repeats repeats_;
   std::array<Near, 4> near_;  // cache
+  double without_ = -1.0;     // magnitude of placeholders, if any
   double all_ = 0.0, least_ = 0.0, largest_ = 0.0, second_ = 0.0;
   double smallest_step_ = std::numeric_limits<double>::infinity();
   std::size_t times_ = 0;  // number of runs of largest_
@@ -129,17 +136,20 @@ class Yardstick {
 
 Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, LeapOf of) {
   Glitches out;
-  Yardstick yardstick(rate, parts);
+  Yardstick yardstick(rate, parts, of);
   std::size_t samples = 0;
   for (const Stretch& part : parts) samples += part.size();
   // One outlier is accepted even in a very short record.
   const std::size_t most = samples / kOneInAtMost + 1;
-  std::size_t end = 0, various = 0;  // end of the last outlier; samples that are no placeholder
+  std::size_t end = rate.size(), various = 0;  // end of the last outlier; samples that are no placeholder
   for_each_run(rate, parts, [&](const Run& run) {
-    const double between = 0.5 * (run.before + run.after), away = std::abs(run.value - between);
     const bool placeholder = of == LeapOf::kOneValue && yardstick.is_placeholder(run);
+    // At an end of the record a placeholder has one neighbour.
+    const double before = placeholder && std::isnan(run.before) ? run.after : run.before,
+                 after = placeholder && std::isnan(run.after) ? run.before : run.after,
+                 between = 0.5 * (before + after), away = std::abs(run.value - between);
     if (run.length > kLongest || !(of == LeapOf::kOneValue ? placeholder : run.length == 1)) return;
-    if (!(away > kFar * yardstick.least()) || std::abs(run.after - run.before) >= 0.5 * away) return;
+    if (!(away > kFar * yardstick.least()) || std::abs(after - before) >= 0.5 * away) return;
     if (of == LeapOf::kOneSample && !yardstick.is_alone(run, between)) return;
     const double deviation = yardstick.at(run.begin);
     if (!(deviation > 0.0) || away <= kFar * deviation) return;

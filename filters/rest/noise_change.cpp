@@ -168,7 +168,7 @@ double middle_magnitude(const Octave& octave, std::size_t begin, std::size_t end
       return mean_magnitude(octave, begin, end);
   for (std::size_t q = 0; q < kFine; ++q)
     quarters[q] = mean_magnitude(octave, begin + q * length, begin + (q + 1) * length);
-  std::sort(quarters.begin(), quarters.end());
+  std::ranges::sort(quarters);
   return 0.5 * (quarters[1] + quarters[2]);
 }
 

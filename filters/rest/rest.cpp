@@ -68,8 +68,8 @@ Window window_of(std::span<const double> rate) {
     if (n[q] < 2.0) return {std::nan(""), std::nan("")};
     scatter[q] = std::sqrt(scatter[q] / (n[q] - 1.0));
   }
-  std::sort(level.begin(), level.end());
-  std::sort(scatter.begin(), scatter.end());
+  std::ranges::sort(level);
+  std::ranges::sort(scatter);
   return {0.5 * (level[1] + level[2]), scatter[1]};
 }
 
@@ -217,8 +217,7 @@ Rest::SlowTurns dwells_of(std::span<const SeriesView> axes) {
     std::vector<double> there;
     std::vector<double> room;
     const std::span<const double> values = rate.piece(0, rate.size(), room);
-    std::copy_if(values.begin(), values.end(), std::back_inserter(there),
-                 [](double v) { return std::isfinite(v); });
+    std::ranges::copy_if(values, std::back_inserter(there), [](double v) { return std::isfinite(v); });
     const double level = quantile(std::move(there), 0.5);
     for (std::size_t i = 0; i < values.size(); ++i) {
       const double away = std::abs(values[i] - level);
@@ -252,8 +251,7 @@ Rest rest_by_references(std::span<const SeriesView> references, std::size_t samp
   for (const SeriesView& reference : references) {
     std::vector<double> there;
     for_each_piece(reference, 0, samples, [&](std::span<const double> values, std::size_t) {
-      std::copy_if(values.begin(), values.end(), std::back_inserter(there),
-                   [](double v) { return std::isfinite(v); });
+      std::ranges::copy_if(values, std::back_inserter(there), [](double v) { return std::isfinite(v); });
     });
     const double level = quantile(std::move(there), 0.5);
     for_each_piece(reference, 0, samples, [&](std::span<const double> values, std::size_t first) {

@@ -136,7 +136,7 @@ void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, d
   const std::vector<double> values = values_of(rate, parts);
   if (values.size() < kFewSamples) return;
   std::vector<double> sorted = values;
-  std::sort(sorted.begin(), sorted.end());
+  std::ranges::sort(sorted);
   if (sorted.front() == sorted.back()) return;
   const std::size_t before = found.size();
   find_held(values, period_s, found);

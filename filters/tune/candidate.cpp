@@ -67,13 +67,13 @@ std::vector<double> ModelCandidate::draw(const RecordSpectrum& spectrum, std::mt
   std::vector<double> low(theta.size()), high(theta.size());
   bounds(low, high);
   theta[0] = std::log(under(spectrum, spectrum.walk)) + 4.0 * share();
-  theta[1] = std::log(*std::min_element(spectrum.coarse.begin(), spectrum.coarse.end())) + share();
+  theta[1] = std::log(*std::ranges::min_element(spectrum.coarse)) + share();
   std::size_t at = kLevel;
   for (const auto& term : terms_) {
     const auto part = std::span(theta).subspan(at, static_cast<std::size_t>(term->size()));
     part[0] = 0.0;
     term->draw_shape(spectrum, random, part);
-    std::fill(shape.begin(), shape.end(), 0.0);
+    std::ranges::fill(shape, 0.0);
     term->add_density(part, spectrum, shape);
     part[0] = std::log(under(spectrum, shape)) + share();
     at += part.size();

@@ -56,8 +56,8 @@ double memories_in_record(const FilterSettings& settings, double period_s, doubl
 }
 
 std::size_t choose(std::vector<TunedModel>& models, double period_s, double samples) {
-  const auto walk = std::find_if(models.begin(), models.end(),
-                                 [](const TunedModel& m) { return m.settings.state == "random-walk"; });
+  const auto walk =
+      std::ranges::find_if(models, [](const TunedModel& m) { return m.settings.state == "random-walk"; });
   if (walk == models.end()) return 0;
   auto chosen = models.begin();
   for (; chosen != walk; ++chosen) {

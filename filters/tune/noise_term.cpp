@@ -75,7 +75,7 @@ double drawn_frequency(const RecordSpectrum& spectrum, Random& random) {
     const double above = spectrum.coarse[b] / std::sqrt(low * high);
     height.push_back(above > 1.5 ? std::min(above, 10.0) : 0.0);
   }
-  if (std::all_of(height.begin(), height.end(), [](double h) { return h <= 0.0; }))
+  if (std::ranges::all_of(height, [](double h) { return h <= 0.0; }))
     return between(random, 0.0, std::numbers::pi);
   return spectrum.omega[std::discrete_distribution<std::size_t>(height.begin(), height.end())(random)];
 }

@@ -37,8 +37,7 @@ RateFigures figures_of(std::span<const double> rate, double period_s) {
 std::vector<double> ahead_of(std::span<const double> measured, std::span<const double> published) {
   constexpr std::size_t kWindows = 8;
   const std::size_t n = measured.size();
-  const auto measurement =
-      std::find_if(measured.begin(), measured.end(), [](double v) { return std::isfinite(v); });
+  const auto measurement = std::ranges::find_if(measured, [](double v) { return std::isfinite(v); });
   const double level = measurement == measured.end() ? 0.0 : *measurement;
   std::vector<double> sum(n + 1, 0.0), count(n + 1, 0.0), out;
   for (std::size_t k = 0; k < n; ++k) {

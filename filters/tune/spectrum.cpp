@@ -28,7 +28,7 @@ std::vector<double> bridged(std::span<const double> values) {
       out[i] = begin + (out[k] - begin) * static_cast<double>(i - from) / static_cast<double>(k - from);
     last = k;
   }
-  if (last == out.size()) std::fill(out.begin(), out.end(), 0.0);
+  if (last == out.size()) std::ranges::fill(out, 0.0);
   for (std::size_t k = last; k < out.size(); ++k) out[k] = out[last];
   return out;
 }

@@ -81,8 +81,7 @@ std::vector<std::size_t> farthest(const std::vector<Departure>& found, double mi
   const auto distance = [&](std::size_t i) {
     return found[i].value * found[i].value / (found[i].variance + misfit * misfit);
   };
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return distance(a) > distance(b); });
+  std::ranges::sort(order, [&](std::size_t a, std::size_t b) { return distance(a) > distance(b); });
   order.resize(std::min(order.size(), kTried));
   return order;
 }
@@ -103,7 +102,7 @@ double settled_misfit(const NoiseSpectrum& spectrum, const std::vector<Band>& ba
   for (int round = 0; round < 4; ++round) {
     const NoiseSpectrum loose = loosened(spectrum, bands, misfit);
     const NoiseLikelihood likelihood(loose, Ramp::kProjected);
-    const bool known = std::any_of(terms.begin(), terms.end(), [](double v) { return v > 0.0; });
+    const bool known = std::ranges::any_of(terms, [](double v) { return v > 0.0; });
     terms = (known ? likelihood.maximise(allowed, terms) : likelihood.maximise(allowed)).variances;
     const double found = misfit_of(departures(spectrum, bands, terms));
     const bool settled = std::abs(found - misfit) <= 0.02 * found;

@@ -128,7 +128,7 @@ std::optional<GaussMarkovFit> fit_gauss_markov(const NoiseSpectrum& spectrum, Ra
   const auto likelier = [](const Tried& a, const Tried& b) {
     return a.best.log_likelihood < b.best.log_likelihood;
   };
-  const auto top = std::max_element(all.begin(), all.end(), likelier);
+  const auto top = std::ranges::max_element(all, likelier);
   GaussMarkovFit fit;
   fit.gain = 2.0 * (top->best.log_likelihood - walks);
   if (fit.gain <= 0.0) return std::nullopt;

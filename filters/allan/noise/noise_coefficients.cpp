@@ -357,10 +357,9 @@ NoiseCoefficients noise_coefficients(const AngleSum& sum, double period_s) {
                                 " samples, expected at least " + std::to_string(kShortestStretch) +
                                 " for a noise fit");
   const NoiseSpectrum measured = noise_spectrum(sum);
-  if (std::all_of(measured.bins.begin(), measured.bins.end(), [](const auto& b) { return !(b.power > 0.0); }))
+  if (std::ranges::all_of(measured.bins, [](const auto& b) { return !(b.power > 0.0); }))
     throw std::invalid_argument("the rate never changes; there is no noise to fit");
-  if (std::all_of(measured.bins.begin(), measured.bins.end(),
-                  [](const auto& b) { return b.power < kLeastPower; }))
+  if (std::ranges::all_of(measured.bins, [](const auto& b) { return b.power < kLeastPower; }))
     throw std::invalid_argument("the rate changes by less than 1e-60 rad/s: no sensor's noise");
   NoiseCoefficients found;
   for (const FrequencyRange& line : measured.lines) found.lines_hz.push_back(in_hz(line, period_s));

@@ -219,7 +219,7 @@ class Level {
     segments = std::min(segments, kMostSegments);
     const double hop =
         segments > 1 ? static_cast<double>(count - size) / static_cast<double>(segments - 1) : 0.0;
-    std::fill(power_.begin(), power_.end(), 0.0);
+    std::ranges::fill(power_, 0.0);
     std::vector<double> rate(size);
     for (std::size_t s = 0; s < segments; ++s) {
       const auto begin = static_cast<std::size_t>(hop * static_cast<double>(s));
@@ -279,7 +279,7 @@ NoiseSpectrum noise_spectrum(const AngleSum& sum) {
   std::vector<std::size_t> slow(means.size());
   std::iota(slow.begin(), slow.end(), std::size_t{0});
   const auto samples = [&](std::size_t p) { return sum.parts()[p].angles - 1; };
-  std::sort(slow.begin(), slow.end(), [&](std::size_t a, std::size_t b) { return samples(a) > samples(b); });
+  std::ranges::sort(slow, [&](std::size_t a, std::size_t b) { return samples(a) > samples(b); });
   slow.resize(std::min(slow.size(), kMostSlowStretches));
   for (const std::size_t p : slow)
     if (samples(p) >= kShortestStretch)
