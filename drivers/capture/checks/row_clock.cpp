@@ -45,11 +45,10 @@ bool are_late(const std::vector<double>& departure) {
   const auto squares = [&](std::size_t apart) {
     double sum = 0.0;
     for (std::size_t i = apart; i < departure.size(); ++i)
-      sum += (departure[i] - departure[i - apart]) * (departure[i] - departure[i - apart]);
+      sum += std::pow(departure[i] - departure[i - apart], 2.0);
     return sum;
   };
-  return departure.size() > kLateBursts * kLateBursts &&
-         4.0 * squares(kLateBursts) < kLateBursts * squares(1);
+  return departure.size() > kLateBursts * kLateBursts && squares(kLateBursts) < 4.0 * squares(1);
 }
 
 Bursts bursts_of(const std::vector<double>& time_s) {

@@ -112,7 +112,8 @@ std::string unit_in_name(const std::string& name) {
     const std::size_t at = header.find(open);
     if (at == std::string::npos || header.back() != close) continue;
     const std::string inside = header.substr(at + 1, header.size() - at - 2);
-    return is_unit(inside) ? inside : "";
+    const std::string unit = inside.starts_with("in ") ? inside.substr(3) : inside;
+    return is_unit(unit) ? unit : "";
   }
   // UncalGyroXRadPerSec, rate_x_degrees_per_second
   if (const std::size_t per = lower(header).rfind("per"); per != std::string::npos && per > 3) {

@@ -88,12 +88,11 @@ TEST(CsvLayout, IncrementsAreTheTurnWithinAPeriod) {
                     layout({"rate_x_radps=d:arcsec/sample"}, "t"));
   const double rate = 36.0 / 3600.0 * kDegree;
   const std::vector<double> expected{rate, rate, NAN, rate, rate, -2 * rate, rate};
-  for (std::size_t i = 0; i < expected.size(); ++i) {
+  for (std::size_t i = 0; i < expected.size(); ++i)
     if (std::isnan(expected[i]))
       EXPECT_TRUE(std::isnan(got.rate_radps[0][i])) << i;
     else
       EXPECT_NEAR(got.rate_radps[0][i], expected[i], 1e-12 * rate) << i;
-  }
   EXPECT_EQ(refusal([] { CsvColumn::parse("rate_x_radps=d:V/sample"); }).substr(0, 52),
             "'rate_x_radps=d:V/sample', expected a unit that beco");
   // Of what no sensor measures the cell is said.

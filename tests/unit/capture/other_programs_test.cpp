@@ -89,7 +89,8 @@ TEST(OtherPrograms, FilesProgramsAreReadOrOfferedRight) {
       // A unit behind a comma (GOST 2.105) or "in" (DIN 461), or as a divisor; a minimum is no minute.
       {rows_of("Время, с;Угловая скорость X, град/с\n", "0.{i};{x}"),
        {"rate_x 'Угловая скорость X, град/с' in град/с"}},
-      {rows_of("Zeit in s;Drehrate X in °/s\n", "0.{i};{x}"), {"rate_x 'Drehrate X in °/s' in °/s"}},
+      {rows_of("Zeit in s;Drehrate X in °/s;y (in radians/s)\n", "0.{i};{x};{y}"),
+       {"rate_x 'Drehrate X in °/s' in °/s, rate_y 'y (in radians/s)' in radians/s"}},
       {rows_of("Time / s;Gyro X / deg/s;Gyro X min\n", "0.{i};{x};{y}"),
        {"rate_x 'Gyro X / deg/s' in deg/s"}},
       // Movella DOT data exporter: the stated rate tells that its clock is of us.
