@@ -113,7 +113,7 @@ class Noise:
             path = self.folder / f"{name}.csv"
             rows = (f"{t!r},{r + dither * math.sin(1.3 * i)!r}\n" for i, (t, r) in enumerate(zip(time, rate)) if i not in lost)
             path.write_text("time_s,rate_radps\n" + "".join(rows))
-            assert (f"holes of {len(lost)} samples" in ifog("allan", path)) == (dither == 0), name
+            assert (f"across {len(lost)} missing samples" in ifog("allan", path)) == (dither == 0), name
         angle = [0.0]
         for r in rate:
             angle.append(angle[-1] + r)

@@ -163,15 +163,15 @@ class Checks:
         near(axis["coefficients"]["N"]["value"], N, 4 * axis["coefficients"]["N"]["std_error"], "N")
 
     def check_allan_with_holes(self):
-        """A gap and a missing value: reported and analysed in stretches, or rejected with the line if requested."""
+        """A long gap and a missing value: reported, divided by and filled, or rejected with the line if requested."""
         lines = (self.folder / "white.csv").read_text().splitlines()
         header = next(i for i, line in enumerate(lines) if line.startswith("time_s"))
-        del lines[header + 5001:header + 5101]
+        del lines[header + 5001:header + 5501]
         lines[header + 9001] = lines[header + 9001].split(",")[0] + ","
         holes = self.folder / "holes.csv"
         holes.write_text("\n".join(lines) + "\n")
         said = ifog("allan", holes)
-        for part in ("1 gap", "100 samples missing", "missing in 1 of 19900 rows", "3 stretches"):
+        for part in ("1 gap", "500 samples missing", "missing in 1 of 19500 rows", "across 1 missing sample,", "2 stretches"):
             assert part in said, f"'{part}' is not in: {said[:600]}"
         # The gap is after data row 5000, whose line is header + 5001 counted from one.
         refused(1, "allan", holes, "--gaps", "refuse", says=[f"{holes}:{header + 5001}: 1 gap"])

@@ -204,9 +204,9 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
     throw std::runtime_error(name + ": " + column +
                              " has no two samples in a row, expected a record without so many gaps");
   if (sum.filled() > 0)
-    record.notes.push_back(name + ": " + column + ": averages reach across holes of " +
-                           std::to_string(sum.filled()) +
-                           " samples, which the mean of their neighbours fills: at most 2 % of a variance");
+    record.notes.push_back(name + ": " + column + ": averages reach across " + std::to_string(sum.filled()) +
+                           (sum.filled() == 1 ? " missing sample" : " missing samples") +
+                           ", filled with the mean of their neighbours: at most 2 % of a variance");
   if (sum.parts().size() > 1)
     record.notes.push_back(name + ": " + column + " is analysed in " + std::to_string(sum.parts().size()) +
                            " stretches; averages reach across no hole between them, the longest stretch is " +
