@@ -54,7 +54,7 @@ class Outliers {
     unlikely_ += static_cast<double>((each > most).count());
     const double evidence = unlikely_ * std::max(rarity(), -logarithm(kRare));
     const bool near = moving || scattered || nearness_ >= 0.5 * logarithm(lag);
-    if (!(evidence > kEvidence && near)) return Verdict::waits;
+    if (!(evidence > kEvidence && near && run_ > 1)) return Verdict::waits;
     jumps_ += 1.0;
     return Verdict::jump;
   }
