@@ -26,8 +26,8 @@ class Parser {
   Database parse() {
     while (!in_.at_end()) section_or_warning();
     resolve_selectors();
-    const bool usable = std::any_of(out_.messages.begin(), out_.messages.end(),
-                                    [](const Message& m) { return m.refused.empty(); });
+    const bool usable =
+        std::ranges::any_of(out_.messages, [](const Message& m) { return m.refused.empty(); });
     if (!usable && !out_.warnings.empty()) throw std::runtime_error(out_.warnings.front());
     return std::move(out_);
   }

@@ -114,8 +114,7 @@ int FlightArchive::look(std::int64_t now_ns, std::int64_t wall_ns) {
     kept_.files.push_back({number, std::move(name), file.bytes, last_ns});
     kept_.bytes += file.bytes;
   }
-  std::sort(kept_.files.begin(), kept_.files.end(),
-            [](const Kept& a, const Kept& b) { return a.number < b.number; });
+  std::ranges::sort(kept_.files, [](const Kept& a, const Kept& b) { return a.number < b.number; });
   kept_.known = true;
   return 0;
 }

@@ -23,7 +23,7 @@ class TwoDevices {
     if (plain_ >= kGone) found_ = false;
     if (own || plain_ >= kGone) crossed_ = 0;
     if (plain_ > 0) return;
-    if (!own && std::any_of(ends_.begin(), ends_.end(), continues)) ++crossed_;
+    if (!own && std::ranges::any_of(ends_, continues)) ++crossed_;
     found_ = found_ || crossed_ >= kShows;
     std::rotate(ends_.begin(), ends_.end() - 1, ends_.end());
     ends_[0] = before;

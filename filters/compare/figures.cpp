@@ -48,8 +48,8 @@ double misfit(std::span<const double> output, std::span<const double> reference,
 // the one nearest to zero.
 std::optional<double> nearest_dip(const std::vector<double>& at) {
   constexpr double kAsDeep = 0.05;  // of the way from the smallest to the largest
-  const double best = *std::min_element(at.begin(), at.end());
-  const double worst = *std::max_element(at.begin(), at.end());
+  const double best = *std::ranges::min_element(at);
+  const double worst = *std::ranges::max_element(at);
   // A reference at rest fits at any shift, so a contrast of 5 % is required.
   if (worst < 1.05 * best) return std::nullopt;
   const std::ptrdiff_t none = std::ssize(at) / 2;

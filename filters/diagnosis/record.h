@@ -55,7 +55,7 @@ inline std::span<const double> values_of(const Record& record, std::string_view 
 // True if the values are not all equal.
 inline bool moves(std::span<const double> values) {
   const auto finite = [](double value) { return std::isfinite(value); };
-  const auto first = std::find_if(values.begin(), values.end(), finite);
+  const auto first = std::ranges::find_if(values, finite);
   return std::any_of(first, values.end(), [&](double value) { return finite(value) && value != *first; });
 }
 

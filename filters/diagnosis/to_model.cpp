@@ -19,8 +19,8 @@ void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& mo
     }
     all = next;
   }
-  const bool named = std::any_of(diagnosis.effects.begin(), diagnosis.effects.end(),
-                                 [](const FoundEffect& found) { return found.effect.form == "bias"; });
+  const bool named = std::ranges::any_of(
+      diagnosis.effects, [](const FoundEffect& found) { return found.effect.form == "bias"; });
   const bool bias = diagnosis.bias && !named;
   const std::size_t fitted = rows.size();
   const std::size_t added = fitted + (bias ? 1 : 0);
@@ -44,9 +44,8 @@ void add_to_model(const Diagnosis& diagnosis, const std::string& axis, Model& mo
   }
   model.covariance = std::move(covariance);
   for (const ChannelRange& range : diagnosis.ranges) {
-    const auto known = std::find_if(model.ranges.begin(), model.ranges.end(), [&](const ChannelRange& other) {
-      return other.channel == range.channel;
-    });
+    const auto known = std::ranges::find_if(
+        model.ranges, [&](const ChannelRange& other) { return other.channel == range.channel; });
     if (known == model.ranges.end()) {
       model.ranges.push_back(range);
     } else {

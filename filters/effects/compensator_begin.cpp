@@ -73,8 +73,7 @@ Compensator::Compensator(const Model& model, const std::vector<std::string>& axe
 }
 
 void Compensator::arrange_terms() {
-  std::stable_sort(terms_.begin(), terms_.end(),
-                   [](const Term& one, const Term& other) { return one.axis < other.axis; });
+  std::ranges::stable_sort(terms_, [](const Term& one, const Term& other) { return one.axis < other.axis; });
   values_.resize(terms_.size());
   for (std::size_t axis = 0, next = 0; axis < axes_; ++axis) {
     AxisTerms& of = of_axis_[axis];

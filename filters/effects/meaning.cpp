@@ -204,12 +204,11 @@ bool is_angle_by_unit(std::string_view channel) {
 Motion motion_of(std::string_view channel) {
   const auto any = [&](std::initializer_list<std::string_view> words) {
     const std::string whole = "_" + std::string(channel) + "_";
-    return std::any_of(words.begin(), words.end(),
-                       [&](std::string_view word) { return has(whole, "_" + std::string(word)); });
+    return std::ranges::any_of(words,
+                               [&](std::string_view word) { return has(whole, "_" + std::string(word)); });
   };
   const auto in = [&](std::initializer_list<std::string_view> units) {
-    return std::any_of(units.begin(), units.end(),
-                       [&](std::string_view unit) { return channel.ends_with(unit); });
+    return std::ranges::any_of(units, [&](std::string_view unit) { return channel.ends_with(unit); });
   };
   const ChannelKind kind = kind_of(channel);
   if (kind == ChannelKind::kReferenceRate || kind == ChannelKind::kTemperature ||

@@ -279,7 +279,7 @@ void RampTracker::decide() noexcept {
   undecided_ = 0;
   const double energy = std::max(energy_, samples_);
   const double wanted = energy * -std::expm1(-2.0 * kProof / samples_);
-  const auto best = std::max_element(gained_.begin(), gained_.end());
+  const auto best = std::ranges::max_element(gained_);
   if (*best >= wanted) lock(static_cast<std::size_t>(best - gained_.begin()));
 }
 
@@ -339,7 +339,7 @@ double RampTracker::follow(const Sight& sight) noexcept {
 // Mean and variance of the phase over the tracked ones, and the frequency from the drift of the mean.
 void RampTracker::locate(double seconds) noexcept {
   undecided_ = 0;
-  const float best = *std::max_element(near_.begin(), near_.end());
+  const float best = *std::ranges::max_element(near_);
   double sum = 0.0;
   double first = 0.0;
   double second = 0.0;

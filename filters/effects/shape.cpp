@@ -126,7 +126,7 @@ double Shape::table(double value) const noexcept {
   // NaN fails this comparison.
   if (!(value > x.front())) return y.front();
   if (value >= x.back()) return y.back();
-  const auto above = std::upper_bound(x.begin(), x.end(), value);
+  const auto above = std::ranges::upper_bound(x, value);
   const auto i = static_cast<std::size_t>(above - x.begin());
   return y[i - 1] + (y[i] - y[i - 1]) * (value - x[i - 1]) / (x[i] - x[i - 1]);
 }

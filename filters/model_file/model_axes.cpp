@@ -34,8 +34,8 @@ std::optional<Axes> squares(const Model& model, std::span<const std::string> axe
 }  // namespace
 
 std::string effects_of_no_axis(const Model& model, std::span<const std::string> axes) {
-  const auto nameless = std::count_if(model.effects.begin(), model.effects.end(),
-                                      [](const Effect& effect) { return effect.axis.empty(); });
+  const auto nameless =
+      std::ranges::count_if(model.effects, [](const Effect& effect) { return effect.axis.empty(); });
   if (nameless == 0 || axes.size() < 2) return "";
   return std::to_string(nameless) +
          " of its effects belong to a sensor with one axis and are subtracted from each of " + listed(axes) +

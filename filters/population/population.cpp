@@ -97,8 +97,8 @@ std::vector<StandingOut> standing_out(const std::vector<PopulationParameter>& pa
       if (std::abs(parameters[p].z[i]) > kStandsOut)
         found.push_back({parameters[p].gyros[i], p, parameters[p].z[i]});
   }
-  std::stable_sort(found.begin(), found.end(),
-                   [](const StandingOut& a, const StandingOut& b) { return std::abs(a.z) > std::abs(b.z); });
+  std::ranges::stable_sort(
+      found, [](const StandingOut& a, const StandingOut& b) { return std::abs(a.z) > std::abs(b.z); });
   return found;
 }
 

@@ -122,7 +122,7 @@ TypePrior with_expected_spread(TypePrior prior, std::span<const Estimate> estima
   std::array<double, kSpreads> likelihood{};
   for (std::size_t k = 0; k < kSpreads; ++k)
     likelihood[k] = restricted(most * (static_cast<double>(k) + 0.5) / kSpreads, estimates, weight);
-  const double top = *std::max_element(likelihood.begin(), likelihood.end());
+  const double top = *std::ranges::max_element(likelihood);
   double sum = 0.0, squares = 0.0;
   for (std::size_t k = 0; k < kSpreads; ++k) {
     const double share = std::exp(likelihood[k] - top);

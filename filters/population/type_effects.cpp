@@ -49,20 +49,20 @@ std::vector<FormFound> by_form(std::span<const FoundInGyro> found) {
   std::vector<FormFound> forms;
   for (const FoundInGyro& each : found) {
     if (!can_be_of_a_type(each.effect)) continue;
-    auto at = std::find_if(forms.begin(), forms.end(),
-                           [&](const FormFound& form) { return same_form(form.effect, each.effect); });
+    auto at = std::ranges::find_if(
+        forms, [&](const FormFound& form) { return same_form(form.effect, each.effect); });
     if (at == forms.end()) at = forms.insert(forms.end(), {each.effect, {}, {}});
     if (!at->gyros.insert(each.gyro).second) continue;
     for (const ModelParameter& parameter : each.effect.parameters)
       if (parameter.name != "coefficient") at->further[parameter.name].push_back(parameter.value);
   }
-  std::stable_sort(forms.begin(), forms.end(),
-                   [](const FormFound& a, const FormFound& b) { return a.gyros.size() > b.gyros.size(); });
+  std::ranges::stable_sort(
+      forms, [](const FormFound& a, const FormFound& b) { return a.gyros.size() > b.gyros.size(); });
   return forms;
 }
 
 double geometric_median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const std::size_t n = values.size();
   return n % 2 == 1 ? values[n / 2] : std::sqrt(values[n / 2 - 1] * values[n / 2]);
 }
@@ -100,10 +100,9 @@ std::vector<TypeCandidate> type_candidates(std::span<const FoundInGyro> found, s
   for (const FormFound& form : by_form(found)) {
     const auto stands_for = [&](const std::vector<FormFound>& group) {
       return family_of(group.front().effect) == family_of(form.effect) &&
-             std::none_of(group.begin(), group.end(),
-                          [&](const FormFound& other) { return often_together(other, form); });
+             std::ranges::none_of(group, [&](const FormFound& other) { return often_together(other, form); });
     };
-    const auto at = std::find_if(groups.begin(), groups.end(), stands_for);
+    const auto at = std::ranges::find_if(groups, stands_for);
     if (at == groups.end())
       groups.push_back({form});
     else
@@ -121,14 +120,13 @@ std::vector<TypeCandidate> type_candidates(std::span<const FoundInGyro> found, s
     candidate.found_in = members.size();
     if (candidate.found_in >= least) candidates.push_back(std::move(candidate));
   }
-  std::stable_sort(candidates.begin(), candidates.end(),
-                   [](const TypeCandidate& a, const TypeCandidate& b) { return a.found_in > b.found_in; });
+  std::ranges::stable_sort(
+      candidates, [](const TypeCandidate& a, const TypeCandidate& b) { return a.found_in > b.found_in; });
   return candidates;
 }
 
 bool is_of(const TypeCandidate& candidate, const Effect& effect) {
-  return std::any_of(candidate.forms.begin(), candidate.forms.end(),
-                     [&](const Effect& form) { return same_form(form, effect); });
+  return std::ranges::any_of(candidate.forms, [&](const Effect& form) { return same_form(form, effect); });
 }
 
 }  // namespace ifog

@@ -19,7 +19,7 @@ constexpr double kFewAway = 0.005;
 double range_of(std::vector<double> values) {
   std::erase_if(values, [](double value) { return !std::isfinite(value); });
   if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
+  std::ranges::sort(values);
   const auto few = static_cast<std::size_t>(kFewAway * static_cast<double>(values.size()));
   return values[values.size() - 1 - few] - values[few];
 }

@@ -236,7 +236,7 @@ std::vector<double> sums_of(const NoiseLevel& of) {
 
 // Roots of an octave whose cells lie within [begin, end).
 std::pair<std::size_t, std::size_t> times_within(const NoiseLevel& of, std::size_t begin, std::size_t end) {
-  const auto first = std::lower_bound(of.cell.begin(), of.cell.end(), begin);
+  const auto first = std::ranges::lower_bound(of.cell, begin);
   const auto last = std::lower_bound(first, of.cell.end(), end);
   return {static_cast<std::size_t>(first - of.cell.begin()),
           static_cast<std::size_t>(last - of.cell.begin())};

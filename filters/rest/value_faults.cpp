@@ -82,12 +82,11 @@ void find_clipped(const std::vector<double>& sorted, std::vector<ValueFault>& fo
 void find_wrapped(const std::vector<double>& values, const std::vector<double>& sorted,
                   std::vector<ValueFault>& found) {
   const double low = sorted.front(), high = sorted.back(), range = high - low;
-  const auto inside = std::lower_bound(sorted.begin(), sorted.end(), high - 0.2 * range) -
-                      std::upper_bound(sorted.begin(), sorted.end(), low + 0.2 * range);
-  const bool two_values = std::upper_bound(sorted.begin(), sorted.end(), low) ==
-                          std::lower_bound(sorted.begin(), sorted.end(), high);
+  const auto inside = std::ranges::lower_bound(sorted, high - 0.2 * range) -
+                      std::ranges::upper_bound(sorted, low + 0.2 * range);
+  const bool two_values = std::ranges::upper_bound(sorted, low) == std::ranges::lower_bound(sorted, high);
   if (inside > 0 || two_values) return;
-  const auto above = sorted.end() - std::upper_bound(sorted.begin(), sorted.end(), low + 0.5 * range);
+  const auto above = sorted.end() - std::ranges::upper_bound(sorted, low + 0.5 * range);
   std::size_t across = 0;
   for (std::size_t i = 1; i < values.size(); ++i)
     across += std::abs(values[i] - values[i - 1]) > 0.6 * range ? 1 : 0;

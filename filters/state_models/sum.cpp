@@ -71,7 +71,7 @@ Eigen::VectorXd Sum::level() const {
 }
 
 bool Sum::carries_level() const noexcept {
-  return std::any_of(terms_.begin(), terms_.end(), [](const Term& t) { return t.model->carries_level(); });
+  return std::ranges::any_of(terms_, [](const Term& t) { return t.model->carries_level(); });
 }
 
 }  // namespace ifog

@@ -50,7 +50,7 @@ Decoder::Decoder(const Picks& picks) : picks_(picks) {
 }
 
 void Decoder::add(Role role, std::size_t index, const Pick& pick, double si_per_unit) {
-  auto at = std::find_if(wanted_.begin(), wanted_.end(), [&](const Wanted& w) {
+  auto at = std::ranges::find_if(wanted_, [&](const Wanted& w) {
     return w.id == pick.message->id && w.extended == pick.message->extended;
   });
   if (at == wanted_.end()) at = wanted_.insert(at, {pick.message->id, pick.message->extended, {}});
@@ -60,11 +60,11 @@ void Decoder::add(Role role, std::size_t index, const Pick& pick, double si_per_
 void Decoder::learn_order() {
   all_axes_ = bit(picks_.axes.size()) - 1;
   const auto carries_counter = [&](const Axis& axis) {
-    return std::any_of(picks_.counter.begin(), picks_.counter.end(), [&](const Pick& counter) {
+    return std::ranges::any_of(picks_.counter, [&](const Pick& counter) {
       return counter.message == axis.pick.message && counter.signal->selector == kNone;
     });
   };
-  if (std::all_of(picks_.axes.begin(), picks_.axes.end(), carries_counter)) {
+  if (std::ranges::all_of(picks_.axes, carries_counter)) {
     beginning_axes_ = all_axes_;  // any axis may begin: the counter decides
     return;
   }
@@ -82,11 +82,11 @@ void Decoder::learn_order() {
 
 // A mean of logarithms, so that neither a silence nor lost frames decide.
 void Decoder::learn_pause(std::uint32_t brings, std::int64_t arrival_ns) noexcept {
-  constexpr double kMemory = 256.0, kShortest_ns = 1e3, kLongest_ns = 1e9;  // samples; resolution of a log
+  constexpr double kMemory = 256.0;  // samples
   const std::int64_t before_ns = std::exchange(pauses_.arrived_ns, arrival_ns);
   if (beginning_axes_ == all_axes_ || before_ns < 0 || arrival_ns == 0) return;
-  const auto since_ns = static_cast<double>(arrival_ns - before_ns);
-  const double pause = std::log2(std::clamp(since_ns, kShortest_ns, kLongest_ns));
+  const double pause =
+      std::log2(std::clamp(static_cast<double>(arrival_ns - before_ns), 1e3, 1e9));  // a log has 1 us
   for (std::size_t i = 0; i < pauses_.mean.size(); ++i)
     if ((brings & bit(i)) != 0) {
       pauses_.count[i] = std::min(pauses_.count[i] + 1.0, kMemory);

@@ -16,8 +16,7 @@ constexpr std::array<std::uint32_t, 7> kLongLengths{12, 16, 20, 24, 32, 48, 64};
 
 std::uint8_t frame_length(std::uint32_t message_length) {
   if (message_length <= 8) return static_cast<std::uint8_t>(message_length);
-  return static_cast<std::uint8_t>(
-      *std::lower_bound(kLongLengths.begin(), kLongLengths.end(), message_length));
+  return static_cast<std::uint8_t>(*std::ranges::lower_bound(kLongLengths, message_length));
 }
 
 }  // namespace
@@ -29,7 +28,7 @@ Encoder::Encoder(const Picks& picks) : picks_(picks) {
   if (picks.time) add(Role::kTime, 0, *picks.time);
   for (std::size_t i = 0; i < picks.environments.size(); ++i)
     add(Role::kEnvironment, i, picks.environments[i].pick);
-  std::stable_sort(layouts_.begin(), layouts_.end(), [](const Layout& a, const Layout& b) {
+  std::ranges::stable_sort(layouts_, [](const Layout& a, const Layout& b) {
     if (a.carries_axis != b.carries_axis) return b.carries_axis;
     if (a.message->id != b.message->id) return a.message->id < b.message->id;
     return a.selection.size() == b.selection.size() && !a.selection.empty() &&
@@ -62,8 +61,8 @@ void Encoder::add(Role role, std::size_t index, const Pick& pick) {
     if (other.message == pick.message && !everywhere) {
       for (const Entry& entry : other.entries)
         if (entry.signal->selector == kNone) layout.entries.push_back(entry);
-      layout.carries_axis = std::any_of(layout.entries.begin(), layout.entries.end(),
-                                        [](const Entry& entry) { return entry.role == Role::kAxis; });
+      layout.carries_axis =
+          std::ranges::any_of(layout.entries, [](const Entry& entry) { return entry.role == Role::kAxis; });
       break;
     }
   layout.entries.push_back({role, index, pick.signal});
@@ -128,7 +127,7 @@ void Encoder::encode(const ifog_sample& sample, ifog_emit_can emit, void* sink) 
     sent_ %= picks_.counter_modulus;
   }
   for (const Layout& layout : layouts_) {
-    const bool fresh = std::any_of(layout.entries.begin(), layout.entries.end(), [&](const Entry& entry) {
+    const bool fresh = std::ranges::any_of(layout.entries, [&](const Entry& entry) {
       return entry.role != Role::kEnvironment || (sample.environment_fresh & 1U << entry.index) != 0;
     });
     if (layout.carries_axis || fresh) put(layout, sample, emit, sink);

@@ -172,14 +172,14 @@ class Reader {
     const std::string_view name = options_.text("counter");
     if (name.find('.') == std::string_view::npos) {
       for (const Pick& pick : find(name))
-        if (std::any_of(out_.axes.begin(), out_.axes.end(),
-                        [&](const Axis& axis) { return axis.pick.message == pick.message; }))
+        if (std::ranges::any_of(out_.axes,
+                                [&](const Axis& axis) { return axis.pick.message == pick.message; }))
           out_.counter.push_back(pick);
     }
     if (out_.counter.empty()) out_.counter.push_back(one("counter", name));
     for (const Pick& pick : out_.counter) {
-      if (std::none_of(out_.axes.begin(), out_.axes.end(),
-                       [&](const Axis& axis) { return axis.pick.message == pick.message; }))
+      if (std::ranges::none_of(out_.axes,
+                               [&](const Axis& axis) { return axis.pick.message == pick.message; }))
         options_.fail("counter",
                       "a signal in a message that carries an axis; " + shown(pick) + " is in none");
       check_fits(out_.database, *pick.message, *pick.signal);

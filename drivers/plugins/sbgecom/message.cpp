@@ -84,8 +84,8 @@ std::size_t pack(const Imu& given, std::span<std::uint8_t, kLongestImuFrame> byt
   Imu imu = given;
   const bool brief = imu.message == kImuShort;
   imu.status = static_cast<std::uint16_t>(imu.status & ~kHighScale);
-  const bool high = std::any_of(imu.rate_radps.begin(), imu.rate_radps.end(),
-                                [](double rate) { return std::abs(rate) >= kMostAtStandardScale_radps; });
+  const bool high = std::ranges::any_of(
+      imu.rate_radps, [](double rate) { return std::abs(rate) >= kMostAtStandardScale_radps; });
   if (brief && high) imu.status = static_cast<std::uint16_t>(imu.status | kHighScale);
   const std::size_t length = brief ? kImuShortLength : kImuDataLength;
   Writer out(bytes);

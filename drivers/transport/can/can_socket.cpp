@@ -105,7 +105,7 @@ std::size_t to_socket(const ifog_can_frame& in, canfd_frame& out) noexcept {
   out.can_id = extended ? (in.id & CAN_EFF_MASK) | CAN_EFF_FLAG : in.id & CAN_SFF_MASK;
   const auto length = std::min<std::uint8_t>(in.length, fd ? CANFD_MAX_DLEN : CAN_MAX_DLEN);
   std::memcpy(out.data, in.data, length);
-  out.len = length > CAN_MAX_DLEN ? *std::lower_bound(kFdLengths.begin(), kFdLengths.end(), length) : length;
+  out.len = length > CAN_MAX_DLEN ? *std::ranges::lower_bound(kFdLengths, length) : length;
   if (fd && (in.flags & IFOG_CAN_BRS) != 0) out.flags = CANFD_BRS;
   return fd ? CANFD_MTU : CAN_MTU;
 }

@@ -28,8 +28,8 @@ class ServerWords {
     while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.remove_suffix(1);
     const auto spoken = [](char c) { return (c >= ' ' && c <= '~') || c == '\r' || c == '\n' || c == '\t'; };
     const auto letter = [](char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z'); };
-    const bool words = length_ <= text_.size() && std::all_of(text.begin(), text.end(), spoken) &&
-                       2 * std::count_if(text.begin(), text.end(), letter) > static_cast<long>(text.size());
+    const bool words = length_ <= text_.size() && std::ranges::all_of(text, spoken) &&
+                       2 * std::ranges::count_if(text, letter) > static_cast<long>(text.size());
     return words ? text : std::string_view();
   }
   // True if it started with a telnet command, or doubled every FF.

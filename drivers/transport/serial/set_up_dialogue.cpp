@@ -33,7 +33,7 @@ SetUpDialogue::SetUpDialogue(const std::vector<std::string>& lines) {
 }
 
 std::string SetUpDialogue::complaint(std::string_view line) {
-  const bool printable = std::all_of(line.begin(), line.end(), [](char c) { return c >= ' ' && c <= '~'; });
+  const bool printable = std::ranges::all_of(line, [](char c) { return c >= ' ' && c <= '~'; });
   const std::size_t arrow = line.find(kArrow);
   const bool answered = arrow != std::string_view::npos && arrow > 0 && arrow + kArrow.size() < line.size();
   const bool known = line.size() > 1 && (line.front() == '=' || line.front() == '?');

@@ -36,9 +36,8 @@ struct Turn {
 std::optional<Turn> turn_of(std::span<const double> values, double period) {
   for (const double start : {0.0, -0.5 * period}) {
     const Turn turn{start - kRounding * period, start + (1.0 + kRounding) * period};
-    const auto finite =
-        std::count_if(values.begin(), values.end(), [](double v) { return std::isfinite(v); });
-    const auto inside = std::count_if(values.begin(), values.end(), [&](double v) { return turn.has(v); });
+    const auto finite = std::ranges::count_if(values, [](double v) { return std::isfinite(v); });
+    const auto inside = std::ranges::count_if(values, [&](double v) { return turn.has(v); });
     if (static_cast<double>(inside) >= kInsideTurn * static_cast<double>(finite)) return turn;
   }
   return std::nullopt;
@@ -46,8 +45,7 @@ std::optional<Turn> turn_of(std::span<const double> values, double period) {
 
 template <class Name>
 bool all_have(const std::vector<Record>& records, const Name& name) {
-  return std::all_of(records.begin(), records.end(),
-                     [&](const Record& record) { return moves(values_of(record, name)); });
+  return std::ranges::all_of(records, [&](const Record& record) { return moves(values_of(record, name)); });
 }
 
 // True if both measure the same quantity at different places.

@@ -286,8 +286,8 @@ bool stands_still(std::span<const double> readings) {
 // The difference of two quantised readings has irregular steps, so it is recomputed.
 void rebuild_differences(BlockData& data) {
   const auto named = [&](const std::string& name) {
-    return std::find_if(data.channels.begin(), data.channels.end(),
-                        [&](const FineChannel& channel) { return channel.name == name; });
+    return std::ranges::find_if(data.channels,
+                                [&](const FineChannel& channel) { return channel.name == name; });
   };
   for (FineChannel& channel : data.channels) {
     const ChannelNames names = names_in(channel.name);

@@ -71,8 +71,7 @@ std::vector<ChannelDelay> delayed_channels(const BlockData& data, const std::vec
   const double longest = std::min(kMostEarly_s, 0.1 * static_cast<double>(grid.longest()) * grid.block_s);
   for (std::size_t c = 0; c < data.channels.size() && !grid.dwells; ++c) {
     const auto uses = [&](const Candidate& each) { return each.uses(c); };
-    if (static_cast<std::ptrdiff_t>(c) == data.reference || std::none_of(model.begin(), model.end(), uses))
-      continue;
+    if (static_cast<std::ptrdiff_t>(c) == data.reference || std::ranges::none_of(model, uses)) continue;
     Profile profile(data, model, shape, c);
     const double none = profile.at(0.0);
     double best = 0.0, top = none;

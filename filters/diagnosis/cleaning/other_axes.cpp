@@ -53,7 +53,7 @@ OwnedRecords aligned_others(const Record& record) {
 
 OwnedRecords with_other_axes(OwnedRecords given) {
   const auto referenced = [](const Record& record) { return moves(record.reference_radps); };
-  if (!std::all_of(given.records.begin(), given.records.end(), referenced)) return given;
+  if (!std::ranges::all_of(given.records, referenced)) return given;
   for (Record& record : given.records) {
     const OwnedRecords others = aligned_others(record);
     std::vector<std::span<const double>> along{record.reference_radps};

@@ -123,7 +123,7 @@ std::vector<double> fundamentals(const AngleSpectrum& spectrum, const VisibleCyc
   std::vector<std::size_t> peaks;
   for (std::size_t i = std::max<std::size_t>(1, static_cast<std::size_t>(least)); i + 1 < power.size(); ++i)
     if (power[i] > kStandsOut && power[i] >= power[i - 1] && power[i] > power[i + 1]) peaks.push_back(i);
-  std::sort(peaks.begin(), peaks.end(), [&](std::size_t a, std::size_t b) { return power[a] > power[b]; });
+  std::ranges::sort(peaks, [&](std::size_t a, std::size_t b) { return power[a] > power[b]; });
   if (peaks.size() > kPeaks) peaks.resize(kPeaks);
   std::vector<std::pair<double, double>> scored;
   for (const std::size_t peak : peaks)
@@ -132,11 +132,11 @@ std::vector<double> fundamentals(const AngleSpectrum& spectrum, const VisibleCyc
       if (bin < std::max(least, 1.0)) break;
       scored.emplace_back(-score_of(power, bin), bin);
     }
-  std::sort(scored.begin(), scored.end());
+  std::ranges::sort(scored);
   std::vector<double> bins;
   for (const auto& [score, bin] : scored) {
     const auto near = [at = bin](double other) { return std::abs(other - at) < 1.0; };
-    if (bins.size() < kRefined && std::none_of(bins.begin(), bins.end(), near)) bins.push_back(bin);
+    if (bins.size() < kRefined && std::ranges::none_of(bins, near)) bins.push_back(bin);
   }
   return bins;
 }

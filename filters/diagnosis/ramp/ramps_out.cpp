@@ -24,7 +24,7 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
     const auto wraps = [&](const Record& record) {
       return wrap_period(values_of(record, channel.name)) > 0.0;
     };
-    if (!std::any_of(records.begin(), records.end(), wraps)) continue;
+    if (!std::ranges::any_of(records, wraps)) continue;
     for (Record& record : parts.records) {
       std::erase_if(record.channels, [&](const RecordChannel& other) { return other.name == channel.name; });
     }

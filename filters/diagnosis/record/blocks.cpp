@@ -255,7 +255,7 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
   data.grid.error = Eigen::Map<Eigen::VectorXd>(error.data(), static_cast<Eigen::Index>(error.size()));
   for (const RecordChannel& channel : records.front().channels) {
     const auto has_it = [&](const Record& record) { return !values_of(record, channel.name).empty(); };
-    if (!std::all_of(records.begin(), records.end(), has_it)) continue;
+    if (!std::ranges::all_of(records, has_it)) continue;
     data.channels.push_back(fine_channel(records, data.grid, starts, channel.name, [&](const Record& record) {
       return values_of(record, channel.name);
     }));
@@ -263,8 +263,7 @@ BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blo
     data.channels.back().of_axis = !axis_of_rate(channel.name).empty();
     data.channels.back().period = channel.period;
   }
-  if (std::all_of(records.begin(), records.end(),
-                  [](const Record& r) { return !r.reference_radps.empty(); })) {
+  if (std::ranges::all_of(records, [](const Record& r) { return !r.reference_radps.empty(); })) {
     data.reference = static_cast<std::ptrdiff_t>(data.channels.size());
     data.channels.push_back(fine_channel(records, data.grid, starts, records.front().reference_name,
                                          [](const Record& record) { return record.reference_radps; }));

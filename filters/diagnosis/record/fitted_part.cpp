@@ -11,7 +11,7 @@ Stretch samples_in(const Record& record, const TimeShare& share) {
   const double start = record.time_s.front();
   const double span = record.time_s.back() - start;
   const auto at = [&](double fraction) {
-    const auto place = std::lower_bound(record.time_s.begin(), record.time_s.end(), start + fraction * span);
+    const auto place = std::ranges::lower_bound(record.time_s, start + fraction * span);
     return static_cast<std::size_t>(place - record.time_s.begin());
   };
   return {at(share.from), share.to >= 1.0 ? record.time_s.size() : at(share.to)};

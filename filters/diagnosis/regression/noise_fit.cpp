@@ -118,10 +118,10 @@ bool against_white(NoiseShape& shape, double factor) {
   shape.walk *= factor;
   shape.flicker *= factor;
   for (DampedHarmonic& each : shape.harmonics) each.variance *= factor;
-  return factor < 1.0 ||
-         (shape.walk <= kMostNoise && shape.flicker <= kMostNoise &&
-          std::all_of(shape.harmonics.begin(), shape.harmonics.end(),
-                      [](const DampedHarmonic& each) { return each.seen_variance() <= kMostNoise; }));
+  return factor < 1.0 || (shape.walk <= kMostNoise && shape.flicker <= kMostNoise &&
+                          std::ranges::all_of(shape.harmonics, [](const DampedHarmonic& each) {
+                            return each.seen_variance() <= kMostNoise;
+                          }));
 }
 
 std::vector<Way> ways_of(const BlockGrid& grid, const NoiseShape& shape, bool with_harmonics) {

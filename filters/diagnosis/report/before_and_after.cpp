@@ -87,7 +87,7 @@ double samples_of(const std::vector<EvenError>& errors) {
 }
 
 bool grows_over_many(const Diagnosis& diagnosis, const std::vector<EvenError>& errors) {
-  return std::any_of(kFigures.begin(), kFigures.end(), [&](const Figure& figure) {
+  return std::ranges::any_of(kFigures, [&](const Figure& figure) {
     const double count = count_of(figure, diagnosis, samples_of(errors));
     const double most = count >= kMany ? kGrown : 1.0 + kByChance / std::sqrt(2.0 * std::max(count, 1.0));
     return growth_of(diagnosis, figure.key) > most;

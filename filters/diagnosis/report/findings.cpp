@@ -124,7 +124,7 @@ void follow_known_curves(const BlockData& data, std::vector<FoundEffect>& effect
     Effect& effect = found.effect;
     const int power = highest_power(effect);
     if (power < 2 || power > kHighestFollowed) continue;
-    const bool series = std::any_of(effects.begin(), effects.end(), [&](const FoundEffect& other) {
+    const bool series = std::ranges::any_of(effects, [&](const FoundEffect& other) {
       const int its = highest_power(other.effect);
       return (its > kHighestFollowed || (its > 2 && !is_of_rate(other.effect))) &&
              channels(other.effect) == channels(effect);
@@ -265,9 +265,8 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
 
 std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects) {
   std::vector<ChannelRange> ranges;
-  const bool ramp = std::any_of(effects.begin(), effects.end(), [](const FoundEffect& found) {
-    return found.effect.form == name_of(Form::kRateRamp);
-  });
+  const bool ramp = std::ranges::any_of(
+      effects, [](const FoundEffect& found) { return found.effect.form == name_of(Form::kRateRamp); });
   if (ramp)
     ranges.push_back(
         {std::string(kTimeRange), 0.0, static_cast<double>(data.grid.longest()) * data.grid.block_s});
@@ -278,8 +277,7 @@ std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<Fou
       if (found.effect.shown_only) return false;
       return found.effect.channel == channel.name || found.effect.with_channel == channel.name;
     };
-    if (std::any_of(effects.begin(), effects.end(), uses))
-      ranges.push_back({channel.name, channel.low, channel.high});
+    if (std::ranges::any_of(effects, uses)) ranges.push_back({channel.name, channel.low, channel.high});
   }
   return ranges;
 }

@@ -61,7 +61,7 @@ void leave_out_noise(std::vector<Slow>& slow) {
 
 // Gain without the crossing that gains most.
 double without_best_passage(std::vector<Slow> inside) {
-  std::sort(inside.begin(), inside.end(), [](const Slow& a, const Slow& b) { return a.passage < b.passage; });
+  std::ranges::sort(inside, [](const Slow& a, const Slow& b) { return a.passage < b.passage; });
   double all = 0.0, most = 0.0, mine = 0.0;
   for (std::size_t i = 0; i < inside.size(); ++i) {
     if (i > 0 && inside[i].passage != inside[i - 1].passage) mine = 0.0;
@@ -83,14 +83,13 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
       if (std::isfinite(each)) most = std::max(most, std::abs(each));
   std::vector<Slow> slow = slow_samples(errors, rates, kWidestZone * most);
   leave_out_noise(slow);
-  std::sort(slow.begin(), slow.end(),
-            [](const Slow& a, const Slow& b) { return std::abs(a.rate) < std::abs(b.rate); });
+  std::ranges::sort(slow, [](const Slow& a, const Slow& b) { return std::abs(a.rate) < std::abs(b.rate); });
   std::vector<double> gained;  // by all samples up to this rate
   gained.reserve(slow.size());
   double sum = 0.0;
   for (const Slow& each : slow) gained.push_back(sum += each.gain);
   if (gained.empty() || !(white_variance > 0.0)) return std::nullopt;
-  const auto best = std::max_element(gained.begin(), gained.end());
+  const auto best = std::ranges::max_element(gained);
   const auto inside = static_cast<std::size_t>(best - gained.begin()) + 1;
   DeadZone zone;
   const double last = std::abs(slow[inside - 1].rate);  // inside
@@ -104,7 +103,7 @@ std::optional<DeadZone> find_dead_zone(const std::vector<EvenError>& errors,
   if (zone.p_value > kShare * significance) return std::nullopt;
   // True if twice the log-likelihood is within one of the maximum.
   const auto close = [&](double value) { return value > *best - white_variance; };
-  const auto from = std::find_if(gained.begin(), gained.end(), close) - gained.begin();
+  const auto from = std::ranges::find_if(gained, close) - gained.begin();
   const auto to = gained.rend() - std::find_if(gained.rbegin(), gained.rend(), close);
   zone.half_width_error = 0.5 * (std::abs(slow[static_cast<std::size_t>(to) - 1].rate) -
                                  std::abs(slow[static_cast<std::size_t>(from)].rate) + next - last);

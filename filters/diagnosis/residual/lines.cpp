@@ -127,8 +127,7 @@ std::size_t least_distance(std::size_t k) { return std::max<std::size_t>(6, k / 
 std::vector<std::size_t> not_near(const std::vector<std::size_t>& peaks) {
   std::vector<std::size_t> taken;
   for (const std::size_t k : peaks)
-    if (std::none_of(taken.begin(), taken.end(), [&](std::size_t t) { return are_one_peak(t, k); }))
-      taken.push_back(k);
+    if (std::ranges::none_of(taken, [&](std::size_t t) { return are_one_peak(t, k); })) taken.push_back(k);
   return taken;
 }
 
@@ -177,8 +176,7 @@ std::vector<SpectralLine> find_lines(std::span<const double> error, double start
     line.width_hz = static_cast<double>(last - first + 1) / (static_cast<double>(spectrum.length) * period_s);
     lines.push_back(line);
   }
-  std::sort(lines.begin(), lines.end(),
-            [](const SpectralLine& a, const SpectralLine& b) { return a.ratio > b.ratio; });
+  std::ranges::sort(lines, [](const SpectralLine& a, const SpectralLine& b) { return a.ratio > b.ratio; });
   return lines;
 }
 

@@ -60,8 +60,8 @@ std::vector<std::size_t> peaks_of(const Periodogram& spectrum, const NoiseFloor&
   for (std::size_t k = kFirstBin; k + 1 < power.size(); ++k)
     if (power[k] >= power[k - 1] && power[k] >= power[k + 1] && power[k] > least * floor[k])
       peaks.push_back(k);
-  std::sort(peaks.begin(), peaks.end(),
-            [&](std::size_t a, std::size_t b) { return power[a] / floor[a] > power[b] / floor[b]; });
+  std::ranges::sort(peaks,
+                    [&](std::size_t a, std::size_t b) { return power[a] / floor[a] > power[b] / floor[b]; });
   return peaks;
 }
 

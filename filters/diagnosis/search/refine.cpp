@@ -108,7 +108,7 @@ void refine(const BlockData& data, const NoiseShape& shape, std::vector<Candidat
 }
 
 bool levels_seen(const BlockData& data, const std::vector<Candidate>& model) {
-  return std::all_of(model.begin(), model.end(), [&](const Candidate& each) {
+  return std::ranges::all_of(model, [&](const Candidate& each) {
     if (!each.is_transition()) return true;
     const FineChannel& channel = data.channels[each.channel];
     return each.centre - channel.low >= each.half_width && channel.high - each.centre >= each.half_width;

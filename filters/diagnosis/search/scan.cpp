@@ -70,7 +70,7 @@ void Scan::add(const std::vector<Candidate>& more) {
 
 void Scan::pair(const std::vector<NaturalPair>& pairs) {
   const auto index = [&](const Candidate& wanted) {
-    const auto found = std::find_if(candidates_.begin(), candidates_.end(), [&](const Candidate& each) {
+    const auto found = std::ranges::find_if(candidates_, [&](const Candidate& each) {
       return each.same_shape(wanted) && each.time_constant_s == wanted.time_constant_s;
     });
     return found == candidates_.end() ? -1 : static_cast<Eigen::Index>(found - candidates_.begin());

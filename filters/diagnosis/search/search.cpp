@@ -193,8 +193,8 @@ class EffectSearch {
       return complexity(each.candidate) + (completes ? law : threshold(each.candidate)) +
              (each.with ? complexity(*each.with) + law : 0.0);
     };
-    std::sort(scored.begin(), scored.end(),
-              [&](const Scored& a, const Scored& b) { return a.ratio - price(a) > b.ratio - price(b); });
+    std::ranges::sort(
+        scored, [&](const Scored& a, const Scored& b) { return a.ratio - price(a) > b.ratio - price(b); });
     Trial best;
     std::vector<Candidate> tried;
     std::size_t pairs = 0;
@@ -273,8 +273,7 @@ class EffectSearch {
     const double mine = result.chosen[i].likelihood_ratio;
     std::vector<Candidate> seen = {model_[i]};
     std::vector<Scored> scored = scan_.score(rest, noise, true, &model_[i], &noise_.shape);
-    std::sort(scored.begin(), scored.end(),
-              [](const Scored& a, const Scored& b) { return a.ratio > b.ratio; });
+    std::ranges::sort(scored, [](const Scored& a, const Scored& b) { return a.ratio > b.ratio; });
     for (const Scored& each : scored) {
       const double loss = mine - each.ratio;
       if (loss > kLikeness && std::abs(each.correlation) < kAlike) continue;
