@@ -167,6 +167,18 @@ Autoregression noise_about(const std::vector<Series>& columns) {
   return Autoregression(left);
 }
 
+// Harmonics of the turned angle, which over an arc resemble the slope.
+std::vector<Series> once_a_turn(const Pair& pair) {
+  std::vector<Series> columns(2, Series(pair.reference.size()));
+  double angle = 0.0;
+  for (std::size_t i = 0; i < pair.reference.size(); ++i) {
+    if (std::isfinite(pair.reference[i])) angle += pair.reference[i] * pair.step_s;
+    columns[0][i] = std::cos(angle);
+    columns[1][i] = std::sin(angle);
+  }
+  return columns;
+}
+
 struct Delay {
   double steps = 0.0, error = 0.0;
   double gain = 0.0;  // of twice the log-likelihood over no delay
@@ -200,6 +212,8 @@ std::optional<Delay> refined(const Pair& pair, double steps) {
       const SeriesFit with = least_squares(white, rows);
       const double without =
           std::min(least_squares(as_logged, rows).square, least_squares(mirrored, rows).square);
+      for (const Series& each : once_a_turn(pair)) as_logged.push_back(noise.whitened(each));
+      if (least_squares(as_logged, rows).square < with.square) return std::nullopt;
       delay.gain = static_cast<double>(with.rows) * std::log(without / with.square);
       delay.left = with.square / static_cast<double>(with.rows);
       delay.steps += step;  // accurate enough
