@@ -208,10 +208,10 @@ void InputFile::read_to_the_end() {
 
 // Of the last whole line; npos if there is none. In a quoted cell, which may hold line ends, the quotes are odd.
 static std::size_t last_line_end(std::string_view text) {
-  std::size_t last = text.rfind('\n');
-  for (std::size_t at = last; at < text.size() && last - at < kLongestQuoted;
-       at = text.substr(0, at).rfind('\n'))
-    if (std::ranges::count(text.substr(0, at), '"') % 2 == 0) return at;
+  const std::size_t last = text.rfind('\n');
+  auto quotes = std::ranges::count(text.substr(0, last), '"');
+  for (std::size_t at = last; at < text.size() && last - at < kLongestQuoted; quotes -= text[at--] == '"')
+    if (text[at] == '\n' && quotes % 2 == 0) return at;
   return last;
 }
 
