@@ -120,10 +120,9 @@ std::vector<std::ptrdiff_t> coarse_delays(const Pair& pair) {
   for (std::ptrdiff_t lag = -most; lag <= most; ++lag)
     if (at(lag) > at(greatest)) greatest = lag;
   std::vector<std::ptrdiff_t> peaks;
-  for (std::ptrdiff_t apart = 0; apart < std::abs(greatest); ++apart)
-    for (const std::ptrdiff_t lag : {apart, -apart})
-      if (at(lag) >= 0.5 * at(greatest) && at(lag) >= std::max(at(lag - 1), at(lag + 1)))
-        peaks.push_back(lag);
+  for (std::ptrdiff_t lag = std::abs(greatest) - 1; lag > -std::abs(greatest); --lag)
+    if (at(lag) >= 0.5 * at(greatest) && at(lag) >= std::max(at(lag - 1), at(lag + 1))) peaks.push_back(lag);
+  std::ranges::stable_sort(peaks, {}, [](std::ptrdiff_t lag) { return std::abs(lag); });
   peaks.push_back(greatest);
   return peaks;
 }
