@@ -22,8 +22,8 @@ constexpr double kLasting_s = 10.0, kFirst_s = 2.0;
 
 // Channels of the sensor's frames have no entry if the default age applies.
 ChannelConfig of_frame(const std::string& name, const std::vector<ChannelConfig>& configured) {
-  const auto found = std::find_if(configured.begin(), configured.end(),
-                                  [&](const ChannelConfig& channel) { return channel.name == name; });
+  const auto found =
+      std::ranges::find_if(configured, [&](const ChannelConfig& channel) { return channel.name == name; });
   if (found != configured.end()) return *found;
   ChannelConfig out;
   out.name = name;
@@ -55,8 +55,7 @@ std::vector<std::string> ChannelWatch::absent() {
 }
 
 bool ChannelWatch::is_configured(const std::string& name) const {
-  return std::any_of(configured_.begin(), configured_.end(),
-                     [&](const ChannelConfig& channel) { return channel.name == name; });
+  return std::ranges::any_of(configured_, [&](const ChannelConfig& channel) { return channel.name == name; });
 }
 
 std::vector<ChannelWatch::News> ChannelWatch::look(const status_t& status, const ChannelTable& outside) {

@@ -50,9 +50,9 @@ void note_lines(const toml::table& table, const std::string& path, KeyLines& out
 
 bool good_name(const std::string& name) {
   constexpr std::size_t kLongest = 32;
-  return !name.empty() && name.size() <= kLongest &&
-         std::all_of(name.begin(), name.end(),
-                     [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == '-'; });
+  return !name.empty() && name.size() <= kLongest && std::ranges::all_of(name, [](unsigned char c) {
+    return std::isalnum(c) != 0 || c == '_' || c == '-';
+  });
 }
 
 FilterChoice read_filter(const toml::table& table, const std::string& where, double& start_up_s,

@@ -113,8 +113,7 @@ bool leads_to(const Config& config, const SensorConfig& from, const SensorConfig
   if (&from == &to) return true;
   if (!seen.insert(&from).second) return false;
   const auto next = taken_from(config, from);
-  return std::any_of(next.begin(), next.end(),
-                     [&](const auto& each) { return leads_to(config, *each.first, to, seen); });
+  return std::ranges::any_of(next, [&](const auto& each) { return leads_to(config, *each.first, to, seen); });
 }
 
 }  // namespace

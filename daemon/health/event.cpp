@@ -7,6 +7,7 @@
 #include "drivers/units/units.h"
 
 namespace ifog {
+
 std::string describe(const Event& event) {
   switch (event.kind) {
     case EventKind::gap:

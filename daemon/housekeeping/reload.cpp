@@ -19,8 +19,8 @@ namespace {
 
 // Null if there is none of that name.
 const SensorConfig* sensor_named(const Config& config, const std::string& name) {
-  const auto found = std::find_if(config.sensors.begin(), config.sensors.end(),
-                                  [&](const SensorConfig& sensor) { return sensor.name == name; });
+  const auto found =
+      std::ranges::find_if(config.sensors, [&](const SensorConfig& sensor) { return sensor.name == name; });
   return found == config.sensors.end() ? nullptr : &*found;
 }
 

@@ -188,9 +188,9 @@ std::string of_product(const Effect& effect, Form with_form) {
 std::string of_rebuilt_ramp(const Effect& effect) {
   const double k = std::abs(parameter(effect, "cycles_per_rad"));
   return formatted(
-      "nonlinearity of the closed loop's feedback ramp (phase modulator, 2 pi reset), which was not logged: "
-      "its "
-      "phase is rebuilt from the angle turned, %ld cycles a radian, as a coil of %.2g cm at 1.55 um has",
+      "nonlinearity of the closed loop's feedback ramp (phase modulator, 2 pi reset), which was not "
+      "logged: its phase is rebuilt from the angle turned, %ld cycles a radian, as a coil of %.2g cm at 1.55 "
+      "um has",
       std::lround(k), 100.0 * k * 1.55e-6 * 1.45);
 }
 
