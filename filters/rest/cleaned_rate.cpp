@@ -6,7 +6,6 @@
 #include <string>
 #include <utility>
 
-#include "filters/rest/glitches.h"
 #include "filters/rest/runs.h"
 #include "filters/units/told_time.h"
 
@@ -31,24 +30,19 @@ std::string in_words(const std::vector<Stretch>& stuck, const TimeOfSample& time
   const std::size_t longest = std::ranges::max_element(stuck, {}, &Stretch::size)->size();
   return "stands still for up to " + std::to_string(longest) + " samples, " + std::to_string(stuck.size()) +
          (stuck.size() == 1 ? " time" : " times") + ", first at " + told_time(time_s(stuck.front().begin)) +
-         " s: the sensor or the logger repeated a value, dropped";
+         " s: the sensor or the logger repeated a value, not used in these figures";
 }
 
-struct Replacement {
-  Stretch samples;
-  double value = 0.0;
-};
-
-std::optional<LongSeries> with(const SeriesView& rate, std::vector<Replacement> replacements) {
-  if (replacements.empty()) return std::nullopt;
-  std::ranges::sort(replacements, {}, [](const Replacement& each) { return each.samples.begin; });
+// leaps: in order.
+std::optional<LongSeries> without(const SeriesView& rate, const std::vector<Glitches::Leap>& leaps) {
+  if (leaps.empty()) return std::nullopt;
   std::optional<LongSeries> out(std::in_place);
   std::vector<double> repaired;
-  auto next = replacements.begin();
+  auto next = leaps.begin();
   for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
     const std::size_t end = first + values.size();
     repaired.assign(values.begin(), values.end());
-    for (; next != replacements.end() && next->samples.begin < end; ++next) {
+    for (; next != leaps.end() && next->samples.begin < end; ++next) {
       const std::size_t from = std::max(next->samples.begin, first), to = std::min(next->samples.end, end);
       std::fill_n(repaired.begin() + static_cast<std::ptrdiff_t>(from - first), to - from, next->value);
       if (next->samples.end > end) break;  // the rest is in the next piece
@@ -58,32 +52,30 @@ std::optional<LongSeries> with(const SeriesView& rate, std::vector<Replacement> 
   return out;
 }
 
-std::vector<Replacement> leaps_in(const SeriesView& rate, const SeriesView& error,
-                                  std::span<const Stretch> parts, LeapOf of, const TimeOfSample& time_s,
-                                  std::vector<ValueFault>& faults) {
-  const Glitches leaps = find_glitches(error, parts, of);
-  if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
-  std::vector<Replacement> out;
-  for (const auto& [at, between] : leaps.few)
-    out.push_back({{at, at + 1}, between + (rate.at(at) - error.at(at))});
-  return out;
-}
-
 }  // namespace
 
+void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
+  auto cleaned = without_leaps(rate, rate, stretches({}, rate, {}), time_s, faults, LeapOf::kOneValue);
+  if (cleaned) rate = *std::move(cleaned);
+}
+
 void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
-  const std::vector<Stretch> parts = stretches({}, rate, {});
-  auto missing = leaps_in(rate, rate, parts, LeapOf::kOneValue, time_s, faults);
-  const std::vector<Stretch> stuck = stuck_runs(rate, parts);
-  if (!stuck.empty()) faults.push_back({"stuck", in_words(stuck, time_s)});
+  leave_out_placeholders(rate, time_s, faults);
+  const std::vector<Stretch> stuck = stuck_runs(rate, stretches({}, rate, {}));
+  if (stuck.empty()) return;
+  faults.push_back({"stuck", in_words(stuck, time_s)});
+  std::vector<Glitches::Leap> missing;
   for (const Stretch& each : stuck) missing.push_back({each, std::nan("")});
-  if (std::optional<LongSeries> cleaned = with(rate, std::move(missing))) rate = *std::move(cleaned);
+  rate = *without(rate, missing);
 }
 
 std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,
                                         std::span<const Stretch> parts, const TimeOfSample& time_s,
-                                        std::vector<ValueFault>& faults) {
-  return with(rate, leaps_in(rate, error, parts, LeapOf::kOneSample, time_s, faults));
+                                        std::vector<ValueFault>& faults, LeapOf of) {
+  Glitches leaps = find_glitches(error, parts, of);
+  if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
+  for (auto& [samples, value] : leaps.few) value += rate.at(samples.begin) - error.at(samples.begin);
+  return without(rate, leaps.few);
 }
 
 }  // namespace ifog

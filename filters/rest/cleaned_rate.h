@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "filters/allan/stretches.h"
+#include "filters/rest/glitches.h"
 #include "filters/rest/value_faults.h"
 #include "filters/series/long_series.h"
 
@@ -17,17 +18,21 @@ namespace ifog {
 
 using TimeOfSample = std::function<double(std::size_t)>;  // s, for the text
 
-// Sets repeated values to NaN; to be called before the search for rest. rate: rad/s, NaN where missing.
-// Removed are runs of eight or more equal samples, if nine of ten runs are single samples, and placeholders
-// such as -999 (LeapOf::kOneValue, glitches.h).
+// Sets placeholders such as -999 (LeapOf::kOneValue, glitches.h) to NaN, for commands that pass the rate on.
+// rate: rad/s, NaN where missing.
+void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
+
+// Also sets runs of eight or more equal samples to NaN, if nine of ten runs are single samples; to be called
+// before the search for rest.
 void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
 // Rate in which single outliers of `error` are replaced by the median of their neighbours. nullopt if there
 // are none, or too many to be outliers (glitches.h). error: rate minus reference, or the rate; parts: at
-// rest.
+// rest. Placeholders become NaN instead.
 [[nodiscard]] std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,
                                                       std::span<const Stretch> parts,
                                                       const TimeOfSample& time_s,
-                                                      std::vector<ValueFault>& faults);
+                                                      std::vector<ValueFault>& faults,
+                                                      LeapOf of = LeapOf::kOneSample);
 
 }  // namespace ifog

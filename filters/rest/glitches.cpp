@@ -23,12 +23,12 @@ constexpr double kOfMedian = 1.4826 / 1.224744871391589;
 constexpr std::size_t kNear = 64, kLeast = 16;
 constexpr double kLocalAbove = 2.0;
 constexpr std::size_t kOneInAtMost = 1000;
-constexpr std::size_t kLongest = 7;       // samples; a longer run is a repeated value
+constexpr std::size_t kLongest = 7;       // samples, except at the beginning of a stretch
 constexpr double kRounding = 1e-12;       // relative
 constexpr std::size_t kEnough = 100'000;  // enough second differences for the median
 
-// Calls use(i, away) for each sample that has both neighbours, with its distance from their mean, except where one of
-// the three has the magnitude `without`.
+// Calls use(i, away) for each sample that has both neighbours, with its distance from their mean, except where
+// one of the three has the magnitude `without`.
 template <typename Use>
 void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, double without, Use use) {
   for (const Stretch& part : parts) {
@@ -67,8 +67,9 @@ class Yardstick {
   [[nodiscard]] bool is_placeholder(const Run& run) const {
     int power = 0;  // -1 as an unsigned count is one less than a power of two
     const bool wraps = std::frexp(std::round(largest_ / smallest_step_) + 1.0, &power) == 0.5 && power > 8;
+    const bool held = repeats_.are_rare() && run.length > 2, begins = std::isnan(run.before);
     return std::abs(run.value) == largest_ && 2.0 * second_ < largest_ && !wraps &&
-           (times_ > 1 || (run.length > 2 && repeats_.are_rare()));
+           (run.length > kLongest ? held && begins : held || times_ > 1);
   }
   // The samples around a blow or the start of motion leap, too.
   [[nodiscard]] bool is_alone(const Run& run, double between) const {
@@ -148,7 +149,7 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
     const double before = placeholder && std::isnan(run.before) ? run.after : run.before,
                  after = placeholder && std::isnan(run.after) ? run.before : run.after,
                  between = 0.5 * (before + after), away = std::abs(run.value - between);
-    if (run.length > kLongest || !(of == LeapOf::kOneValue ? placeholder : run.length == 1)) return;
+    if (!(of == LeapOf::kOneValue ? placeholder : run.length == 1)) return;
     if (!(away > kFar * yardstick.least()) || std::abs(after - before) >= 0.5 * away) return;
     if (of == LeapOf::kOneSample && !yardstick.is_alone(run, between)) return;
     const double deviation = yardstick.at(run.begin);
@@ -160,8 +161,7 @@ Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, L
     out.count += run.length;
     out.most_times = std::max(out.most_times, away / deviation);
     various += placeholder ? 0 : run.length;
-    for (std::size_t i = run.begin; i < end && various <= most; ++i)
-      out.few.push_back({i, placeholder ? std::nan("") : between});
+    if (various <= most) out.few.push_back({{run.begin, end}, placeholder ? std::nan("") : between});
   });
   if (various > most) out.few.clear();
   return out;

@@ -17,8 +17,8 @@ namespace ifog {
 
 struct Glitches {
   struct Leap {
-    std::size_t sample = 0;
-    double between = 0.0;  // median of the neighbouring values, rad/s; NaN for a placeholder
+    Stretch samples;
+    double value = 0.0;  // instead, rad/s: median of the neighbouring values; NaN for a placeholder
   };
   std::size_t count = 0;
   std::size_t first = 0;  // sample; meaningful when count > 0
@@ -30,13 +30,15 @@ struct Glitches {
 };
 
 // kOneSample: one sample. kOneValue, also in motion: placeholders, i.e. the value farthest from zero, twice as
-// far as any other, if it recurs, or stays for three to seven samples where repeats are rare.
+// far as any other, if it recurs, or stays for three to seven samples where repeats are rare. At the beginning
+// of a stretch, where a sensor may not be ready, it may stay longer.
 enum class LeapOf { kOneSample, kOneValue };
 
 // Finds outliers in `parts`, which hold no NaN and, for kOneSample, are at rest, because a shock is one
 // sample too. A leap exceeds 30 standard deviations, its two neighbours differ by less than half of it, and
-// none of seven samples on either side leaps elsewhere. The deviation is the record's, from second differences; the local one (about a hundred samples) if that is
-// more than twice as high; and at least half the sensor's smallest step.
+// none of seven samples on either side leaps elsewhere. The deviation is the record's, from second differences;
+// the local one (about a hundred samples) if that is more than twice as high; and at least half the sensor's
+// smallest step.
 [[nodiscard]] Glitches find_glitches(const SeriesView& rate_radps, std::span<const Stretch> parts,
                                      LeapOf of = LeapOf::kOneSample);
 

@@ -35,7 +35,7 @@ void Convert::run() const {
       file_kind(to) == FileKind::capture || (is_standard_output(to) && !(from_columns && input.has_driver()));
   if (from_columns && !to_columns) {
     LongTable table = input.read_long_columns(file);
-    table.clean_and_tell(from);
+    table.clean_and_tell(leave_out_placeholders, from);
     return write_recording(table, from, to, input, axis);
   }
   if (!to_columns && file_kind(file) == FileKind::flight && !recorded_messages(file))
@@ -46,7 +46,7 @@ void Convert::run() const {
   if (!to_columns)
     throw WrongUsage(to, "expected a .csv, .csv.gz or .h5 file, or a capture in one to convert from");
   LongTable table = input.read_long(file);
-  if (from_columns) table.clean_and_tell(from);
+  if (from_columns) table.clean_and_tell(leave_out_placeholders, from);
   write_columns(table, from, to);
   say("%s: %zu samples\n", to.c_str(), table.size());
 }

@@ -279,6 +279,10 @@ class Checks:
         for at in range(300, 3900, 400):
             stuck[at:at + 12] = [stuck[at]] * 12
         assert "12 samples, 9 times" in findings("stuck.csv", stuck)["stuck"]
+        for command in (("convert",), ("denoise", "--output")):  # what only passes the rate on keeps it
+            assert ran(command[0], self.folder / "stuck.csv", *command[1:], self.folder / "passed.csv").returncode == 0, command
+            raw = [line.split(",")[1] for line in (self.folder / "passed.csv").read_text().splitlines() if line[:1].isdigit()]
+            assert len(raw) == ROWS and "nan" not in raw, command
         assert "clipped" in findings("clipped.csv", [min(v, 0.3 * SIGMA_DPS) for v in noise])
         lsb = 500 / 65536
         wrapped = self.file("wrapped.csv", ["time_s,rate_x_radps", *[f"{i / RATE_HZ:.6f},{round(v / lsb) % 65536 * lsb * RAD!r}" for i, v in enumerate(noise)]])

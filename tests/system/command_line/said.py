@@ -243,7 +243,7 @@ class Checks:
     def check_full_scale_is_the_same_everywhere(self):
         """convert and allan treat the values that the daemon treats as missing, by the driver's full scale, as missing too, and
         report it."""
-        fast = [12.0 + 0.01 * (i % 7) if 1000 <= i < 1100 else v for i, v in enumerate(self.noise)]
+        fast = [12.0 if 1000 <= i < 1100 else v for i, v in enumerate(self.noise)]
         options = ["--driver", "kvh1750", "--option", "rate_hz=100"]
         path, frames, back = self.write("fast.csv", {"rate_radps": fast}), self.folder / "fast.kvh", self.folder / "fast.back.csv"
         assert "100 samples at or beyond the sensor's full scale" in said("convert", path, frames, *options)

@@ -42,7 +42,7 @@ void run_allan(AllanArguments& a) {
     for (std::size_t i = 0; i < a.captures.size(); ++i) {
       InputFile file(a.captures[i]);
       LongTable table = a.input.read_long(file, allan_wants);
-      table.clean();
+      table.clean(leave_out_repeats);
       for (AllanRecord& record : allan_records(a.captures[i], table, a.options))
         records.push_back(std::move(record));
       progress.at(i + 1);

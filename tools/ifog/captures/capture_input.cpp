@@ -275,7 +275,7 @@ LongCapture CaptureInput::read_long_capture(const std::string& path, std::string
     file.read_to_the_end();
     *sha256 = hash.hex();
   }
-  table.clean_and_tell(path);
+  table.clean_and_tell(leave_out_repeats, path);
   return {std::move(table), path};
 }
 

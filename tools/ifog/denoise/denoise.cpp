@@ -241,7 +241,7 @@ template <class Settings>
 OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, const Settings& settings,
                             DenoisedRows& rows, const OfflineSink& sink) {
   LongTable table = options.input.read_long(capture);
-  table.clean_and_tell(options.capture);
+  table.clean_and_tell(leave_out_placeholders, options.capture);
   keep_usable_axes(table, options.capture);
   rows.count_from(table.origin);
   OfflineSettings of = settings();

@@ -34,18 +34,17 @@ void LongTable::drop_unknown(const std::string& path) {
   std::erase_if(columns, [](const LongColumn& column) { return !column.known; });
 }
 
-void LongTable::clean() {
+void LongTable::clean(Rule rule) {
   const SeriesView times = time_s;
+  const auto seconds = [&](std::size_t row) { return origin.in_s(times.at(row)); };
   share_out(columns.size(), std::thread::hardware_concurrency(), [&](std::size_t c) {
     std::string axis;
-    if (axis_of(columns[c].name, "rate", axis))
-      leave_out_repeats(
-          columns[c].values, [&](std::size_t row) { return origin.in_s(times.at(row)); }, columns[c].repeats);
+    if (axis_of(columns[c].name, "rate", axis)) rule(columns[c].values, seconds, columns[c].repeats);
   });
 }
 
-void LongTable::clean_and_tell(const std::string& path) {
-  clean();
+void LongTable::clean_and_tell(Rule rule, const std::string& path) {
+  clean(rule);
   for (const LongColumn& column : columns)
     for (const ValueFault& repeat : column.repeats)
       warn("%s\n", faults.emplace_back(path + ": " + column.name + ": " + repeat.text).c_str());

@@ -36,10 +36,11 @@ struct LongTable : RowNotes {
   [[nodiscard]] std::vector<std::string> names() const;
   // Drops axes and channels of a recording that never had a value. Throws std::runtime_error if none is left.
   void drop_unknown(const std::string& path);
-  // Removes repeated values from the rates (filters/rest/cleaned_rate.h).
-  void clean();
+  // Removes the values that the rule (filters/rest/cleaned_rate.h) finds in the rates.
+  using Rule = void(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
+  void clean(Rule rule);
   // The same, and prints them on standard error; path: of the capture.
-  void clean_and_tell(const std::string& path);
+  void clean_and_tell(Rule rule, const std::string& path);
   // For a table merged from sensors of different rates, e.g. a gyro in every fourth row: keeps only rows with
   // a rate, with the channels' latest values. Then the clock is that of the rates. Adds a notice. Does
   // nothing if rates are in adjacent rows. path: of the capture.
