@@ -227,8 +227,6 @@ void RowClock::spread(RowBlock& rows, std::size_t begin, std::size_t end, double
     step_s = period_s_;
   } else {
     period_s_ = step_s;
-    bursts_s_ += length_s;
-    burst_rows_ += count;
   }
   spread_ += count - 1;
   for (std::size_t i = begin + 1; i < end; ++i)
@@ -257,11 +255,10 @@ void RowClock::say() {
                              (repeated_ == 1 ? "is" : "are") +
                              " dropped; --repeats keep reads them as samples");
   if (spread_ == 0) return;
-  const double rate_hz = std::round(1e3 * static_cast<double>(burst_rows_) / bursts_s_) / 1e3;
-  notes_.notices.push_back(path_ + ": " + std::to_string(spread_) + " rows " +
-                           (bursts_.within_s > 0.0 ? "come in bursts" : "have the time of the row before") +
-                           " and are spread evenly up to the next time, at " + shortest(rate_hz) +
-                           " Hz; --sample-rate HZ reads all rows as even");
+  notes_.notices.push_back(
+      path_ + ": " + std::to_string(spread_) + " rows " +
+      (bursts_.within_s > 0.0 ? "come in bursts" : "have the time of the row before") +
+      " and are spread evenly up to the next time; --sample-rate HZ reads all rows as even");
 }
 
 }  // namespace ifog

@@ -77,8 +77,7 @@ class RowClock {
   RowBlock buffered_;  // rows of the last stamp or burst
   Bursts bursts_;
   double period_s_ = 0.0;  // sample period of the last burst or single row
-  double bursts_s_ = 0.0;  // total duration of bursts, and their rows
-  std::size_t burst_rows_ = 0, spread_ = 0, repeated_ = 0;
+  std::size_t spread_ = 0, repeated_ = 0;
   bool begun_ = false;
 };
 

@@ -57,14 +57,14 @@ std::vector<double> numbers_in(const std::vector<std::string>& cells) {
   return values;
 }
 
-// True if values increase, except for one or two rollovers.
-bool goes_on(const std::vector<double>& values) {
+// True if values increase, except for one or two rollovers, at least once in `each` steps.
+bool goes_on(const std::vector<double>& values, std::size_t each) {
   std::size_t back = 0, on = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     if (values[i] < values[i - 1]) ++back;
     if (values[i] > values[i - 1]) ++on;
   }
-  return values.size() < 2 || (on > 0 && back <= 1);
+  return values.size() < 2 || (on > 0 && each * on >= values.size() - 1 && back <= 1);
 }
 
 bool counts(const std::vector<double>& values) {
@@ -126,7 +126,8 @@ int rank_of(const std::string& name, const Words& words) {
   // UTC_Day, UTC_Second: parts of a date.
   if (words.first() == "utc" && (words.has("day") || words.has("second"))) return 0;
   const auto is_time = [](const std::string& word) {
-    return word.ends_with("time") || word.ends_with("stamp") || says(word, Role::time);
+    return word.ends_with("time") || word.ends_with("stamp") || says(word, Role::time) ||
+           says(word, Role::ms) || says(word, Role::us) || says(word, Role::ns);
   };
   if (words.has("header") && words.has("stamp")) return 4;  // measurement time in ROS
   if (!words.words.empty() && std::ranges::all_of(words.words, is_time)) return 3;
@@ -183,9 +184,16 @@ std::optional<CsvTime> candidate_at(const TableSample& table, std::size_t place,
   if (dated && cells.size() > 1 && cells.front() == cells.back() && cells[0].find(':') == std::string::npos)
     return std::nullopt;
   const std::vector<double> values = numbers_in(cells);
-  if (is_fraction_of_second(table, place, values)) return std::nullopt;
+  const std::string unit = table.unit_of(place);
+  const bool other_quantity = !time_unit(unit) && !other_units(unit).empty();  // T (°C)
+  // NMEA's 235959.5 is no number of seconds.
+  const bool clock_digits = !dated && lower(table.names[place]).find("hhmmss") != std::string::npos;
+  if (other_quantity || clock_digits || is_fraction_of_second(table, place, values)) return std::nullopt;
   CsvTime out{table.header_of(place), dated ? "s" : time_unit_by_name(table, place, words)};
-  if (!dated && (values.size() != cells.size() || !goes_on(values) || (out.unit.empty() && counts(values))))
+  // Several rows may have one stamp; without a name a quantity that hardly changes is no time.
+  const std::size_t each = table.named ? cells.size() : kFewRows;
+  if (!dated &&
+      (values.size() != cells.size() || !goes_on(values, each) || (out.unit.empty() && counts(values))))
     return std::nullopt;
   if (out.unit.empty()) out.unit = unit_by_values(values);
   return out;
@@ -288,8 +296,9 @@ std::vector<CsvTime> times_of(const TableSample& table, const Rates& rates) {
       ++twin;
     if (twin == best.size())
       best.push_back(*found), places.push_back(i);
-    else if (resolution_s(table.cells[i], *found) < resolution_s(table.cells[places[twin]], best[twin]))
-      best[twin] = *found, places[twin] = i;
+    else if (resolution_s(table.cells[i], *found) < resolution_s(table.cells[places[twin]], best[twin]) ||
+             (table.names[i] == table.names[places[twin]] && !rates.empty() && i < rates[0].place))
+      best[twin] = *found, places[twin] = i;  // of several sensors side by side: that of the rates
   }
   return best;
 }

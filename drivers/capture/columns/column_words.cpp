@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "drivers/capture/columns/csv_layout.h"
+#include "drivers/ifog/quoted.h"
 
 namespace ifog {
 namespace {
@@ -36,14 +37,15 @@ constexpr std::array<std::pair<Role, std::string_view>, 15> kWords{{
     {Role::step, " delta inc increment "},
     {Role::angle, " angle theta ang "},
     {Role::time,
-     " time timestamp stamp t utc datetime date zeit seconds elapsed tow sow sampletimefine timeusec secs "
+     " time timestamp stamp t utc datetime date zeit zeitstempel seconds elapsed tow sow sampletimefine "
+     "timeusec secs "
      "millis micros nanos gpst "},
     {Role::no_time,
      " dt relative period delta integral id status valid offset zone delay age exposure week accuracy "
      "interval flags tflags hour minute year month nano "},
-    {Role::ms, " millis ms "},
-    {Role::us, " micros us "},
-    {Role::ns, " nanos ns "},
+    {Role::ms, " millis ms milliseconds "},
+    {Role::us, " micros us microseconds "},
+    {Role::ns, " nanos ns nanoseconds "},
     {Role::s, " sec secs seconds "},
     {Role::one, " id sensor device instance topic i imu "},
 }};
@@ -140,7 +142,11 @@ bool says(std::string_view word, Role role) {
 
 Words::Words(const std::string& header) {
   const std::string bare = without_unit(without_index(header, axis));
-  for (const char c : lower(bare)) text += is_letter(c) || is_digit(c) ? c : '_';
+  const bool any_language = printable(bare, bare.size()) == bare;  // UTF-8
+  for (const char c : lower(bare)) {
+    const bool foreign = any_language && static_cast<unsigned char>(c) >= 0x80U;
+    text += is_letter(c) || is_digit(c) || foreign ? c : '_';
+  }
   while (!text.empty() && text.back() == '_') text.pop_back();
   std::string turned;
   for (std::string& word : split(bare)) {

@@ -93,10 +93,11 @@ std::vector<std::string> units_of(const TableSample& table, const CsvTime& time)
 // Prefers groups of three without gravity and with similar values (a heading differs from a rate).
 std::vector<Rates> rates_by_place(const TableSample& table, const std::optional<CsvTime>& time) {
   Rates found;
+  const std::string counted = counting_column(table);
   for (std::size_t i = 0; i < table.names.size(); ++i) {
     const bool of_time =
         time && ("+" + time->header + "+").find("+" + table.names[i] + "+") != std::string::npos;
-    if (!of_time && varies(table.cells[i])) found.push_back({i, "", ""});
+    if (!of_time && varies(table.cells[i]) && table.names[i] != counted) found.push_back({i, "", ""});
   }
   if (found.size() < 3) return {found.empty() ? found : Rates(1, found[0])};
   std::vector<Rates> sensors;

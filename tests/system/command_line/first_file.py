@@ -191,6 +191,26 @@ class Checks:
         path.write_text("time_s,rate_x_dps\n0,1\n", encoding="utf-16")
         assert "iconv -f UTF-16" in typed(path)[1], typed(path)[1]
 
+    def check_which_column_is_the_time(self):
+        """A phone's sensors side by side, each with its own clock; a time in whole seconds beside its milliseconds; a temperature T;
+        a slow pressure in the first column of a log without names; a count of the rows; a time as digits of a clock."""
+        self.reads("phone.csv", ["Time (s),X (m/s^2),Time (s),X (rad/s),Y (rad/s),Z (rad/s)", *self.rows(
+            lambda i, x, y, z: (i / RATE_HZ, 9.8, 0.0225 + i * 1.01 / RATE_HZ, x * RAD, y * RAD, z * RAD))], unasked=True, says=("#3",), hz=RATE_HZ / 1.01)
+        self.reads("coarse.csv", ["Timestamp,Milliseconds,wx (deg/s)", *self.rows(
+            lambda i, x, y, z: (f"2026-11-27 17:25:{16 + i // RATE_HZ:02d}", 6 + 5 * i, x))], axes="x", says=("Milliseconds",))
+        self.reads("wit.csv", ["time(s),wx (deg/s),T(°C)", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, 25 + i // 500))], axes="x", unasked=True)
+        self.reads("zeit.csv", ["Zeitstempel;Drehrate X (deg/s)", *self.rows(lambda i, x, y, z: (1700000000000000 + 5000 * i, str(x).replace(".", ",")), ";")], axes="x")
+        said = by_hand(self.file("pressure.csv", self.rows(lambda i, x, y, z: (967.5372 + 0.0033 * (i // 32 % 2), x, y, z))), RATE_HZ)[1]
+        assert "--time" not in said and "--sample-rate HZ" in said and "#2" in said, said
+        said = by_hand(self.file("counted.csv", self.rows(lambda i, x, y, z: (275464 + i, x, y, z))), RATE_HZ)[1]
+        assert "'#1' counts the rows" in said and "=#1" not in said, said
+        said = by_hand(self.file("nmea.csv", ["utc_time(hhmmss.sss),wx (deg/s)", *self.rows(lambda i, x, y, z: (f"{120000 + i / RATE_HZ:.3f}", x))]), RATE_HZ)[1]
+        assert "no time column" in said, said
+        path = self.file("names.csv", ["时间(s),角速度X(°/s),温度(°C)", *self.rows(lambda i, x, y, z: (i / RATE_HZ, x, 25))])
+        to = self.folder / "names_read.csv"
+        assert ran("convert", path, to).returncode == 0
+        assert "温度_degC" in to.read_text().splitlines()[0], to.read_text()[:200]
+
     def check_rest_is_judged_on_axes_nobody_named(self):
         """An IMU that is turned about y for two seconds; a part of the turn is in x."""
         turned = [300 if 2000 <= i < 2400 else 0 for i in range(ROWS)]

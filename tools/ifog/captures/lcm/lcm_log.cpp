@@ -176,9 +176,10 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
         "mixed\n",
         path.c_str(), printable(wanted).c_str());
   if (axes == 0) throw std::runtime_error(path + ": has no message on channel " + wanted);
-  if (chosen.peer && way.lost() > 0)
-    warn("%s: %lld samples on %s are missing by their counts (the sensor, its driver or LCM lost them)\n",
-         path.c_str(), static_cast<long long>(way.lost()), printable(wanted).c_str());
+  if (way.lost() > 0)
+    warn("%s: %lld samples on %s are missing by their counts (%s lost them)\n", path.c_str(),
+         static_cast<long long>(way.lost()), printable(wanted).c_str(),
+         chosen.peer ? "the sensor, its driver or LCM" : "LCM or the recorder");
   if (left_out > 0)
     warn(
         "%s: %zu messages on %s came twice or after one that follows, and are dropped (two recorders wrote "
