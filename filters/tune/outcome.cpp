@@ -26,7 +26,10 @@ RateFigures figures_of(std::span<const double> rate, double period_s) {
   const AngleSum sum(rate, all);
   for (std::size_t t = 0; t < kOutcomeTaus.size(); ++t) {
     const double samples = std::round(kOutcomeTaus[t] / period_s);
-    if (samples < 1.0 || 3.0 * samples > static_cast<double>(rate.size())) continue;
+    // A multiple of the sample time within a tenth of it.
+    if (std::abs(samples * period_s / kOutcomeTaus[t] - 1.0) > 0.1 ||
+        3.0 * samples > static_cast<double>(rate.size()))
+      continue;
     const std::array<std::size_t, 1> m{static_cast<std::size_t>(samples)};
     const DeviationPoint point = deviation(sum, m, Deviation::kAllan)[0];
     if (point.terms > 0) out.adev_radps[t] = std::sqrt(point.variance);

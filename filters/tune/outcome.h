@@ -15,7 +15,7 @@ inline constexpr std::array<double, 4> kOutcomeTaus{0.1, 1.0, 10.0, 100.0};  // 
 
 struct RateFigures {
   double rms_radps = 0.0;  // about the mean
-  // Overlapping Allan deviation at kOutcomeTaus; nullopt: shorter than a sample or longer than a third of the
+  // Overlapping Allan deviation at kOutcomeTaus; nullopt: no multiple of a sample, or longer than a third of the
   // record.
   std::array<std::optional<double>, kOutcomeTaus.size()> adev_radps{};
 };

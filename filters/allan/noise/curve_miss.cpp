@@ -34,10 +34,9 @@ std::array<Share, 5> shares_at(const NoiseCoefficients& c, double tau_s) {
 
 }  // namespace
 
-CurveMiss widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& found) {
-  CurveMiss miss;
+void widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& found) {
   if ((found.markov && found.markov->present) || !found.left_out_hz.empty() || !found.lines_hz.empty())
-    return miss;
+    return;
   std::vector<std::size_t> octaves;
   for (std::size_t m = 1; m <= longest_average(Deviation::kAllan, sum.longest()); m *= 2)
     octaves.push_back(m);
@@ -64,9 +63,8 @@ CurveMiss widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients
       term.upper += 1.959964 * (error - term.std_error);  // 97.5 % limit
       term.std_error = error;
     }
-    if (std::abs(off) > miss.departure) miss = {std::abs(off), tau_s};
+    if (std::abs(off) > found.curve.departure) found.curve = {std::abs(off), tau_s};
   }
-  return miss;
 }
 
 }  // namespace ifog

@@ -8,15 +8,10 @@
 
 namespace ifog {
 
-struct CurveMiss {
-  double departure = 0.0;  // relative difference of the fitted from the measured deviation; 0: within chance
-  double tau_s = 0.0;      // of the largest difference
-};
-
 // Checks the overlapping Allan deviation at octaves of τ with at least eight degrees of freedom. A difference
 // counts beyond 3.5 standard deviations, or beyond 2.75 at two octaves in a row with the same sign. The error
 // bar of the strongest term there is widened to reach the curve. Nothing is changed if the spectrum has lines
 // or dropped bands, which explain the difference.
-CurveMiss widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& found);
+void widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& found);
 
 }  // namespace ifog

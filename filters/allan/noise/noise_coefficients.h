@@ -48,6 +48,11 @@ struct NoiseCoefficients {
   // Relative difference between the measured deviation and the sum of terms beyond chance; 0 if the terms
   // describe the record. Included in the error bars, except for what a correlated bias causes at long τ.
   double misfit = 0.0;
+  // Largest relative difference of the terms' from the measured Allan deviation, and its τ; 0: within chance. The
+  // error bar of the strongest term there reaches the curve (curve_miss.h).
+  struct CurveMiss {
+    double departure = 0.0, tau_s = 0.0;
+  } curve;
   std::optional<MarkovNoise> markov;        // set if K does not hold at long τ
   std::vector<FrequencyRange> lines_hz;     // spectral lines
   std::vector<FrequencyRange> left_out_hz;  // no sum of the terms fits here: resonances, vibration, filters
@@ -64,5 +69,11 @@ struct NoiseCoefficients {
 
 // "the bias is correlated: …", or "" if it is not.
 [[nodiscard]] std::string markov_in_words(const NoiseCoefficients& found);
+
+// "fit is 5 % off at 3 s; error bars widened", or "" if it is not.
+[[nodiscard]] std::string curve_miss_in_words(const NoiseCoefficients& found);
+
+// One line each: what the terms do not describe (lines, bands, a correlated bias, a departure from the curve).
+[[nodiscard]] std::vector<std::string> misfit_in_words(const NoiseCoefficients& found);
 
 }  // namespace ifog

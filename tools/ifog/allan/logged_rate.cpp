@@ -7,7 +7,6 @@
 #include <span>
 #include <stdexcept>
 
-#include "filters/allan/noise/curve_miss.h"
 #include "filters/allan/row_times.h"
 #include "filters/rest/cleaned_rate.h"
 #include "filters/rest/followed_channel.h"
@@ -51,50 +50,6 @@ double trusted_tau(const AngleSum& sum, const TermVariances& noise, Deviation ki
     if (EstimateVariance(kind, m, samples).degrees(noise) >= kTrustedDegrees)
       trusted = static_cast<double>(m) * period;
   return trusted;
-}
-
-std::string two_digits(double value) { return formatted("%.2g", value); }
-
-std::string in_words(const std::vector<FrequencyRange>& ranges) {
-  constexpr std::size_t kShown = 6;
-  std::string words;
-  for (std::size_t i = 0; i < std::min(kShown, ranges.size()); ++i)
-    words += (i > 0 ? ", " : "") + six_digits(ranges[i].low) + "–" + six_digits(ranges[i].high);
-  if (ranges.size() > kShown) words += " and " + std::to_string(ranges.size() - kShown) + " more";
-  return words + " Hz";
-}
-
-void note_what_was_left_out(const std::string& column, AllanRecord& record) {
-  const std::string start = record.capture + ": " + column + ": ";
-  if (!record.fit->lines_hz.empty())
-    record.notes.push_back(start + "lines, not used in the noise fit: " + in_words(record.fit->lines_hz));
-  if (!record.fit->left_out_hz.empty())
-    record.notes.push_back(start +
-                           "not used in the fit: Q, N, B, K, R cannot explain these bands "
-                           "(resonance, vibration, a filter): " +
-                           in_words(record.fit->left_out_hz));
-  const std::string markov = markov_in_words(*record.fit);
-  if (!markov.empty()) record.notes.push_back(start + markov);
-  if (record.fit->misfit > 0.0 && markov.empty())
-    record.notes.push_back(start + "fit is " + two_digits(100.0 * record.fit->misfit) +
-                           " % off; error bars widened");
-}
-
-void note_what_fits_badly(const LoggedRate& logged, const SeriesView& rate, const std::vector<Stretch>& parts,
-                          const AngleSum& sum, double period, AllanRecord& record) {
-  const auto add = [&](const char* name, const std::string& text) {
-    record.findings.push_back({name, text});
-    record.notes.push_back(logged.of.capture + ": " + logged.column + ": " + text);
-  };
-  if (const CurveMiss miss = widen_to_curve(sum, period, *record.fit); miss.departure > 0.0)
-    add("curve", "fit is " + two_digits(100.0 * miss.departure) + " % off at " + six_digits(miss.tau_s) +
-                     " s; error bars widened");
-  if (const auto followed =
-          followed_channel(rate, parts, logged.of.rows.begin, period, logged.of.table.outlines, *record.fit))
-    add("curve", "slow means of the rate follow " + followed->name + " by " +
-                     two_digits(100.0 * followed->share) +
-                     " % of their variance: an effect of it would pass for noise, and the error bars of B, K "
-                     "and R allow for that; run ifog diagnose");
 }
 
 // Adds notes about gaps and uneven time stamps. Throws std::runtime_error if gaps are refused.
@@ -213,11 +168,26 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
                            six_digits(static_cast<double>(record.longest) * period) + " s");
 
   measure(logged, sum, options, period, record);
-  if (record.fit && signal == "rate") note_what_fits_badly(logged, rate, parts, sum, period, record);
+  const auto add = [&](const std::string& text) {
+    record.notes.push_back(name + ": " + column + ": " + text);
+  };
+  const auto fits_badly = [&](const std::string& text) { record.findings.push_back({"curve", text}); };
+  if (record.fit) {
+    if (const std::string miss = curve_miss_in_words(*record.fit); !miss.empty()) fits_badly(miss);
+    for (const std::string& miss : misfit_in_words(*record.fit)) add(miss);
+  }
+  if (const auto followed = record.fit && signal == "rate"
+                                ? followed_channel(rate, parts, logged.of.rows.begin, period,
+                                                   logged.of.table.outlines, *record.fit)
+                                : std::nullopt) {
+    fits_badly(
+        formatted("slow means of the rate follow %s by %.2g %% of their variance: an effect of it would pass "
+                  "for noise, and the error bars of B, K and R allow for that; run ifog diagnose",
+                  followed->name.c_str(), 100.0 * followed->share));
+    add(record.findings.back().text);
+  }
   record.noise_changes = noise_changes(rate, parts, period, shown_time_s);
-  if (const std::string change = in_words(record.noise_changes); !change.empty())
-    record.notes.push_back(name + ": " + column + ": " + change);
-  if (record.fit) note_what_was_left_out(column, record);
+  if (const std::string change = in_words(record.noise_changes); !change.empty()) add(change);
   return record;
 }
 

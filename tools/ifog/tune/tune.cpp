@@ -187,6 +187,7 @@ void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest&
 NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const Rest& rest,
                      std::vector<std::string>& notes) {
   NoiseByAxis noise;
+  bool unexplained = false;
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     const std::span<const double> rate = capture.rate_radps[a];
     const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
@@ -194,8 +195,9 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
       RestNoise found{
           noise_coefficients(AngleSum(rate, parts), clock.period_s),
           noise_changes(rate, parts, clock.period_s, [&](std::size_t i) { return capture.shown_time_s(i); })};
-      if (const std::string markov = markov_in_words(found.terms); !markov.empty())
-        notes.push_back(axis_label(capture, a) + markov);
+      for (const std::string& miss : misfit_in_words(found.terms))
+        notes.push_back(axis_label(capture, a) + miss);
+      unexplained = unexplained || !found.terms.left_out_hz.empty();
       if (const std::string change = in_words(found.changes); !change.empty())
         notes.push_back(axis_label(capture, a) + change);
       noise[capture.axes[a]] = std::move(found);
@@ -204,6 +206,11 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
                       error.what());
     }
   }
+  if (unexplained)
+    notes.push_back(
+        "a model with coloured noise takes those bands for noise, too: if a hand, an engine or a structure "
+        "moved "
+        "there, record at rest");
   return noise;
 }
 
@@ -221,11 +228,8 @@ Model model_of(Model before, const Tuning& tuning, const NoiseByAxis& noise, con
       if (c.present) value = c.value;
     };
     NoiseTerms& terms = model.noise[axis] = {};
-    put(found.terms.Q, terms.Q);
-    put(found.terms.N, terms.N);
-    put(found.terms.B, terms.B);
-    put(found.terms.K, terms.K);
-    put(found.terms.R, terms.R);
+    for (const report::NamedCoefficient& named : report::named_coefficients())
+      put(found.terms.*named.member, terms.*named.term);
   }
   if (!model.effects.empty()) return model;  // whose effects are from the captures that it names
   model.source.capture = printable(std::filesystem::path(path).filename().string(), kLongestMessage);
@@ -302,7 +306,7 @@ void run_tune(const TuneArguments& options) {
   print_models(tuning);
   print_held_out(tuning, capture.axes);
   for (const auto& [axis, found] : noise)
-    say("\nnoise%s%s at rest, as `ifog allan` finds it\n%s", axis.empty() ? "" : " of ", axis.c_str(),
+    say("\nnoise%s%s at rest\n%s", axis.empty() ? "" : " of ", axis.c_str(),
         report::coefficient_lines(found.terms).c_str());
   if (!options.json_file.empty())
     write_json(options.json_file, tuning_json(options, tuning, left, period, noise, capture.axes));
