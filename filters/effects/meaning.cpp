@@ -282,7 +282,7 @@ std::string meaning_of(const Effect& effect) {
     case Form::kLine:
       return "a line, not corrected: vibration, mains, a structure's own frequency, or a beat in the sensor";
     case Form::kStep:
-      return "the bias jumped once";
+      return "the bias jumped once; not corrected, for another record has no such jump";
     case Form::kRateRamp:
       return "the bias drifts steadily with time";
     case Form::kBias:

@@ -6,11 +6,13 @@
 // are errors.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "filters/settings/filter_settings.h"
@@ -62,6 +64,14 @@ inline constexpr double kMostEarly_s = 60.0;
 struct NoiseTerms {
   std::optional<double> Q{}, N{}, B{}, K{}, R{};
 };
+
+// By their keys in the file.
+inline constexpr std::array<std::pair<const char*, std::optional<double> NoiseTerms::*>, 5> kNoiseTerms = {
+    {{"Q", &NoiseTerms::Q},
+     {"N", &NoiseTerms::N},
+     {"B", &NoiseTerms::B},
+     {"K", &NoiseTerms::K},
+     {"R", &NoiseTerms::R}}};
 
 struct ModelSource {
   std::string capture, sha256, date;            // fitted data

@@ -165,15 +165,8 @@ void read_noise(Table table, Model& model) {
   if (model.noise.contains(axis))
     table.fail("axis", table.find("axis"), "expected one table [[noise]] for each axis, this is its second");
   NoiseTerms& noise = model.noise[axis];
-  const auto term = [&](const char* key, std::optional<double>& value) {
-    if (!table.find(key)) return;
-    value = table.not_negative(key, 0.0);
-  };
-  term("Q", noise.Q);
-  term("N", noise.N);
-  term("B", noise.B);
-  term("K", noise.K);
-  term("R", noise.R);
+  for (const auto& [key, term] : kNoiseTerms)
+    if (table.find(key)) noise.*term = table.not_negative(key, 0.0);
   table.done();
 }
 

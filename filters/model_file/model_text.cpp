@@ -30,11 +30,8 @@ class Text {
 void write_noise(Text& text, const std::string& axis, const NoiseTerms& noise) {
   text.element("noise");
   text.words("axis", axis);
-  const std::array<std::pair<const char*, const std::optional<double>*>, 5> terms = {
-      {{"Q", &noise.Q}, {"N", &noise.N}, {"B", &noise.B}, {"K", &noise.K}, {"R", &noise.R}}};
-  for (const auto& [key, value] : terms) {
-    if (*value) text.line(key, toml_number(**value));
-  }
+  for (const auto& [key, term] : kNoiseTerms)
+    if (noise.*term) text.line(key, toml_number(*(noise.*term)));
 }
 
 std::string as_toml(const SettingValue& value) {

@@ -26,12 +26,14 @@ std::string value_and_error(double value, double error) {
 
 const std::vector<NamedCoefficient>& named_coefficients() {
   static const std::vector<NamedCoefficient> kNamed{
-      {"Q", "quantisation", "rad", "arcsec", 1.0 / kArcsecond, &NoiseCoefficients::Q},
-      {"N", "angle random walk", "rad/s/√Hz", "°/√h", 1.0 / kDegreePerRootHour, &NoiseCoefficients::N},
-      {"B", "bias instability", "rad/s", "°/h", 1.0 / kDegreePerHour, &NoiseCoefficients::B},
+      {"Q", "quantisation", "rad", "arcsec", 1.0 / kArcsecond, &NoiseCoefficients::Q, &NoiseTerms::Q},
+      {"N", "angle random walk", "rad/s/√Hz", "°/√h", 1.0 / kDegreePerRootHour, &NoiseCoefficients::N,
+       &NoiseTerms::N},
+      {"B", "bias instability", "rad/s", "°/h", 1.0 / kDegreePerHour, &NoiseCoefficients::B, &NoiseTerms::B},
       {"K", "rate random walk", "rad/s²/√Hz", "°/h/√h", 1.0 / kDegreePerHourPerRootHour,
-       &NoiseCoefficients::K},
-      {"R", "rate ramp", "rad/s²", "°/h/h", 1.0 / kDegreePerHourPerHour, &NoiseCoefficients::R}};
+       &NoiseCoefficients::K, &NoiseTerms::K},
+      {"R", "rate ramp", "rad/s²", "°/h/h", 1.0 / kDegreePerHourPerHour, &NoiseCoefficients::R,
+       &NoiseTerms::R}};
   return kNamed;
 }
 

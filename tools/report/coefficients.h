@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "filters/allan/noise/noise_coefficients.h"
+#include "filters/model_file/model.h"
 #include "filters/rest/noise_change.h"
 
 namespace ifog::report {
@@ -21,6 +22,7 @@ struct NamedCoefficient {
   const char* unit;
   double factor;
   NoiseCoefficient NoiseCoefficients::*member;
+  std::optional<double> NoiseTerms::*term;  // the same in a model
 };
 const std::vector<NamedCoefficient>& named_coefficients();
 

@@ -26,14 +26,9 @@ Json name_json(const Effect& effect) {
 
 Json noise_terms_json(const NoiseTerms& noise) {
   Json json = Json::object();
-  const auto add = [&](const char* name, const std::optional<double>& value) {
-    if (value) json[name] = as_json(*value);
-  };
-  add("Q_rad", noise.Q);
-  add("N_radps_rthz", noise.N);
-  add("B_radps", noise.B);
-  add("K_radps2_rthz", noise.K);
-  add("R_radps2", noise.R);
+  const char* const names[] = {"Q_rad", "N_radps_rthz", "B_radps", "K_radps2_rthz", "R_radps2"};
+  for (std::size_t i = 0; i < kNoiseTerms.size(); ++i)
+    if (const std::optional<double>& value = noise.*kNoiseTerms[i].second) json[names[i]] = as_json(*value);
   return json;
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/diagnose/diagnosis_text.h"
-#include <array>
 
 #include "filters/effects/form.h"
 #include "filters/effects/meaning.h"
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
+#include "tools/report/coefficients.h"
 #include "tools/report/pages/account.h"
 #include "tools/report/pages/words.h"
 
@@ -15,8 +15,6 @@ namespace {
 std::string percent(double share) {
   return share >= 0.001 ? formatted("%.3g %%", 100.0 * share) : "under 0.1 %";
 }
-
-std::string chance(double p) { return p < 1e-6 ? "under one in a million" : formatted("%.2g", p); }
 
 // In the field's units, as on the report's page; a time as in the capture.
 std::string value_of(const ModelParameter& parameter) {
@@ -41,62 +39,35 @@ std::string effect_lines(const FoundEffect& found, std::size_t number, bool over
   lines += formatted("     %s %s of the %s variance; by chance: %s\n",
                      overlap ? "alone, overlapping with other parts," : "explains",
                      percent(found.variance_explained).c_str(), effect.shown_only ? "rate's" : "error's",
-                     chance(found.p_value).c_str());
+                     report::probability(found.p_value).c_str());
   return lines;
 }
 
-struct FigureName {
-  const char* key;
-  const char* words;
-  const char* unit;
-  double scale;
-};
-
-constexpr std::array<FigureName, 12> kShownFigures = {{
-    {"bias_radps", "bias, mean", "°/h", 1.0 / kDegreePerHour},
-    {"residual_rms_radps", "single samples, RMS", "°/h", 1.0 / kDegreePerHour},
-    {"rms_0.1s_radps", "0.1 s means, RMS", "°/h", 1.0 / kDegreePerHour},
-    {"rms_1s_radps", "1 s means, RMS", "°/h", 1.0 / kDegreePerHour},
-    {"rms_10s_radps", "10 s means, RMS", "°/h", 1.0 / kDegreePerHour},
-    {"rms_100s_radps", "100 s means, RMS", "°/h", 1.0 / kDegreePerHour},
-    {"adev_0.1s_radps", "Allan deviation, 0.1 s", "°/h", 1.0 / kDegreePerHour},
-    {"adev_1s_radps", "Allan deviation, 1 s", "°/h", 1.0 / kDegreePerHour},
-    {"adev_10s_radps", "Allan deviation, 10 s", "°/h", 1.0 / kDegreePerHour},
-    {"adev_100s_radps", "Allan deviation, 100 s", "°/h", 1.0 / kDegreePerHour},
-    {"heading_drift_rad", "heading drift at the end", "°", 1.0 / kDegree},
-    {"whiteness", "autocorrelation at lag 1", "", 1.0},
-}};
-
 std::string figure_lines(const Diagnosis& diagnosis) {
-  std::string lines = formatted("  %-28s %12s %12s\n", "", "before", "after");
-  for (const FigureName& figure : kShownFigures) {
-    const auto before = diagnosis.before.find(figure.key);
-    const auto after = diagnosis.after.find(figure.key);
-    if (before == diagnosis.before.end() || after == diagnosis.after.end()) continue;
-    lines += formatted("  %-28s %12.4g %12.4g %s\n", figure.words, before->second * figure.scale,
-                       after->second * figure.scale, figure.unit);
+  std::string lines = formatted("  %-46s %12s %12s\n", "", "before", "after");
+  for (const std::string& key : report::in_reading_order(diagnosis.before)) {
+    const auto after = diagnosis.after.find(key);
+    if (after == diagnosis.after.end()) continue;
+    const report::Figure figure = report::figure(key);
+    lines +=
+        formatted("  %-46s %12.4g %12.4g %s\n", figure.label.c_str(), diagnosis.before.at(key) * figure.scale,
+                  after->second * figure.scale, figure.unit.c_str());
   }
   return lines;
 }
 
 std::string noise_line(const NoiseTerms& noise, const NoiseTerms& error) {
-  std::string line = "Noise:";
-  const auto add = [&](const char* name, const std::optional<double>& value,
-                       const std::optional<double>& sigma, double unit_si, const char* unit) {
-    if (!value) return;
-    line += line.back() == ':' ? " " : ", ";
-    line += std::string(name) + formatted(" %.3g", *value / unit_si);
-    if (sigma) line += formatted(" ± %.2g", *sigma / unit_si);
-    line += std::string(" ") + unit;
-  };
-  add("quantisation", noise.Q, error.Q, kArcsecond, "arcsec");
-  add("angle random walk", noise.N, error.N, kDegreePerRootHour, "°/√h");
-  add("bias instability", noise.B, error.B, kDegreePerHour, "°/h");
-  add("rate random walk", noise.K, error.K, kDegreePerHourPerRootHour, "°/h/√h");
-  add("rate ramp", noise.R, error.R, kDegreePerHourPerHour, "°/h/h");
-  if (line.back() == ':') return "Noise: no terms that this record shows\n";
+  std::string line;
+  for (const report::NamedCoefficient& named : report::named_coefficients()) {
+    const std::optional<double>&value = noise.*named.term, &sigma = error.*named.term;
+    if (!value) continue;
+    line += std::string(line.empty() ? "" : ", ") + named.meaning + formatted(" %.3g", *value * named.factor);
+    if (sigma) line += formatted(" ± %.2g", *sigma * named.factor);
+    line += std::string(" ") + named.unit;
+  }
+  if (line.empty()) return "Noise: no terms that this record shows\n";
   if (!noise.B && !noise.K) line += ", no bias instability or random walk that this record shows";
-  return line + "\n";
+  return "Noise: " + line + "\n";
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "filters/effects/form.h"
 #include "filters/model_file/toml_text.h"
 #include "filters/units/field_units.h"
+#include "tools/report/coefficients.h"
 #include "tools/report/pages/account.h"
 #include "tools/report/pages/diagnosis_pictures.h"
 #include "tools/report/pages/section.h"
@@ -109,21 +110,12 @@ std::string confusable_list(const Diagnosis& d) {
 }
 
 std::string noise_table(const NoiseTerms& noise) {
-  struct Row {
-    const char* name;
-    std::optional<double> value;
-    double scale;
-    const char* unit;
-  };
-  const Row rows[] = {{"quantisation Q", noise.Q, 1e6, "µrad"},
-                      {"angle random walk N", noise.N, 1.0 / kDegreePerRootHour, "°/√h"},
-                      {"bias instability B", noise.B, 1.0 / kDegreePerHour, "°/h"},
-                      {"rate random walk K", noise.K, 1.0 / kDegreePerHourPerRootHour, "°/h/√h"},
-                      {"rate ramp R", noise.R, 1.0 / kDegreePerHourPerHour, "°/h/h"}};
   std::string out;
-  for (const Row& each : rows)
-    out += row(each.name, {number_cell(each.value ? number(*each.value * each.scale) : "not seen"),
-                           each.value ? each.unit : ""});
+  for (const NamedCoefficient& named : named_coefficients()) {
+    const std::optional<double>& value = noise.*named.term;
+    out += row(std::string(named.meaning) + " " + named.letter,
+               {number_cell(value ? number(*value * named.factor) : "not seen"), value ? named.unit : ""});
+  }
   return table("Noise after the effects (IEEE Std 952 terms)", {"term", number_cell("value"), "unit"}, out);
 }
 
