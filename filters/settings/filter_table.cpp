@@ -109,7 +109,7 @@ constexpr std::array kTable{
                   {},
                   {},
                   "",
-                  "do not return the integral of denoised - compensated to zero"},
+                  "do not return the integral of denoised - compensated after a manoeuvre"},
     FilterSetting{"steady_gain",
                   "--no-steady-gain",
                   SettingMember<bool>{&S::steady_gain, &C::steady_gain},

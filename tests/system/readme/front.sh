@@ -36,7 +36,8 @@ until_said() {  # WORDS
 
 before_2() {
   on_the_path
-  ifog simulate "$source/tools/simulate/scenarios/demo.toml" --output recording.kvh --driver kvh1750 --option format=b --option rate_hz=200
+  ln -s "$source/tools" tools
+  ifog simulate tools/simulate/scenarios/demo.toml --output recording.kvh --driver kvh1750 --option format=b --option rate_hz=200
   echo 'version = 1' >model.toml
   cat >ifogd.toml <<END
 [daemon]
