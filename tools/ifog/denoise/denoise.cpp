@@ -16,6 +16,7 @@
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/units/units.h"
+#include "filters/estimator/walk.h"
 #include "filters/series/samples.h"
 #include "filters/series/series_view.h"
 #include "filters/smoother/smoother.h"
@@ -105,8 +106,10 @@ void tell_unusable(const std::string& name, const DenoisedRows& rows, const Offl
     const std::string missing = missing_in_words(column, axis.missing, rows.written(), axis.first_missing_s);
     if (!missing.empty()) warn("%s: %s\n", name.c_str(), missing.c_str());
     if (axis.stuck > 0)
-      warn("%s: %s repeats one value in %zu of %zu rows: the axis is stuck there\n", name.c_str(),
-           column.c_str(), axis.stuck, rows.written());
+      warn(
+          "%s: %s repeats one value in %zu of %zu rows, stuck or finer than its steps: no measurement "
+          "there\n",
+          name.c_str(), column.c_str(), axis.stuck, rows.written());
   }
   const IncrementerCounts& counts = result.counts;
   for (const std::string& line :
@@ -177,7 +180,9 @@ void tell(const DenoiseOptions& options, const DenoisedRows& rows, const Offline
         "--process-noise and --measurement-noise\n",
         options.capture.c_str(),
         result.noise_known ? "these rows are before the noise is known"
-                           : "no 4096 samples in a row are white (dither, lines, drift, motion)");
+        : static_cast<double>(result.counts.samples) < Walk::kStretch
+            ? "4096 samples at rest are needed to learn the noise"
+            : "no 4096 samples in a row are white (dither, lines, drift, motion)");
   tell_unusable(options.capture, rows, result);
   tell_not_as_published(options, rows, result);
   say("%s: %zu samples at %g Hz, %s\n", options.capture.c_str(), rows.written(), result.sample_rate_hz,
@@ -306,7 +311,7 @@ void run_denoise(DenoiseOptions options) {
   tell(options, rows, result);
   trial.tell(options.capture);
   if (!options.json.empty()) write_json(options.json, summary(options, rows, trial, result));
-  if (!options.picture.empty()) draw_denoised(options.picture, rows.columns(), rows.origin(), result);
+  if (!options.picture.empty()) draw_denoised(options.picture, rows, result);
 }
 
 }  // namespace

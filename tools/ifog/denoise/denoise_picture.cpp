@@ -19,10 +19,11 @@ std::vector<double> in_degrees_per_hour(const Samples& rate_radps) {
 
 }  // namespace
 
-void draw_denoised(const std::string& path, const DenoisedColumns& columns, const TimeOrigin& origin,
-                   const OfflineResult& result) {
+void draw_denoised(const std::string& path, DenoisedRows& denoised, const OfflineResult& result) {
+  const DenoisedColumns& columns = denoised.columns();
+  const bool filtered = !denoised.none_filtered();
   std::vector<double> time(columns.time_s.begin(), columns.time_s.end());
-  for (double& t : time) t = origin.in_s(t);
+  for (double& t : time) t = denoised.origin().in_s(t);
   const report::TimeAxis axis_of_time(time.front(), time.back());
   time = axis_of_time(std::move(time));
   std::vector<report::PictureRow> rows;
@@ -37,7 +38,8 @@ void draw_denoised(const std::string& path, const DenoisedColumns& columns, cons
     report::Chart chart(title, "The rate before and after the filter, over time.", axis_of_time.axis(last),
                         rate);
     chart.line_in_time(report::Role::kRaw, noisy, time, in_degrees_per_hour(values));
-    chart.line_in_time(report::Role::kAfter, "denoised", time, in_degrees_per_hour(axis.denoised));
+    if (filtered)
+      chart.line_in_time(report::Role::kAfter, "denoised", time, in_degrees_per_hour(axis.denoised));
     rows.push_back({last ? 320.0 : 270.0, {{std::move(chart)}}});
   };
   const bool corrected = !result.model.empty();
@@ -48,7 +50,9 @@ void draw_denoised(const std::string& path, const DenoisedColumns& columns, cons
     row(name, "raw", axis.raw, axis, last && !corrected);
     if (corrected) row("", "compensated", axis.compensated, axis, last);
   }
-  report::write_picture(path, report::picture_svg("Rate, denoised by " + result.filter.rule, rows));
+  report::write_picture(
+      path,
+      report::picture_svg(filtered ? "Rate, denoised by " + result.filter.rule : "Rate, not denoised", rows));
 }
 
 }  // namespace ifog::tools

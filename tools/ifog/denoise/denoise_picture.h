@@ -4,7 +4,6 @@
 
 #include <string>
 
-#include "filters/units/told_time.h"
 #include "tools/ifog/denoise/denoised_rows.h"
 #include "tools/ifog/denoise/offline_chain.h"
 
@@ -12,7 +11,6 @@ namespace ifog::tools {
 
 // The rate before and after, one row per axis and another if a model corrects it, with a common time axis.
 // Throws as write_picture does.
-void draw_denoised(const std::string& path, const DenoisedColumns& columns, const TimeOrigin& origin,
-                   const OfflineResult& result);
+void draw_denoised(const std::string& path, DenoisedRows& rows, const OfflineResult& result);
 
 }  // namespace ifog::tools
