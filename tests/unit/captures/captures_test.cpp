@@ -91,8 +91,6 @@ TEST(EpochTimes, ArePartedByWhatTheySay) {
 namespace ifog::tools {
 namespace {
 
-constexpr std::int64_t kSecond = 1'000'000'000, kWall = 1'700'000'000 * kSecond;
-
 FlightHeader of_messages() {
   FlightHeader out = some_header();
   out.carries = FlightHeader::Carries::messages;

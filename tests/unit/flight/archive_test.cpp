@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "tests/unit/flight/archived.h"
+#include "tests/unit/flight/recordings.h"
 #include "tests/unit/own_folder.h"
 
 namespace ifog {

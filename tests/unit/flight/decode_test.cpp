@@ -8,7 +8,6 @@
 #include <cstring>
 #include <memory>
 
-#include "tests/unit/flight/archived.h"
 #include "tests/unit/flight/recordings.h"
 
 namespace ifog {

@@ -23,8 +23,6 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::int64_t kSecond = 1'000'000'000, kWall = 1'700'000'000 * kSecond;
-
 FlightHeader header() {
   FlightHeader out;
   out.sensor = "nose";
