@@ -241,21 +241,21 @@ Spread spread(const char* rule_name, const char* weights, int draws, int window)
 }
 
 TEST(RandomWeighting, HasTheVarianceThatFollowsFromTheWeights) {
-  constexpr int kWindow = 20;
-  constexpr double n = kWindow;
+  constexpr int kShort = 20;
+  constexpr double n = kShort;
   constexpr double kTau2 = 2.0;  // variance of the square of a unit normal
   const double one_draw = 2 * kTau2 / (n + 1);
   const auto expect = [](const Spread& got, double variance) {
     EXPECT_NEAR(got.mean, 1.0, 5 * std::sqrt(variance / 40'000));
     EXPECT_NEAR(got.variance / variance, 1.0, 0.05);
   };
-  expect(spread("iae", "kept", 1, kWindow), kTau2 / n);
-  expect(spread("irwe-akfg", "kept", 1, kWindow), one_draw);
-  expect(spread("irwe-akfg", "fresh", 1, kWindow), one_draw);
-  expect(spread("irwe-akfg", "kept", 4, kWindow), kTau2 / n + (one_draw - kTau2 / n) / 4);
-  expect(spread("irwe-akfg", "fresh", 4, kWindow), kTau2 / n + (one_draw - kTau2 / n) / 4);
+  expect(spread("iae", "kept", 1, kShort), kTau2 / n);
+  expect(spread("irwe-akfg", "kept", 1, kShort), one_draw);
+  expect(spread("irwe-akfg", "fresh", 1, kShort), one_draw);
+  expect(spread("irwe-akfg", "kept", 4, kShort), kTau2 / n + (one_draw - kTau2 / n) / 4);
+  expect(spread("irwe-akfg", "fresh", 4, kShort), kTau2 / n + (one_draw - kTau2 / n) / 4);
   // Uniform weights: sum w^2 has no closed mean; E u^2 / (n (E u)^2) = 4 / (3 n) is its limit, good to 1/n.
-  expect(spread("irwe-akfg", "uniform", 1, kWindow), kTau2 * 4 / (3 * n));
+  expect(spread("irwe-akfg", "uniform", 1, kShort), kTau2 * 4 / (3 * n));
 }
 
 TEST(RandomWeighting, FloorIsCountedAndCanBeSwitchedOff) {
