@@ -173,24 +173,6 @@ TEST(Merge, AddsAnglesTimesAndCounts) {
   EXPECT_EQ(sum.flags & kMerged, kMerged);
 }
 
-// A reader that is stopped for 4 s and then finds all that was sent meanwhile: the time of reading says nothing of any of
-// it.
-TEST(Incrementer, WhatWasReadLateIsNotMissing) {
-  Incrementer incrementer(counting_rate_sensor());
-  Increment increment;
-  double angle = 0.0;
-  for (std::uint64_t n = 0; n < 5000; ++n) {
-    Reading reading = sample(n, 0.25);
-    if (n >= 1000 && n < 5000 - 100) reading.arrival_ns = 0;
-    ASSERT_TRUE(incrementer.next(reading, increment));
-    angle += increment.delta_theta_rad[0];
-  }
-  EXPECT_NEAR(angle, 0.25e-3 * 5000, 1e-9);
-  EXPECT_EQ(incrementer.counts().missing, 0U);
-  EXPECT_EQ(incrementer.counts().gaps, 0U);
-  EXPECT_EQ(increment.sequence, 4999U);
-}
-
 // NTP slews it by up to a twelfth of the time: the labels follow, and nobody set it.
 TEST(Incrementer, ASlewedWallClockIsFollowedAndNotFlagged) {
   Incrementer incrementer(counting_rate_sensor());
