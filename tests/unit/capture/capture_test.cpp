@@ -96,15 +96,6 @@ TEST(CaptureText, GzipReadsBackTheSameBitsAndATruncatedOneAsFarAsItGoes) {
             name + ": the gzip stream ends early (truncated file); the rows until there are read");
 }
 
-TEST(CaptureText, ARowsLineIsKnownWithoutASecondLook) {
-  ifog::InputFile file("t.csv", "# a\n\ntime_s,rate_radps\n0,1\n# b\n1,1\n\n\n2,1\n3,1\n# end\n");
-  const ifog::Table table = ifog::read_table(file);
-  EXPECT_EQ(table.header_line, 3U);
-  const std::size_t lines[] = {4, 6, 9, 10};
-  for (std::size_t row = 0; row < 4; ++row) EXPECT_EQ(table.line_of_row(row), lines[row]);
-  EXPECT_EQ(ifog::Table{}.line_of_row(7), 0U);
-}
-
 // What a hostile file may cost: a line, a cell, a name or an unpacked stream of any size is refused with one
 // short line.
 class HostileFile : public testing::Test, protected ifog::test::OwnFolder {
