@@ -109,6 +109,26 @@ TEST(SerialTransport, LossesUpToTheHangUpAndTheStopAreCounted) {
   EXPECT_EQ(transport->counters().error_frames, 3U);
 }
 
+TEST(SerialTransport, StopEndsTheWaitForBytesAndTheWaitForTheDevice) {
+  for (const bool there : {true, false}) {
+    Gyro gyro;
+    const auto transport = ifog::make_serial_transport(settings(), gyro.opener());
+    transport->open({});
+    if (!there) {
+      gyro.pull();
+      while (transport->state() == TransportState::open) transport->read(kForever);
+    }
+    std::thread stopper([&] {
+      std::this_thread::sleep_for(20ms);
+      transport->stop();
+    });
+    const std::int64_t begin = ifog::monotonic_ns();
+    EXPECT_TRUE(transport->read(kForever).empty());
+    EXPECT_LT(ifog::monotonic_ns() - begin, 30'000'000'000) << "half of kForever";
+    stopper.join();
+  }
+}
+
 TEST(SerialTransport, AnOpeningThatCannotBeSentIsAFailure) {
   int fds[2];
   ASSERT_EQ(pipe2(fds, O_NONBLOCK), 0);
