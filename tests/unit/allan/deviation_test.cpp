@@ -5,9 +5,15 @@
 
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <numbers>
+#include <random>
 #include <vector>
 
+#include "filters/allan/gapped_deviation.h"
+#include "filters/allan/row_times.h"
+#include "filters/allan/streaming.h"
+#include "filters/allan/theo1.h"
 #include "tests/unit/allan/nist_set.h"
 #include "tests/unit/capture/read_capture.h"
 #include "tools/simulate/noise.h"
@@ -97,6 +103,172 @@ TEST(Deviation, MatchesThePublishedFiguresOfARealGyro) {
   for (std::size_t i = 0; i < found.size(); ++i)
     EXPECT_NEAR(found[i] * 180.0 / std::numbers::pi / published[i], 1.0, 0.5e-4)
         << found[i] * 180.0 / std::numbers::pi;
+}
+
+}  // namespace
+
+namespace ifog {
+namespace {
+
+const double kMissing = std::numeric_limits<double>::quiet_NaN();
+
+TEST(GappedDeviation, IsThePublishedOneWithoutAGap) {
+  const std::vector<std::size_t> m = {1, 10, 100, 400};
+  const std::vector<double> found = gapped_deviation(nist_set(), m);
+  EXPECT_NEAR(found[0], 2.922319e-01, 5e-8);
+  EXPECT_NEAR(found[1], 9.159953e-02, 5e-8 * 0.3);
+  EXPECT_NEAR(found[2], 3.241343e-02, 5e-8 * 0.1);
+  EXPECT_TRUE(std::isnan(found[3]));  // no three averages of 400
+}
+
+// A sample that is missing at the end says nothing: at one sample the published value, at ten within what one
+// more average of nine can change.
+TEST(GappedDeviation, IsThePublishedOneBesideAMissingSample) {
+  std::vector<double> values = nist_set();
+  values.push_back(kMissing);
+  const std::vector<std::size_t> m = {1, 10};
+  const std::vector<double> found = gapped_deviation(values, m);
+  EXPECT_NEAR(found[0], 2.922319e-01, 5e-8);
+  EXPECT_NEAR(found[1], 9.159953e-02, 1e-3);
+}
+
+// Averages of fewer than half of their samples do not count: by hand, means of two over 1 1 3 3 and a hole.
+TEST(GappedDeviation, LeavesOutAveragesThatAreMostlyHole) {
+  const std::vector<double> values = {1.0, 1.0, 3.0, 3.0, kMissing, kMissing, kMissing, kMissing, 9.0, 9.0};
+  const std::vector<std::size_t> m = {2};
+  // Neighbouring means: 1 and 3; 2 and 3, the latter of one sample; none across the hole.
+  EXPECT_NEAR(gapped_deviation(values, m)[0], std::sqrt(0.5 * (4.0 + 1.0) / 2.0), 1e-12);
+  EXPECT_TRUE(std::isnan(gapped_deviation(std::vector<double>(20, kMissing), m)[0]));
+}
+
+// The times of rows whose stamps are those of an even clock, off by an amount that is known here.
+
+TEST(RowTimes, StampsOfAnEvenClockAreTaken) {
+  const std::vector<double> stamps{5.0, 5.01, 5.02, 5.03, 9.03, 9.04, 9.05};
+  RowTimes times(stamps, sample_clock(stamps));
+  for (const double stamp : stamps) EXPECT_DOUBLE_EQ(times.next(stamp), stamp - 5.0);
+}
+
+TEST(RowTimes, StampsThatScatterGiveWayToTheClockBehindThem) {
+  std::mt19937_64 engine(3);
+  std::uniform_real_distribution<double> off(-4e-3, 4e-3);
+  std::vector<double> taken, stamps;
+  double t = 0.0;
+  for (int i = 0; i < 20000; ++i) {
+    taken.push_back(t);
+    stamps.push_back(1000.0 + t + off(engine));
+    t += i == 7000 ? 7200.0 : 0.01;  // two hours without rows
+  }
+  RowTimes times(stamps, sample_clock(stamps));
+  double last = -1.0;
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    const double now = times.next(stamps[i]);
+    if (i != 7001) {
+      EXPECT_NEAR(now - last, 0.01, i > 0 ? 1e-6 : 1.0) << i;
+    }
+    EXPECT_NEAR(now, taken[i], 0.02) << i;
+    last = now;
+  }
+}
+
+}  // namespace
+}  // namespace ifog
+
+namespace {
+
+TEST(StreamingAllan, FollowsTheWholeRecordsDeviation) {
+  auto rate = ifog::simulate::noise({.N = 1e-6, .K = 1e-8}, 1.0, 1U << 18U, 3);
+  for (double& r : rate) r += 1.0;  // a bias a million times the noise
+  ifog::StreamingAllan streaming;
+  for (const double r : rate) streaming.add(r);
+  const std::vector<ifog::Stretch> all{{0, rate.size()}};
+  std::vector<std::size_t> m;
+  for (int k = 0; k < streaming.octaves(); ++k) m.push_back(std::size_t{1} << k);
+  ASSERT_EQ(m.size(), 18U);
+  const auto points = ifog::deviation(ifog::AngleSum(rate, all), m);
+  for (std::size_t k = 0; k < m.size(); ++k) {
+    const double exact = std::sqrt(points[k].variance);
+    // Octaves 0 and 1 use every place and are the same sum; above, every quarter: a few per cent of the
+    // point's own error.
+    const double error = 0.5 * std::sqrt(static_cast<double>(m[k]) / static_cast<double>(rate.size()));
+    EXPECT_NEAR(streaming.deviation(static_cast<int>(k)) / exact, 1.0, k < 2 ? 1e-9 : 1e-9 + 0.8 * error)
+        << m[k];
+  }
+}
+
+TEST(StreamingAllan, CountsWhatTheDefinitionCounts) {
+  // A ramp of one a sample: every difference at m is m, whatever the place.
+  ifog::StreamingAllan streaming;
+  for (int i = 0; i < 64; ++i) streaming.add(i);
+  EXPECT_EQ(streaming.octaves(), 6);
+  for (int k = 0; k < 6; ++k) EXPECT_DOUBLE_EQ(streaming.deviation(k), std::exp2(k) / std::sqrt(2.0)) << k;
+  EXPECT_EQ(streaming.differences(0), 63U);
+  EXPECT_EQ(streaming.differences(1), 61U);
+  EXPECT_EQ(streaming.differences(2), 57U);
+  EXPECT_EQ(streaming.differences(3), 25U);
+  EXPECT_EQ(streaming.differences(5), 1U);
+  EXPECT_TRUE(std::isnan(streaming.deviation(6)));
+}
+
+TEST(StreamingAllan, NothingReachesAcrossAGap) {
+  ifog::StreamingAllan streaming;
+  for (int i = 0; i < 1000; ++i) streaming.add(1.0);
+  streaming.add(std::nan(""));
+  for (int i = 0; i < 1000; ++i) streaming.add(5.0);
+  streaming.restart();
+  for (int i = 0; i < 1000; ++i) streaming.add(-5.0);
+  for (int k = 0; k < streaming.octaves(); ++k) EXPECT_EQ(streaming.deviation(k), 0.0);
+  EXPECT_EQ(streaming.differences(0), 3U * 999U);
+}
+
+// NIST SP 1065, section 5.2.18: bias of Thêo1 against the Allan variance in the mean, a + b/m^c, by
+// simulation of long records; W FM 1, F FM 1.87 − 1.05/m^0.79, RW FM 2.70 − 1.53/m^0.85.
+TEST(Theo1, BiasIsTheHandbooks) {
+  const struct {
+    ifog::simulate::NoiseLevels levels;
+    ifog::TermVariances terms;
+    double a, b, c;
+  } cases[] = {{{.N = 1.0}, {0, 1, 0, 0}, 1.0, 0.0, 1.0},
+               {{.B = 1.0}, {0, 0, 1, 0}, 1.87, -1.05, 0.79},
+               {{.K = 1.0}, {0, 0, 0, 1}, 2.70, -1.53, 0.85}};
+  for (const auto& c : cases) {
+    const auto rate = ifog::simulate::noise(c.levels, 1.0, 256, 1);
+    const std::vector<ifog::Stretch> all{{0, rate.size()}};
+    for (const ifog::LongPoint& point : ifog::theo1(ifog::AngleSum(rate, all), c.terms, 0.683, 5)) {
+      const double m = point.tau / 0.75;
+      EXPECT_NEAR(point.bias / (c.a + c.b / std::pow(m, c.c)), 1.0, 0.05) << "tau " << point.tau;
+      EXPECT_GT(point.tau, 64.0);
+      EXPECT_LE(point.tau, 0.75 * 256);
+    }
+  }
+}
+
+TEST(Theo1, ReachesThreeQuartersOfTheRecord) {
+  const auto rate = ifog::simulate::noise({.N = 1.0}, 1.0, 5000, 2);
+  const std::vector<ifog::Stretch> all{{0, rate.size()}};
+  const auto points = ifog::theo1(ifog::AngleSum(rate, all), {0, 1, 0, 0}, 0.683, 10);
+  ASSERT_FALSE(points.empty());
+  EXPECT_NEAR(points.back().tau, 3750.0, 75.0);
+}
+
+// At the longest τ an Allan variance has one difference; Thêo1 says more, and its interval holds.
+TEST(Theo1, IntervalsHoldTheAllanVarianceOfAMixture) {
+  constexpr int kRecords = 200;
+  const ifog::TermVariances terms{0.0, 1.0, 0.0, 1e-4};
+  std::vector<int> inside;
+  for (int record = 0; record < kRecords; ++record) {
+    const auto rate =
+        ifog::simulate::noise({.N = 1.0, .K = 1e-2}, 1.0, 256, static_cast<std::uint64_t>(record));
+    const std::vector<ifog::Stretch> all{{0, rate.size()}};
+    const auto points = ifog::theo1(ifog::AngleSum(rate, all), terms, 0.683, 4);
+    inside.resize(points.size());
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double truth = std::sqrt(1.0 / points[i].tau + 1e-4 * points[i].tau / 3.0);
+      inside[i] += truth >= points[i].interval.lower_radps && truth <= points[i].interval.upper_radps ? 1 : 0;
+    }
+  }
+  // Three standard errors of the count.
+  for (const int n : inside) EXPECT_NEAR(n / double{kRecords}, 0.683, 0.10);
 }
 
 }  // namespace

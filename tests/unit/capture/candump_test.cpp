@@ -140,24 +140,10 @@ TEST(CandumpParser, ReadsTheScreenFormat) {
   ASSERT_EQ(ifog::parse_candump_line("  can0  123   [8]  11 22 33 44 55 66 77 88", e), CandumpLine::frame);
   EXPECT_EQ(e.stamp, ifog::CandumpStamp::none);
   EXPECT_EQ(e.frame.arrival_ns, 0);
-  EXPECT_EQ(e.interface, "can0");
-  EXPECT_EQ(e.frame.id, 0x123U);
-  EXPECT_EQ(e.frame.flags, 0U);
-  ASSERT_EQ(e.frame.length, 8U);
-  EXPECT_EQ(e.frame.data[0], 0x11);
   EXPECT_EQ(e.frame.data[7], 0x88);
-  ASSERT_EQ(ifog::parse_candump_line(" (1436509052.249713)  vcan0  12345678   [3]  AB CD EF   '...'", e),
-            CandumpLine::frame);
-  EXPECT_EQ(e.stamp, ifog::CandumpStamp::absolute);
-  EXPECT_EQ(e.frame.arrival_ns, 1'436'509'052'249'713'000);
-  EXPECT_EQ(e.frame.id, 0x12345678U);
-  EXPECT_EQ(e.frame.flags, IFOG_CAN_EXTENDED);
-  EXPECT_EQ(e.frame.data[2], 0xEF);
   ASSERT_EQ(ifog::parse_candump_line(" (000.000123)  can0  123   [2]  27 20   '' '", e), CandumpLine::frame);
   EXPECT_EQ(e.stamp, ifog::CandumpStamp::since);
   EXPECT_EQ(e.frame.arrival_ns, 123'000);
-  ASSERT_EQ(ifog::parse_candump_line("  can0  RX - -  123   [1]  0F", e), CandumpLine::frame);
-  ASSERT_EQ(ifog::parse_candump_line("  can0  TX B E  123   [1]  0F", e), CandumpLine::frame);
   ASSERT_EQ(ifog::parse_candump_line("  can0  123   [0]", e), CandumpLine::frame);
   EXPECT_EQ(e.frame.length, 0U);
   ASSERT_EQ(ifog::parse_candump_line("  can0  123  [12]  00 01 02 03 04 05 06 07 08 09 0A 0B", e),
@@ -217,6 +203,7 @@ TEST(CandumpParser, ReadsEveryViewOfTheScreen) {
                                (extended ? "12345678" : "123") + data;
             ASSERT_EQ(ifog::parse_candump_line(line, e), CandumpLine::frame) << line;
             EXPECT_EQ(e.frame.id, extended ? 0x12345678U : 0x123U) << line;
+            EXPECT_EQ(e.frame.flags & IFOG_CAN_EXTENDED, extended ? IFOG_CAN_EXTENDED : 0) << line;
             ASSERT_EQ(e.frame.length, 3U) << line;
             EXPECT_EQ(e.frame.data[0], 0x11) << line;
             EXPECT_EQ(e.frame.data[1], 0x22) << line;

@@ -135,6 +135,7 @@ TEST(CsvRows, AQuotedCellMayHoldALineEnd) {
   ASSERT_EQ(whole.refused, "");
   EXPECT_EQ(whole.got.rows.size(), 3000U);
   EXPECT_EQ(whole.notes.line_of_row(10), 24U);
+  EXPECT_EQ(ifog::RowNotes{}.line_of_row(10), 0U) << "of no file with lines";
   for (const std::size_t piece : kPieces) expect_same(whole, in_pieces(text, piece), piece);
 }
 

@@ -55,9 +55,7 @@ TEST(TimeStamps, StandAsTheyAreWhereADoubleHoldsThem) {
     EXPECT_EQ(TimeStamps(first, 1.0).origin(), TimeOrigin{}) << first;
   for (const std::string text : {"0.01", "+0.01", "17.", ".5", "-0.3", "123456.789012345"})
     EXPECT_EQ(since("0", 1.0, text), std::stod(text)) << text;
-}
-
-TEST(TimeStamps, LeaveWhatIsNotPlainToOthers) {
+  // What is not plain is left to others.
   double value = 0.0;
   for (const std::string text : {"", "-", ".", "1e3", "nan", "1.5x", " 1", "99999999999999999999"})
     EXPECT_FALSE(TimeStamps().since(text, value)) << text;

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <numbers>
 
+#include "filters/chain/signal_chain.h"
 #include "tests/unit/chain/one_axis.h"
 
 namespace ifog {
@@ -32,19 +34,6 @@ Reading sample(std::uint64_t n, double value) {
   reading.valid_axes = 1;
   reading.value[0] = value;
   return reading;
-}
-
-TEST(Incrementer, AGapIsCountedFlaggedAndAddsNoAngle) {
-  Incrementer incrementer(counting_rate_sensor());
-  Increment increment;
-  ASSERT_TRUE(incrementer.next(sample(0, 2.0), increment));
-  ASSERT_TRUE(incrementer.next(sample(5, 2.0), increment));
-  EXPECT_EQ(increment.flags, kGapBefore);
-  EXPECT_EQ(increment.sequence, 5U);
-  EXPECT_DOUBLE_EQ(increment.dt_s, 5e-3);
-  EXPECT_DOUBLE_EQ(increment.covered_s[0], 1e-3);
-  EXPECT_DOUBLE_EQ(increment.delta_theta_rad[0], 2.0 * 1e-3);
-  EXPECT_EQ(incrementer.counts().missing, 4U);
 }
 
 // More than half a rollover, of a coarse sensor at rest, whose frames are all equal; and of a recording whose
@@ -184,24 +173,6 @@ TEST(Merge, AddsAnglesTimesAndCounts) {
   EXPECT_EQ(sum.flags & kMerged, kMerged);
 }
 
-// A reader that is stopped for 4 s and then finds all that was sent meanwhile: the time of reading says nothing of any of
-// it.
-TEST(Incrementer, WhatWasReadLateIsNotMissing) {
-  Incrementer incrementer(counting_rate_sensor());
-  Increment increment;
-  double angle = 0.0;
-  for (std::uint64_t n = 0; n < 5000; ++n) {
-    Reading reading = sample(n, 0.25);
-    if (n >= 1000 && n < 5000 - 100) reading.arrival_ns = 0;
-    ASSERT_TRUE(incrementer.next(reading, increment));
-    angle += increment.delta_theta_rad[0];
-  }
-  EXPECT_NEAR(angle, 0.25e-3 * 5000, 1e-9);
-  EXPECT_EQ(incrementer.counts().missing, 0U);
-  EXPECT_EQ(incrementer.counts().gaps, 0U);
-  EXPECT_EQ(increment.sequence, 4999U);
-}
-
 // NTP slews it by up to a twelfth of the time: the labels follow, and nobody set it.
 TEST(Incrementer, ASlewedWallClockIsFollowedAndNotFlagged) {
   Incrementer incrementer(counting_rate_sensor());
@@ -276,6 +247,26 @@ TEST(Incrementer, AStampBelowZeroIsAClock) {
     EXPECT_EQ(increment.device_time_ns - first_ns, 199'995'000'000);
     EXPECT_EQ(least_ns, wrap_ns > 0 ? 0 : -300'000'000'000);
   }
+}
+
+// A tenth of a day at 5 kHz, to a tenth of what a day may lose. The terms are whole multiples of 2^-70, so
+// that 128-bit integers sum them exactly.
+TEST(ExactSum, ATenthOfADayAt5kHzIsExactTo1e10) {
+  ExactSum sum;
+  __int128 exact = 0;
+  std::uint64_t state = 88172645463325252ULL;
+  constexpr long kSamples = 24L * 360 * 5000;
+  for (long i = 0; i < kSamples; ++i) {
+    state ^= state << 13;
+    state ^= state >> 7;
+    state ^= state << 17;
+    const auto units = static_cast<std::int64_t>(state >> 12);  // 52 bits, exact in a double: 0 … 3.8e-6 rad
+    exact += units;
+    sum.add(std::ldexp(static_cast<double>(units), -70));
+  }
+  const auto truth = static_cast<long double>(exact) * 0x1p-70L;
+  EXPECT_LT(std::abs(static_cast<long double>(sum.value()) - truth), 1e-10L)
+      << "of " << sum.value() << " rad";
 }
 
 }  // namespace

@@ -88,26 +88,25 @@ SensorConfig serial_sensor(const std::string& keys, const std::string& driver = 
   return parse_config(text + keys, "f.toml").sensors.at(0);
 }
 
+// What is not said of it is the driver's speed and 8N1.
 TEST(Config, TheLineReachesTheTransportAsConfigured) {
-  const SensorConfig sensor =
-      serial_sensor("baud = 460800\ndata_bits = 7\nparity = \"odd\"\nstop_bits = 2\nbaud_base = 4000000\n");
-  const SerialSettings line = sensor_serial_settings(sensor, make_sensor_driver(sensor, {}));
+  const auto line_of = [](const SensorConfig& sensor) {
+    return sensor_serial_settings(sensor, make_sensor_driver(sensor, {}));
+  };
+  const SerialSettings line = line_of(
+      serial_sensor("baud = 460800\ndata_bits = 7\nparity = \"odd\"\nstop_bits = 2\nbaud_base = 4000000\n"));
   EXPECT_EQ(line.device, "/dev/ttyS1");
   EXPECT_EQ(line.baud, 460800U);
   EXPECT_EQ(line.data_bits, 7U);
   EXPECT_EQ(line.parity, SerialSettings::Parity::odd);
   EXPECT_EQ(line.stop_bits, 2U);
   EXPECT_EQ(line.baud_base, 4'000'000U);
-}
-
-TEST(Config, WhatIsNotSaidOfTheLineIsTheDriversSpeedAnd8N1) {
-  const SensorConfig sensor = serial_sensor("", "dsp3000");
-  const SerialSettings line = sensor_serial_settings(sensor, make_sensor_driver(sensor, {}));
-  EXPECT_EQ(line.baud, 38400U);  // the maker's
-  EXPECT_EQ(line.data_bits, 8U);
-  EXPECT_EQ(line.parity, SerialSettings::Parity::none);
-  EXPECT_EQ(line.stop_bits, 1U);
-  EXPECT_EQ(line.baud_base, 0U);
+  const SerialSettings unsaid = line_of(serial_sensor("", "dsp3000"));
+  EXPECT_EQ(unsaid.baud, 38400U);  // the maker's
+  EXPECT_EQ(unsaid.data_bits, 8U);
+  EXPECT_EQ(unsaid.parity, SerialSettings::Parity::none);
+  EXPECT_EQ(unsaid.stop_bits, 1U);
+  EXPECT_EQ(unsaid.baud_base, 0U);
 }
 
 constexpr const char* kCan = "\ndriver = \"x\"\n[sensor.transport]\ntype = \"can\"\ninterface = \"can0\"\n";

@@ -3,7 +3,14 @@
 #include "daemon/pipeline/pipeline.h"
 
 #include <gtest/gtest.h>
+#include <bot_core/kvh_raw_imu_batch_t.hpp>
+#include <ifog/imu_t.hpp>
 
+#include <limits>
+#include <map>
+
+#include "daemon/pipeline/assemble.h"
+#include "daemon/publish/inertial_encoder.h"
 #include "tests/unit/daemon/rig.h"
 
 namespace ifog {
@@ -161,6 +168,104 @@ TEST(Pipeline, DamagedFramesAreCountedAndTheGapIsFlagged) {
   ASSERT_TRUE(rig.pipeline->take_event(event));
   EXPECT_EQ(event.kind, EventKind::gap);
   EXPECT_EQ(event.count, 2U);
+}
+
+// What the pipelines of several sensors have in common.
+
+AssembledSensor reader_on(const std::string& cpus, ReadersProcessors& processors) {
+  const Config config = parse_config(R"(
+[daemon]
+plugin_folder = ")" IFOG_BINARY_DIR R"(/plugins"
+[[sensor]]
+name = "nose"
+driver = "kvh1750"
+nominal_rate_hz = 100
+[sensor.transport]
+type = "serial"
+device = "/dev/ttyS1"
+[sensor.realtime]
+reader_cpus = )" + cpus + "\n",
+                                     "f.toml");
+  return assemble(config.sensors.at(0), config, std::make_unique<KeepingPublisher>(), processors);
+}
+
+// Those that no thread stands back for before so many processors were worked on for three quarters.
+void expect_to_be_of(SharedProcessors& shared, int processors) {
+  constexpr std::int64_t kWindow = SharedProcessors::kWindow_ns;
+  std::int64_t now = kWindow;
+  shared.add(now, 0);
+  shared.add(now += kWindow, processors * kWindow * 74 / 100);
+  EXPECT_LT(shared.quiet_until_ns(), now) << processors;
+  shared.add(now += kWindow, processors * kWindow * 76 / 100);
+  EXPECT_GT(shared.quiet_until_ns(), now) << processors;
+}
+
+// However the configurations name them.
+TEST(Assemble, ReadersOnTheSameProcessorsHaveOneAccountOfThem) {
+  ReadersProcessors processors;
+  const AssembledSensor a = reader_on("[0, 2]", processors), b = reader_on("[2, 0, 2]", processors),
+                        c = reader_on("[2]", processors), d = reader_on("[]", processors),
+                        e = reader_on("[]", processors);
+  const auto account = [](const AssembledSensor& sensor) { return sensor.pipeline->plan().processors; };
+  ASSERT_NE(account(a), nullptr);
+  EXPECT_EQ(account(a), account(b));
+  EXPECT_NE(account(a), account(c));
+  ASSERT_NE(account(d), nullptr) << "readers that may run anywhere share all processors";
+  EXPECT_EQ(account(d), account(e));
+  EXPECT_NE(account(d), account(a));
+  EXPECT_EQ(processors.size(), 3U);
+  expect_to_be_of(*account(a), 2);
+  expect_to_be_of(*account(c), 1);
+  expect_to_be_of(*account(d), static_cast<int>(std::max(1U, std::thread::hardware_concurrency())));
+}
+
+TEST(InertialEncoder, SamplesThatWaitBeyondWhatTheirFieldHoldsAreItsMost) {
+  const auto encoder = make_inertial_encoder(kImuType, SensorFacts{});
+  Increment increment;
+  increment.samples = 1'500'000'000;
+  const ChainOutput out;
+  imu_t message;
+  for (const std::int32_t expected : {1'500'000'000, std::numeric_limits<std::int32_t>::max()}) {
+    const auto bytes = encoder->encode(increment, out);
+    ASSERT_GT(message.decode(bytes.data(), 0, static_cast<int>(bytes.size())), 0);
+    EXPECT_EQ(message.merged, expected);
+    encoder->sent(false);
+  }
+}
+
+// Thirty samples, of which three came merged and one had an invalid axis: every packet has a period's angle,
+// the counts are those of the device, and the sum is what was turned.
+TEST(InertialEncoder, MergedSamplesAreAsManyPacketsOfABatch) {
+  SensorFacts facts;
+  facts.acceleration_channel = {0, 1, 2};
+  const auto encoder = make_inertial_encoder(kKvhBatchType, facts);
+  std::map<std::int64_t, double> turned;
+  for (std::uint64_t n = 1; n <= 30; ++n) {
+    if (n == 10 || n == 11) continue;
+    Increment in;
+    ChainOutput out;
+    in.sequence = n;
+    in.samples = n == 12 ? 3 : 1;
+    in.utime_ns = static_cast<std::int64_t>(n) * 1'000'000;
+    in.covered_s.fill(n == 20 ? 0.0 : 0.001 * in.samples);
+    in.moved_s = in.covered_s;
+    in.delta_v_mps.fill(9.81 * in.moved_s[0]);
+    out.delta_theta_rad.fill(0.5 * in.covered_s[0]);
+    const auto bytes = encoder->encode(in, out);
+    EXPECT_EQ(bytes.empty(), n == 20);
+    bot_core::kvh_raw_imu_batch_t batch;
+    if (bytes.empty()) continue;
+    ASSERT_GT(batch.decode(bytes.data(), 0, static_cast<int>(bytes.size())), 0);
+    EXPECT_EQ(batch.raw_imu.front().packet_count, n);
+    for (const auto& packet : batch.raw_imu) {
+      EXPECT_NEAR(packet.delta_rotation[1], 0.0005, 1e-12);
+      EXPECT_NEAR(packet.linear_acceleration[2], 9.81, 1e-9);
+      EXPECT_EQ(packet.utime, packet.packet_count * 1000);
+      turned[packet.packet_count] = packet.delta_rotation[0];
+    }
+  }
+  EXPECT_EQ(turned.size(), 29U);
+  EXPECT_EQ(turned.count(20), 0U);
 }
 
 }  // namespace

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
+#include <numbers>
+#include <random>
 
 #include "filters/diagnosis/diagnose.h"
 #include "tests/unit/diagnosis/blocks_by_hand.h"
@@ -130,6 +133,108 @@ TEST(HiddenCauses, AClaimBesideMuchThatIsUnexplainedAsksForASecondCapture) {
   EXPECT_EQ(unexplained_despite_claims(diagnosis, 2).find("second capture"), std::string::npos);
   diagnosis.unexplained.fraction = 0.12;
   EXPECT_EQ(unexplained_despite_claims(diagnosis, 1), "");
+}
+
+// Effects found on a structure that sways.
+
+constexpr double kTurn = 2.0 * std::numbers::pi;
+
+// Rate of a structure whose angle is a damped oscillator's, as means over steps.
+class Tower {
+ public:
+  Tower(double frequency_hz, double quality, double angle, std::uint64_t seed)
+      : random_(seed), angle_(angle), frequency_hz_(frequency_hz), quality_(quality) {
+    state_ = angle_ * deviate();
+  }
+  double turned_in(double dt) {
+    const double before = state_.real();
+    const double left = std::exp(-dt * std::numbers::pi * frequency_hz_ / quality_);
+    state_ = state_ * std::polar(left, kTurn * frequency_hz_ * dt) +
+             angle_ * std::sqrt(1.0 - left * left) * deviate();
+    return (state_.real() - before) / dt;
+  }
+
+ private:
+  // The order of two draws in one expression is the compiler's, and another one's on aarch64.
+  std::complex<double> deviate() {
+    const double imaginary = normal_(random_), real = normal_(random_);
+    return {real, imaginary};
+  }
+
+  std::mt19937_64 random_;
+  std::normal_distribution<double> normal_;
+  double angle_, frequency_hz_, quality_;
+  std::complex<double> state_;
+};
+
+struct Capture {
+  std::vector<double> time_s, rate, temperature;
+
+  [[nodiscard]] Record record() const {
+    return made_record("capture", time_s, rate, {{"temperature_degC", temperature}});
+  }
+  [[nodiscard]] Diagnosis diagnosed() const { return diagnose({record()}, {}); }
+};
+
+constexpr double kWhite = 1e-6;  // rad/s, of a sample
+constexpr double kSample_s = 0.2;
+
+Capture on_a_tower(std::uint64_t seed, double angle) {
+  Capture capture;
+  Tower tower(0.54, 30.0, angle, seed);
+  std::mt19937_64 random(300 + seed);
+  std::normal_distribution<double> normal;
+  for (std::size_t i = 0; i < 36000; ++i) {
+    const double t = kSample_s * static_cast<double>(i);
+    capture.time_s.push_back(t);
+    capture.rate.push_back(tower.turned_in(kSample_s) + kWhite * normal(random));
+    capture.temperature.push_back(28.0 + 6.0 * std::sin(kTurn * t / 3100.0) +
+                                  2.0 * std::sin(kTurn * t / 700.0 + 1.0));
+  }
+  return capture;
+}
+
+// The derivative at so many times the error that white noise alone would leave of it.
+void add_rate_effect(Capture& capture, double floors) {
+  const std::size_t n = capture.rate.size();
+  std::vector<double> slope(n, 0.0);
+  double square = 0.0;
+  for (std::size_t i = 1; i < n; ++i) {
+    slope[i] = (capture.temperature[i] - capture.temperature[i - 1]) / kSample_s;
+    square += slope[i] * slope[i];
+  }
+  for (std::size_t i = 0; i < n; ++i) capture.rate[i] += floors * kWhite / std::sqrt(square) * slope[i];
+}
+
+// The angle is such that the rate it makes is some thirty times the white noise of means of a second.
+constexpr double kSway = 30.0 * kWhite * 0.447 / (kTurn * 0.54);
+
+TEST(Diagnose, FindsARateOfTheTemperatureOnATowerThatSways) {
+  for (const std::uint64_t seed : {11U, 12U, 13U}) {
+    Capture capture = on_a_tower(seed, kSway);
+    EXPECT_TRUE(capture.diagnosed().effects.empty()) << seed;
+    add_rate_effect(capture, 14.0);
+    const Diagnosis found = capture.diagnosed();
+    ASSERT_EQ(found.effects.size(), 1U) << seed;
+    EXPECT_EQ(found.effects[0].effect.form, "rate") << seed;
+    EXPECT_EQ(found.effects[0].effect.channel, "temperature_degC") << seed;
+  }
+}
+
+// A thermostat's cycle is as narrow as a resonance. What the channel explains is the channel's.
+TEST(Diagnose, AThermostatsCycleIsNotTakenForAResonance) {
+  Capture capture = on_a_tower(21, 0.0);
+  Tower thermostat(1.0 / 60.0, 12.0, 1.0, 22);
+  double cycle = 0.0;
+  for (std::size_t i = 0; i < capture.rate.size(); ++i) {
+    cycle += 0.05 * thermostat.turned_in(kSample_s) * kSample_s;
+    capture.temperature[i] = 28.0 + cycle;
+    capture.rate[i] += 10.0 * kWhite * cycle;
+  }
+  const Diagnosis found = capture.diagnosed();
+  ASSERT_EQ(found.effects.size(), 1U);
+  EXPECT_EQ(found.effects[0].effect.form, "linear");
+  EXPECT_NEAR(found.effects[0].effect.parameters[0].value, 10.0 * kWhite, 1.5 * kWhite);
 }
 
 }  // namespace

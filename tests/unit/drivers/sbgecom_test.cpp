@@ -8,7 +8,6 @@
 #include "drivers/plugins/sbgecom/message.h"
 #include "tests/unit/drivers/damaged_stream.h"
 #include "tests/unit/drivers/decoded.h"
-#include "tests/unit/drivers/hex_bytes.h"
 
 namespace ifog {
 namespace {
@@ -51,36 +50,22 @@ Bytes checked(Bytes frame) {
 
 TEST(SbgEcom, ImuShortPackedByHand) {
   DriverInstance driver = make_driver("sbgecom", {});
-  const auto samples = decoded(driver, hex_bytes(kShort));
-  ASSERT_EQ(samples.size(), 1U);
-  const ifog_sample& s = samples[0];
+  const ifog_sample s = one_sample(driver, hex_bytes(kShort));
   EXPECT_EQ(s.flags, unsigned{IFOG_SAMPLE_DEVICE_TIME});
   EXPECT_EQ(s.device_time_ns, 12'000'000'000);
   EXPECT_EQ(s.status, 0x3FFU);
   EXPECT_EQ(s.valid_axes, 7U);
-  EXPECT_EQ(s.value[0], 1.0);
-  EXPECT_EQ(s.value[1], -0.5);
-  EXPECT_EQ(s.value[2], 0.25);
+  expect_numbers(s.value, {1.0, -0.5, 0.25});
   EXPECT_EQ(s.environment_fresh, 0b1111U);
-  EXPECT_EQ(s.environment[0], 1.0);
-  EXPECT_EQ(s.environment[1], -2.0);
-  EXPECT_EQ(s.environment[2], 0.5);
-  EXPECT_EQ(s.environment[3], 25.5);
+  expect_numbers(s.environment, {1.0, -2.0, 0.5, 25.5});
 }
 
 TEST(SbgEcom, ImuDataPackedByHandGivesTheIncrements) {
   DriverInstance driver = make_driver("sbgecom", {});
-  const auto samples = decoded(driver, hex_bytes(kData));
-  ASSERT_EQ(samples.size(), 1U);
-  const ifog_sample& s = samples[0];
+  const ifog_sample s = one_sample(driver, hex_bytes(kData));
   EXPECT_EQ(s.valid_axes, 0b101U);
-  EXPECT_EQ(s.value[0], 0.125);
-  EXPECT_EQ(s.value[1], -0.25);
-  EXPECT_EQ(s.value[2], 0.5);
-  EXPECT_EQ(s.environment[0], 0.5);
-  EXPECT_EQ(s.environment[1], -1.0);
-  EXPECT_EQ(s.environment[2], 9.75);
-  EXPECT_EQ(s.environment[3], 25.5);
+  expect_numbers(s.value, {0.125, -0.25, 0.5});
+  expect_numbers(s.environment, {0.5, -1.0, 9.75, 25.5});
 }
 
 TEST(SbgEcom, TheHighScaleIsTheStatusBits) {
@@ -93,10 +78,9 @@ TEST(SbgEcom, TheHighScaleIsTheStatusBits) {
   sample.value[1] = -40.0;
   Bytes bytes;
   driver.encode_bytes(sample, bytes);
-  const auto back = decoded(driver, bytes);
-  ASSERT_EQ(back.size(), 1U);
-  EXPECT_EQ(back[0].status & 0x400U, 0x400U);
-  EXPECT_NEAR(back[0].value[1], -40.0, 1.0 / 12304174.0);
+  const ifog_sample s = one_sample(driver, bytes);
+  EXPECT_EQ(s.status & 0x400U, 0x400U);
+  EXPECT_NEAR(s.value[1], -40.0, 1.0 / 12304174.0);
   sample.value[1] = 200.0;
   EXPECT_THROW(driver.encode_bytes(sample, bytes), std::runtime_error);
 }
@@ -110,10 +94,9 @@ TEST(SbgEcom, StatusBitsInvalidate) {
     Bytes frame = hex_bytes(kShort);
     frame[10] = static_cast<std::uint8_t>(status & 0xFF);
     frame[11] = static_cast<std::uint8_t>(status >> 8);
-    const auto samples = decoded(driver, checked(frame));
-    ASSERT_EQ(samples.size(), 1U);
-    EXPECT_EQ(samples[0].valid_axes, valid) << status;
-    EXPECT_EQ(samples[0].environment_fresh, fresh) << status;
+    const ifog_sample s = one_sample(driver, checked(frame));
+    EXPECT_EQ(s.valid_axes, valid) << status;
+    EXPECT_EQ(s.environment_fresh, fresh) << status;
   }
 }
 

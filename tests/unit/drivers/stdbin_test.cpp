@@ -12,7 +12,6 @@
 #include "drivers/plugins/stdbin/telegram.h"
 #include "tests/unit/drivers/damaged_stream.h"
 #include "tests/unit/drivers/decoded.h"
-#include "tests/unit/drivers/hex_bytes.h"
 
 namespace ifog {
 namespace {
@@ -43,37 +42,24 @@ std::uint32_t sum(std::span<const std::uint8_t> bytes) {
 
 TEST(StdBin, Version2PackedByHand) {
   DriverInstance driver = make_driver("stdbin", {{"rate_block", "compensated"}});
-  const auto samples = decoded(driver, hex_bytes(kVersion2));
-  ASSERT_EQ(samples.size(), 1U);
-  const ifog_sample& s = samples[0];
+  const ifog_sample s = one_sample(driver, hex_bytes(kVersion2));
   EXPECT_EQ(s.flags, unsigned{IFOG_SAMPLE_SEQUENCE | IFOG_SAMPLE_DEVICE_TIME});
   EXPECT_EQ(s.sequence, 0x123U);
   EXPECT_EQ(s.device_time_ns, 500'000);
   EXPECT_EQ(s.valid_axes, 7U);
-  EXPECT_DOUBLE_EQ(s.value[0], 2.0 * kDegree);
-  EXPECT_DOUBLE_EQ(s.value[1], -1.0 * kDegree);
-  EXPECT_DOUBLE_EQ(s.value[2], 0.5 * kDegree);
+  expect_numbers(s.value, {2.0 * kDegree, -1.0 * kDegree, 0.5 * kDegree});
   EXPECT_EQ(s.environment_fresh, 0U);
 }
 
 TEST(StdBin, Version4PackedByHand) {
   DriverInstance driver = make_driver("stdbin", {});
-  const auto samples = decoded(driver, hex_bytes(kVersion4));
-  ASSERT_EQ(samples.size(), 1U);
-  const ifog_sample& s = samples[0];
+  const ifog_sample s = one_sample(driver, hex_bytes(kVersion4));
   EXPECT_EQ(s.sequence, 0xABCDU);  // of 0x1ABCD
   EXPECT_EQ(s.device_time_ns, 7'456'500'000);
   EXPECT_EQ(s.status, 0x80000001U);
-  EXPECT_DOUBLE_EQ(s.value[0], 0.25 * kDegree);
-  EXPECT_DOUBLE_EQ(s.value[1], -0.125 * kDegree);
-  EXPECT_DOUBLE_EQ(s.value[2], 0.0625 * kDegree);
+  expect_numbers(s.value, {0.25 * kDegree, -0.125 * kDegree, 0.0625 * kDegree});
   EXPECT_EQ(s.environment_fresh, 0b111111U);
-  EXPECT_EQ(s.environment[0], 1.0);
-  EXPECT_EQ(s.environment[1], -2.0);
-  EXPECT_NEAR(s.environment[2], 9.80665, 1e-6);
-  EXPECT_EQ(s.environment[3], 25.0);
-  EXPECT_EQ(s.environment[4], 26.0);
-  EXPECT_EQ(s.environment[5], 27.0);
+  expect_numbers(s.environment, {1.0, -2.0, static_cast<double>(9.80665F), 25.0, 26.0, 27.0});
 }
 
 TEST(StdBin, ATelegramWithoutTheWantedRateIsCounted) {
@@ -129,15 +115,14 @@ TEST(StdBin, EncodesEveryVersionSoThatItReadsBack) {
     Bytes bytes;
     driver.encode_bytes(sample, bytes);
     EXPECT_EQ(bytes[2], version[0] - '0');
-    const auto back = decoded(driver, bytes);
-    ASSERT_EQ(back.size(), 1U) << version;
-    EXPECT_EQ(back[0].sequence, 77U);
-    EXPECT_EQ(back[0].device_time_ns, 1'234'500'000);
-    EXPECT_EQ(back[0].valid_axes, 0b101U);
-    EXPECT_NEAR(back[0].value[0], 0.125, 1e-8);
-    EXPECT_NEAR(back[0].value[2], -0.5, 1e-7);
-    EXPECT_EQ(back[0].environment_fresh, 0b1000U);
-    EXPECT_EQ(back[0].environment[3], 30.5);
+    const ifog_sample s = one_sample(driver, bytes);
+    EXPECT_EQ(s.sequence, 77U);
+    EXPECT_EQ(s.device_time_ns, 1'234'500'000);
+    EXPECT_EQ(s.valid_axes, 0b101U);
+    EXPECT_NEAR(s.value[0], 0.125, 1e-8);
+    EXPECT_NEAR(s.value[2], -0.5, 1e-7);
+    EXPECT_EQ(s.environment_fresh, 0b1000U);
+    EXPECT_EQ(s.environment[3], 30.5);
   }
   EXPECT_THROW(make_driver("stdbin", {{"version", "2"}}), std::runtime_error);
 }

@@ -15,8 +15,6 @@
 #include "drivers/plugins/stim300/datagram.h"
 #include "tests/unit/drivers/damaged_stream.h"
 #include "tests/unit/drivers/decoded.h"
-#include "tests/unit/drivers/hex_bytes.h"
-#include "tests/unit/drivers/long_division.h"
 
 namespace ifog {
 namespace {
@@ -42,22 +40,15 @@ void append_crc(Bytes& bytes) { append_crc32(bytes, 4); }
 
 TEST(Stim300, ADatagramPackedByHand) {
   DriverInstance driver = make_driver("stim300", {{"rate_hz", "1000"}});
-  const auto samples = decoded(driver, hex_bytes(kA7));
-  ASSERT_EQ(samples.size(), 1U);
-  const ifog_sample& s = samples[0];
+  const ifog_sample s = one_sample(driver, hex_bytes(kA7));
   EXPECT_EQ(s.arrival_ns, 42);
   EXPECT_EQ(s.flags, unsigned{IFOG_SAMPLE_SEQUENCE});
   EXPECT_EQ(s.sequence, 5U);  // two internal samples each
   EXPECT_EQ(driver.description().sequence_modulus, 128U);
   EXPECT_EQ(s.valid_axes, 7U);
-  EXPECT_DOUBLE_EQ(s.value[0], 1.0 * kDegree);
-  EXPECT_DOUBLE_EQ(s.value[1], -2.5 * kDegree);
-  EXPECT_DOUBLE_EQ(s.value[2], 0.5 * kDegree);
-  const double environment[14] = {9.80665, -4.903325, 0.0,  9.80665, 0.0,  -9.80665, 25.5,
-                                  -10.25,  0.0,       30.0, 31.0,    32.0, 21.0,     516.0};
-  for (int i = 0; i < 14; ++i) EXPECT_DOUBLE_EQ(s.environment[i], environment[i]) << i;
-  EXPECT_TRUE(std::isnan(s.environment[14]));
-  EXPECT_TRUE(std::isnan(s.environment[15]));
+  expect_numbers(s.value, {1.0 * kDegree, -2.5 * kDegree, 0.5 * kDegree});
+  expect_numbers(s.environment, {9.80665, -4.903325, 0.0, 9.80665, 0.0, -9.80665, 25.5, -10.25, 0.0, 30.0,
+                                 31.0, 32.0, 21.0, 516.0, NAN, NAN});
   EXPECT_EQ(s.environment_fresh, 0x3FFFU);
   EXPECT_NEAR(driver.description().full_scale[0], 400 * kDegree, 1e-12);
 }
@@ -65,14 +56,11 @@ TEST(Stim300, ADatagramPackedByHand) {
 // The datasheet's example of an error (figure 9-2): overload of the z-channel, bits 4 and 2.
 TEST(Stim300, AnOverloadInvalidatesItsAxisOnly) {
   DriverInstance driver = make_driver("stim300", {});
-  const auto samples = decoded(driver, hex_bytes(k90));
-  ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].valid_axes, 0b011U);
-  EXPECT_EQ(samples[0].status, 0x14U);
-  EXPECT_DOUBLE_EQ(samples[0].value[0], 128 * kDegree);
-  EXPECT_DOUBLE_EQ(samples[0].value[1], -128 * kDegree);
-  EXPECT_DOUBLE_EQ(samples[0].value[2], kDegree / 16384);
-  EXPECT_EQ(samples[0].sequence, 254U);
+  const ifog_sample s = one_sample(driver, hex_bytes(k90));
+  EXPECT_EQ(s.valid_axes, 0b011U);
+  EXPECT_EQ(s.status, 0x14U);
+  expect_numbers(s.value, {128 * kDegree, -128 * kDegree, kDegree / 16384});
+  EXPECT_EQ(s.sequence, 254U);
 }
 
 TEST(Stim300, StatusBitsInvalidate) {
@@ -83,19 +71,17 @@ TEST(Stim300, StatusBitsInvalidate) {
     datagram.resize(datagram.size() - 4);
     datagram[10] = static_cast<std::uint8_t>(status);
     append_crc(datagram);
-    const auto samples = decoded(driver, datagram);
-    ASSERT_EQ(samples.size(), 1U);
-    EXPECT_EQ(samples[0].valid_axes, valid) << status;
+    const ifog_sample s = one_sample(driver, datagram);
+    EXPECT_EQ(s.valid_axes, valid) << status;
   }
 }
 
 TEST(Stim300, PpsAndLatency) {
   DriverInstance driver = make_driver("stim300", {{"datagram", "0xF1"}, {"rate_hz", "500"}});
-  const auto samples = decoded(driver, hex_bytes(kF1));
-  ASSERT_EQ(samples.size(), 1U);
-  EXPECT_EQ(samples[0].environment[14], 612.0);
-  EXPECT_EQ(samples[0].environment[13], 256.0);
-  EXPECT_EQ(samples[0].sequence, 1U);
+  const ifog_sample s = one_sample(driver, hex_bytes(kF1));
+  EXPECT_EQ(s.environment[14], 612.0);
+  EXPECT_EQ(s.environment[13], 256.0);
+  EXPECT_EQ(s.sequence, 1U);
 }
 
 TEST(Stim300, IncrementalAndIntegratedAngles) {
@@ -198,9 +184,8 @@ TEST(Stim300, EncodesEveryDatagramThereIs) {
       Bytes again(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(covered));
       append_crc(again);
       EXPECT_TRUE(std::equal(again.begin(), again.end(), bytes.begin())) << name.data();
-      const std::vector<ifog_sample> samples = decoded(driver, bytes);
-      ASSERT_EQ(samples.size(), 1U) << name.data();
-      EXPECT_NEAR(samples[0].value[2], 3 * kDegree, 1e-6) << name.data();
+      const ifog_sample s = one_sample(driver, bytes);
+      EXPECT_NEAR(s.value[2], 3 * kDegree, 1e-6) << name.data();
     }
   }
 }

@@ -7,13 +7,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <functional>
 #include <numbers>
+#include <random>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "tests/unit/estimator/drive.h"
-#include "tests/unit/estimator/smooth_one.h"
 #include "tests/unit/sanitized.h"
 
 namespace {
@@ -21,6 +23,29 @@ namespace {
 using namespace ifog::test;
 using ifog::Axes;
 using ifog::FilterSettings;
+
+// One axis smoothed, by itself. dt_s: empty: kPeriod each.
+ifog::Smoothed smooth_one(const FilterSettings& settings, const std::vector<double>& rate,
+                          std::vector<double> dt_s = {}, const ifog::AxisNoise& noise = {}) {
+  if (dt_s.empty()) dt_s.assign(rate.size(), kPeriod);
+  const std::array<std::span<const double>, 1> rates{rate};
+  return std::move(ifog::smooth(settings, noise, rates, dt_s, kPeriod)[0]);
+}
+
+// Mean square of the error over the samples in [from, to), and of the error over its variance.
+struct Judged {
+  double square = 0.0, normalised = 0.0, count = 0.0;
+  void add(const ifog::Smoothed& got, const std::vector<double>& truth, std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i < to; ++i) {
+      const double apart = got.rate_radps[i] - truth[i];
+      square += apart * apart;
+      normalised += apart * apart / got.variance_rad2ps2[i];
+      count += 1.0;
+    }
+  }
+  [[nodiscard]] double mean_square() const { return square / count; }
+  [[nodiscard]] double nees() const { return normalised / count; }
+};
 
 TEST(Smoother, BeatsTheFilterAtRestAndInMotionAndKeepsTheAngle) {
   constexpr int kLength = 60'000;
@@ -172,6 +197,136 @@ TEST(Smoother, EachAxisIsItsOwn) {
   for (std::size_t a = 0; a < 3; ++a) {
     EXPECT_GT(normalised[a] / over[a], 0.7) << a;
     EXPECT_LT(normalised[a] / over[a], 1.4) << a;
+  }
+}
+
+// Recordings smoothed of which samples are missing, or of whose noise nobody was told.
+
+// Tumbling, one sample in twenty lost: a row that is absent is as good as one that is empty.
+TEST(SmoothedRecord, AbsentRowsAreAsGoodAsEmptyOnes) {
+  constexpr std::size_t kLength = 20'000;
+  constexpr double kRatio = 1e-8;
+  const Record r = record(71, kLength, kRatio, [](int i) {
+    return 80'000.0 * std::sin(0.022 * i) * std::sin(0.0016 * i) + 34'000.0 * std::sin(0.041 * i);
+  });
+  std::mt19937 random(72);
+  std::vector<double> empty = r.measured, absent, dt_s, truth;
+  double since = 0.0;
+  for (std::size_t i = 0; i < kLength; ++i) {
+    since += kPeriod;
+    if (i > 0 && random() % 20 == 0) {
+      empty[i] = std::nan("");
+      continue;
+    }
+    absent.push_back(r.measured[i]);
+    truth.push_back(r.truth[i]);
+    dt_s.push_back(std::exchange(since, 0.0));
+  }
+  const ifog::Smoothed of_empty = smooth_one(told(kRatio), empty);
+  const ifog::Smoothed of_absent = smooth_one(told(kRatio), absent, dt_s);
+  Judged judged;
+  judged.add(of_absent, truth, 0, truth.size());
+  EXPECT_LT(std::sqrt(judged.mean_square()), 0.6);
+  EXPECT_GT(judged.nees(), 0.6);
+  EXPECT_LT(judged.nees(), 1.3);
+  double apart = 0.0, of_row = 0.0, of_cell = 0.0;
+  for (std::size_t i = 0, k = 0; i < kLength; ++i) {
+    if (!std::isfinite(empty[i])) continue;
+    apart += std::pow(of_absent.rate_radps[k] - of_empty.rate_radps[i], 2);
+    of_row += of_absent.variance_rad2ps2[k];
+    of_cell += of_empty.variance_rad2ps2[i];
+    ++k;
+  }
+  EXPECT_LT(apart, 0.05 * of_cell);
+  EXPECT_NEAR(of_row / of_cell, 1.0, 0.02);
+}
+
+// Every other sample of the quiet axis of two comes, in a slow sway; settings are of the mean of both.
+TEST(SmoothedRecord, AnAxisWithHalfOfItsSamplesHasItsOwnNoise) {
+  constexpr std::size_t kLength = 60'000;
+  constexpr double kRatio = 1e-10, kLoud = 30.0;
+  Judged judged;
+  for (std::uint64_t seed = 73; seed < 76; ++seed) {
+    Record quiet = record(seed, kLength, kRatio, [](int i) { return 3.0 * std::sin(3e-4 * i); });
+    Record loud = record(100 + seed, kLength, kRatio);
+    for (std::size_t i = 0; i < kLength; ++i) {
+      loud.measured[i] *= kLoud;
+      if (i % 2 == 1) quiet.measured[i] = std::nan("");
+    }
+    const double mean = 0.5 * (1.0 + kLoud * kLoud);
+    FilterSettings settings = told(kRatio, mean);
+    settings.process_noise *= mean;
+    const std::array<std::span<const double>, 2> rates{quiet.measured, loud.measured};
+    const std::vector<double> dt_s(kLength, kPeriod);
+    const Axes share{1.0 / mean, kLoud * kLoud / mean, 1.0};
+    judged.add(ifog::smooth(settings, {share, share, false}, rates, dt_s, kPeriod)[0], quiet.truth, 0,
+               kLength);
+  }
+  EXPECT_LT(std::sqrt(judged.mean_square()), 0.1);
+  EXPECT_GT(judged.nees(), 0.3);
+  EXPECT_LT(judged.nees(), 1.5);
+}
+
+// There are too few samples to detect it.
+TEST(SmoothedRecord, AnAxisThatIsNotHeardHasTheNoiseDeclared) {
+  constexpr std::size_t kLength = 5000;
+  const Record seen = record(77, kLength, 1e-12);
+  std::vector<double> hardly(kLength, std::nan(""));
+  for (std::size_t i = 100; i < kLength; i += 1000) hardly[i] = 100.0 * seen.measured[i];
+  const std::array<std::span<const double>, 2> rates{seen.measured, hardly};
+  const std::vector<double> dt_s(kLength, kPeriod);
+  FilterSettings settings = told(1e-12, 5000.5);
+  const ifog::AxisNoise noise{Axes{2.0 / 10'001.0, 20'000.0 / 10'001.0, 1.0}, Axes{1.0, 1.0, 1.0}, false};
+  const std::vector<ifog::Smoothed> got = ifog::smooth(settings, noise, rates, dt_s, kPeriod);
+  // The mean of five measurements.
+  EXPECT_NEAR(got[1].variance_rad2ps2[2500], 2000.0, 200.0);
+}
+
+// Outliers in a recording: none of them is in what is smoothed.
+
+// One sample in two hundred, each to the same side; never two together.
+bool struck(std::size_t i) { return i % 200 == 77; }
+
+TEST(SmoothedOutliers, AreNotInItAtRest) {
+  constexpr std::size_t kLength = 60'000;
+  constexpr double kRatio = 1e-8;
+  for (const double height : {30.0, 50.0, 300.0}) {
+    double struck_square = 0.0, clean_square = 0.0, causal_square = 0.0;
+    for (std::uint64_t seed = 61; seed < 64; ++seed) {
+      Record r = record(seed, kLength, kRatio);
+      clean_square += mean_square_error(smooth_one(told(kRatio), r.measured).rate_radps, r.truth, 0);
+      for (std::size_t i = 0; i < kLength; ++i)
+        if (struck(i)) r.measured[i] += height;
+      struck_square += mean_square_error(smooth_one(told(kRatio), r.measured).rate_radps, r.truth, 0);
+      causal_square += mean_square_error(run(told(kRatio), r.measured).denoised, r.truth, 0);
+    }
+    EXPECT_LT(struck_square, 1.3 * clean_square) << height;
+    EXPECT_LT(struck_square, causal_square) << height;
+  }
+}
+
+// In motion the shortest parabola that averages predicts to 2 sigma, and both directions have to reject an outlier.
+// None of those of 20 sigma stay in, some of those of 15 do.
+TEST(SmoothedOutliers, AreNotInItInMotion) {
+  constexpr std::size_t kLength = 40'000;
+  constexpr double kRatio = 1e-8;
+  for (const double height : {20.0, 30.0, 50.0, 300.0}) {
+    Record r = record(65, kLength, kRatio, [](int i) { return 1280.0 * std::sin(0.003 * i); });
+    for (std::size_t i = 0; i < kLength; ++i)
+      if (struck(i)) r.measured[i] += height;
+    const ifog::Smoothed got = smooth_one(told(kRatio), r.measured);
+    double square = 0.0, normalised = 0.0;
+    int count = 0;
+    for (std::size_t i = 1000; i < kLength; ++i) {
+      if (!struck(i)) continue;
+      const double apart = got.rate_radps[i] - r.truth[i];
+      square += apart * apart;
+      normalised += apart * apart / got.variance_rad2ps2[i];
+      ++count;
+    }
+    EXPECT_LT(std::sqrt(square / count), 0.5) << height;
+    EXPECT_LT(normalised / count, 2.0) << height;
+    EXPECT_LT(mean_square_error(got.rate_radps, r.truth, 1000), 0.1) << height;
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include <filesystem>
 
-#include "tests/unit/flight/archived.h"
+#include "tests/unit/flight/recordings.h"
 #include "tests/unit/own_folder.h"
 
 namespace ifog {
@@ -58,24 +58,6 @@ TEST(FlightArchive, WhatIsKilledMissesASecondAtMost) {
   EXPECT_GT(bench.disk.files.size(), 10U);
 }
 
-TEST(FlightArchive, FilesEndBySizeAndAgeAndGoOnWithoutAHole) {
-  ArchiveLimits limits;
-  limits.file_bytes = 20'000;
-  limits.file_ns = 100 * kSecond;
-  Bench bench(limits);
-  for (std::uint64_t n = 0; n < 5000; ++n) {
-    bench.now_ns += n < 4000 ? kSecond / 100 : 2 * kSecond;
-    bench.add(n);
-    bench.turn();
-  }
-  bench.archive.close(bench.now_ns, kWall + bench.now_ns);
-  EXPECT_GT(bench.disk.files.size(), 20U);
-  const ReadBack read = read_back(all_of(bench.disk));
-  EXPECT_EQ(numbers(read), counting(0, 5000));
-  EXPECT_TRUE(read.holes.empty());
-  EXPECT_EQ(read.headers.size(), bench.disk.files.size());
-}
-
 // A file begins with the latest values, so that it can be read by itself.
 TEST(FlightArchive, EachFileBeginsWithTheStateOfTheChannels) {
   ArchiveLimits limits;
@@ -109,30 +91,6 @@ TEST(FlightArchive, EachFileBeginsWithTheStateOfTheChannels) {
     last = value;
   }
   EXPECT_EQ(last, second);
-}
-
-TEST(FlightArchive, ADiskThatRefusesLosesNothingThatWaits) {
-  Bench bench({});
-  std::uint64_t n = 0;
-  const auto seconds = [&](int count) {
-    for (int i = 0; i < count; ++i) {
-      bench.now_ns += kSecond;
-      if (!bench.archive.full()) bench.add(n++);
-      bench.turn();
-    }
-  };
-  seconds(10);
-  for (const int error : {ENOSPC, EIO, EROFS}) {
-    bench.disk.refuses = error;
-    seconds(20);
-    EXPECT_EQ(bench.archive.error(), error);
-    bench.disk.refuses = 0;
-    seconds(5);
-    EXPECT_EQ(bench.archive.error(), 0);
-  }
-  EXPECT_EQ(bench.archive.close(bench.now_ns, kWall), 0U);
-  EXPECT_EQ(numbers(read_back(all_of(bench.disk))), counting(0, n));
-  EXPECT_TRUE(losses(read_back(all_of(bench.disk)).counts).empty());
 }
 
 // Somebody removes the file in work: what it held is lost and known to be, what waited and what comes goes
@@ -257,41 +215,6 @@ TEST(FlightArchive, ABlockHalfWrittenOnAFullDiskIsWrittenAnewInAnotherFile) {
   EXPECT_EQ(read.counts.torn_bytes, 40U);
   EXPECT_EQ(read.counts.open_files, 1U);
   EXPECT_EQ(bench.disk.files.size(), 2U);
-}
-
-TEST(FlightArchive, WhatAKilledRecorderLeftOpenIsKeptAndCountsAgainstTheLimit) {
-  MemoryDisk disk;
-  ArchiveLimits limits;
-  limits.bytes = 100'000;
-  limits.file_bytes = 10'000;
-  std::uint64_t n = 0;
-  std::int64_t now_ns = 0;
-  for (int run = 0; run < 30; ++run) {
-    auto archive =
-        std::make_unique<FlightArchive>(std::make_unique<MemoryFolder>(disk), limits, some_header());
-    for (int second = 0; second < 40; ++second) {
-      now_ns += kSecond;
-      for (int i = 0; i < 5; ++i) archive->add({FlightKind::bytes, 0, 0, 0, now_ns}, numbered(n++, 200));
-      archive->turn(now_ns, kWall + now_ns);
-    }
-    archive->turn(now_ns, kWall + now_ns, true);
-    // As a process that is killed: nothing more reaches the disk.
-    MemoryDisk at_death = disk;
-    at_death.open.clear();
-    archive.reset();
-    disk = at_death;
-    EXPECT_LE(disk.used(), limits.bytes);
-  }
-  FlightArchive last(std::make_unique<MemoryFolder>(disk), limits, some_header());
-  last.turn(now_ns, kWall + now_ns);
-  for (const auto& [name, bytes] : disk.files) EXPECT_TRUE(name.ends_with(".ifr")) << name;
-  const ReadBack read = read_back(all_of(disk));
-  const auto first = read.payloads.front();
-  std::uint64_t from = 0;
-  std::memcpy(&from, first.data(), 8);
-  ASSERT_EQ(read.payloads.size(), n - from);  // the newest, without a gap
-  EXPECT_EQ(read.payloads.back(), numbered(n - 1, 200));
-  EXPECT_GT(disk.used(), limits.bytes / 2);
 }
 
 // The wall clock of a computer without a battery: 1970 at the start, right later. It removes nothing.

@@ -2,6 +2,8 @@
 // Recordings for tests, in memory, and what reading them gives.
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdint>
@@ -17,6 +19,9 @@
 #include "drivers/flight/flight_reader.h"
 
 namespace ifog {
+
+inline constexpr std::int64_t kSecond = 1'000'000'000, kDay = 86'400 * kSecond;
+inline constexpr std::int64_t kWall = 1'700'000'000 * kSecond;  // 2023-11-14T22:13:20Z
 
 // A folder in memory with a limit of its own, which may change, and a disk that may refuse.
 struct MemoryDisk {
@@ -124,6 +129,23 @@ inline ReadBack read_back(const std::vector<std::uint8_t>& recording) {
       out.payloads.emplace_back(reader.entry().payload.begin(), reader.entry().payload.end());
   }
   out.counts = reader.counts();
+  return out;
+}
+
+// The numbers of what was read back.
+inline std::vector<std::uint64_t> numbers(const ReadBack& read) {
+  std::vector<std::uint64_t> out;
+  for (const auto& payload : read.payloads) {
+    out.emplace_back();
+    std::memcpy(&out.back(), payload.data(), 8);
+    EXPECT_EQ(payload, numbered(out.back()));
+  }
+  return out;
+}
+
+inline std::vector<std::uint64_t> counting(std::uint64_t from, std::uint64_t to) {
+  std::vector<std::uint64_t> out;
+  for (; from < to; ++from) out.push_back(from);
   return out;
 }
 

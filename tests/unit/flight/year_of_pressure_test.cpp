@@ -11,7 +11,7 @@
 #include <set>
 #include <vector>
 
-#include "tests/unit/flight/archived.h"
+#include "tests/unit/flight/recordings.h"
 
 namespace ifog {
 namespace {

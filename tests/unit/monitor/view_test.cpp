@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `ifog monitor` shows of a sensor, at any width; and messages as JSON.
 #include <gtest/gtest.h>
-
-#include <cmath>
 #include <ifog/rate_t.hpp>
 #include <ifog/status_t.hpp>
-#include <limits>
 #include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <sstream>
 #include <string>
 #include <vector>
 
+#include "msgs/counters.h"
 #include "tools/ifog/monitor/message_json.h"
 #include "tools/ifog/monitor/sensor_view.h"
 #include "tools/ifog/monitor/view_lines.h"
@@ -172,3 +175,30 @@ TEST(MonitorJson, EveryFieldByTheNameOfItsType) {
 
 }  // namespace
 }  // namespace ifog::tools
+
+// The list of counters against the message's own definition.
+
+TEST(StatusCounters, AreThoseOfTheMessageInItsOrder) {
+  std::ifstream file(IFOG_SOURCE_DIR "/msgs/status_t.lcm");
+  std::vector<std::string> defined;
+  for (std::string line; std::getline(file, line);) {
+    std::istringstream words(line);
+    std::string type, name;
+    words >> type >> name;
+    if (type == "int64_t" && name != "utime;" && name != "model_since;")
+      defined.push_back(name.substr(0, name.find(';')));
+  }
+  ASSERT_GT(defined.size(), 40U);
+  std::vector<std::string> listed;
+  ifog::status_t message{};
+  std::int64_t value = 0;
+  for (const ifog::StatusCounter& each : ifog::kStatusCounters) {
+    listed.emplace_back(each.name);
+    message.*each.count = ++value;
+  }
+  EXPECT_EQ(listed, defined);
+  // Each is a field of its own.
+  value = 0;
+  for (const ifog::StatusCounter& each : ifog::kStatusCounters)
+    EXPECT_EQ(message.*each.count, ++value) << each.name;
+}

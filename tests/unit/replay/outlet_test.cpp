@@ -1,18 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 // What `ifog replay` does when the system has no room: the system is a stand-in that answers as told.
 #include "tools/ifog/replay/outlet.h"
-#include "tests/unit/refusal.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
-#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdint>
+#include <cstdlib>
 #include <deque>
 #include <string>
 #include <thread>
+#include <utility>
 #include <vector>
+
+#include "drivers/flight/archive.h"
+#include "drivers/transport/clock.h"
+#include "tests/unit/own_folder.h"
+#include "tests/unit/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -77,31 +85,86 @@ TEST(Outlet, AnyOtherFailureIsOneLine) {
   }
 }
 
-// The real calls: a socket that takes little at a time, as a serial line does, and a reader that is slow.
-TEST(Outlet, ASlowReaderGetsEveryByte) {
-  int ends[2];
-  ASSERT_EQ(socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends), 0);
-  ASSERT_EQ(fcntl(ends[0], F_SETFL, O_NONBLOCK), 0);
-  const int small = 4096;
-  setsockopt(ends[0], SOL_SOCKET, SO_SNDBUF, &small, sizeof small);
-  std::string sent;
-  for (int i = 0; i < 300'000; ++i) sent += static_cast<char>(i * 31);
-  std::string received;
-  std::thread reader([&] {
-    char buffer[5000];
-    for (ssize_t n = 1; n > 0;) {
-      n = read(ends[1], buffer, sizeof buffer);
-      if (n > 0) received.append(buffer, static_cast<std::size_t>(n));
+}  // namespace
+}  // namespace ifog::tools
+
+namespace ifog {
+namespace {
+
+// A flight recording goes out again as it came in: each delivery by itself, never before its time.
+
+constexpr std::int64_t kMillisecond = 1'000'000, kBegan = 1'700'000'000'000'000'000;
+// When the deliveries came, behind the first: evenly, two at once, and after a pause.
+const std::vector<std::int64_t> kCame_ms{0, 20, 40, 40, 41, 190, 200};
+
+class RecordedTimes : public testing::Test, protected test::OwnFolder {
+ protected:
+  // Delivery n is n + 1 bytes 'a' + n, or a CAN frame with n.
+  void record(FlightHeader::Carries carries) const {
+    FlightHeader header;
+    header.sensor = "nose";
+    header.driver = "none that is there";
+    header.carries = carries;
+    ArchiveLimits limits;
+    limits.file_bytes = 400;  // over several files
+    FlightArchive archive(make_flight_folder(path("record")), limits, header);
+    for (std::size_t n = 0; n < kCame_ms.size(); ++n) {
+      const std::int64_t read_ns = kBegan + kCame_ms[n] * kMillisecond;
+      const auto letter = static_cast<std::uint8_t>('a' + n);
+      if (carries == FlightHeader::Carries::can)
+        archive.add({FlightKind::can, kFlightStamped, 0, 0, read_ns},
+                    std::vector<std::uint8_t>{0x23, 1, 0, 0, 0, 1, letter});
+      else
+        archive.add({FlightKind::bytes, 0, 0, 0, read_ns}, std::vector<std::uint8_t>(n + 1, letter));
+      archive.turn(read_ns, read_ns, true);
     }
+  }
+  // Exit status; what it prints goes to the file `said`.
+  [[nodiscard]] int replay(const std::string& arguments) const {
+    return WEXITSTATUS(std::system(
+        (IFOG_PROGRAM " replay " + path("record") + " " + arguments + " >" + path("said") + " 2>&1")
+            .c_str()));
+  }
+};
+
+TEST_F(RecordedTimes, BytesIntoAFifo) {
+  record(FlightHeader::Carries::bytes);
+  ASSERT_EQ(mkfifo(path("fifo").c_str(), 0600), 0);
+  std::vector<std::pair<std::int64_t, std::string>> got;  // when it was here, and what
+  std::thread reader([&] {
+    const int fd = open(path("fifo").c_str(), O_RDONLY);
+    std::string piece(100, '\0');
+    for (ssize_t n = 0; (n = read(fd, piece.data(), piece.size())) > 0;)
+      got.emplace_back(monotonic_ns(), piece.substr(0, static_cast<std::size_t>(n)));
+    close(fd);
   });
-  Outlet outlet("line", ends[0]);
-  EXPECT_TRUE(outlet.send_bytes(sent.data(), sent.size()));
-  close(ends[0]);
+  const std::int64_t started_ns = monotonic_ns();
+  EXPECT_EQ(replay("--to fifo:" + path("fifo")), 0) << content("said");
   reader.join();
-  close(ends[1]);
-  EXPECT_EQ(received, sent);
-  EXPECT_GT(outlet.retries(), 0U);
+  std::string all, expected;
+  for (const auto& [at_ns, piece] : got) {
+    // Whatever came with it or after it, the last of it was due.
+    EXPECT_GE(at_ns - started_ns, kCame_ms.at(static_cast<std::size_t>(piece.back() - 'a')) * kMillisecond)
+        << piece;
+    all += piece;
+  }
+  for (std::size_t n = 0; n < kCame_ms.size(); ++n)
+    expected += std::string(n + 1, static_cast<char>('a' + n));
+  EXPECT_EQ(all, expected);
+}
+
+// The log has their times, and says nothing of a driver that is not there.
+TEST_F(RecordedTimes, FramesIntoALog) {
+  record(FlightHeader::Carries::can);
+  const std::int64_t started_ns = monotonic_ns();
+  ASSERT_EQ(replay("--channel can7 --to file:" + path("again.log")), 0) << content("said");
+  EXPECT_GE(monotonic_ns() - started_ns, kCame_ms.back() * kMillisecond);
+  EXPECT_EQ(
+      content("again.log"),
+      "(1700000000.000000) can7 123#61\n(1700000000.020000) can7 123#62\n(1700000000.040000) can7 123#63\n"
+      "(1700000000.040000) can7 123#64\n(1700000000.041000) can7 123#65\n(1700000000.190000) can7 123#66\n"
+      "(1700000000.200000) can7 123#67\n");
 }
 
 }  // namespace
-}  // namespace ifog::tools
+}  // namespace ifog

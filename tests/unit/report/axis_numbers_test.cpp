@@ -5,11 +5,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <regex>
 #include <string>
 #include <vector>
 
 #include "tools/report/chart.h"
+#include "tools/report/coefficients.h"
+#include "tools/report/pages/fleet_page.h"
 #include "tools/report/time_axis.h"
 
 namespace {
@@ -132,6 +135,88 @@ TEST(TimeAxis, KeepsTimesThatCanBeRead) {
   EXPECT_EQ(day(7200.0), 2.0);
   EXPECT_TRUE(day.axis(false).label.empty());
   EXPECT_FALSE(day.axis(false).numbered);
+}
+
+TEST(Coefficients, APrintedBoundIsNeverBelowTheBound) {
+  for (double upper = 1.003e-9; upper < 1e9; upper *= 1.0371) {
+    const double printed = std::strtod(ifog::report::bound_text(upper).c_str(), nullptr);
+    EXPECT_GE(printed, upper);
+    EXPECT_LE(printed, 1.1 * upper);
+  }
+  EXPECT_EQ(ifog::report::bound_text(0.0), "0");
+  EXPECT_EQ(ifog::report::bound_text(0.25), "0.25");
+  EXPECT_EQ(ifog::report::bound_text(0.2501), "0.26");
+  EXPECT_EQ(ifog::report::bound_text(9.91), "10");
+}
+
+TEST(Coefficients, ATermIsToldWithItsErrorOrItsBound) {
+  ifog::NoiseCoefficients found;
+  found.N = {true, 2.9088820866572159e-4, 2.9088820866572159e-6, 3e-4, 9.0};  // 1 °/√h and a hundredth of it
+  found.B.upper = 4.8481368110953599e-6;                                      // 1 °/h
+  const std::string lines = ifog::report::coefficient_lines(found);
+  EXPECT_NE(lines.find("1 ± 0.01"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("not seen; below 1 °/h\n"), std::string::npos) << lines;
+  const auto json = ifog::report::coefficients_json(found);
+  EXPECT_TRUE(json["N"]["present"]);
+  EXPECT_FALSE(json["K"]["present"]);
+}
+
+using namespace ifog;
+
+// Twelve gyros of which the last has neither the effect nor the others' noise, and one without a result.
+Population example() {
+  Population p;
+  p.type = "T<1>";
+  TypeEffect effect;
+  effect.effect.form = "linear";
+  effect.effect.channel = "temperature_degC";
+  effect.effect.meaning = "bias by temperature & more";
+  effect.effect.parameters = {{"coefficient", 0.0, 0.0, "rad/s/degC"}};
+  PopulationParameter noise;
+  noise.name = "N";
+  noise.unit = "rad/s/rtHz";
+  noise.logarithmic = true;
+  for (std::size_t i = 0; i < 13; ++i) {
+    p.serials.push_back("G" + std::to_string(i));
+    if (i == 12) continue;
+    const double wiggle = 0.1 * std::sin(static_cast<double>(i));
+    EffectInGyro each;
+    each.gyro = i;
+    each.own = Estimate{(i == 11 ? 0.0 : 6e-9) + 1e-9 * wiggle, 1e-9};
+    each.found_alone = i < 4;
+    effect.gyros.push_back(each);
+    noise.gyros.push_back(i);
+    noise.values.push_back({(i == 11 ? 9e-8 : 2e-8) * (1.0 + wiggle), 1e-10});
+  }
+  judge(effect, 0.01);
+  effect.gyros.front().with_prior = Estimate{6e-9, 2e-10};
+  p.effects = {effect};
+  describe(noise);
+  p.parameters = {noise};
+  p.standing_out = standing_out(p.parameters);
+  p.failed = {{12, "G12.csv: no <such> file"}};
+  return p;
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+TEST(FleetPage, SaysWhatTheTypeHasWhoStandsOutAndWhoFailed) {
+  const Population population = example();
+  FleetPage page;
+  page.population = &population;
+  page.made = "today";
+  page.command = "ifog fleet 'a<b.toml'";
+  const std::string html = fleet_page(page);
+  for (const char* id : {"account", "failed", "effects", "parameters", "standing-out", "gyros", "origin"})
+    EXPECT_TRUE(has(html, "<h2 id=\"" + std::string(id) + "\">")) << id;
+  EXPECT_FALSE(has(html, "<h2 id=\"own\">"));  // nothing to say
+  EXPECT_TRUE(has(html, "found in 4 gyros by themselves, in 11 of 12 with what the type says"));
+  EXPECT_TRUE(has(html, "<a href=\"gyros/G11/report.html\">G11</a></th><td>N</td>"));
+  EXPECT_TRUE(has(html, "12 of 13 gyros have a result"));
+  // What files say is text.
+  EXPECT_TRUE(has(html, "T&lt;1&gt;") && has(html, "no &lt;such&gt; file") && has(html, "a&lt;b.toml"));
+  EXPECT_TRUE(has(html, "Bias by temperature &amp; more."));
+  EXPECT_FALSE(has(html, "T<1>") || has(html, "no <such>") || has(html, "a<b.toml"));
 }
 
 }  // namespace

@@ -3,16 +3,25 @@
 // refusals. The rest runs on vcan in tests/system.
 #include "drivers/transport/can/can.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <linux/can.h>
+#include <linux/can/error.h>
 #include <linux/can/raw.h>
+#include <net/if.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdlib>
+#include <string>
+#include <thread>
 
 #include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/clock.h"
 #include "drivers/transport/receiving_socket.h"
+#include "tests/unit/refusal.h"
+#include "tests/unit/transport/forever.h"
 
 namespace {
 
@@ -131,6 +140,182 @@ TEST(CanTransport, RefusesInOneLine) {
   EXPECT_EQ(
       refusal({.interface = "lo", .ids = {}}),
       "lo: cannot open: Protocol wrong type for socket, expected a CAN interface, this one carries no CAN");
+}
+
+// The CAN transport on a virtual CAN interface, vcan0, which the tests take down and away: they need root and
+// a kernel that has it (under user-mode Linux: tests/system).
+
+using namespace std::chrono_literals;
+using ifog::CanSettings;
+using ifog::kForever;
+using ifog::TransportState;
+
+void ip(const std::string& what) { ASSERT_EQ(std::system(("ip link " + what).c_str()), 0) << what; }
+
+class Vcan : public testing::Test {
+ protected:
+  void SetUp() override {
+    const int probe = socket(PF_CAN, SOCK_RAW, CAN_RAW);
+    if (probe < 0) GTEST_SKIP() << "this kernel has no CAN sockets; modprobe can-raw vcan";
+    close(probe);
+    if (if_nametoindex("vcan0") == 0) GTEST_SKIP() << "no vcan0; ip link add vcan0 type vcan";
+    if (geteuid() != 0) GTEST_SKIP() << "these take vcan0 down; run them as root";
+    ip("set vcan0 mtu 72");
+    ip("set vcan0 up");
+  }
+  static std::unique_ptr<ifog::Transport> opened(const CanSettings& settings) {
+    auto transport = ifog::make_can_transport(settings);
+    transport->open({});
+    EXPECT_EQ(transport->notices().take_warning(), "");
+    return transport;
+  }
+  static ifog_can_frame frame(std::uint32_t id, std::uint8_t first, int flags = 0, std::uint8_t length = 8) {
+    ifog_can_frame f{};
+    f.id = id;
+    f.flags = static_cast<std::uint8_t>(flags);
+    f.length = length;
+    f.data[0] = first;
+    return f;
+  }
+  // A sender of its own socket, as another program is.
+  static void send(const std::vector<ifog_can_frame>& frames, std::uint32_t flag_bits = 0) {
+    const ifog::CanSocket socket("vcan0");
+    socket.receive_nothing();
+    for (const ifog_can_frame& f : frames) {
+      canfd_frame raw{};
+      const std::size_t size = ifog::to_socket(f, raw);
+      raw.can_id |= flag_bits;
+      while (write(socket.fd(), &raw, size) != static_cast<ssize_t>(size)) ASSERT_EQ(errno, EAGAIN);
+    }
+  }
+  static std::vector<ifog_can_frame> receive(ifog::Transport& transport, std::size_t n) {
+    std::vector<ifog_can_frame> frames;
+    while (frames.size() < n) {
+      const ifog::Delivery d = transport.read(kForever);
+      frames.insert(frames.end(), d.frames.begin(), d.frames.end());
+    }
+    return frames;
+  }
+};
+
+TEST_F(Vcan, DeliversOnlyTheWantedFramesWithTheKernelsTime) {
+  const auto transport = opened({.interface = "vcan0", .ids = {{0x123, false}, {0x123, true}}});
+  const std::int64_t before = ifog::realtime_ns();
+  send({frame(0x122, 1), frame(0x123, 2), frame(0x124, 3), frame(0x123, 4, IFOG_CAN_EXTENDED),
+        frame(0x123, 5, IFOG_CAN_FD | IFOG_CAN_BRS, 64)});
+  send({frame(0x123, 6)}, CAN_RTR_FLAG);
+  send({frame(0x123, 7)});
+  const std::int64_t after = ifog::realtime_ns();
+  const std::vector<ifog_can_frame> frames = receive(*transport, 4);
+  ASSERT_EQ(frames.size(), 4U);
+  EXPECT_EQ(frames[0].data[0], 2);
+  EXPECT_EQ(frames[1].data[0], 4);
+  EXPECT_EQ(frames[1].flags, IFOG_CAN_EXTENDED);
+  EXPECT_EQ(frames[2].data[0], 5);
+  EXPECT_EQ(frames[2].flags, IFOG_CAN_FD | IFOG_CAN_BRS);
+  EXPECT_EQ(frames[2].length, 64);
+  EXPECT_EQ(frames[3].data[0], 7);
+  std::int64_t last = before;
+  for (const ifog_can_frame& f : frames) {
+    EXPECT_GE(f.arrival_ns, last);
+    last = f.arrival_ns;
+  }
+  // Read only now: a time taken at the reading would be later than the sending.
+  EXPECT_LE(last, after);
+}
+
+TEST_F(Vcan, CountsWhatTheKernelHadNoRoomFor) {
+  const auto transport = opened({.interface = "vcan0", .ids = {}, .receive_buffer_bytes = 65536});
+  constexpr std::size_t kFlood = 5000;
+  send(std::vector<ifog_can_frame>(kFlood, frame(0x7, 1)));
+  while (!transport->read(0ns).empty()) {
+  }
+  // No frame came after it that could have said so.
+  const ifog::TransportCounters counted = transport->counters();
+  EXPECT_GT(counted.kernel_drops, 0U);
+  EXPECT_EQ(counted.frames + counted.kernel_drops, kFlood);
+  send({frame(0x8, 2)});
+  receive(*transport, 1);
+  EXPECT_EQ(transport->counters().kernel_drops, counted.kernel_drops);
+}
+
+// Frames that wait for the reader when their interface goes, and those that there was no room for.
+TEST_F(Vcan, WhatWaitedWhenTheInterfaceWentIsReadAndWhatDidNotFitIsCounted) {
+  constexpr std::size_t kFlood = 5000;
+  for (const bool removed : {false, true}) {
+    const auto transport = opened({.interface = "vcan0", .ids = {}, .receive_buffer_bytes = 262144});
+    send(std::vector<ifog_can_frame>(kFlood, frame(0x7, 1)));
+    ip(removed ? "del vcan0" : "set vcan0 down");
+    while (transport->state() == TransportState::open) transport->read(kForever);
+    EXPECT_EQ(transport->reason(), removed ? ENODEV : ENETDOWN);
+    const ifog::TransportCounters counted = transport->counters();
+    EXPECT_GT(counted.frames, 64U);  // more than one delivery
+    EXPECT_GT(counted.kernel_drops, 0U);
+    EXPECT_EQ(counted.frames + counted.kernel_drops, kFlood);
+    if (removed) ip("add vcan0 type vcan");
+    ip("set vcan0 up");
+  }
+}
+
+TEST_F(Vcan, WhatDidNotFitBeforeTheStopIsCounted) {
+  const auto transport = opened({.interface = "vcan0", .ids = {}, .receive_buffer_bytes = 65536});
+  constexpr std::size_t kFlood = 5000;
+  send(std::vector<ifog_can_frame>(kFlood, frame(0x7, 1)));
+  EXPECT_FALSE(transport->read(kForever).empty());
+  transport->stop();
+  EXPECT_TRUE(transport->read(kForever).empty());
+  transport->close_books();
+  EXPECT_GT(transport->counters().kernel_drops, kFlood / 2);
+}
+
+TEST_F(Vcan, CountsErrorFramesApart) {
+  const auto transport = opened({.interface = "vcan0", .ids = {{0x123, false}}});
+  send({frame(CAN_ERR_CRTL, 0), frame(CAN_ERR_BUSOFF, 0)}, CAN_ERR_FLAG);
+  send({frame(0x123, 9)});
+  const std::vector<ifog_can_frame> frames = receive(*transport, 1);
+  ASSERT_EQ(frames.size(), 1U);
+  EXPECT_EQ(frames[0].data[0], 9);
+  EXPECT_EQ(transport->counters().error_frames, 2U);
+}
+
+TEST_F(Vcan, ComesBackWhenTheInterfaceDoes) {
+  const auto transport = opened({.interface = "vcan0", .ids = {}});
+  for (int round = 0; round < 6; ++round) {
+    const bool removed = round % 2 == 1;
+    ip(removed ? "del vcan0" : "set vcan0 down");
+    while (transport->state() == TransportState::open) transport->read(kForever);
+    EXPECT_TRUE(transport->reason() == ENETDOWN || transport->reason() == ENODEV) << transport->reason();
+    EXPECT_TRUE(transport->read(20ms).empty());
+    EXPECT_EQ(transport->reason(), removed ? ENODEV : ENETDOWN);
+    if (removed) ip("add vcan0 type vcan");
+    ip("set vcan0 up");
+    while (transport->state() == TransportState::gone) transport->read(1ms);
+    send({frame(0x1, static_cast<std::uint8_t>(round))});
+    const ifog::Delivery d = transport->read(kForever);
+    ASSERT_EQ(d.frames.size(), 1U);
+    EXPECT_TRUE(d.restarted);
+    EXPECT_EQ(d.frames[0].data[0], round);
+  }
+  EXPECT_EQ(transport->counters().reopened, 6U);
+}
+
+TEST_F(Vcan, StopEndsTheWaitForFrames) {
+  const auto transport = opened({.interface = "vcan0", .ids = {}});
+  std::thread stopper([&] {
+    std::this_thread::sleep_for(20ms);
+    transport->stop();
+  });
+  EXPECT_TRUE(transport->read(kForever).empty());
+  EXPECT_TRUE(transport->stopped());
+  stopper.join();
+}
+
+TEST_F(Vcan, RefusesAnInterfaceThatIsDown) {
+  ip("set vcan0 down");
+  EXPECT_EQ(
+      ifog::test::refusal([&] { ifog::make_can_transport({.interface = "vcan0", .ids = {}})->open({}); }),
+      "vcan0: cannot open: Network is down, expected the interface up (ip link set vcan0 up)");
+  ip("set vcan0 up");
 }
 
 }  // namespace

@@ -1,17 +1,111 @@
 // SPDX-License-Identifier: Apache-2.0
-// A device that samples at another rate than the configuration says.
+// A device whose clock ticks hardly more often than it samples.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
+#include "drivers/timeline/timeline.h"
+#include "filters/chain/fitted_clock.h"
 #include "filters/chain/incrementer.h"
 #include "tests/unit/chain/one_axis.h"
 
 namespace ifog {
 namespace {
+
+// The tick is one period or several: nothing is lost, and the time elapsed is what the clock's sum says.
+TEST(DevicesClock, ThatTicksHardlyMoreOftenThanItSamplesLosesNothing) {
+  struct Coarse {
+    double rate_hz, told_hz, tick_s;
+  };
+  for (const Coarse& device :
+       {Coarse{999.7, 999.7, 1e-3}, Coarse{1000.3, 1000.0, 1e-3}, Coarse{5000.0, 5000.0, 1e-3},
+        Coarse{400.0, 400.0, 1e-3}, Coarse{1000.0, 1000.0, 1e-3}}) {
+    for (const std::uint32_t modulus : {0U, 16U}) {
+      SensorFacts facts;
+      facts.nominal_rate_hz = device.told_hz;
+      facts.sequence_modulus = modulus;
+      Incrementer incrementer(facts);
+      Increment increment;
+      double angle_rad = 0.0, dt_s = 0.0;
+      constexpr std::uint64_t kSamples = 30'000;
+      for (std::uint64_t n = 0; n < kSamples; ++n) {
+        const double at_s = static_cast<double>(n) / device.rate_hz;
+        Reading reading;
+        reading.arrival_ns = kStart_ns + std::llround(at_s * 1e9);
+        reading.valid_axes = 1;
+        reading.value[0] = kTurning + 1e-9 * static_cast<double>(n % 7);
+        reading.has_sequence = modulus > 0;
+        reading.sequence = modulus > 0 ? static_cast<std::uint32_t>(n % modulus) : 0;
+        reading.device_time_ns = std::llround(std::floor(at_s / device.tick_s + 1e-6) * device.tick_s * 1e9);
+        if (!incrementer.next(reading, increment)) continue;
+        angle_rad += increment.delta_theta_rad[0];
+        dt_s += increment.dt_s;
+      }
+      const double whole_s = kSamples / device.rate_hz;
+      EXPECT_EQ(incrementer.counts().missing, 0U) << device.rate_hz << ' ' << modulus;
+      EXPECT_EQ(incrementer.counts().restarts, 0U) << device.rate_hz << ' ' << modulus;
+      EXPECT_EQ(incrementer.counts().samples, kSamples) << device.rate_hz << ' ' << modulus;
+      EXPECT_NEAR(dt_s, whole_s, 3.0 * device.tick_s) << device.rate_hz << ' ' << modulus;
+      EXPECT_NEAR(angle_rad, kTurning * whole_s, 1e-3 * kTurning * whole_s)
+          << device.rate_hz << ' ' << modulus;
+    }
+  }
+}
+
+// The least and the most of a capture's own clock are further apart than 64 bits hold.
+TEST(DeviceTimeline, AClockMayJumpAcrossAllThatHasRoom) {
+  Timeline timeline(0, 100.0);
+  const double value = 0.5;
+  Timeline::Frame frame;
+  frame.clocked = true;
+  frame.values = {&value, 1};
+  frame.stamp_ns = -8'999'999'999'000'000'000;
+  timeline.first(frame);
+  frame.stamp_ns = 8'999'999'999'000'000'000;
+  const Timeline::Step step = timeline.next(frame);
+  EXPECT_FALSE(step.out_of_turn);
+  EXPECT_TRUE(step.restarted);
+  EXPECT_EQ(step.time_ns, frame.stamp_ns);
+}
+
+TEST(FittedClock, FollowsAPeriodThatIsNotTheNominalOneAndSmoothsJitter) {
+  FittedClock clock(1e-3, 5000);
+  const double period_s = 1e-3 * (1.0 + 40e-6);
+  double worst_s = 0.0;
+  for (int n = 0; n < 50000; ++n) {
+    const double jitter_s = 100e-6 * ((n * 7919) % 997) / 997.0;  // late by 0 … 100 µs
+    const std::int64_t time_ns = clock.advance(1, kStart_ns + std::llround((n * period_s + jitter_s) * 1e9));
+    const double mean_lateness_s = 50e-6;
+    if (n > 20000)
+      worst_s = std::max(worst_s, std::abs(static_cast<double>(time_ns - kStart_ns) * 1e-9 - n * period_s -
+                                           mean_lateness_s));
+  }
+  EXPECT_LT(worst_s, 3e-6);
+  EXPECT_NEAR(clock.period_s(), period_s, 1e-6 * period_s);
+}
+
+TEST(FittedClock, ALateArrivalHardlyMovesIt) {
+  FittedClock clock(1e-3, 1000);
+  std::int64_t time_ns = 0;
+  for (int n = 0; n < 5000; ++n) {
+    const std::int64_t late_ns = n == 4999 ? 50'000'000 : 0;
+    time_ns = clock.advance(1, kStart_ns + std::int64_t{n} * 1'000'000 + late_ns);
+  }
+  EXPECT_LT(std::abs(time_ns - (kStart_ns + 4999 * std::int64_t{1'000'000})), 100'000);
+}
+
+TEST(FittedClock, GoesNoFurtherThanThereIsRoomFor) {
+  constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max();
+  FittedClock clock(1.0, 1000);
+  EXPECT_EQ(clock.advance(1, kMost - 5), kMost - 5);
+  for (int n = 0; n < 20; ++n) EXPECT_EQ(clock.advance(1'000'000'000, n % 2 == 0 ? 0 : kMost), kMost);
+}
+
+// A device that samples at another rate than the configuration says.
 
 constexpr double kRate_hz = 100.0;
 

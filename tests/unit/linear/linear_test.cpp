@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "filters/linear/least_squares.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "filters/linear/normal_equations.h"
+#include "filters/linear/projection.h"
+#include "filters/linear/symmetric.h"
+
+namespace ifog {
+namespace {
+
+// A straight line through four points; the closed form of its slope and level.
+TEST(LeastSquares, IsTheClosedFormOfALine) {
+  Columns x(4, 2);
+  x << 1, 0, 1, 1, 1, 2, 1, 3;
+  const Eigen::Vector4d y(1.0, 2.0, 4.0, 4.0);
+  const LeastSquares line(x);
+  EXPECT_EQ(line.rank(), 2);
+  const Eigen::VectorXd c = line.coefficients(y);
+  EXPECT_NEAR(c[0], 1.1, 1e-14);
+  EXPECT_NEAR(c[1], 1.1, 1e-14);
+  const Eigen::Vector4d left(-0.1, -0.2, 0.7, -0.4);
+  EXPECT_LT((left_by(x, y) - left).norm(), 1e-14);
+}
+
+TEST(LeastSquares, OfDependentColumnsExplainsWhatTheyExplain) {
+  Columns x(3, 3);
+  x << 1, 2, 3, 0, 1, 1, 0, 0, 0;  // the third is the sum of the others
+  const Eigen::Vector3d y(5.0, 1.0, 7.0);
+  EXPECT_EQ(LeastSquares(x).rank(), 2);
+  EXPECT_LT((left_by(x, y) - Eigen::Vector3d(0, 0, 7)).norm(), 1e-14);
+}
+
+// Twice the same column: the minimum of a² + b² under a + b = 6 is at 3 and 3.
+TEST(ShortestCoefficients, AreSharedByColumnsThatAreAlike) {
+  Eigen::MatrixXd x(3, 2);
+  x << 1, 1, 0, 0, 1, 1;
+  const Eigen::VectorXd c = shortest_coefficients(x, Eigen::Vector3d(6, 1, 6));
+  EXPECT_NEAR(c[0], 3.0, 1e-14);
+  EXPECT_NEAR(c[1], 3.0, 1e-14);
+}
+
+// X'X of a line at 0, 1, 2, 3 in units that make its columns differ by 1e12, and y = 1, 2, 4, 4: level and
+// slope are 1.1, worked out by hand.
+constexpr double kUnit = 1e12;
+
+NormalEquations line() {
+  Eigen::Matrix3d gram;
+  gram << 37.0, 11.0, 22.0 * kUnit,  //
+      11.0, 4.0, 6.0 * kUnit,        //
+      22.0 * kUnit, 6.0 * kUnit, 14.0 * kUnit * kUnit;
+  return NormalEquations::of_measured_first(gram);
+}
+
+TEST(NormalEquations, OfALineInWildUnits) {
+  const Eigen::VectorXd c = line().coefficients();
+  EXPECT_NEAR(c[0], 1.1, 1e-13);
+  EXPECT_NEAR(c[1] * kUnit, 1.1, 1e-13);
+  EXPECT_NEAR(line().explained(), 1.1 * 11.0 + 1.1 * 22.0, 1e-12);
+}
+
+// The inverse of (4 6; 6 14) is (14 -6; -6 4) / 20, its determinant 20.
+TEST(NormalEquations, InverseAndDeterminantOfALine) {
+  const Eigen::MatrixXd inverse = line().inverse();
+  EXPECT_NEAR(inverse(0, 0), 0.7, 1e-13);
+  EXPECT_NEAR(inverse(0, 1) * kUnit, -0.3, 1e-13);
+  EXPECT_NEAR(inverse(1, 1) * kUnit * kUnit, 0.2, 1e-13);
+  EXPECT_NEAR(line().log_determinant(), std::log(20.0) + 2.0 * std::log(kUnit), 1e-12);
+}
+
+// What is known beforehand is on the diagonal: one column of squared length 4, known to 1/√12 about 0.
+TEST(NormalEquations, TakeWhatIsKnownBeforehand) {
+  const NormalEquations known(Eigen::MatrixXd::Constant(1, 1, 4.0 + 12.0), Eigen::VectorXd::Constant(1, 8.0));
+  EXPECT_NEAR(known.coefficients()[0], 0.5, 1e-15);
+}
+
+TEST(NormalEquations, OfAColumnOfNothingAreFinite) {
+  const NormalEquations nothing(Eigen::MatrixXd::Zero(1, 1), Eigen::VectorXd::Zero(1));
+  EXPECT_EQ(nothing.coefficients()[0], 0.0);
+  EXPECT_EQ(nothing.explained(), 0.0);
+  EXPECT_TRUE(std::isfinite(nothing.log_determinant()));
+}
+
+// Normal equations: the second way to the same residual.
+TEST(Projection, LeavesTheResidualOfLeastSquares) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd x(200, 3);
+  Columns several(200, 2);
+  for (Eigen::Index i = 0; i < x.rows(); ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) x(i, j) = normal(random);
+    for (Eigen::Index j = 0; j < 2; ++j) several(i, j) = normal(random) + x(i, j);
+  }
+  Eigen::VectorXd one = several.col(0);
+  const Eigen::MatrixXd expected =
+      several - x * (x.transpose() * x).ldlt().solve(x.transpose() * Eigen::MatrixXd(several));
+  const Projection projection(x);
+  projection.take_out_of(several);
+  projection.take_out_of(one);
+  EXPECT_LT((several - expected).norm(), 1e-10);
+  EXPECT_LT((one - expected.col(0)).norm(), 1e-10);
+  EXPECT_LT((x.transpose() * one).norm(), 1e-10);
+}
+
+TEST(Projection, TakesOutAMeanAndALine) {
+  Eigen::MatrixXd x(5, 2);
+  Eigen::VectorXd y(5);
+  for (Eigen::Index i = 0; i < 5; ++i) {
+    const double t = static_cast<double>(i) - 2.0;
+    x.row(i) << 1.0, t;
+    y[i] = 3.0 - 7.0 * t + (t * t - 2.0);  // t² - 2 is at right angles to 1 and t
+  }
+  Projection(x).take_out_of(y);
+  EXPECT_LT((y - Eigen::VectorXd((Eigen::VectorXd(5) << 2, -1, -2, -1, 2).finished())).norm(), 1e-13);
+}
+
+TEST(Projection, WhatIsBesideAColumnIsOrthonormalAndWhole) {
+  const Eigen::Vector4d column(1.0, -2.0, 0.0, 5.0);
+  const Eigen::MatrixXd complement = Projection::complement(column);
+  ASSERT_EQ(complement.cols(), 3);
+  EXPECT_LT((complement.transpose() * complement - Eigen::Matrix3d::Identity()).norm(), 1e-14);
+  EXPECT_LT((complement.transpose() * column).norm(), 1e-14);
+}
+
+// (2 1; 1 2): eigenvalues 1 and 3 along (1, -1) and (1, 1), inverse (2 -1; -1 2) / 3, determinant 3.
+Eigen::MatrixXd two() { return (Eigen::MatrixXd(2, 2) << 2, 1, 1, 2).finished(); }
+
+TEST(Symmetric, EigenvaluesAscend) {
+  EXPECT_LT((symmetric_eigenvalues(two()) - Eigen::Vector2d(1, 3)).norm(), 1e-15);
+  const SymmetricEigen eigen = symmetric_eigen(two());
+  EXPECT_LT((eigen.values - Eigen::Vector2d(1, 3)).norm(), 1e-15);
+  EXPECT_NEAR(std::abs(eigen.vectors(0, 1)), std::sqrt(0.5), 1e-15);
+  EXPECT_NEAR(eigen.vectors(0, 0), -eigen.vectors(1, 0), 1e-15);
+}
+
+TEST(Symmetric, SolvesAndInverts) {
+  const SymmetricSolver solver(two());
+  EXPECT_TRUE(solver.is_positive());
+  EXPECT_LT((solver.solve(Eigen::Vector2d(3, 0)) - Eigen::Vector2d(2, -1)).norm(), 1e-15);
+  EXPECT_LT((3.0 * solver.inverse() - (Eigen::MatrixXd(2, 2) << 2, -1, -1, 2).finished()).norm(), 1e-15);
+  EXPECT_NEAR(solver.pivots().prod(), 3.0, 1e-15);
+}
+
+TEST(Symmetric, TellsWhatIsNotPositive) {
+  const Eigen::MatrixXd saddle = (Eigen::MatrixXd(2, 2) << 1, 2, 2, 1).finished();
+  EXPECT_FALSE(SymmetricSolver(saddle).is_positive());
+  EXPECT_FALSE(CholeskyFactor(saddle).exists());
+}
+
+TEST(Symmetric, CholeskyFactorSolves) {
+  const CholeskyFactor factor(two());
+  ASSERT_TRUE(factor.exists());
+  EXPECT_NEAR(factor.log_determinant(), 0.5 * std::log(3.0), 1e-15);
+  EXPECT_LT((factor.solve(Eigen::VectorXd(Eigen::Vector2d(3, 0))) - Eigen::Vector2d(2, -1)).norm(), 1e-15);
+  EXPECT_LT((factor.solve(two()) - Eigen::MatrixXd::Identity(2, 2)).norm(), 1e-15);
+}
+
+}  // namespace
+}  // namespace ifog
