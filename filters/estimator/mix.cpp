@@ -106,8 +106,8 @@ void Mix::take(Trackers& trackers, const Sample& now, const Lanes& colour, const
     // The difference scatters by at most R / 8.
     compared_[j] = std::min(compared_[j] + 1.0, std::max(2.0 * kRestMemory, trackers.horizon(j)));
     const Lanes apart = trackers.rate(j) - trackers.rate(j - 1);
-    const double common = kCommon * std::max(0.0, trackers.gains(j - 1).output - trackers.gains(j).output);
-    bias_[j] += now.mask * (apart * apart - common * now.scale - bias_[j]) * (1.0 / compared_[j]);
+    const double scatter = kCommon * std::max(0.0, trackers.gains(j - 1).output - trackers.gains(j).output);
+    bias_[j] += now.mask * (apart * apart - scatter * now.scale - bias_[j]) * (1.0 / compared_[j]);
   }
 }
 
