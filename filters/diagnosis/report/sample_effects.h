@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "filters/diagnosis/diagnosis.h"
+#include "filters/diagnosis/ramp/ramp.h"
 #include "filters/diagnosis/residual/dead_zone.h"
 #include "filters/diagnosis/residual/lines.h"
 
