@@ -13,7 +13,7 @@
 #include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture_encoder.h"
 #include "drivers/capture/files/output_file.h"
-#include "filters/series/series_view.h"
+#include "filters/series/median_step.h"
 #include "tools/ifog/captures/table/column_writer.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/wrong_usage.h"

@@ -26,7 +26,7 @@ LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std:
   view_.faults = table_.faults;
   view_.since_power_up_s = table_.since_power_up_s;
   view_.origin = table_.origin;
-  view_.time_s = table_.time_s.all();
+  view_.time_s = table_.time_s;
   view_.axes = shape.axes;
   view_.dead_axes = table_.dead_axes;
   view_.rate_radps.resize(shape.axes.size());
@@ -38,11 +38,11 @@ LongCapture::LongCapture(LongTable table, const std::string& path) : table_(std:
     ++c;
     const CaptureShape::Place& place = shape.places[h];
     if (place.kind == Kind::rate)
-      view_.rate_radps[place.at] = column.values.all();
+      view_.rate_radps[place.at] = column.values;
     else if (place.kind == Kind::reference)
-      view_.reference_rate_radps[place.at] = column.values.all();
+      view_.reference_rate_radps[place.at] = column.values;
     else
-      view_.channels.push_back({column.name, column.values.all()});
+      view_.channels.push_back({column.name, column.values});
   }
 }
 
@@ -52,7 +52,7 @@ CaptureView LongCapture::part(const TimePart& part, const std::string& name) con
   CaptureView out = view_;
   const TimePart::Rows rows = part.rows(view_.time_s, view_.origin, name);
   const auto keep = [&](std::span<const double>& values) {
-    if (!values.empty()) values = values.subspan(rows.begin, rows.end - rows.begin);
+    if (!values.empty()) values = rows.of(values);
   };
   if (out.since_power_up_s && rows.begin < view_.size())
     *out.since_power_up_s += view_.time_s[rows.begin] - view_.time_s.front();

@@ -129,7 +129,7 @@ Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFil
   out.period_s = sample_clock(out.capture.time_s).period_s;
   const std::vector<std::span<const double>> axes(out.capture.rate_radps.begin(),
                                                   out.capture.rate_radps.end());
-  out.rest = find_rest(axes, out.period_s);
+  out.rest = find_rest(axes, {}, out.period_s);
   return out;
 }
 
