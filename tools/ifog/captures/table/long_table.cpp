@@ -104,7 +104,7 @@ void LongTableSink::take(RowBlock& rows) {
 }
 
 LongRows::LongRows(const LongTable& table, const CaptureShape& shape)
-    : table_(table), shape_(shape), names_{"time_s"}, views_{table.time_s} {
+    : table_(table), names_{"time_s"}, views_{table.time_s} {
   for (const Kind kind : {Kind::rate, Kind::reference, Kind::channel}) {
     const std::size_t many = kind == Kind::channel ? shape.channels : shape.axes.size();
     for (std::size_t at = 0; at < many; ++at)
@@ -112,7 +112,6 @@ LongRows::LongRows(const LongTable& table, const CaptureShape& shape)
         if (shape.places[c].kind == kind && shape.places[c].at == at) {
           names_.push_back(table.columns[c].name);
           views_.emplace_back(table.columns[c].values);
-          from_.push_back(c);
         }
   }
   rows_.resize(views_.size());
@@ -124,25 +123,6 @@ bool LongRows::next() {
   for (std::size_t i = 0; i < views_.size(); ++i) rows_[i] = views_[i].subspan(at_, count);
   at_ += count;
   return true;
-}
-
-void LongRows::as_capture(Capture& piece) const {
-  const auto put = [](std::span<const double> from, std::vector<double>& to) {
-    to.assign(from.begin(), from.end());
-  };
-  piece.axes = shape_.axes;
-  piece.rate_radps.resize(shape_.axes.size());
-  piece.reference_rate_radps.resize(shape_.axes.size());
-  piece.channels.resize(shape_.channels);
-  piece.origin = table_.origin;
-  put(rows_[0], piece.time_s);
-  for (std::size_t i = 0; i < from_.size(); ++i) {
-    const CaptureShape::Place& place = shape_.places[from_[i]];
-    if (place.kind == Kind::channel) piece.channels[place.at].name = names_[i + 1];
-    put(rows_[i + 1], place.kind == Kind::rate        ? piece.rate_radps[place.at]
-                      : place.kind == Kind::reference ? piece.reference_rate_radps[place.at]
-                                                      : piece.channels[place.at].values);
-  }
 }
 
 LongTable long_table(Capture capture) {

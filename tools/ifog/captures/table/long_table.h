@@ -71,7 +71,7 @@ class LongTableSink final : public RowSink {
 // Blocks of a table's rows in the order of a capture: rates, references, channels.
 class LongRows {
  public:
-  // Both must outlive this.
+  // The table must outlive this.
   LongRows(const LongTable& table, const CaptureShape& shape);
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // time_s first
@@ -79,15 +79,11 @@ class LongRows {
   bool next();
   [[nodiscard]] std::span<const std::span<const double>> rows() const { return rows_; }
   [[nodiscard]] const TimeOrigin& origin() const { return table_.origin; }
-  // The same as a capture, which is reused.
-  void as_capture(Capture& piece) const;
 
  private:
   const LongTable& table_;
-  const CaptureShape& shape_;
   std::vector<std::string> names_;
   std::vector<std::span<const double>> views_;
-  std::vector<std::size_t> from_;  // by name except time_s: the table's column
   std::vector<std::span<const double>> rows_;
   std::size_t at_ = 0;
 };
