@@ -5,13 +5,11 @@
 #pragma once
 
 #include <cstddef>
-#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
-#include "drivers/capture/columns/csv_layout.h"
-#include "drivers/capture/files/input_file.h"
 #include "drivers/capture/times/row_sink.h"
 #include "drivers/capture/times/time_stamps.h"
 
@@ -38,36 +36,30 @@ struct Capture {
   [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
 
-// All columns of a file under their own names. A rate is not required: `ifog denoise` writes files without
-// one.
-struct Table : RowNotes {
+// Views of a capture's columns, in memory or mapped from a file. Members as in Capture.
+struct CaptureView {
+  struct Channel {
+    std::string name;
+    std::span<const double> values;
+  };
+
+  std::vector<std::string> comments;
   TimeOrigin origin;  // of time_s
-  std::vector<double> time_s;
-  std::vector<CaptureColumn> columns;  // all but time_s, in the file's order
+  std::span<const double> time_s;
+  std::vector<std::string> axes, dead_axes;
+  std::vector<std::span<const double>> rate_radps;
+  std::vector<std::span<const double>> reference_rate_radps;  // by axis; empty if there is none
+  std::vector<Channel> channels;
+  std::vector<std::string> faults;
+  std::optional<double> since_power_up_s;
+
+  CaptureView() = default;
+  CaptureView(const Capture& capture);  // must outlive this
+
+  // Time of a row as shown to the user.
+  [[nodiscard]] double shown_time_s(std::size_t row) const { return origin.in_s(time_s[row]); }
+  [[nodiscard]] std::size_t size() const { return time_s.size(); }
 };
-
-// Collects blocks into whole columns.
-class TableSink : public RowSink {
- public:
-  explicit TableSink(Table& table) : table_(table) {}
-  void begin(const std::vector<std::string>& names) override;
-  void take(RowBlock& rows) override;
-
- private:
-  Table& table_;
-};
-
-// Table of the rows that `read` delivers to its sink.
-Table table_of(const std::function<RowNotes(RowSink&)>& read);
-
-// Converts a table. Throws std::runtime_error with one line: no rate, a reference without its rate.
-Capture capture_of(Table table, const std::string& path);
-
-// A table needs no rate column.
-Table read_table(InputFile& file, const CsvLayout& layout = {});
-
-// The same for a driver's samples, without axes and channels that never have a value. Throws if nothing is left.
-Capture known_part_of(Table table, const std::string& path);
 
 // Roles of the columns with these names in a capture.
 struct CaptureShape {

@@ -51,49 +51,49 @@ DriverSettings with_rate(double rate_hz, const Plugin& plugin, DriverSettings se
   return settings;
 }
 
-CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, double rate_hz,
+CaptureEncoder::CaptureEncoder(CaptureView capture, DriverInstance& driver, double rate_hz,
                                const std::string& axis)
-    : capture_(capture), driver_(driver), angle_(capture.axes.size(), 0.0) {
+    : capture_(std::move(capture)), driver_(driver), angle_(capture_.axes.size(), 0.0) {
   const ifog_description& d = driver.description();
   rate_hz_ = d.nominal_rate_hz > 0.0 ? d.nominal_rate_hz : rate_hz;
   timed_ = d.has_device_time != 0 || driver.takes_can();
-  const double first_s = capture.size() > 0 ? capture.origin.in_s(capture.time_s.front()) : 0;
+  const double first_s = capture_.size() > 0 ? capture_.origin.in_s(capture_.time_s.front()) : 0;
   if (timed_ && first_s < 0.0) {
     later_s_ = static_cast<std::int64_t>(std::ceil(-first_s));
     notices_.push_back("begins at " + seven_digits(first_s) +
                        " s, and no clock of a device shows times before 0: all are sent " +
                        std::to_string(later_s_) + " s later");
   }
-  if (capture.axes.size() == 1) {
-    const std::string& own = capture.axes.front();
+  if (capture_.axes.size() == 1) {
+    const std::string& own = capture_.axes.front();
     const bool by_own_name = axis.empty() && !own.empty() && d.axes > 1;
     axis_of_.push_back(!axis.empty() ? driver_axis(d, axis) : by_own_name ? driver_axis(d, own) : 0);
   } else {
     if (!axis.empty())
       throw std::runtime_error("--axis is " + in_quotes(axis) +
                                ", expected none for a capture of several axes");
-    for (const std::string& name : capture.axes) axis_of_.push_back(driver_axis(d, name));
+    for (const std::string& name : capture_.axes) axis_of_.push_back(driver_axis(d, name));
   }
-  for (std::size_t i = 0; i < capture.axes.size(); ++i)
-    if (!capture.reference_rate_radps[i].empty())
+  for (std::size_t i = 0; i < capture_.axes.size(); ++i)
+    if (!capture_.reference_rate_radps[i].empty())
       notices_.push_back("not sent, as no device does: the reference rate" +
-                         (capture.axes[i].empty() ? "" : " of axis " + capture.axes[i]));
+                         (capture_.axes[i].empty() ? "" : " of axis " + capture_.axes[i]));
 
-  channels_.resize(d.environments, nullptr);
+  channels_.resize(d.environments);
   std::string without_place, without_column;
   const auto add = [](std::string& list, const std::string& name) {
     list += (list.empty() ? "" : ", ") + name;
   };
-  for (const CaptureColumn& channel : capture.channels) {
+  for (const CaptureView::Channel& channel : capture_.channels) {
     std::size_t at = 0;
     while (at < d.environments && channel.name != d.environment[at]) ++at;
     if (at < d.environments)
-      channels_[at] = &channel.values;
+      channels_[at] = channel.values;
     else
       add(without_place, channel.name);
   }
   for (std::uint32_t i = 0; i < d.environments; ++i)
-    if (channels_[i] == nullptr) add(without_column, d.environment[i]);
+    if (channels_[i].empty()) add(without_column, d.environment[i]);
   if (!without_place.empty())
     notices_.push_back("not sent, as the format as set up has no place for it: " + without_place);
   if (!without_column.empty())
@@ -103,8 +103,6 @@ CaptureEncoder::CaptureEncoder(const Capture& capture, DriverInstance& driver, d
 
   std::fill(std::begin(sample_.environment), std::end(sample_.environment), kMissing);
 }
-
-void CaptureEncoder::go_on() { rows_.before += std::exchange(rows_.at, 0); }
 
 ifog_sample CaptureEncoder::next_sample() {
   const ifog_description& d = driver_.description();
@@ -150,8 +148,8 @@ ifog_sample CaptureEncoder::next_sample() {
   rows_.at_full_scale += at_full_scale ? 1 : 0;
   sample_.environment_fresh = 0;
   for (std::uint32_t i = 0; i < channels_.size(); ++i) {
-    if (channels_[i] == nullptr || std::isnan((*channels_[i])[rows_.at])) continue;
-    sample_.environment[i] = (*channels_[i])[rows_.at];
+    if (channels_[i].empty() || std::isnan(channels_[i][rows_.at])) continue;
+    sample_.environment[i] = channels_[i][rows_.at];
     sample_.environment_fresh |= 1U << i;
   }
   return sample_;

@@ -26,13 +26,9 @@ DriverSettings with_rate(double rate_hz, const Plugin& plugin, DriverSettings se
 class CaptureEncoder {
  public:
   // axis: driver's axis for a capture of one axis, "" for its first; several axes are matched by name. Throws
-  // std::runtime_error for an axis that the driver does not have. Keeps references to both. rate_hz:
-  // sample_rate_hz() of the whole capture.
-  CaptureEncoder(const Capture& capture, DriverInstance& driver, double rate_hz,
-                 const std::string& axis = {});
-
-  // To be called after the capture's rows were replaced by the following ones.
-  void go_on();
+  // std::runtime_error for an axis that the driver does not have. The columns and the driver must outlive this.
+  // rate_hz: sample_rate_hz() of the capture.
+  CaptureEncoder(CaptureView capture, DriverInstance& driver, double rate_hz, const std::string& axis = {});
 
   // One line for columns that the format cannot carry, and one for fields that the capture lacks.
   [[nodiscard]] const std::vector<std::string>& notices() const { return notices_; }
@@ -42,7 +38,7 @@ class CaptureEncoder {
   bool next(std::vector<std::uint8_t>& bytes);
   bool next(std::vector<ifog_can_frame>& frames);
 
-  [[nodiscard]] std::size_t rows_done() const { return rows_.before + rows_.at; }
+  [[nodiscard]] std::size_t rows_done() const { return rows_.at; }
   // Rows without a rate, if the format cannot mark them invalid: not sent, so the counter has a gap.
   [[nodiscard]] std::size_t rows_left_out() const { return rows_.dropped; }
   // Time in s that a reader of the frames cannot recover: without a clock, time is the counter / nominal
@@ -59,18 +55,17 @@ class CaptureEncoder {
   bool encode_next(Out& out, void (DriverInstance::*encode)(const ifog_sample&, Out&));
   ifog_sample next_sample();
 
-  const Capture& capture_;
+  const CaptureView capture_;
   DriverInstance& driver_;
   std::vector<std::size_t> axis_of_;  // driver's axis, by the capture's axis
-  // By the driver's environment channel; null: not in the capture
-  std::vector<const std::vector<double>*> channels_;
+  // By the driver's environment channel; empty: not in the capture
+  std::vector<std::span<const double>> channels_;
   std::vector<std::string> notices_;
   std::vector<double> angle_;  // by the capture's axis
   std::int64_t later_s_ = 0;   // seconds added to all times, so that none is negative
   ifog_sample sample_{};
   struct Rows {
-    std::size_t at = 0, before = 0;  // index in this piece; rows in earlier pieces
-    std::size_t dropped = 0, at_full_scale = 0;
+    std::size_t at = 0, dropped = 0, at_full_scale = 0;
   } rows_;
   double before_s_ = 0.0;                     // time of the previous row
   double elapsed_s_ = 0.0, encoded_s_ = 0.0;  // since the first row, by the capture and by the format

@@ -57,15 +57,8 @@ class UnnamedFile {
     }
   }
 
-  // Allocates this many zero bytes, so that later writes cannot fail because of a full disk.
-  void reserve(std::size_t bytes) {
-    int error = 0;
-    do error = ::posix_fallocate(fd_, 0, static_cast<off_t>(bytes));
-    while (error == EINTR);
-    errno = error;
-    if (error != 0) fail("cannot write");
-  }
-
+  // Bytes.
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(::lseek(fd_, 0, SEEK_END)); }
   // For mmap().
   [[nodiscard]] int descriptor() const { return fd_; }
   // what: the failed action; errno is set.

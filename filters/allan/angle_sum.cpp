@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <span>
 #include <utility>
 
 #include "filters/allan/deviation.h"
@@ -23,9 +24,9 @@ std::vector<double> levels_of(const AngleSum& sum, Deviation kind) {
 }
 
 // Mean of as many samples as are lost on either side of the hole before `after`.
-double mean_around(const SeriesView& rate, std::size_t end, const Stretch& after) {
+double mean_around(std::span<const double> rate, std::size_t end, const Stretch& after) {
   double sum = 0.0;
-  for (std::size_t i = 0; i < after.lost; ++i) sum += rate.at(end - 1 - i) + rate.at(after.begin + i);
+  for (std::size_t i = 0; i < after.lost; ++i) sum += rate[end - 1 - i] + rate[after.begin + i];
   return sum / (2.0 * static_cast<double>(after.lost));
 }
 
@@ -40,7 +41,8 @@ double least_level(const AngleSum& sum) { return std::ranges::min(levels_of(sum,
 // variance 3/2 h² times the Hadamard variance at h. It is in 2m of the n differences of averages over m, so one hole
 // adds 2m e² / (2 m² n) to σ²(m), and all holes add the part Σe² / (n m σ²(m)): at most Σe² / n of the least m σ²(m).
 // For white noise that is 1.5 times the share of filled samples; averages shorter than a hole lose at most that share.
-std::vector<Stretch> AngleSum::negligible(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
+std::vector<Stretch> AngleSum::negligible(std::span<const double> rate_radps,
+                                          std::span<const Stretch> stretches) {
   constexpr double kMost = 0.02;  // of a variance; of the samples
   std::vector<Stretch> apart(stretches.begin(), stretches.end());
   std::vector<std::size_t> holes;  // the shortest first
@@ -73,34 +75,32 @@ std::vector<Stretch> AngleSum::negligible(const SeriesView& rate_radps, std::spa
   }
 }
 
-AngleSum::AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches, Holes holes)
-    : angle_(rate_radps.in_memory().size() == rate_radps.size() ? kMostInMemory : LongSeries::kInMemory) {
+AngleSum::AngleSum(std::span<const double> rate_radps, std::span<const Stretch> stretches, Holes holes) {
   std::vector<Stretch> chosen;
   if (holes == Holes::kFilledIfNegligible) stretches = chosen = negligible(rate_radps, stretches);
   find_mean(rate_radps, stretches);
   std::size_t total = stretches.size();
   for (const Stretch& s : stretches) total += s.size() + s.lost;
-  angle_.expect(total);
+  angle_.reserve(total);
   sum_up(rate_radps, stretches);
 }
 
-void AngleSum::find_mean(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
+void AngleSum::find_mean(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
   constexpr std::size_t kLanes = 4;  // independent sums for instruction-level parallelism
   std::array<double, kLanes> sum{}, rest{};
   std::size_t total = 0;
   for (const Stretch& s : stretches) {
     total += s.size();
-    for_each_piece(rate_radps, s.begin, s.end, [&](std::span<const double> rates, std::size_t) {
-      std::size_t i = 0;
-      double error = 0.0;
-      const auto add = [&](std::size_t lane, double rate) {
-        two_sum(sum[lane], rate, sum[lane], error);
-        rest[lane] += error;
-      };
-      for (; i + kLanes <= rates.size(); i += kLanes)
-        for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, rates[i + lane]);
-      for (; i < rates.size(); ++i) add(0, rates[i]);
-    });
+    const std::span<const double> rates = s.of(rate_radps);
+    std::size_t i = 0;
+    double error = 0.0;
+    const auto add = [&](std::size_t lane, double rate) {
+      two_sum(sum[lane], rate, sum[lane], error);
+      rest[lane] += error;
+    };
+    for (; i + kLanes <= rates.size(); i += kLanes)
+      for (std::size_t lane = 0; lane < kLanes; ++lane) add(lane, rates[i + lane]);
+    for (; i < rates.size(); ++i) add(0, rates[i]);
   }
   double all = 0.0, left = 0.0, error = 0.0;
   for (std::size_t lane = 0; lane < kLanes; ++lane) {
@@ -110,28 +110,23 @@ void AngleSum::find_mean(const SeriesView& rate_radps, std::span<const Stretch> 
   mean_ = total > 0 ? (all + left) / static_cast<double>(total) : 0.0;
 }
 
-void AngleSum::sum_up(const SeriesView& rate_radps, std::span<const Stretch> stretches) {
+void AngleSum::sum_up(std::span<const double> rate_radps, std::span<const Stretch> stretches) {
   double high = 0.0, low = 0.0, error = 0.0;
-  std::vector<double> angles;
   // The error of the rounded mean is a constant, which a second difference cancels.
   const auto add = [&](double rate) {
     two_sum(high, rate - mean_, high, error);
     low += error;
-    angles.push_back(high + low);
+    angle_.push_back(high + low);
   };
   for (const Stretch& s : stretches) {
     if (s.lost == 0) {
       parts_.push_back({angle_.size(), 1});
       high = low = 0.0;
-      angle_.add(0.0);
+      angle_.push_back(0.0);
     }
     const double fill = s.lost == 0 ? 0.0 : mean_around(rate_radps, (&s)[-1].end, s);
     for (std::size_t i = 0; i < s.lost; ++i) add(fill);
-    for_each_piece(rate_radps, s.begin, s.end, [&](std::span<const double> rates, std::size_t) {
-      for (const double rate : rates) add(rate);
-      angle_.add(angles);
-      angles.clear();
-    });
+    for (const double rate : s.of(rate_radps)) add(rate);
     parts_.back().angles += s.lost + s.size();
     filled_ += s.lost;
   }

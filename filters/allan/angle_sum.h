@@ -7,8 +7,7 @@
 #include <vector>
 
 #include "filters/allan/stretches.h"
-#include "filters/series/long_series.h"
-#include "filters/series/series_view.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
 
@@ -19,18 +18,15 @@ namespace ifog {
 class AngleSum {
  public:
   enum class Holes { kFilledIfNegligible, kFilled };  // Stretch::lost
-  // Longer series are kept in a file.
-  static constexpr std::size_t kMostInMemory = std::size_t{1} << 23U;
-
   // Needs 8 bytes per sample, in memory or in a file like the rates. No NaN inside a stretch.
-  AngleSum(const SeriesView& rate_radps, std::span<const Stretch> stretches,
+  AngleSum(std::span<const double> rate_radps, std::span<const Stretch> stretches,
            Holes holes = Holes::kFilledIfNegligible);
 
   struct Part {
     std::size_t first;  // index of its first angle
     std::size_t angles;
   };
-  [[nodiscard]] SeriesView angle() const { return angle_; }
+  [[nodiscard]] std::span<const double> angle() const { return angle_; }
   [[nodiscard]] const std::vector<Part>& parts() const { return parts_; }
   [[nodiscard]] double mean_radps() const { return mean_; }
   [[nodiscard]] std::size_t samples() const { return angle_.size() - parts_.size() - filled_; }
@@ -38,11 +34,12 @@ class AngleSum {
   [[nodiscard]] std::size_t longest() const;                    // samples of the longest part
 
  private:
-  static std::vector<Stretch> negligible(const SeriesView& rate_radps, std::span<const Stretch> stretches);
-  void find_mean(const SeriesView& rate_radps, std::span<const Stretch> stretches);
-  void sum_up(const SeriesView& rate_radps, std::span<const Stretch> stretches);
+  static std::vector<Stretch> negligible(std::span<const double> rate_radps,
+                                         std::span<const Stretch> stretches);
+  void find_mean(std::span<const double> rate_radps, std::span<const Stretch> stretches);
+  void sum_up(std::span<const double> rate_radps, std::span<const Stretch> stretches);
 
-  LongSeries angle_;
+  Samples angle_;
   std::vector<Part> parts_;
   double mean_ = 0.0;
   std::size_t filled_ = 0;

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <span>
 
 #include "filters/allan/two_sum.h"
@@ -16,7 +15,10 @@ namespace {
 
 // Places per block: their angles stay in the second-level cache for all m, so only two of a long τ's three
 // streams come from memory.
-constexpr std::size_t kBlock = kSeriesPiece;
+constexpr std::size_t kBlock = std::size_t{1} << 14U;
+// Longest block of the modified deviation with its differences, in angles: with a few longer ones the processors
+// would be idle.
+constexpr std::size_t kLongestReach = std::size_t{1} << 24U;
 constexpr std::size_t kWorthThreads = std::size_t{1} << 22U;  // squares
 
 // Uses registers of four doubles where available. The order of additions and so the bits are the same: AVX2
@@ -140,126 +142,66 @@ class ExactSum {
   double sum_ = 0.0, rest_ = 0.0;
 };
 
-// Contiguous angles of a part; the window moves along it.
-class Window {
- public:
-  // reach: angles needed beyond a place. ahead: angles read in advance, so that data are moved rarely.
-  Window(const SeriesView& angle, const AngleSum::Part& part, std::size_t reach)
-      : angle_(angle), part_(part), room_(angle.in_memory().empty() ? reach + ahead(reach) : part.angles) {}
-  static std::size_t ahead(std::size_t reach) { return std::max(64 * kBlock, reach / 2); }
-
-  // Angles from `begin`, as many as fit or to the part's end; begin must not decrease.
-  std::span<const double> from(std::size_t begin) {
-    const std::size_t count = std::min(room_, part_.angles - begin);
-    if (!angle_.in_memory().empty()) return angle_.in_memory().subspan(part_.first + begin, count);
-    // A vector would be zeroed first.
-    if (!held_) held_ = std::make_unique_for_overwrite<double[]>(count);
-    double* const held = held_.get();
-    const std::size_t kept = end_ > begin ? end_ - begin : 0;
-    if (kept > 0) std::copy(held + (begin - begin_), held + (end_ - begin_), held);
-    angle_.read(part_.first + begin + kept, {held + kept, count - kept});
-    begin_ = begin;
-    end_ = begin + count;
-    return {held, count};
-  }
-
- private:
-  SeriesView angle_;
-  AngleSum::Part part_;
-  std::size_t room_, begin_ = 0, end_ = 0;
-  std::unique_ptr<double[]> held_;  // size of the first request; later ones are not larger
-};
-
-// Computes all m whose differences fit into the window, part by part. squares: by entry of m.
-void add_together(const AngleSum& sum, const Kind& kind, std::span<const std::size_t> m,
-                  std::vector<ExactSum>& squares) {
+// Computes the differences of several m in one pass, block by block. squares: by entry of m.
+void add_blocks(const AngleSum& sum, const Kind& kind, std::span<const std::size_t> m,
+                std::vector<ExactSum>& squares) {
   if (m.empty()) return;
-  const std::size_t longest_m = *std::ranges::max_element(m);
   // The modified deviation starts each block with m additions, so blocks grow with m.
-  const std::size_t block = std::max(kBlock, kind.block_m * longest_m);
-  const std::size_t reach = kind.span * longest_m + block;
+  const std::size_t block = std::max(kBlock, kind.block_m * *std::ranges::max_element(m));
   for (const AngleSum::Part& part : sum.parts()) {
-    Window window(sum.angle(), part, reach);
-    for (std::size_t begin = 0; begin < part.angles;) {
-      const std::span<const double> x = window.from(begin);
-      const bool last = begin + x.size() == part.angles;
-      // Only whole blocks, except at the end.
-      const std::size_t blocks = last ? (x.size() + block - 1) / block : (x.size() - reach) / block + 1;
-      std::vector<double> partial(blocks * m.size());
-      share_out(blocks, x.size() * m.size() > kWorthThreads ? 0 : 1, [&](std::size_t b) {
-        for (std::size_t k = 0; k < m.size(); ++k) {
-          const std::size_t all = places(kind, part.angles, m[k]), at = begin + b * block;
-          if (all > at)
-            partial[b * m.size() + k] = kind.block(x.data() + b * block, m[k], std::min(block, all - at));
-        }
-      });
-      for (std::size_t b = 0; b < blocks; ++b)
-        for (std::size_t k = 0; k < m.size(); ++k) squares[k].add(partial[b * m.size() + k]);
-      begin += blocks * block;
-    }
+    const double* const x = sum.angle().data() + part.first;
+    const std::size_t blocks = (part.angles + block - 1) / block;
+    std::vector<double> partial(blocks * m.size());
+    share_out(blocks, part.angles * m.size() > kWorthThreads ? 0 : 1, [&](std::size_t b) {
+      for (std::size_t k = 0; k < m.size(); ++k) {
+        const std::size_t all = places(kind, part.angles, m[k]), at = b * block;
+        if (all > at) partial[b * m.size() + k] = kind.block(x + at, m[k], std::min(block, all - at));
+      }
+    });
+    for (std::size_t b = 0; b < blocks; ++b)
+      for (std::size_t k = 0; k < m.size(); ++k) squares[k].add(partial[b * m.size() + k]);
   }
 }
 
-// Computes one m; its angles are streams m apart.
-double alone(const AngleSum& sum, const Kind& kind, std::size_t m) {
+// Squares of the modified deviation, whose running sum goes through the whole part.
+ExactSum modified_squares(const AngleSum& sum, const Kind& kind, std::size_t m) {
   ExactSum squares;
-  std::array<std::vector<double>, 4> room;
   for (const AngleSum::Part& part : sum.parts()) {
-    const SeriesView angle = sum.angle();
+    const double* const x = sum.angle().data() + part.first;
+    const Streams at{x, x + m, x + 2 * m, x + 3 * m};
     const std::size_t all = places(kind, part.angles, m);
-    const auto streams = [&](std::size_t begin, std::size_t count, std::size_t ms) {
-      Streams x{};
-      for (std::size_t s = 0; s <= ms; ++s)
-        x[s] = angle.piece(part.first + begin + s * m, count, room[s]).data();
-      return x;
-    };
     MovingMean mean(m);
-    if (kind.which == Deviation::kModified && all > 0)
-      for (std::size_t begin = 0; begin < m; begin += kBlock) {
-        const std::size_t count = std::min(kBlock, m - begin);
-        const Streams x = streams(begin, count, 2);
-        for (std::size_t i = 0; i < count; ++i) mean.add(second_difference(x, i, 0));
-      }
+    for (std::size_t i = 0; i < m && all > 0; ++i) mean.add(second_difference(at, i, 0));
     for (std::size_t begin = 0; begin < all; begin += kBlock) {
-      const std::size_t count = std::min(kBlock, all - begin);
-      if (kind.which != Deviation::kModified) {
-        const Streams x = streams(begin, count, kind.span);
-        squares.add(kind.which == Deviation::kHadamard ? hadamard_block(x, count) : allan_block(x, count));
-        continue;
-      }
-      // After the last place the mean does not move.
-      const std::size_t moves = begin + count < all ? count : count - 1;
-      const Streams x = streams(begin, moves, 3);
       double block = 0.0;
-      for (std::size_t i = 0; i < count; ++i) {
+      for (std::size_t i = begin; i < std::min(begin + kBlock, all); ++i) {
         block += mean.mean() * mean.mean();
-        if (i == moves) break;
-        mean.add(-second_difference(x, i, 0));
-        mean.add(second_difference(x, i, 1));
+        if (i + 1 == all) break;
+        mean.add(-second_difference(at, i, 0));
+        mean.add(second_difference(at, i, 1));
       }
       squares.add(block);
     }
   }
-  return squares.value();
+  return squares;
 }
 
 }  // namespace
 
-std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::size_t> m, Deviation which,
-                                      std::size_t angles_at_once) {
+std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::size_t> m, Deviation which) {
   const Kind kind = kind_of(which);
   std::vector<std::size_t> together, apart,
-      in_window;  // places in m; and those of the first as averaging times
+      in_blocks;  // places in m; and those of the first as averaging times
   for (std::size_t k = 0; k < m.size(); ++k) {
-    const bool fits = !sum.angle().in_memory().empty() || (kind.span + kind.block_m) * m[k] <= angles_at_once;
-    (fits ? together : apart).push_back(k);
-    if (fits) in_window.push_back(m[k]);
+    const bool blocks = which != Deviation::kModified || (kind.span + kind.block_m) * m[k] <= kLongestReach;
+    (blocks ? together : apart).push_back(k);
+    if (blocks) in_blocks.push_back(m[k]);
   }
-  std::vector<ExactSum> sums(together.size());
-  add_together(sum, kind, in_window, sums);
-  std::vector<double> squares(m.size());
-  for (std::size_t i = 0; i < together.size(); ++i) squares[together[i]] = sums[i].value();
-  share_out(apart.size(), 0, [&](std::size_t i) { squares[apart[i]] = alone(sum, kind, m[apart[i]]); });
+  std::vector<ExactSum> sums(together.size()), squares(m.size());
+  add_blocks(sum, kind, in_blocks, sums);
+  for (std::size_t i = 0; i < together.size(); ++i) squares[together[i]] = sums[i];
+  share_out(apart.size(), 0,
+            [&](std::size_t i) { squares[apart[i]] = modified_squares(sum, kind, m[apart[i]]); });
 
   std::vector<DeviationPoint> points(m.size());
   for (std::size_t k = 0; k < m.size(); ++k) {
@@ -267,9 +209,9 @@ std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::
     point.m = m[k];
     for (const AngleSum::Part& part : sum.parts()) point.terms += places(kind, part.angles, m[k]);
     const double samples = static_cast<double>(m[k]);
-    point.variance = point.terms == 0
-                         ? std::numeric_limits<double>::quiet_NaN()
-                         : squares[k] / static_cast<double>(point.terms) / (kind.norm * samples * samples);
+    point.variance = point.terms == 0 ? std::numeric_limits<double>::quiet_NaN()
+                                      : squares[k].value() / static_cast<double>(point.terms) /
+                                            (kind.norm * samples * samples);
   }
   return points;
 }

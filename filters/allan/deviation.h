@@ -29,15 +29,9 @@ struct DeviationPoint {
 // Longest averaging time in samples at which a difference fits into a stretch of `samples`; 0 if none does.
 [[nodiscard]] std::size_t longest_average(Deviation kind, std::size_t samples);
 
-// Angles of a long series in memory at a time, 128 MiB. All m whose differences fit are computed in one pass
-// over the file, each longer m in its own pass.
-inline constexpr std::size_t kAnglesAtOnce = std::size_t{1} << 24U;
-
-// One point per entry of m (each >= 1), in that order, computed on all processors. The result depends on
-// where the angles are stored only by rounding.
+// One point per entry of m (each >= 1), in that order, computed on all processors.
 [[nodiscard]] std::vector<DeviationPoint> deviation(const AngleSum& sum, std::span<const std::size_t> m,
-                                                    Deviation kind = Deviation::kAllan,
-                                                    std::size_t angles_at_once = kAnglesAtOnce);
+                                                    Deviation kind = Deviation::kAllan);
 
 // Averaging times in samples from 1 to longest, `per_decade` per decade, without repeats.
 [[nodiscard]] std::vector<std::size_t> log_spaced(std::size_t longest, int per_decade);

@@ -2,11 +2,12 @@
 #include "filters/allan/row_times.h"
 
 #include <cmath>
+#include <span>
 
 namespace ifog {
 
-RowTimes::RowTimes(const SeriesView& time_s, const SampleClock& clock)
-    : period_s_(clock.period_s), first_s_(time_s.at(0)), scatters_(clock.scatters()) {
+RowTimes::RowTimes(std::span<const double> time_s, const SampleClock& clock)
+    : period_s_(clock.period_s), first_s_(time_s.front()), scatters_(clock.scatters()) {
   if (scatters_) holes_ = holes(time_s, clock);
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include "filters/allan/stretches.h"
@@ -14,7 +15,7 @@ namespace ifog {
 class RowTimes {
  public:
   // clock: sample_clock(time_s). Needs at least one row.
-  RowTimes(const SeriesView& time_s, const SampleClock& clock);
+  RowTimes(std::span<const double> time_s, const SampleClock& clock);
 
   // Time of the next row, in seconds since the first row.
   double next(double stamp_s);

@@ -85,23 +85,17 @@ class Clock {
 
 }  // namespace
 
-void holes_of_scattered(const SeriesView& time_s, double period_s,
+void holes_of_scattered(std::span<const double> time_s, double period_s,
                         const std::function<void(std::size_t i, std::size_t lost, double step_s)>& found) {
   const std::size_t samples = time_s.size();
   Clock clock(period_s);
-  std::vector<double> room;
-  for (std::size_t begin = 0; begin + 1 < samples; begin += kSeriesPiece) {
-    const std::size_t end = std::min(begin + kSeriesPiece, samples - 1);
-    const std::span<const double> times =
-        time_s.piece(begin, std::min(end + 1 + kReturn, samples) - begin, room);
-    if (begin == 0) clock.begin(times);
-    for (std::size_t i = begin; i < end; ++i) {
-      const std::span<const double> next = times.subspan(i + 1 - begin);
-      const std::size_t lost = clock.take(times[i - begin], next);
-      if (lost == 0) continue;
-      found(i, lost, next[0] - times[i - begin]);
-      if (lost > kSilence) clock.begin(next);
-    }
+  clock.begin(time_s);
+  for (std::size_t i = 0; i + 1 < samples; ++i) {
+    const std::span<const double> next = time_s.subspan(i + 1);
+    const std::size_t lost = clock.take(time_s[i], next);
+    if (lost == 0) continue;
+    found(i, lost, next[0] - time_s[i]);
+    if (lost > kSilence) clock.begin(next);
   }
 }
 

@@ -6,8 +6,7 @@
 
 #include <cstddef>
 #include <functional>
-
-#include "filters/series/series_view.h"
+#include <span>
 
 namespace ifog {
 
@@ -17,7 +16,7 @@ namespace ifog {
 // Exact while each stamp is off by less than half a period. With larger errors, a gap counts only if most of
 // the next stamps confirm it (median, which other gaps nearby do not disturb) and the delay does not return
 // later, as that of a stalled host does. period_s: within 0.05 % of the true period.
-void holes_of_scattered(const SeriesView& time_s, double period_s,
+void holes_of_scattered(std::span<const double> time_s, double period_s,
                         const std::function<void(std::size_t i, std::size_t lost, double step_s)>& found);
 
 }  // namespace ifog

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 
 #include "filters/allan/scattered_stamps.h"
@@ -17,62 +18,36 @@ namespace {
 constexpr double kGap = 1.5;  // in periods
 constexpr std::size_t kBesideGap = 2;
 
-// A few time steps with the stamps around them.
-class Steps {
- public:
-  Steps(std::span<const double> time_s, std::size_t first, std::size_t samples)
-      : time_s_(time_s), first_(first), samples_(samples) {}
+// Step from sample i to i + 1.
+double step_after(std::span<const double> time_s, std::size_t i) { return time_s[i + 1] - time_s[i]; }
 
-  // Step from sample i to i + 1.
-  [[nodiscard]] double step(std::size_t i) const { return at(i + 1) - at(i); }
-  // A late stamp followed by an early one is jitter; after a gap all stamps stay late. The second sample on
-  // either side decides, so one bad stamp has no effect.
-  [[nodiscard]] bool is_gap(std::size_t i, double period) const {
-    if (step(i) <= kGap * period) return false;
-    const std::size_t low = i >= kBesideGap ? i - kBesideGap : 0;
-    const std::size_t high = std::min(i + 1 + kBesideGap, samples_ - 1);
-    const double across = (at(high) - at(low)) / period;
-    return across - static_cast<double>(high - low) > kGap - 1.0;
-  }
-
- private:
-  [[nodiscard]] double at(std::size_t i) const { return time_s_[i - first_]; }
-
-  std::span<const double> time_s_;
-  std::size_t first_, samples_;
-};
-
-// Calls use(steps, i) for every step i in order.
-template <typename Use>
-void for_each_step(const SeriesView& time_s, Use use) {
-  const std::size_t samples = time_s.size();
-  std::vector<double> room;
-  for (std::size_t begin = 0; begin + 1 < samples; begin += kSeriesPiece) {
-    const std::size_t end = std::min(begin + kSeriesPiece, samples - 1);
-    const std::size_t low = begin - std::min(begin, kBesideGap);
-    const std::size_t high = std::min(end + 1 + kBesideGap, samples);
-    const Steps steps(time_s.piece(low, high - low, room), low, samples);
-    for (std::size_t i = begin; i < end; ++i) use(steps, i);
-  }
+// A late stamp followed by an early one is jitter; after a gap all stamps stay late. The second sample on
+// either side decides, so one bad stamp has no effect.
+bool is_gap(std::span<const double> time_s, std::size_t i, double period) {
+  if (step_after(time_s, i) <= kGap * period) return false;
+  const std::size_t low = i >= kBesideGap ? i - kBesideGap : 0;
+  const std::size_t high = std::min(i + 1 + kBesideGap, time_s.size() - 1);
+  const double across = (time_s[high] - time_s[low]) / period;
+  return across - static_cast<double>(high - low) > kGap - 1.0;
 }
 
 // Calls found(i, lost, step) for each gap after sample i.
 template <typename Found>
-void for_each_hole(const SeriesView& time_s, double period, bool scatters, Found found) {
+void for_each_hole(std::span<const double> time_s, double period, bool scatters, Found found) {
   if (scatters) return holes_of_scattered(time_s, period, found);
-  for_each_step(time_s, [&](const Steps& steps, std::size_t i) {
-    if (!steps.is_gap(i, period)) return;
-    const double step = steps.step(i);
+  for (std::size_t i = 0; i + 1 < time_s.size(); ++i) {
+    if (!is_gap(time_s, i, period)) continue;
+    const double step = step_after(time_s, i);
     found(i, static_cast<std::size_t>(std::max(0.0, std::round(step / period) - 1.0)), step);
-  });
+  }
 }
 
 // Mean period without the gaps found with this period. With scattering stamps a short gap counts as its
 // number of steps, because its length is less accurate.
-double mean_period(const SeriesView& time_s, double period_s, bool scatters) {
+double mean_period(std::span<const double> time_s, double period_s, bool scatters) {
   constexpr std::size_t kShort = 8;
   const std::size_t count = time_s.size() - 1;
-  double between_s = time_s.at(count) - time_s.at(0);
+  double between_s = time_s.back() - time_s.front();
   double steps = static_cast<double>(count);
   std::size_t gaps = 0;
   for_each_hole(time_s, period_s, scatters, [&](std::size_t, std::size_t lost, double step_s) {
@@ -99,36 +74,27 @@ struct Extremes {
   }
 };
 
-Extremes extremes_of(const SeriesView& time_s) {
+Extremes extremes_of(std::span<const double> time_s) {
+  constexpr std::size_t kLanes = 4;  // for instruction-level parallelism
   Extremes found;
-  std::vector<double> room;
-  const std::size_t samples = time_s.size();
-  for (std::size_t begin = 0; begin + 1 < samples; begin += kSeriesPiece) {
-    const std::span<const double> some =
-        time_s.piece(begin, std::min(kSeriesPiece + 1, samples - begin), room);
-    constexpr std::size_t kLanes = 4;  // for instruction-level parallelism
-    std::array<double, kLanes> least, most;
-    least.fill(found.least_s);
-    most.fill(found.most_s);
-    for (std::size_t i = 0; i + 1 < some.size(); ++i) {
-      const double step = some[i + 1] - some[i];
-      least[i % kLanes] = step < least[i % kLanes] ? step : least[i % kLanes];
-      most[i % kLanes] = step > most[i % kLanes] ? step : most[i % kLanes];
-    }
-    found.least_s = *std::ranges::min_element(least);
-    found.most_s = *std::ranges::max_element(most);
+  std::array<double, kLanes> least, most;
+  least.fill(found.least_s);
+  most.fill(found.most_s);
+  for (std::size_t i = 0; i + 1 < time_s.size(); ++i) {
+    const double step = step_after(time_s, i);
+    least[i % kLanes] = step < least[i % kLanes] ? step : least[i % kLanes];
+    most[i % kLanes] = step > most[i % kLanes] ? step : most[i % kLanes];
   }
+  found.least_s = *std::ranges::min_element(least);
+  found.most_s = *std::ranges::max_element(most);
   return found;
 }
 
 // Every `stride`-th step.
-std::vector<double> some_steps(const SeriesView& time_s, std::size_t stride) {
-  std::vector<double> some, room;
+std::vector<double> some_steps(std::span<const double> time_s, std::size_t stride) {
+  std::vector<double> some;
   some.reserve((time_s.size() - 1) / stride + 1);
-  for (std::size_t i = 0; i + 1 < time_s.size(); i += stride) {
-    const std::span<const double> two = time_s.piece(i, 2, room);
-    some.push_back(two[1] - two[0]);
-  }
+  for (std::size_t i = 0; i + 1 < time_s.size(); i += stride) some.push_back(step_after(time_s, i));
   return some;
 }
 
@@ -151,19 +117,19 @@ struct EvenClock {
   }
 };
 
-EvenClock even_clock(const SeriesView& time_s) {
+EvenClock even_clock(std::span<const double> time_s) {
   constexpr std::size_t kStamps = 512, kFewest = 8;
   const std::size_t windows = time_s.size() / kStamps, last = windows * kStamps - 1;
   EvenClock clock{.late = std::numeric_limits<double>::infinity()};
   if (windows < kFewest) return clock;
-  clock.period_s = (time_s.at(last) - time_s.at(0)) / static_cast<double>(last);
-  std::vector<double> least, late, delays(kStamps), room;
+  clock.period_s = (time_s[last] - time_s[0]) / static_cast<double>(last);
+  std::vector<double> least, late, delays(kStamps);
   for (int round = 0; round < 3; ++round) {
     least.clear(), late.clear();
     for (std::size_t begin = 0; begin < last; begin += kStamps) {
-      const std::span<const double> stamps = time_s.piece(begin, kStamps, room);
+      const std::span<const double> stamps = time_s.subspan(begin, kStamps);
       for (std::size_t i = 0; i < kStamps; ++i)
-        delays[i] = (stamps[i] - time_s.at(0)) / clock.period_s - static_cast<double>(begin + i);
+        delays[i] = (stamps[i] - time_s[0]) / clock.period_s - static_cast<double>(begin + i);
       least.push_back(*std::ranges::min_element(delays));
       late.push_back(median(delays) - least.back());
     }
@@ -181,7 +147,7 @@ EvenClock even_clock(const SeriesView& time_s) {
 
 }  // namespace
 
-SampleClock sample_clock(const SeriesView& time_s) {
+SampleClock sample_clock(std::span<const double> time_s) {
   if (time_s.size() < 2) throw std::invalid_argument("a sample time needs two samples");
   const std::size_t count = time_s.size() - 1;
   // Some 100,000 steps suffice for the median.
@@ -205,7 +171,7 @@ SampleClock sample_clock(const SeriesView& time_s) {
   } else {
     // The median of coarse stamps is one tick too short or too long; a second round with the mean corrects it.
     for (int round = 0; round < 2; ++round)
-      period = steps.gapless(period) ? (time_s.at(count) - time_s.at(0)) / static_cast<double>(count)
+      period = steps.gapless(period) ? (time_s.back() - time_s.front()) / static_cast<double>(count)
                                      : mean_period(time_s, period, false);
     clock.scatter = scatter(period);
   }
@@ -221,16 +187,16 @@ SampleClock sample_clock(const SeriesView& time_s) {
   if (!gaps.empty()) clock.first_gap = gaps.front().after;
   for (const Hole& gap : gaps) clock.missing += gap.lost;
   auto gap = gaps.begin();
-  for_each_step(time_s, [&](const Steps& all, std::size_t i) {
+  for (std::size_t i = 0; i < count; ++i) {
     if (gap != gaps.end() && gap->after == i)
       ++gap;
     else
-      clock.worst_jitter_s = std::max(clock.worst_jitter_s, std::abs(all.step(i) - period));
-  });
+      clock.worst_jitter_s = std::max(clock.worst_jitter_s, std::abs(step_after(time_s, i) - period));
+  }
   return clock;
 }
 
-std::vector<Hole> holes(const SeriesView& time_s, const SampleClock& clock) {
+std::vector<Hole> holes(std::span<const double> time_s, const SampleClock& clock) {
   std::vector<Hole> out;
   for_each_hole(time_s, clock.period_s, clock.scatters(), [&](std::size_t i, std::size_t lost, double) {
     out.push_back({i, lost});
@@ -238,25 +204,22 @@ std::vector<Hole> holes(const SeriesView& time_s, const SampleClock& clock) {
   return out;
 }
 
-std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_radps,
+std::vector<Stretch> stretches(std::span<const double> time_s, std::span<const double> rate_radps,
                                const SampleClock& clock) {
   const std::vector<Hole> gaps = holes(time_s, clock);
   std::vector<Stretch> found;
   std::size_t lost = 0;  // since the last value
   auto gap = gaps.begin();
-  for_each_piece(rate_radps, 0, rate_radps.size(), [&](std::span<const double> rate, std::size_t first) {
-    for (std::size_t k = 0; k < rate.size(); ++k) {
-      const std::size_t i = first + k;
-      if (std::isnan(rate[k])) {
-        ++lost;
-      } else {
-        if (found.empty() || lost > 0) found.push_back({i, i, found.empty() ? 0 : lost});
-        found.back().end = i + 1;
-        lost = 0;
-      }
-      if (gap != gaps.end() && gap->after == i) lost += gap++->lost;
+  for (std::size_t i = 0; i < rate_radps.size(); ++i) {
+    if (std::isnan(rate_radps[i])) {
+      ++lost;
+    } else {
+      if (found.empty() || lost > 0) found.push_back({i, i, found.empty() ? 0 : lost});
+      found.back().end = i + 1;
+      lost = 0;
     }
-  });
+    if (gap != gaps.end() && gap->after == i) lost += gap++->lost;
+  }
   return found;
 }
 

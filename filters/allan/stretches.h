@@ -7,8 +7,6 @@
 #include <span>
 #include <vector>
 
-#include "filters/series/series_view.h"
-
 namespace ifog {
 
 // Samples begin … end − 1, equidistant and complete.
@@ -16,6 +14,9 @@ struct Stretch {
   std::size_t begin = 0, end = 0;
   std::size_t lost = 0;  // samples between the stretch before it and this one; 0: unknown
   [[nodiscard]] std::size_t size() const { return end - begin; }
+  [[nodiscard]] std::span<const double> of(std::span<const double> series) const {
+    return series.subspan(begin, size());
+  }
   bool operator==(const Stretch&) const = default;
 };
 
@@ -36,7 +37,7 @@ struct SampleClock {
 // with late stamps is assumed where their delay returns. Else the median step defines a gap, so up to half of the
 // steps may be gaps. Coarsely rounded stamps alternate between k and k + 1 ticks; so a step is a gap only if later
 // stamps stay late. Scattering stamps: filters/allan/scattered_stamps.h.
-[[nodiscard]] SampleClock sample_clock(const SeriesView& time_s);
+[[nodiscard]] SampleClock sample_clock(std::span<const double> time_s);
 
 struct Hole {
   std::size_t after = 0;  // the last sample before it
@@ -44,10 +45,10 @@ struct Hole {
 };
 
 // In order of time.
-[[nodiscard]] std::vector<Hole> holes(const SeriesView& time_s, const SampleClock& clock);
+[[nodiscard]] std::vector<Hole> holes(std::span<const double> time_s, const SampleClock& clock);
 
 // Stretches without gap or NaN, in order. If time_s is empty only NaN divides them.
-[[nodiscard]] std::vector<Stretch> stretches(const SeriesView& time_s, const SeriesView& rate_radps,
-                                             const SampleClock& clock);
+[[nodiscard]] std::vector<Stretch> stretches(std::span<const double> time_s,
+                                             std::span<const double> rate_radps, const SampleClock& clock);
 
 }  // namespace ifog

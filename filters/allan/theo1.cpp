@@ -101,8 +101,7 @@ std::vector<LongPoint> theo1(const AngleSum& sum, const TermVariances& terms, do
   const std::size_t step = std::max<std::size_t>(1, (part->angles - 1) / kPlaces);
   const double scale = static_cast<double>(step);
   std::vector<double> angle;
-  for (std::size_t i = 0; i < part->angles; i += step)
-    angle.push_back(sum.angle().at(part->first + i) / scale);
+  for (std::size_t i = 0; i < part->angles; i += step) angle.push_back(sum.angle()[part->first + i] / scale);
   // Averages over `step` samples have the same terms with these variances.
   TermVariances averaged{terms[kQ] / (scale * scale), terms[kN] / scale, terms[kB], terms[kK] * scale};
   if (std::ranges::all_of(averaged, [](double v) { return v <= 0.0; })) averaged[kN] = 1.0;

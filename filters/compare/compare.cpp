@@ -121,9 +121,7 @@ StepResponse step_response(const ComparisonInput& in, const Steps& steps, const 
 
 double spread_at_rest(std::span<const double> output, const std::vector<Stretch>& at_rest) {
   Samples resting;
-  for (const Stretch& part : at_rest)
-    resting.insert(resting.end(), output.begin() + static_cast<std::ptrdiff_t>(part.begin),
-                   output.begin() + static_cast<std::ptrdiff_t>(part.end));
+  for (const Stretch& part : at_rest) resting.append(part.of(output));
   return spread(resting);
 }
 
@@ -151,7 +149,8 @@ void add_series_figures(ComparisonRow& row, const ComparisonInput& in, std::span
 }
 
 void add_innovation_figures(ComparisonRow& row, std::span<const double> innovation, Samples nis) {
-  std::erase_if(nis, [](double v) { return !std::isfinite(v); });
+  nis.resize(static_cast<std::size_t>(
+      std::ranges::remove_if(nis, [](double v) { return !std::isfinite(v); }).begin() - nis.begin()));
   if (nis.size() < kLeastAtRest) return;
   const Whiteness white = whiteness(innovation);
   row.whiteness_lag1 = white.lag1;

@@ -145,7 +145,7 @@ class Run {
     if (data_.grid.dwells) return;
     subtract_found();
     lines_ = coherent_lines(errors_, data_.grid.sample_s, options_.significance * kOfLines);
-    if (std::ranges::any_of(errors_, [](const auto& one) { return one.before.size() > kMostTransformed; }))
+    if (std::ranges::any_of(errors_, [](const auto& one) { return one.before->size() > kMostTransformed; }))
       say("lines are sought in the first " + std::to_string(kMostTransformed) + " samples of a record");
     if (lines_.empty()) return;
     take_out(lines_, data_.grid, errors_);

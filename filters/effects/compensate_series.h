@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "filters/effects/compensator.h"
-#include "filters/series/series_view.h"
+#include "filters/series/median_step.h"
 
 namespace ifog {
 

@@ -65,7 +65,7 @@ std::optional<ShareThere> RunningTrial::weigh(std::size_t axis) const {
     after.push_back(each.count > 0.0 ? each.after / each.count : std::nan(""));
   }
   const std::span<const double> rate(before);
-  const Rest rest = find_rest(std::span(&rate, 1), stretch_s_);
+  const Rest rest = find_rest(std::span(&rate, 1), {}, stretch_s_);
   std::size_t resting = 0;
   for (const Stretch& each : rest.at_rest)
     for (std::size_t i = each.begin; i < each.end; ++i) resting += std::isfinite(before[i]) ? 1 : 0;

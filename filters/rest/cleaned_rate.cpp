@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -15,7 +16,7 @@ namespace {
 constexpr std::size_t kStuck = 8;  // equal samples in a row
 
 // Empty if repeated values are normal in this record.
-std::vector<Stretch> stuck_runs(const SeriesView& rate, std::span<const Stretch> parts) {
+std::vector<Stretch> stuck_runs(std::span<const double> rate, std::span<const Stretch> parts) {
   std::vector<Stretch> stuck;
   Repeats repeats;
   for_each_run(rate, parts, [&](const Run& run) {
@@ -34,32 +35,22 @@ std::string in_words(const std::vector<Stretch>& stuck, const TimeOfSample& time
 }
 
 // leaps: in order.
-std::optional<LongSeries> without(const SeriesView& rate, const std::vector<Glitches::Leap>& leaps) {
+std::optional<Samples> without(std::span<const double> rate, const std::vector<Glitches::Leap>& leaps) {
   if (leaps.empty()) return std::nullopt;
-  std::optional<LongSeries> out(std::in_place);
-  std::vector<double> repaired;
-  auto next = leaps.begin();
-  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
-    const std::size_t end = first + values.size();
-    repaired.assign(values.begin(), values.end());
-    for (; next != leaps.end() && next->samples.begin < end; ++next) {
-      const std::size_t from = std::max(next->samples.begin, first), to = std::min(next->samples.end, end);
-      std::fill_n(repaired.begin() + static_cast<std::ptrdiff_t>(from - first), to - from, next->value);
-      if (next->samples.end > end) break;  // the rest is in the next piece
-    }
-    out->add(repaired);
-  });
+  Samples out(rate);
+  for (const auto& [samples, value] : leaps)
+    std::fill(out.begin() + samples.begin, out.begin() + samples.end, value);
   return out;
 }
 
 }  // namespace
 
-void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
+void leave_out_placeholders(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
   auto cleaned = without_leaps(rate, rate, stretches({}, rate, {}), time_s, faults, LeapOf::kOneValue);
   if (cleaned) rate = *std::move(cleaned);
 }
 
-void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
+void leave_out_repeats(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults) {
   leave_out_placeholders(rate, time_s, faults);
   const std::vector<Stretch> stuck = stuck_runs(rate, stretches({}, rate, {}));
   if (stuck.empty()) return;
@@ -69,12 +60,12 @@ void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector
   rate = *without(rate, missing);
 }
 
-std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,
-                                        std::span<const Stretch> parts, const TimeOfSample& time_s,
-                                        std::vector<ValueFault>& faults, LeapOf of) {
+std::optional<Samples> without_leaps(std::span<const double> rate, std::span<const double> error,
+                                     std::span<const Stretch> parts, const TimeOfSample& time_s,
+                                     std::vector<ValueFault>& faults, LeapOf of) {
   Glitches leaps = find_glitches(error, parts, of);
   if (leaps.count > 0) faults.push_back({"leaps", in_words(leaps, time_s)});
-  for (auto& [samples, value] : leaps.few) value += rate.at(samples.begin) - error.at(samples.begin);
+  for (auto& [samples, value] : leaps.few) value += rate[samples.begin] - error[samples.begin];
   return without(rate, leaps.few);
 }
 

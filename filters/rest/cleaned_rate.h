@@ -12,7 +12,7 @@
 #include "filters/allan/stretches.h"
 #include "filters/rest/glitches.h"
 #include "filters/rest/value_faults.h"
-#include "filters/series/long_series.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
 
@@ -20,19 +20,19 @@ using TimeOfSample = std::function<double(std::size_t)>;  // s, for the text
 
 // Sets placeholders such as -999 (LeapOf::kOneValue, glitches.h) to NaN, for commands that pass the rate on.
 // rate: rad/s, NaN where missing.
-void leave_out_placeholders(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
+void leave_out_placeholders(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
 // Also sets runs of eight or more equal samples to NaN, if nine of ten runs are single samples; to be called
 // before the search for rest.
-void leave_out_repeats(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
+void leave_out_repeats(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
 
 // Rate in which single outliers of `error` are replaced by the median of their neighbours. nullopt if there
 // are none, or too many to be outliers (glitches.h). error: rate minus reference, or the rate; parts: at
 // rest. Placeholders become NaN instead.
-[[nodiscard]] std::optional<LongSeries> without_leaps(const SeriesView& rate, const SeriesView& error,
-                                                      std::span<const Stretch> parts,
-                                                      const TimeOfSample& time_s,
-                                                      std::vector<ValueFault>& faults,
-                                                      LeapOf of = LeapOf::kOneSample);
+[[nodiscard]] std::optional<Samples> without_leaps(std::span<const double> rate,
+                                                   std::span<const double> error,
+                                                   std::span<const Stretch> parts, const TimeOfSample& time_s,
+                                                   std::vector<ValueFault>& faults,
+                                                   LeapOf of = LeapOf::kOneSample);
 
 }  // namespace ifog

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
 #include "filters/allan/angle_sum.h"
-#include "filters/series/long_series.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
 namespace {
@@ -23,7 +24,7 @@ struct Pairs {
   std::vector<double> rate, channel;
 };
 
-Pairs pairs_of(const SeriesView& rate, std::span<const Stretch> parts, std::size_t first_row,
+Pairs pairs_of(std::span<const double> rate, std::span<const Stretch> parts, std::size_t first_row,
                const ChannelOutline& channel) {
   const std::size_t group = std::max<std::size_t>(1, channel.means().size() / kSlowMeans),
                     rows = group * channel.rows();
@@ -36,9 +37,7 @@ Pairs pairs_of(const SeriesView& rate, std::span<const Stretch> parts, std::size
     if (std::ranges::none_of(parts, rests)) continue;
     double values = 0.0, sum = 0.0;
     for (std::size_t i = 0; i < group; ++i) values += channel.means()[g * group + i];
-    for_each_piece(rate, from, to, [&](std::span<const double> piece, std::size_t) {
-      for (const double value : piece) sum += value;
-    });
+    for (std::size_t i = from; i < to; ++i) sum += rate[i];
     if (std::isnan(values)) continue;
     pairs.rate.push_back(sum / static_cast<double>(rows));
     pairs.channel.push_back(values / static_cast<double>(group));
@@ -65,26 +64,24 @@ Line line_of(const Pairs& pairs) {
 }
 
 // The rate minus the line, linearly interpolated between the centres of the channel's means.
-LongSeries less_line(const SeriesView& rate, std::size_t first_row, const ChannelOutline& channel,
-                     double slope) {
+Samples less_line(std::span<const double> rate, std::size_t first_row, const ChannelOutline& channel,
+                  double slope) {
   const std::vector<double>& means = channel.means();
   const auto rows = static_cast<double>(channel.rows()), last = static_cast<double>(means.size() - 1);
-  LongSeries less;
-  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> piece, std::size_t first) {
-    for (std::size_t i = 0; i < piece.size(); ++i) {
-      const double at =
-          std::clamp((static_cast<double>(first_row + first + i) + 0.5) / rows - 0.5, 0.0, last);
-      const auto left = static_cast<std::size_t>(at), right = std::min(left + 1, means.size() - 1);
-      const double value = means[left] + (at - std::floor(at)) * (means[right] - means[left]);
-      less.add(piece[i] - (std::isnan(value) ? 0.0 : slope * value));
-    }
-  });
+  Samples less;
+  less.reserve(rate.size());
+  for (std::size_t i = 0; i < rate.size(); ++i) {
+    const double at = std::clamp((static_cast<double>(first_row + i) + 0.5) / rows - 0.5, 0.0, last);
+    const auto left = static_cast<std::size_t>(at), right = std::min(left + 1, means.size() - 1);
+    const double value = means[left] + (at - std::floor(at)) * (means[right] - means[left]);
+    less.push_back(rate[i] - (std::isnan(value) ? 0.0 : slope * value));
+  }
   return less;
 }
 
 }  // namespace
 
-std::optional<FollowedChannel> followed_channel(const SeriesView& rate, std::span<const Stretch> parts,
+std::optional<FollowedChannel> followed_channel(std::span<const double> rate, std::span<const Stretch> parts,
                                                 std::size_t first_row, double period_s,
                                                 std::span<const ChannelOutline> channels,
                                                 NoiseCoefficients& found) {
@@ -96,7 +93,7 @@ std::optional<FollowedChannel> followed_channel(const SeriesView& rate, std::spa
         here.share > std::max(kLeastShare, line.share))
       best = &channel, line = here;
   if (best == nullptr) return std::nullopt;
-  const LongSeries less = less_line(rate, first_row, *best, line.slope);
+  const Samples less = less_line(rate, first_row, *best, line.slope);
   NoiseCoefficients without;
   try {
     without = noise_coefficients(AngleSum(less, parts), period_s);

@@ -10,7 +10,6 @@
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/allan/stretches.h"
 #include "filters/rest/channel_outline.h"
-#include "filters/series/series_view.h"
 
 namespace ifog {
 
@@ -23,7 +22,7 @@ struct FollowedChannel {
 // Channel that the slow means of the rate follow most, or nullopt. Then B, K and R are estimated again
 // without its effect, and their error bars are widened by the difference. rate: rad/s, starts at row
 // `first_row` of the outlines; parts: its stretches at rest.
-std::optional<FollowedChannel> followed_channel(const SeriesView& rate, std::span<const Stretch> parts,
+std::optional<FollowedChannel> followed_channel(std::span<const double> rate, std::span<const Stretch> parts,
                                                 std::size_t first_row, double period_s,
                                                 std::span<const ChannelOutline> channels,
                                                 NoiseCoefficients& found);

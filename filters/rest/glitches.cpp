@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -30,25 +31,24 @@ constexpr std::size_t kEnough = 100'000;  // enough second differences for the m
 // Calls use(i, away) for each sample that has both neighbours, with its distance from their mean, except where
 // one of the three has the magnitude `without`.
 template <typename Use>
-void for_each_middle(const SeriesView& rate, std::span<const Stretch> parts, double without, Use use) {
+void for_each_middle(std::span<const double> rate, std::span<const Stretch> parts, double without, Use use) {
   for (const Stretch& part : parts) {
     double before = 0.0, middle = 0.0;
-    for_each_piece(rate, part.begin, part.end, [&](std::span<const double> values, std::size_t first) {
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        const bool all = std::abs(before) != without && std::abs(middle) != without &&
-                         std::abs(values[k]) != without && first + k >= part.begin + 2;
-        if (all) use(first + k - 1, std::abs(middle - 0.5 * (before + values[k])));
-        before = middle;
-        middle = values[k];
-      }
-    });
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      const bool all = std::abs(before) != without && std::abs(middle) != without &&
+                       std::abs(rate[i]) != without && i >= part.begin + 2;
+      if (all) use(i - 1, std::abs(middle - 0.5 * (before + rate[i])));
+      before = middle;
+      middle = rate[i];
+    }
   }
 }
 
 // Noise deviation that a leap is compared with.
 class Yardstick {
  public:
-  Yardstick(const SeriesView& rate, std::span<const Stretch> parts, LeapOf of) : rate_(rate), parts_(parts) {
+  Yardstick(std::span<const double> rate, std::span<const Stretch> parts, LeapOf of)
+      : rate_(rate), parts_(parts) {
     for_each_run(rate, parts, [&](const Run& run) { add(run); });
     if (of == LeapOf::kOneValue) without_ = largest_;
     std::vector<double> some;
@@ -76,7 +76,7 @@ class Yardstick {
     const double most = 0.25 * std::abs(run.value - between);
     const std::size_t end = std::min(run.begin + kLongest + 1, rate_.size());
     for (std::size_t i = run.begin - std::min(run.begin, kLongest); i < end; ++i)
-      if (std::abs(rate_.at(i) - between) > most && std::abs(rate_.at(i) - run.value) > most) return false;
+      if (std::abs(rate_[i] - between) > most && std::abs(rate_[i] - run.value) > most) return false;
     return true;
   }
   // Lower limit of at().
@@ -123,7 +123,7 @@ class Yardstick {
     times_ += size == largest_ ? 1 : 0;
   }
 
-  const SeriesView& rate_;
+  std::span<const double> rate_;
   std::span<const Stretch> parts_;
   Repeats repeats_;
   std::array<Near, 4> near_;  // cache
@@ -135,7 +135,7 @@ class Yardstick {
 
 }  // namespace
 
-Glitches find_glitches(const SeriesView& rate, std::span<const Stretch> parts, LeapOf of) {
+Glitches find_glitches(std::span<const double> rate, std::span<const Stretch> parts, LeapOf of) {
   Glitches out;
   Yardstick yardstick(rate, parts, of);
   std::size_t samples = 0;

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "filters/allan/stretches.h"
-#include "filters/series/series_view.h"
 
 namespace ifog {
 
@@ -39,7 +38,7 @@ enum class LeapOf { kOneSample, kOneValue };
 // none of seven samples on either side leaps elsewhere. The deviation is the record's, from second differences;
 // the local one (about a hundred samples) if that is more than twice as high; and at least half the sensor's
 // smallest step.
-[[nodiscard]] Glitches find_glitches(const SeriesView& rate_radps, std::span<const Stretch> parts,
+[[nodiscard]] Glitches find_glitches(std::span<const double> rate_radps, std::span<const Stretch> parts,
                                      LeapOf of = LeapOf::kOneSample);
 
 // "1 sample leaps away and back (at 100.3 s, 1e+05 times the noise); ..." and whether it is dropped; empty if

@@ -2,6 +2,7 @@
 #include "filters/rest/held.h"
 
 #include <algorithm>
+#include <span>
 #include <utility>
 
 #include "filters/rest/runs.h"
@@ -13,7 +14,7 @@ constexpr std::size_t kLeastHeld = 64, kMostRuns = 4096;
 
 }  // namespace
 
-HeldApart apart_from_held(const SeriesView& rate, const std::vector<Stretch>& parts) {
+HeldApart apart_from_held(std::span<const double> rate, const std::vector<Stretch>& parts) {
   const std::size_t least = std::max(kLeastHeld, rate.size() / kMostRuns);
   HeldApart out;
   std::size_t steps = 0, changes = 0;  // outside held stretches

@@ -3,6 +3,7 @@
 // value, or the sensor has not started. They must not enter a noise estimate.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "filters/allan/stretches.h"
@@ -16,6 +17,7 @@ struct HeldApart {
 // Splits `parts`. Held: runs of equal values from 64 samples and 1/4096 of the record on, if at least half of
 // the other steps are changes. So a sensor whose resolution is coarse against its noise has no held
 // stretches.
-[[nodiscard]] HeldApart apart_from_held(const SeriesView& rate_radps, const std::vector<Stretch>& parts);
+[[nodiscard]] HeldApart apart_from_held(std::span<const double> rate_radps,
+                                        const std::vector<Stretch>& parts);
 
 }  // namespace ifog

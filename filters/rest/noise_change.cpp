@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
 #include "filters/distributions/median.h"
 #include "filters/rest/held.h"
@@ -328,15 +329,13 @@ std::vector<NoiseChange> stands_still(std::vector<Stretch> held, std::size_t sam
 
 }  // namespace
 
-std::vector<NoiseChange> noise_changes(const SeriesView& rate_radps, std::span<const Stretch> parts,
+std::vector<NoiseChange> noise_changes(std::span<const double> rate_radps, std::span<const Stretch> parts,
                                        double period_s, const std::function<double(std::size_t)>& time_s) {
   const HeldApart apart = apart_from_held(rate_radps, {parts.begin(), parts.end()});
   Pyramid pyramid(std::max<std::size_t>(1, rate_radps.size()));
   for (const Stretch& part : apart.moving) {
     pyramid.begin();
-    for_each_piece(rate_radps, part.begin, part.end, [&](std::span<const double> values, std::size_t first) {
-      for (std::size_t i = 0; i < values.size(); ++i) pyramid.take(values[i], first + i);
-    });
+    for (std::size_t i = part.begin; i < part.end; ++i) pyramid.take(rate_radps[i], i);
   }
   std::vector<NoiseLevel> all;
   for (const Octave& octave : pyramid.octaves()) all.push_back(noise_level_of(octave));

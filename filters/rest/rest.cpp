@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -94,15 +95,13 @@ std::vector<double> running_median(const std::vector<Window>& windows, std::size
 }
 
 // Smallest difference of neighbouring values: the converter's step if it is coarse.
-double least_step(const SeriesView& rate) {
+double least_step(std::span<const double> rate) {
   double least = std::numeric_limits<double>::infinity(), before = std::nan("");
-  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t) {
-    for (const double value : values) {
-      const double step = std::abs(value - before);
-      if (step > 0.0 && step < least) least = step;
-      before = value;
-    }
-  });
+  for (const double value : rate) {
+    const double step = std::abs(value - before);
+    if (step > 0.0 && step < least) least = step;
+    before = value;
+  }
   return std::isfinite(least) ? least : 0.0;
 }
 
@@ -211,12 +210,10 @@ Rest::SlowTurns slow_turns_of(const std::vector<double>& leap, const std::vector
 }
 
 // For rows too far apart for windows: a row far from the others is a turn.
-Rest::SlowTurns dwells_of(std::span<const SeriesView> axes) {
+Rest::SlowTurns dwells_of(std::span<const std::span<const double>> axes) {
   Rest::SlowTurns found;
-  for (const SeriesView& rate : axes) {
+  for (const std::span<const double> values : axes) {
     std::vector<double> there;
-    std::vector<double> room;
-    const std::span<const double> values = rate.piece(0, rate.size(), room);
     std::ranges::copy_if(values, std::back_inserter(there), [](double v) { return std::isfinite(v); });
     const double level = quantile(std::move(there), 0.5);
     for (std::size_t i = 0; i < values.size(); ++i) {
@@ -246,43 +243,30 @@ Rest as_samples(const std::vector<State>& state, std::size_t window, std::size_t
 }
 
 // Per sample, because a rate that is set at each sample has no windows.
-Rest rest_by_references(std::span<const SeriesView> references, std::size_t samples) {
+Rest rest_by_references(std::span<const std::span<const double>> references, std::size_t samples) {
   std::vector<State> state(std::max<std::size_t>(1, samples), State::kResting);
-  for (const SeriesView& reference : references) {
+  for (const std::span<const double> values : references) {
     std::vector<double> there;
-    for_each_piece(reference, 0, samples, [&](std::span<const double> values, std::size_t) {
-      std::ranges::copy_if(values, std::back_inserter(there), [](double v) { return std::isfinite(v); });
-    });
+    std::ranges::copy_if(values, std::back_inserter(there), [](double v) { return std::isfinite(v); });
     const double level = quantile(std::move(there), 0.5);
-    for_each_piece(reference, 0, samples, [&](std::span<const double> values, std::size_t first) {
-      for (std::size_t i = 0; i < values.size(); ++i)
-        if (std::abs(values[i] - level) > kLeastTurn) state[first + i] = State::kTurning;
-    });
+    for (std::size_t i = 0; i < samples; ++i)
+      if (std::abs(values[i] - level) > kLeastTurn) state[i] = State::kTurning;
   }
   return as_samples(state, 1, samples);
 }
 
-std::vector<Window> rest_windows(const SeriesView& rate, double period_s) {
+std::vector<Window> rest_windows(std::span<const double> rate, double period_s) {
   const std::size_t window = samples_of_window(period_s), count = rate.size() / window;
   std::vector<Window> out;
   out.reserve(count);
-  const std::size_t together = std::max<std::size_t>(1, kSeriesPiece / window);
-  std::vector<double> room;
-  for (std::size_t first = 0; first < count; first += together) {
-    const std::size_t some = std::min(together, count - first);
-    const std::span<const double> rates = rate.piece(first * window, some * window, room);
-    for (std::size_t i = 0; i < some; ++i) out.push_back(window_of(rates.subspan(i * window, window)));
-  }
+  for (std::size_t i = 0; i < count; ++i) out.push_back(window_of(rate.subspan(i * window, window)));
   return out;
 }
 
 }  // namespace
 
-Rest find_rest(std::span<const std::span<const double>> axes, double period_s) {
-  return find_rest(std::vector<SeriesView>(axes.begin(), axes.end()), {}, period_s);
-}
-
-Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references, double period_s) {
+Rest find_rest(std::span<const std::span<const double>> axes,
+               std::span<const std::span<const double>> references, double period_s) {
   const std::size_t samples = axes.empty() ? 0 : axes.front().size();
   const std::size_t window = samples_of_window(period_s);
   const std::size_t count = samples / window;
@@ -305,7 +289,8 @@ Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> ref
   rest.slow_turns = slow_turns_of(leap, state, window);
   if (rest.resting() > 0) return rest;
   std::vector<ValueFault> faults;
-  for (const SeriesView& rate : axes) find_value_faults(rate, stretches({}, rate, {}), period_s, faults);
+  for (std::span<const double> rate : axes)
+    find_value_faults(rate, stretches({}, rate, {}), period_s, faults);
   for (const ValueFault& fault : faults)
     if (fault.name == "wrapped") rest.wrapped = "; " + fault.text;
   return rest;

@@ -38,13 +38,11 @@ struct Rest {
 
 // Stretches in which all axes are at rest. Records of fewer than 16 windows are judged by the noise of any gyro
 // alone; records with more than 2 s per sample are assumed to be at rest. axes: rates of one sensor, rad/s,
-// equally long, NaN where missing.
-[[nodiscard]] Rest find_rest(std::span<const std::span<const double>> axes, double period_s);
-// The same with references: other measurements of the same rates, equally long; may be none. With references,
+// equally long, NaN where missing. references: other measurements of the same rates; may be none. With them,
 // samples more than 1 s apart may be dwells of a rate table. Then only the references decide: turned is where
 // one departs by more than 0.001 rad/s from its median.
-[[nodiscard]] Rest find_rest(std::span<const SeriesView> axes, std::span<const SeriesView> references,
-                             double period_s);
+[[nodiscard]] Rest find_rest(std::span<const std::span<const double>> axes,
+                             std::span<const std::span<const double>> references, double period_s);
 
 // "moving in 37 of 60 s (turned 30 s, shaken 7 s), at rest 5 … 12 s, 40 … 56 s"; empty without motion.
 // first_s: time of the first sample.

@@ -8,7 +8,6 @@
 #include <span>
 
 #include "filters/allan/stretches.h"
-#include "filters/series/series_view.h"
 
 namespace ifog {
 
@@ -28,21 +27,19 @@ struct Repeats {
 
 // Calls use(run) for each run of each stretch, in order. The stretches hold no NaN.
 template <class Use>
-void for_each_run(const SeriesView& series, std::span<const Stretch> parts, Use use) {
+void for_each_run(std::span<const double> series, std::span<const Stretch> parts, Use use) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
   for (const Stretch& part : parts) {
     Run run{part.begin, 0, kNone, kNone, kNone};
-    for_each_piece(series, part.begin, part.end, [&](std::span<const double> values, std::size_t first) {
-      for (std::size_t k = 0; k < values.size(); ++k) {
-        if (run.length > 0 && values[k] != run.value) {
-          run.after = values[k];
-          use(run);
-          run = {first + k, 0, values[k], run.value, kNone};
-        }
-        run.value = values[k];
-        ++run.length;
+    for (std::size_t i = part.begin; i < part.end; ++i) {
+      if (run.length > 0 && series[i] != run.value) {
+        run.after = series[i];
+        use(run);
+        run = {i, 0, series[i], run.value, kNone};
       }
-    });
+      run.value = series[i];
+      ++run.length;
+    }
     if (run.length > 0) use(run);
   }
 }

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "filters/rest/runs.h"
 #include "filters/units/told_time.h"
@@ -20,13 +21,12 @@ constexpr double kMostBias_radps = 5.0 * kDegree;
 
 std::string six(double value) { return formatted("%.6g", value); }
 
-std::vector<double> values_of(const SeriesView& rate, std::span<const Stretch> parts) {
+std::vector<double> values_of(std::span<const double> rate, std::span<const Stretch> parts) {
   std::vector<double> out;
   for (const Stretch& part : parts) {
     const std::size_t count = std::min(part.size(), kMostSamples - out.size());
-    for_each_piece(rate, part.begin, part.begin + count, [&](std::span<const double> piece, std::size_t) {
-      out.insert(out.end(), piece.begin(), piece.end());
-    });
+    const std::span<const double> values = rate.subspan(part.begin, count);
+    out.insert(out.end(), values.begin(), values.end());
   }
   return out;
 }
@@ -130,7 +130,7 @@ void find_implausible(const std::vector<double>& values, std::vector<ValueFault>
 
 }  // namespace
 
-void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, double period_s,
+void find_value_faults(std::span<const double> rate, std::span<const Stretch> parts, double period_s,
                        std::vector<ValueFault>& found) {
   const std::vector<double> values = values_of(rate, parts);
   if (values.size() < kFewSamples) return;

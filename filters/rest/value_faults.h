@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "filters/allan/stretches.h"
-#include "filters/series/series_view.h"
 
 namespace ifog {
 
@@ -28,7 +27,7 @@ struct ValueFault {
 //   - interleaved: the scatter of every second, third or fourth sample about its mean is less than half of
 //   the total scatter;
 //   - unit: the mean at rest exceeds 5 °/s, the largest bias of a MEMS gyro.
-void find_value_faults(const SeriesView& rate, std::span<const Stretch> parts, double period_s,
+void find_value_faults(std::span<const double> rate, std::span<const Stretch> parts, double period_s,
                        std::vector<ValueFault>& found);
 
 }  // namespace ifog

@@ -1,38 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// Unnamed files mapped into memory. The kernel may evict their pages. A thread also releases pages when more
+// A growing unnamed file as memory. The kernel may evict its pages. A thread also releases pages when more
 // than kMostResident bytes are resident; they remain in the page cache or are read again from the file.
 #pragma once
 
 #include <cstddef>
-#include <optional>
 
 #include "drivers/system/unnamed_file.h"
 
 namespace ifog {
 
-inline constexpr std::size_t kMostResident = std::size_t{128} << 20U;  // bytes
+inline constexpr std::size_t kMostResident = std::size_t{128} << 20U;  // bytes of all files
 
 // Largest number of released files kept for reuse.
 inline constexpr std::size_t kMostSpare = 4;
 
-// New file of this size, with arbitrary content, mapped for reading and writing. Disk space is allocated at
-// once, so later writes cannot fail. Throws std::runtime_error with one line.
-[[nodiscard]] void* map_new_file(std::size_t bytes);
-// Releases a mapping from map_new_file().
-void unmap_new_file(void* at, std::size_t bytes) noexcept;
-// A released file of half to twice this size, for a user that writes sequentially and reads only what it
-// wrote. Its pages are already allocated. nullopt if there is none.
-[[nodiscard]] std::optional<UnnamedFile> take_spare_file(std::size_t bytes) noexcept;
-// memcpy to memory from map_new_file(), by writing to the file, because a page fault costs ten times as much.
-// Throws likewise.
-void write_new_file(void* to, const void* from, std::size_t bytes);
-// The same for reading from such memory.
-void read_new_file(void* to, const void* from, std::size_t bytes);
-// Maps the first bytes of an existing file for reading; the file may be closed afterwards. Throws likewise.
-[[nodiscard]] const void* map_file(const UnnamedFile& file, std::size_t bytes);
-// Releases a mapping from map_file().
-void unmap_file(const void* at, std::size_t bytes) noexcept;
-// Prefetches the pages of mapped memory; no effect on other memory.
-void expect_reading(const void* at, std::size_t bytes) noexcept;
+class MappedFile {
+ public:
+  // expected: bytes it will have, if that is known; then its memory does not move. All functions throw
+  // std::runtime_error with one line: no space for the file, or an I/O error.
+  explicit MappedFile(std::size_t expected);
+  ~MappedFile();
+  MappedFile(const MappedFile&) = delete;
+  MappedFile& operator=(const MappedFile&) = delete;
+
+  // Bytes that may be read and written, of arbitrary content at first.
+  [[nodiscard]] char* data() const { return at_; }
+  [[nodiscard]] std::size_t size() const { return filed_ + kPiece; }
+  // Adds kPiece bytes. Those before them must have been written. The memory may move.
+  void extend();
+
+ private:
+  // The last bytes are ordinary memory, and are written to the file at once: creating a page of a file by
+  // writing into the mapping costs ten times as much on some kernels.
+  static constexpr std::size_t kPiece = std::size_t{1} << 19U;
+
+  void reserve(std::size_t bytes);
+
+  UnnamedFile file_;       // may be a reused one
+  char* at_ = nullptr;     // the file, the piece, then reserved addresses
+  std::size_t filed_ = 0;  // bytes that are in the file
+  std::size_t reserved_ = 0;
+};
 
 }  // namespace ifog

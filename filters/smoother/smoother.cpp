@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "filters/estimator/estimator.h"
 #include "filters/smoother/motion_pace.h"
@@ -26,7 +27,7 @@ using Found = std::uint8_t;
 constexpr Found kMotion = 1, kOutlier = 2, kFarOutlier = 4;
 
 struct Pass {
-  FiledVector<Found> found;
+  Column<Found> found;
   double least_gain = kMostGain;
   LearnedNoise learned;
 };
@@ -75,8 +76,8 @@ Pass run(const FilterSettings& settings, const Axis& axis, bool learn_walk, bool
 double walk_of(double gain, double noise) { return noise * gain * gain / (1.0 - gain); }
 
 // Moving in either direction, and between a forward detection and the backward detection before it.
-FiledVector<float> moving(const Pass& forwards, const Pass& backwards) {
-  FiledVector<float> all(forwards.found.size(), pace::kRest);
+Column<float> moving(const Pass& forwards, const Pass& backwards) {
+  Column<float> all(forwards.found.size(), pace::kRest);
   for (std::size_t i = 0; i < all.size(); ++i)
     if (((forwards.found[i] | backwards.found[i]) & kMotion) != 0) all[i] = pace::kBroken;
   for (std::size_t i = 1; i < all.size(); ++i) {
@@ -85,8 +86,7 @@ FiledVector<float> moving(const Pass& forwards, const Pass& backwards) {
     std::size_t j = i;
     while (j > least && (backwards.found[j - 1] & kMotion) == 0) --j;
     if (j == least) continue;
-    std::fill(all.begin() + static_cast<std::ptrdiff_t>(j), all.begin() + static_cast<std::ptrdiff_t>(i),
-              pace::kBroken);
+    std::fill(all.begin() + j, all.begin() + i, pace::kBroken);
   }
   return all;
 }
@@ -107,7 +107,7 @@ Smoothed smooth_axis(FilterSettings settings, bool learn_walk, const Axis& axis,
   settings.measurement_noise = backwards.learned.measurement_noise;
   settings.process_noise = backwards.learned.process_noise;
   const Pass forwards = run(settings, axis, false, false);
-  FiledVector<float> memories = moving(forwards, backwards);
+  Column<float> memories = moving(forwards, backwards);
   Samples rate(axis.rate), walk(length);
   for (std::size_t i = 0; i < length; ++i)
     if (is_outlier(forwards.found[i], backwards.found[i], memories[i] <= pace::kRest)) rate[i] = std::nan("");

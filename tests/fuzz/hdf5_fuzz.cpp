@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/capture.h"
 #include "drivers/capture/hdf5/hdf5_text.h"
+#include "tests/unit/capture/read_capture.h"
 
 namespace {
 

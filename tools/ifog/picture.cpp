@@ -2,6 +2,7 @@
 // ifog picture: raw and denoised rate of a log as one picture: over time, and as Allan curves.
 #include <cstdio>
 #include <memory>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -42,13 +43,11 @@ void run_picture(const PictureArguments& a) {
   read_published(log, a.channel, sink);
   const std::string suffix = (a.axis.empty() ? "" : "_" + a.axis) + "_radps";
   const TimePart::Rows rows = a.part.rows(table.time_s, table.origin, a.log);
-  const auto shown = [&rows](const LongSeries& values, double scale) {
-    std::vector<double> part(rows.end - rows.begin);
-    values.read(rows.begin, part);
-    return report::scaled(std::move(part), scale);
+  const auto shown = [&rows](const Samples& values, double scale) {
+    const std::span<const double> part = rows.of(values);
+    return report::scaled({part.begin(), part.end()}, scale);
   };
-  const SeriesView time_s = table.time_s;
-  const report::TimeAxis time(time_s.at(rows.begin), time_s.at(rows.end - 1));
+  const report::TimeAxis time(table.time_s[rows.begin], table.time_s[rows.end - 1]);
   report::Chart rate("Rate published by the daemon", "Raw and denoised rate over time.", time.axis(),
                      {"rate (°/h)", false, {}, {}});
   std::size_t axes = 0, curves = 0;

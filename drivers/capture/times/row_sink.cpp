@@ -50,7 +50,6 @@ void RowBatch::begin(const std::vector<std::string>& names) {
 }
 
 void RowBatch::add(double time_s, std::span<const double> values, const TimeOrigin& origin) {
-  constexpr std::size_t kRows = std::size_t{1} << 14U;
   rows_.origin = origin;
   rows_.time_s.push_back(time_s);
   for (std::size_t c = 0; c < values.size(); ++c) rows_.columns[c].push_back(values[c]);

@@ -85,6 +85,7 @@ class RowSink {
 // Passes single rows to a sink in blocks.
 class RowBatch {
  public:
+  static constexpr std::size_t kRows = std::size_t{1} << 14U;  // of a block
   explicit RowBatch(RowSink& sink) : sink_(sink) {}
 
   [[nodiscard]] bool begun() const { return !rows_.columns.empty(); }

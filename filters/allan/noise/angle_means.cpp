@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <numeric>
+#include <span>
 
 namespace ifog {
 namespace {
@@ -64,15 +65,12 @@ std::vector<LevelCovariance> all_levels() {
 
 }  // namespace
 
-AngleMeans::AngleMeans(const SeriesView& angle, std::size_t first, std::size_t angles)
+AngleMeans::AngleMeans(std::span<const double> angle, std::size_t first, std::size_t angles)
     : angle_(angle), first_(first), angles_(angles) {
-  static_assert(kSeriesPiece % (std::size_t{1} << kStored) == 0);
   constexpr std::size_t kMany = std::size_t{1} << kStored;
   stored_.reserve(angles / kMany);
-  for_each_piece(angle, first, first + angles, [&](std::span<const double> values, std::size_t) {
-    for (std::size_t i = 0; i + kMany <= values.size(); i += kMany)
-      stored_.push_back(mean_of(values.subspan(i, kMany)));
-  });
+  for (std::size_t i = 0; i + kMany <= angles; i += kMany)
+    stored_.push_back(mean_of(angle.subspan(first + i, kMany)));
 }
 
 std::size_t AngleMeans::rates(int level) const {
@@ -83,9 +81,8 @@ std::size_t AngleMeans::rates(int level) const {
 void AngleMeans::rates(int level, std::size_t begin, std::span<double> rate) const {
   const bool fine = level < kStored;
   const std::size_t many = angles_of(fine ? level : level - kStored), count = (rate.size() + 1) * many;
-  std::vector<double> room;
-  const std::span<const double> from = fine ? angle_.piece(first_ + begin * many, count, room)
-                                            : std::span(stored_).subspan(begin * many, count);
+  const std::span<const double> from =
+      fine ? angle_.subspan(first_ + begin * many, count) : std::span(stored_).subspan(begin * many, count);
   const auto step = static_cast<double>(angles_of(level));
   double before = mean_of(from.subspan(0, many));
   for (std::size_t i = 0; i < rate.size(); ++i) {

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "filters/allan/power_law.h"
-#include "filters/series/series_view.h"
 
 namespace ifog {
 
@@ -18,14 +17,14 @@ class AngleMeans {
  public:
   // Uses `angles` angles from `first`, those of one stretch; `angle` must outlive this object, which needs
   // 1/32 of its memory.
-  AngleMeans(const SeriesView& angle, std::size_t first, std::size_t angles);
+  AngleMeans(std::span<const double> angle, std::size_t first, std::size_t angles);
 
   [[nodiscard]] std::size_t rates(int level) const;
   // Writes the rates from index `begin`, as many as fit, in rad/s. Level 0: the samples themselves.
   void rates(int level, std::size_t begin, std::span<double> rate) const;
 
  private:
-  SeriesView angle_;
+  std::span<const double> angle_;
   std::size_t first_, angles_;
   std::vector<double> stored_;
 };

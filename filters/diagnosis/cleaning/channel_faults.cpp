@@ -151,15 +151,13 @@ OwnedRecords without_leaping_rates(OwnedRecords given) {
     const Samples less_reference = plain ? Samples() : error_of(record);
     const std::span<const double> error = plain ? record.rate_radps : std::span<const double>(less_reference);
     std::vector<ValueFault> faults;
-    const std::optional<LongSeries> cleaned = without_leaps(
+    std::optional<Samples> cleaned = without_leaps(
         record.rate_radps, error, stretches({}, error, {}),
         [&](std::size_t i) { return record.origin.in_s(record.time_s[i]); }, faults);
     for (const ValueFault& fault : faults)
       given.remarks.push_back("the rate" + given.of_several(record) + ": " + fault.text);
     if (!cleaned) continue;
-    Samples& rate = given.columns.emplace_back(cleaned->size());
-    cleaned->read(0, rate);
-    record.rate_radps = rate;
+    record.rate_radps = given.columns.emplace_back(*std::move(cleaned));
   }
   return given;
 }

@@ -15,7 +15,8 @@ std::vector<EvenError> even_errors(const std::vector<Record>& records, double sa
     EvenError error;
     error.origin = record.origin;
     error.start_s = record.time_s.front();
-    error.rest = error.before = on_even_grid(record, sample_s, error_of(record));
+    error.rest = error.before =
+        std::make_shared<const Samples>(on_even_grid(record, sample_s, error_of(record)));
     errors.push_back(std::move(error));
   }
   return errors;
@@ -24,7 +25,7 @@ std::vector<EvenError> even_errors(const std::vector<Record>& records, double sa
 void take_out(std::span<const double> part, std::size_t record, BlockGrid& grid, EvenError& error) {
   const BlockRange& blocks = grid.records[record];
   std::vector<FiniteSum> sums(blocks.size());
-  Samples& rest = error.rest.own();
+  Samples rest = *error.rest;
   for (std::size_t i = 0; i < part.size(); ++i) {
     const auto step =
         static_cast<std::size_t>(std::floor(static_cast<double>(i) * grid.sample_s / grid.fine_s + 0.5));
@@ -32,6 +33,7 @@ void take_out(std::span<const double> part, std::size_t record, BlockGrid& grid,
     if (std::isfinite(rest[i])) block.sum += part[i], block.count += 1.0;
     rest[i] -= part[i];
   }
+  error.rest = std::make_shared<const Samples>(std::move(rest));
   for (std::size_t b = 0; b < blocks.size(); ++b)
     if (grid.valid[blocks.first + b] && sums[b].count > 0.0)
       grid.error[blocks.row() + static_cast<Eigen::Index>(b)] -= sums[b].sum / sums[b].count;
@@ -40,7 +42,7 @@ void take_out(std::span<const double> part, std::size_t record, BlockGrid& grid,
 FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::*series) {
   FiniteSum all;
   for (const EvenError& error : errors) {
-    const FiniteSum mine = finite_sum(error.*series);
+    const FiniteSum mine = finite_sum(*(error.*series));
     all.sum += mine.sum;
     all.count += mine.count;
   }
@@ -48,7 +50,7 @@ FiniteSum sum_of(const std::vector<EvenError>& errors, SharedSamples EvenError::
 }
 
 const EvenError& longest_of(const std::vector<EvenError>& errors) {
-  return *std::ranges::max_element(errors, {}, [](const EvenError& error) { return error.before.size(); });
+  return *std::ranges::max_element(errors, {}, [](const EvenError& error) { return error.before->size(); });
 }
 
 void refuse_constant(const std::vector<Record>& records) {

@@ -2,16 +2,19 @@
 // Error of every record on its nominal grid, and the parts explained so far.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "filters/diagnosis/record/blocks.h"
 #include "filters/diagnosis/record/even_grid.h"
 #include "filters/series/finite_sum.h"
-#include "filters/series/shared_samples.h"
+#include "filters/series/samples.h"
 
 namespace ifog {
 
-// Error of one record on an equidistant grid, NaN where missing. Equal series share their memory.
+using SharedSamples = std::shared_ptr<const Samples>;
+
+// Error of one record on an equidistant grid, NaN where missing. Series that no step changes are shared.
 struct EvenError {
   RecordOrigin origin{};  // of start_s
   double start_s = 0.0;
@@ -22,8 +25,7 @@ struct EvenError {
   SharedSamples held_out;  // the same with coefficients fitted without the sample's own part
 };
 
-// Leaves after, held_out and written empty. The records' rates must outlive the result. Throws as
-// on_even_grid() does.
+// Leaves after, held_out and written null. Throws as on_even_grid() does.
 std::vector<EvenError> even_errors(const std::vector<Record>& records, double sample_s);
 
 // Subtracts a part, given by sample, from the record's residual and from its block means in the grid.

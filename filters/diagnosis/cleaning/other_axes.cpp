@@ -24,7 +24,7 @@ Eigen::VectorXd shares_of(std::span<const double> measured, std::span<const doub
 
 Samples less_its_own(std::span<const double> measured, std::span<const double> reference,
                      const std::vector<std::span<const double>>& along) {
-  Samples corrected(measured.begin(), measured.end());
+  Samples corrected(measured);
   const Eigen::VectorXd shares = shares_of(measured, reference, along);
   if (shares.size() == 0) return corrected;
   for (std::size_t a = 0; a < along.size(); ++a) {

@@ -39,8 +39,7 @@ OwnedRecords without_turns(OwnedRecords given) {
     const double period_s = *period, start_s = record.origin.in_s(record.time_s.front());
     std::vector<std::span<const double>> axes{record.rate_radps};
     for (const RecordChannel& other : record.other_axes) axes.push_back(other.values);
-    const std::vector<SeriesView> views(axes.begin(), axes.end());
-    const Rest rest = find_rest(views, {}, period_s);
+    const Rest rest = find_rest(axes, {}, period_s);
     note_value_faults(record, rest, given.remarks);
     record.at_rest = rest.at_rest;
     if (rest.turned == 0) continue;

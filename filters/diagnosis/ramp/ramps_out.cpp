@@ -37,10 +37,9 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
   }
   if (parts.ramps.empty()) return parts;
   for (std::size_t r = 0; r < records.size(); ++r) {
-    Samples rate(records[r].rate_radps.begin(), records[r].rate_radps.end());
-    for (const RampFit& ramp : parts.ramps) {
+    Samples rate(records[r].rate_radps);
+    for (const RampFit& ramp : parts.ramps)
       for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= ramp.correction[r][i];
-    }
     parts.rates.push_back(std::move(rate));
   }
   for (std::size_t r = 0; r < records.size(); ++r) parts.records[r].rate_radps = parts.rates[r];

@@ -12,7 +12,6 @@
 #include "filters/diagnosis/record/step_means.h"
 #include "filters/distributions/median.h"
 #include "filters/effects/meaning.h"
-#include "filters/series/mapped_file.h"
 #include "filters/units/told_time.h"
 
 namespace ifog {

@@ -17,13 +17,13 @@ void write_before_and_after(const std::vector<EvenError>& errors, double sample_
   std::vector<std::map<std::string, double>> before, written, held_out;
   std::vector<double> weight;
   for (const EvenError& error : errors) {
-    before.push_back(error_figures(error.before, sample_s));
+    before.push_back(error_figures(*error.before, sample_s));
     const auto figures_of = [&](const SharedSamples& after) {
-      return after.is(error.before) ? before.back() : error_figures(after, sample_s);
+      return after == error.before ? before.back() : error_figures(*after, sample_s);
     };
     written.push_back(figures_of(error.written));
     held_out.push_back(figures_of(error.held_out));
-    weight.push_back(static_cast<double>(error.before.size()));
+    weight.push_back(static_cast<double>(error.before->size()));
   }
   const auto add_mean = [&](SharedSamples EvenError::*of, std::map<std::string, double>& figures) {
     if (const auto [sum, n] = sum_of(errors, of); n > 0.0) figures["bias_radps"] = sum / n;
@@ -82,7 +82,7 @@ double count_of(const Figure& figure, const Diagnosis& diagnosis, double samples
 
 double samples_of(const std::vector<EvenError>& errors) {
   double samples = 0.0;
-  for (const EvenError& error : errors) samples += static_cast<double>(error.before.size());
+  for (const EvenError& error : errors) samples += static_cast<double>(error.before->size());
   return samples;
 }
 
@@ -129,7 +129,7 @@ void judge(const std::vector<Record>& records, const TimeShare& fitted, Diagnosi
       if (range.size() < 32) continue;
       const Record piece = part_of(record, range);
       const auto of = [&](std::span<const double> all) {
-        return on_even_grid(piece, sample_s, all.subspan(range.begin, range.size()));
+        return std::make_shared<const Samples>(on_even_grid(piece, sample_s, range.of(all)));
       };
       EvenError& error = judged.emplace_back();
       error.before = of(raw);

@@ -21,12 +21,11 @@ void put(const NoiseCoefficient& found, std::optional<double>& value, std::optio
 
 // Residual of a record at rest, NaN elsewhere.
 Samples error_at_rest(const Record& record, const EvenError& error, double sample_s) {
-  Samples left = error.after.values();
+  Samples left = *error.after;
   if (record.at_rest.empty()) return left;
   Samples resting(record.time_s.size(), std::nan(""));
   for (const Stretch& part : record.at_rest)
-    std::fill(resting.begin() + static_cast<std::ptrdiff_t>(part.begin),
-              resting.begin() + static_cast<std::ptrdiff_t>(part.end), 1.0);
+    std::fill(resting.begin() + part.begin, resting.begin() + part.end, 1.0);
   const Samples rests = on_even_grid(record, sample_s, resting);
   for (std::size_t i = 0; i < left.size(); ++i)
     if (std::isnan(rests[i])) left[i] = std::nan("");
@@ -40,21 +39,19 @@ NoiseCoefficients coefficients_at_rest(const std::vector<Record>& records,
   std::vector<Stretch> parts;
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Samples left = error_at_rest(records[r], errors[r], sample_s);
-    const std::span<const double> rate = left;
-    for (const Stretch& part : stretches({}, rate, {}))
+    for (const Stretch& part : stretches({}, left, {}))
       parts.push_back({all.size() + part.begin, all.size() + part.end, part.lost});
-    all.insert(all.end(), rate.begin(), rate.end());
+    all.append(left);
   }
-  return noise_coefficients(AngleSum(std::span<const double>(all), parts), sample_s);
+  return noise_coefficients(AngleSum(all, parts), sample_s);
 }
 
 void write_changes(const std::vector<Record>& records, const std::vector<EvenError>& errors, double sample_s,
                    Diagnosis& diagnosis) {
   for (std::size_t r = 0; r < records.size(); ++r) {
     const Samples left = error_at_rest(records[r], errors[r], sample_s);
-    const std::span<const double> rate = left;
     const std::vector<NoiseChange> found =
-        noise_changes(rate, stretches({}, rate, {}), sample_s, [&](std::size_t i) {
+        noise_changes(left, stretches({}, left, {}), sample_s, [&](std::size_t i) {
           return errors[r].origin.in_s(errors[r].start_s + static_cast<double>(i) * sample_s);
         });
     for (const NoiseChange& change : found) diagnosis.noise_changes.push_back({records[r].name, change});

@@ -15,7 +15,7 @@ double share_of(const std::vector<EvenError>& errors, const PartOf& part_of) {
   double explained = 0.0, total = 0.0;
   for (std::size_t r = 0; r < errors.size(); ++r) {
     explained += variance_of(part_of(r));
-    total += variance_of(errors[r].before);
+    total += variance_of(*errors[r].before);
   }
   return total > 0.0 ? std::min(1.0, explained / total) : 0.0;
 }
@@ -65,7 +65,7 @@ std::vector<FoundEffect> sample_effects(const std::vector<RampFit>& ramps,
   }
   if (zone) found.push_back(zone_effect(*zone, errors));
   for (const auto& [record, line] : lines)
-    found.push_back(line_effect(line, variance_of(errors[record].before)));
+    found.push_back(line_effect(line, variance_of(*errors[record].before)));
   for (FoundEffect& each : found) each.effect.axis = axis;
   return found;
 }

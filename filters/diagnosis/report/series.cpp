@@ -33,7 +33,7 @@ void add_allan_band(const EvenError& error, double sample_s, const NoiseTerms& n
   const auto squared = [](const std::optional<double>& value) { return value ? *value * *value : 0.0; };
   const TermVariances terms{squared(noise.Q) / (sample_s * sample_s), squared(noise.N) / sample_s,
                             squared(noise.B), squared(noise.K) * sample_s};
-  const std::span<const double> left = error.written;
+  const std::span<const double> left = *error.written;
   const AngleSum sum(left, stretches({}, left, {}));
   if (sum.parts().empty()) return;
   const std::vector<DeviationPoint> points = deviation(sum, counts, Deviation::kAllan);
@@ -66,10 +66,10 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
     for (std::size_t b = record.first; b < record.end; b += stride) {
       const auto row = static_cast<Eigen::Index>(b);
       series.time_s.push_back(offset + grid.time_s[b]);
-      series.before_radps.push_back(mean_of_block(grid, errors[r].before, b - record.first));
-      series.after_radps.push_back(errors[r].written.is(errors[r].before)
+      series.before_radps.push_back(mean_of_block(grid, *errors[r].before, b - record.first));
+      series.after_radps.push_back(errors[r].written == errors[r].before
                                        ? series.before_radps.back()
-                                       : mean_of_block(grid, errors[r].written, b - record.first));
+                                       : mean_of_block(grid, *errors[r].written, b - record.first));
       for (std::size_t i = 0; i < parts.size(); ++i) {
         series.contribution_radps[i].push_back(parts[i][row]);
         const std::size_t channel = chosen[i].candidate.channel;
@@ -79,23 +79,23 @@ DiagnosisSeries series_of(const BlockData& data, const std::vector<EvenError>& e
     }
   }
   const EvenError& first = errors.front();
-  const Spectrum before = averaged(periodogram(first.before), grid.sample_s);
+  const Spectrum before = averaged(periodogram(*first.before), grid.sample_s);
   const Spectrum after =
-      first.written.is(first.before) ? before : averaged(periodogram(first.written), grid.sample_s);
+      first.written == first.before ? before : averaged(periodogram(*first.written), grid.sample_s);
   series.frequency_hz = before.frequency_hz;
   for (const double d : before.density) series.before_radps_rthz.push_back(std::sqrt(d));
   for (const double d : after.density) series.after_radps_rthz.push_back(std::sqrt(d));
   std::vector<std::size_t> counts;
-  for (double m = 1.0; m * 4.0 < static_cast<double>(first.before.size()); m *= 1.5) {
+  for (double m = 1.0; m * 4.0 < static_cast<double>(first.before->size()); m *= 1.5) {
     const auto count = static_cast<std::size_t>(m);
     const double tau = static_cast<double>(count) * grid.sample_s;
     if (!series.tau_s.empty() && tau <= series.tau_s.back()) continue;
     series.tau_s.push_back(tau);
     counts.push_back(count);
   }
-  series.before_adev_radps = gapped_deviation(first.before, counts);
+  series.before_adev_radps = gapped_deviation(*first.before, counts);
   series.after_adev_radps =
-      first.written.is(first.before) ? series.before_adev_radps : gapped_deviation(first.written, counts);
+      first.written == first.before ? series.before_adev_radps : gapped_deviation(*first.written, counts);
   add_allan_band(first, grid.sample_s, noise, counts, series);
   return series;
 }

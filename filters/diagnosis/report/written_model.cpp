@@ -114,19 +114,22 @@ void subtract_effects(const std::vector<Record>& records, const BlockData& data,
     EvenError& error = errors[r];
     error.written = error.before;
     if (!model.effects.empty())
-      error.written = on_even_grid(records[r], grid.sample_s, compensated_error(records[r], model));
+      error.written = std::make_shared<const Samples>(
+          on_even_grid(records[r], grid.sample_s, compensated_error(records[r], model)));
     error.after = error.rest;
     error.held_out = error.written;
     if (model.effects.empty() && found.chosen.empty()) continue;
-    Samples& after = error.after.own();
+    Samples after = *error.rest;
     for (std::size_t i = 0; i < after.size(); ++i) {
       const double time_s = error.start_s + static_cast<double>(i) * grid.sample_s;
-      after[i] -= error.before[i] - error.written[i] + uncorrected.at(r, i, time_s);
+      after[i] -= (*error.before)[i] - (*error.written)[i] + uncorrected.at(r, i, time_s);
     }
+    error.after = std::make_shared<const Samples>(std::move(after));
     if (found.chosen.empty()) continue;
-    Samples& held_out = error.held_out.own();
+    Samples held_out = *error.written;
     for (std::size_t i = 0; i < held_out.size(); ++i)
       held_out[i] -= between_blocks(grid, grid.records[r], change, i);
+    error.held_out = std::make_shared<const Samples>(std::move(held_out));
   }
 }
 

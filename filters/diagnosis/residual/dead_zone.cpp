@@ -31,7 +31,7 @@ std::vector<Slow> slow_samples(const std::vector<EvenError>& errors, const std::
   std::vector<Slow> found;
   std::size_t passage = 0;
   for (std::size_t r = 0; r < errors.size(); ++r) {
-    const SharedSamples& error = errors[r].rest;
+    const Samples& error = *errors[r].rest;
     for (std::size_t i = kWindow / 2; i + kWindow / 2 < error.size(); ++i) {
       const double rate = rates[r][i], bend = rates[r][i - 1] - 2.0 * rate + rates[r][i + 1];
       if (!(std::abs(rate) < widest) || !std::isfinite(error[i]) || !std::isfinite(bend)) {

@@ -133,7 +133,7 @@ std::vector<std::size_t> not_near(const std::vector<std::size_t>& peaks) {
 
 Samples samples_of(const SpectralLine& line, const EvenError& error, double sample_s) {
   const double turn = 2.0 * std::numbers::pi * line.frequency_hz;
-  Samples part(error.rest.size());
+  Samples part(error.rest->size());
   for (std::size_t i = 0; i < part.size(); ++i) {
     const double phase = turn * (error.start_s + static_cast<double>(i) * sample_s);
     part[i] = line.cosine * std::cos(phase) + line.sine * std::sin(phase);
@@ -184,8 +184,8 @@ std::vector<LineOf> coherent_lines(const std::vector<EvenError>& errors, double 
                                    double significance) {
   std::vector<LineOf> found;
   for (std::size_t r = 0; r < errors.size(); ++r)
-    for (const SpectralLine& line : find_lines(errors[r].after, errors[r].start_s, sample_s, significance))
-      if (line.coherence >= kCoherent && is_in(samples_of(line, errors[r], sample_s), errors[r].before))
+    for (const SpectralLine& line : find_lines(*errors[r].after, errors[r].start_s, sample_s, significance))
+      if (line.coherence >= kCoherent && is_in(samples_of(line, errors[r], sample_s), *errors[r].before))
         found.push_back({r, line});
   return found;
 }

@@ -173,10 +173,10 @@ Unexplained describe_rest(const std::vector<Record>& records, const std::vector<
   const EvenError& longest = longest_of(errors);
   const double period_s = grid.sample_s, start_s = longest.origin.in_s(longest.start_s);
   Unexplained found;
-  describe_share(longest.before, longest.after, period_s, noise, grid, found);
+  describe_share(*longest.before, *longest.after, period_s, noise, grid, found);
   std::vector<SpectralLine> peaks;
-  if (!grid.dwells) peaks = find_lines(longest.after, longest.start_s, period_s, significance);
-  const double length_s = static_cast<double>(longest.after.size()) * period_s;
+  if (!grid.dwells) peaks = find_lines(*longest.after, longest.start_s, period_s, significance);
+  const double length_s = static_cast<double>(longest.after->size()) * period_s;
   const auto bin = [&](double hz) { return static_cast<std::size_t>(std::lround(hz * length_s)); };
   if (!peaks.empty()) {
     describe_peak(peaks.front(), found);
@@ -188,12 +188,12 @@ Unexplained describe_rest(const std::vector<Record>& records, const std::vector<
   }
   const auto second = std::max<std::size_t>(1, static_cast<std::size_t>(std::floor(1.0 / period_s + 0.5)));
   const std::size_t piece = std::max<std::size_t>(8, second / 4);
-  const std::vector<double> energy = energies(longest.after, piece);
+  const std::vector<double> energy = energies(*longest.after, piece);
   if (energy.size() >= 16 && describe_bursts(energy, piece, start_s, period_s, found)) return found;
   const auto mine = static_cast<std::size_t>(&longest - errors.data());
   const auto change = std::ranges::find(noise_changes, records[mine].name, &NoiseChangeIn::capture);
   if (change == noise_changes.end())
-    describe_slow_rest(slow_rest(longest.after, period_s), found);
+    describe_slow_rest(slow_rest(*longest.after, period_s), found);
   else
     describe_noise_change(change->change, found);
   return found;

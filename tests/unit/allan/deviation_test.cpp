@@ -66,6 +66,16 @@ TEST(Deviation, LargeBiasAndRampCostNoDigits) {
     EXPECT_NEAR(allan(rate, {m})[0] / by_definition(rate, m), 1.0, 1e-12) << m;
 }
 
+// All second differences of a ramp are equal: m a / sqrt(2) for a per sample. Long averages are computed one by one.
+TEST(Deviation, AModifiedOneOfARampIsItsSlopeHoweverLong) {
+  std::vector<double> rate(7'500'000);
+  for (std::size_t i = 0; i < rate.size(); ++i) rate[i] = 1e-9 * static_cast<double>(i);
+  const std::vector<std::size_t> m{2'390'000, 2'500'000};
+  const std::vector<double> found = allan(rate, m, Deviation::kModified);
+  for (std::size_t k = 0; k < m.size(); ++k)
+    EXPECT_NEAR(found[k] / (1e-9 * static_cast<double>(m[k]) / std::numbers::sqrt2), 1.0, 1e-9);
+}
+
 TEST(Deviation, TheLongestAverageIsTheLastWithADifference) {
   for (const Deviation kind : {Deviation::kAllan, Deviation::kModified, Deviation::kHadamard})
     for (const std::size_t n : {64U, 65U, 66U, 67U, 68U, 69U}) {

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <random>
 #include <vector>
 
@@ -49,8 +50,8 @@ TEST(Lines, AToneIsFoundToItsBounds) {
   // A tone that the effects left and the error itself does not have is none of the sensor.
   EvenError own, left;
   own.start_s = left.start_s = start;
-  own.before = own.rest = own.after = left.rest = left.after = Samples(error.begin(), error.end());
-  left.before = Samples(error.size(), 0.0);
+  own.before = own.rest = own.after = left.rest = left.after = std::make_shared<const Samples>(error);
+  left.before = std::make_shared<const Samples>(error.size(), 0.0);
   EXPECT_EQ(coherent_lines({own}, kPeriod, 0.01).size(), 1U);
   EXPECT_TRUE(coherent_lines({left}, kPeriod, 0.01).empty());
   // Missing values make it uncertain, not small.
@@ -78,7 +79,7 @@ Unexplained of(const std::vector<double>& left, const std::vector<NoiseChangeIn>
   grid.block_s = 1.0;
   grid.sample_s = kPeriod;
   EvenError error;
-  error.before = error.after = left;
+  error.before = error.after = std::make_shared<const ifog::Samples>(left);
   NoiseFit noise;
   noise.white_variance = kPeriod;  // of a mean of one second of unit noise
   return describe_rest({Record{}}, {error}, {}, noise, grid, 0.01, changes);

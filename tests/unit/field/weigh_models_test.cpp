@@ -14,24 +14,21 @@ namespace {
 constexpr double kCoefficient = 2e-7;  // rad/s/degC
 
 Recorded recorded_hour(double coefficient) {
-  Recorded out;
+  constexpr double kPeriod_s = 0.1;
   std::mt19937_64 random(5);
   std::normal_distribution<double> normal;
-  Capture& capture = out.capture;
+  Capture capture;
   capture.axes = {""};
   capture.rate_radps.resize(1);
   capture.reference_rate_radps.resize(1);
   capture.channels = {{"temperature_degC", {}}};
-  out.period_s = 0.1;
   for (int i = 0; i < 36000; ++i) {
-    const double t = i * out.period_s,
-                 temperature = 27.0 + 3.0 * std::sin(2.0 * std::numbers::pi * t / 900.0);
+    const double t = i * kPeriod_s, temperature = 27.0 + 3.0 * std::sin(2.0 * std::numbers::pi * t / 900.0);
     capture.time_s.push_back(t);
     capture.channels[0].values.push_back(temperature);
     capture.rate_radps[0].push_back(5e-5 + coefficient * (temperature - 25.0) + 1e-6 * normal(random));
   }
-  out.rest = {{{0, 36000}}, 36000, 0, 0, {}, {}};
-  return out;
+  return {LongCapture(long_table(capture), "hour"), kPeriod_s, {{{0, 36000}}, 36000, 0, 0, {}, {}}};
 }
 
 Model linear(double coefficient) {

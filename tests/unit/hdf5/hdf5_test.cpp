@@ -15,10 +15,10 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/capture.h"
 #include "drivers/capture/hdf5/hdf5_id.h"
 #include "drivers/capture/hdf5/hdf5_text.h"
 #include "drivers/capture/hdf5/hdf5_writer.h"
+#include "tests/unit/capture/read_capture.h"
 #include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"
 

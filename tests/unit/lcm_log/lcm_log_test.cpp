@@ -13,8 +13,8 @@
 #include <lcm/lcm-cpp.hpp>
 #include <limits>
 
-#include "drivers/capture/capture.h"
 #include "drivers/capture/files/output_file.h"
+#include "tests/unit/capture/read_capture.h"
 #include "tests/unit/messages.h"
 #include "tests/unit/own_folder.h"
 #include "tests/unit/refusal.h"

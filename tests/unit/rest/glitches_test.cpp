@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 #include <random>
+#include <span>
 #include <string>
 #include <tuple>
 #include <vector>
@@ -55,10 +56,10 @@ TEST(Glitches, FewAreLeftOutAndManyAreTheSensor) {
     std::vector<ValueFault> faults;
     return without_leaps(from, from, std::vector<Stretch>{{0, from.size()}}, time_s, faults);
   };
-  const std::optional<LongSeries> repaired = without(rate);
+  const std::optional<Samples> repaired = without(rate);
   ASSERT_TRUE(repaired);
   for (std::size_t i = 0; i < before.size(); ++i) {
-    const double value = SeriesView(*repaired).at(i);
+    const double value = (*repaired)[i];
     if (i != 300 && i != 302 && i != 16384)
       EXPECT_EQ(value, before[i]) << i;
     else
@@ -89,8 +90,8 @@ TEST(Glitches, RepeatedValuesAreOut) {
     std::vector<double> logged = before;
     std::fill_n(logged.begin() + static_cast<std::ptrdiff_t>(there.begin), there.size(), value);
     for (const bool for_figures : {true, false}) {
-      LongSeries rate;
-      rate.add(logged);
+      Samples rate;
+      rate.append(logged);
       std::vector<ValueFault> faults;
       (for_figures ? leave_out_repeats : leave_out_placeholders)(rate, time_s, faults);
       const bool stays = name == "stuck" && !for_figures;
@@ -98,14 +99,14 @@ TEST(Glitches, RepeatedValuesAreOut) {
       for (const ValueFault& fault : faults)
         EXPECT_TRUE(fault.name == name && fault.text.find(first) != std::string::npos) << fault.text;
       for (std::size_t i = 0; i < logged.size(); ++i) {
-        const double left = SeriesView(rate).at(i);
+        const double left = rate[i];
         EXPECT_TRUE(stays || i < there.begin || i >= there.end ? left == logged[i] : std::isnan(left)) << i;
       }
     }
   }
   // A sensor that says each value ten times does nothing else.
-  LongSeries slow;
-  for (const double value : white(2000, 5)) slow.add(std::vector<double>(10, value));
+  Samples slow;
+  for (const double value : white(2000, 5)) slow.append(std::vector<double>(10, value));
   std::vector<ValueFault> faults;
   leave_out_repeats(slow, time_s, faults);
   EXPECT_TRUE(faults.empty());
@@ -118,16 +119,15 @@ TEST(Glitches, SinglePlaceholdersAreOutHoweverOftenTheyStand) {
     std::vector<double> logged = white(20000, 6);
     for (std::size_t i = 0; i < times; ++i) logged[3 * i] = -174.5;
     logged[19000] = 3.0;
-    LongSeries rate;
-    rate.add(logged);
+    Samples rate;
+    rate.append(logged);
     std::vector<ValueFault> faults;
     leave_out_repeats(rate, time_s, faults);
     ASSERT_EQ(faults.size(), times > 1 ? 1U : 0U);
     for (const ValueFault& fault : faults)
       EXPECT_NE(fault.text.find("samples leap away and back (the first at 0 s"), std::string::npos);
-    for (const std::size_t at : {std::size_t{0}, 3 * times - 3})
-      EXPECT_EQ(std::isnan(SeriesView(rate).at(at)), times > 1);
-    EXPECT_EQ(SeriesView(rate).at(19000), 3.0);
+    for (const std::size_t at : {std::size_t{0}, 3 * times - 3}) EXPECT_EQ(std::isnan(rate[at]), times > 1);
+    EXPECT_EQ(rate[19000], 3.0);
   }
 }
 

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <filesystem>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
@@ -24,7 +25,7 @@ constexpr double kRate = 100.0;
 
 Rest rest_of(const std::vector<double>& rate) {
   const std::vector<std::span<const double>> axes{rate};
-  return ifog::find_rest(axes, 1.0 / kRate);
+  return ifog::find_rest(axes, {}, 1.0 / kRate);
 }
 
 bool at_rest(const Rest& rest, double from_s, double to_s) {
@@ -51,7 +52,7 @@ TEST(Rest, ACoarseConverterIsNotShaken) {
   std::vector<double> rate = ifog::simulate::noise({.N = 0.1 * std::sqrt(1e-3)}, 1000.0, 100'000, 3);
   for (std::size_t i = 0; i < rate.size(); ++i)
     rate[i] = 1e-5 * std::round(rate[i] + 1e-5 * static_cast<double>(i));
-  const Rest rest = ifog::find_rest(std::vector<std::span<const double>>{rate}, 1e-3);
+  const Rest rest = ifog::find_rest(std::vector<std::span<const double>>{rate}, {}, 1e-3);
   EXPECT_EQ(rest.resting(), rate.size());
 }
 
@@ -64,7 +65,7 @@ Rest rest_of_motion(double rate_hz, double length_s, double rest_s, double motio
   double moved = 0.0;
   for (auto i = static_cast<std::size_t>(rest_s * rate_hz); i < samples; ++i)
     rate[i] += motion_radps * scale * (moved += gain * (force[i] - moved));
-  return ifog::find_rest(std::vector<std::span<const double>>{rate}, 1.0 / rate_hz);
+  return ifog::find_rest(std::vector<std::span<const double>>{rate}, {}, 1.0 / rate_hz);
 }
 
 // The log of a flight, ten minutes with one on the ground: its quieter windows are no measure of the noise.
@@ -126,9 +127,9 @@ TEST(Rest, SlowTurnsStayInAndAreSaid) {
 TEST(Rest, DwellsWithoutAReferenceAreSaid) {
   std::vector<double> rate = ifog::simulate::noise({.N = 1e-6}, 1.0 / 16.0, 200, 6);
   const std::vector<std::span<const double>> axes{rate};
-  EXPECT_EQ(ifog::find_rest(axes, 16.0).slow_turns.count, 0U);
+  EXPECT_EQ(ifog::find_rest(axes, {}, 16.0).slow_turns.count, 0U);
   for (std::size_t i = 0; i < rate.size(); ++i) rate[i] += 0.1 * static_cast<double>(i % 5);
-  const Rest rest = ifog::find_rest(std::vector<std::span<const double>>{rate}, 16.0);
+  const Rest rest = ifog::find_rest(std::vector<std::span<const double>>{rate}, {}, 16.0);
   EXPECT_EQ(rest.slow_turns.count, 160U);
   EXPECT_FALSE(ifog::slow_turns_in_words(rest, 16.0, 0.0).empty());
 }
@@ -183,7 +184,7 @@ TEST(Rest, ASlowRecordIsAtRestWhereItsReferenceIs) {
   std::vector<double> rate(300, 1e-5), reference(300, 7e-5);
   for (std::size_t i = 100; i < 140; ++i) reference[i] = 0.02;
   reference[200] = std::nan("");
-  const std::vector<ifog::SeriesView> axes{rate}, references{reference};
+  const std::vector<std::span<const double>> axes{rate}, references{reference};
   const Rest rest = ifog::find_rest(axes, references, kPeriod_s);
   EXPECT_EQ(rest.turned, 40U);
   ASSERT_EQ(rest.at_rest.size(), 2U);
@@ -202,7 +203,7 @@ TEST(Rest, AHandTurnedGyroIsRefused) {
   if (!std::filesystem::exists(path)) GTEST_SKIP() << "needs the measured capture " << path;
   const ifog::Capture capture = ifog::read_capture(path);
   const std::vector<std::span<const double>> axes(capture.rate_radps.begin(), capture.rate_radps.end());
-  const Rest rest = ifog::find_rest(axes, 1e-3);
+  const Rest rest = ifog::find_rest(axes, {}, 1e-3);
   EXPECT_GT(rest.turned, 5000U);
   EXPECT_THROW(ifog::require_rest(rest, 1e-3, 0.0), std::invalid_argument);
   ifog::Record record;

@@ -37,24 +37,18 @@ bool signal_of(const std::string& column, std::string& signal, std::string& axis
 }
 
 // True if the rows have no value at all.
-bool is_dead(const SeriesView& values) {
-  std::vector<double> room;
-  for (std::size_t at = 0; at < values.size(); at += kSeriesPiece) {
-    const auto piece = values.piece(at, std::min(kSeriesPiece, values.size() - at), room);
-    if (!std::all_of(piece.begin(), piece.end(), [](double value) { return std::isnan(value); }))
-      return false;
-  }
-  return true;
+bool is_dead(std::span<const double> values) {
+  return std::ranges::all_of(values, [](double value) { return std::isnan(value); });
 }
 
 // Finds rest from all axes of the sensor together, because a turn about one disturbs the others. Uses the raw
 // rates of a file written by denoise.
 void find_rest_of(AnalysedPart& part, const AllanOptions& options) {
   const TimePart::Rows& rows = part.rows;
-  std::vector<SeriesView> axes, references;
+  std::vector<std::span<const double>> axes, references;
   std::string signal, axis;
   for (const LongColumn& column : part.table.columns) {
-    const SeriesView values = SeriesView(column.values).part(rows.begin, rows.end);
+    const std::span<const double> values = rows.of(column.values);
     if (axis_of(column.name, "reference_rate", axis))
       references.push_back(values);
     else if ((is_other_rate(column.name) ||
@@ -88,33 +82,25 @@ void find_rest_of(AnalysedPart& part, const AllanOptions& options) {
   part.slow_turns = slow_turns_in_words(part.rest, period_s, part.shown_time_s(0));
 }
 
-LongSeries less_reference(const std::string& name, const LongTable& table, const SeriesView& rate,
-                          const std::string& axis) {
+Samples less_reference(const std::string& name, const LongTable& table, std::span<const double> rate,
+                       const std::string& axis) {
   const std::string wanted = axis.empty() ? "reference_rate_radps" : "reference_rate_" + axis + "_radps";
   const auto column = std::find_if(table.columns.begin(), table.columns.end(),
                                    [&](const LongColumn& c) { return c.name == wanted; });
   if (column == table.columns.end())
     throw std::runtime_error(name + ": no column " + wanted + ", expected one for --minus-reference");
-  const SeriesView reference = column->values;
-  LongSeries error;
-  std::vector<double> room;
-  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> values, std::size_t first) {
-    const std::span<const double> there = reference.piece(first, values.size(), room);
-    for (std::size_t i = 0; i < values.size(); ++i) error.add(values[i] - there[i]);
-  });
+  const std::span<const double> reference = column->values;
+  Samples error;
+  error.reserve(rate.size());
+  for (std::size_t i = 0; i < rate.size(); ++i) error.push_back(rate[i] - reference[i]);
   return error;
 }
 
 // Number of leading rows with equal values in both; two missing values are equal.
-std::size_t same_rows(const SeriesView& a, const SeriesView& b) {
-  std::vector<double> room, other_room;
-  for (std::size_t at = 0; at < a.size(); at += kSeriesPiece) {
-    const std::size_t count = std::min(kSeriesPiece, a.size() - at);
-    const auto left = a.piece(at, count, room), right = b.piece(at, count, other_room);
-    for (std::size_t i = 0; i < count; ++i)
-      if (left[i] != right[i] && !(std::isnan(left[i]) && std::isnan(right[i]))) return at + i;
-  }
-  return a.size();
+std::size_t same_rows(std::span<const double> a, std::span<const double> b) {
+  std::size_t i = 0;
+  while (i < a.size() && (a[i] == b[i] || (std::isnan(a[i]) && std::isnan(b[i])))) ++i;
+  return i;
 }
 
 // Number of leading rows in which a denoised rate equals the compensated one; 0 for other signals and if they
@@ -147,7 +133,7 @@ std::vector<AnalysedRate> rates_of(const std::string& name, const LongTable& tab
     if (!signal_of(column.name, signal, axis)) continue;
     if (std::find(axes.begin(), axes.end(), axis) == axes.end()) axes.push_back(axis);
     if (!wanted.empty() && axis != wanted) continue;
-    if (is_dead(SeriesView(column.values).part(rows.begin, rows.end)))
+    if (is_dead(rows.of(column.values)))
       left_out.push_back(axis.empty() ? signal : signal + "_" + axis);
     else
       rates.push_back({column, signal, axis});
@@ -165,9 +151,9 @@ std::vector<AnalysedRate> rates_of(const std::string& name, const LongTable& tab
 AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const AllanOptions& options) {
   const TimePart::Rows& rows = of.rows;
   const auto& [column, signal, axis] = wanted;
-  SeriesView rate = column.values;
+  std::span<const double> rate = column.values;
   std::string shown = signal;
-  LongSeries error;
+  Samples error;
   if (options.minus_reference && signal == "rate") {
     error = less_reference(of.capture, of.table, rate, axis);
     rate = error;
@@ -179,8 +165,7 @@ AllanRecord record_of(const AnalysedPart& of, const AnalysedRate& wanted, const 
   const std::vector<Stretch> running = {{later ? started - rows.begin : 0, rows.end - rows.begin}};
   Rest analysed = of.rest;
   analysed.at_rest = common(of.rest.at_rest, running);
-  const LoggedRate logged{of, shown + (axis.empty() ? "" : "_" + axis), rate.part(rows.begin, rows.end),
-                          column.repeats};
+  const LoggedRate logged{of, shown + (axis.empty() ? "" : "_" + axis), rows.of(rate), column.repeats};
   AllanRecord record = analyse(logged, shown, axis, analysed, options);
   if (later)
     record.notes.push_back(of.capture + ": " + column.name + ": until " +
@@ -206,7 +191,7 @@ bool allan_wants(const std::string& column) {
 std::vector<AllanRecord> allan_records(const std::string& name, const LongTable& table,
                                        const AllanOptions& options) {
   const TimePart::Rows rows = options.part.rows(table.time_s, table.origin, name);
-  const SeriesView time_s = SeriesView(table.time_s).part(rows.begin, rows.end);
+  const std::span<const double> time_s = rows.of(table.time_s);
   if (time_s.size() < 3)
     throw std::runtime_error(name + ": " + std::to_string(time_s.size()) + " samples, expected at least 3");
   AnalysedPart part{name, table, rows, time_s, naming(name, [&] { return sample_clock(time_s); })};

@@ -60,10 +60,8 @@ void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
     record.notes.push_back(logged.of.place(row) + ": " + what);
   };
   std::size_t nans = 0, first_nan = 0;
-  for_each_piece(logged.rate, 0, logged.rate.size(), [&](std::span<const double> values, std::size_t first) {
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (std::isnan(values[i]) && nans++ == 0) first_nan = first + i;
-  });
+  for (std::size_t i = 0; i < logged.rate.size(); ++i)
+    if (std::isnan(logged.rate[i]) && nans++ == 0) first_nan = i;
   record.missing = nans + clock.missing;
   if (clock.gaps > 0)
     note(clock.first_gap, std::to_string(clock.gaps) + (clock.gaps == 1 ? " gap" : " gaps") +
@@ -144,10 +142,10 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   const auto shown_time_s = [&](std::size_t row) { return logged.of.shown_time_s(row); };
   // A filter's gain makes jumps of its own; faults of the logger are visible in the raw rate.
   record.findings.assign(logged.repeats.begin(), logged.repeats.end());
-  std::optional<LongSeries> cleaned;
+  std::optional<Samples> cleaned;
   if (signal != "denoised" && !options.keep_motion)
     cleaned = without_leaps(logged.rate, logged.rate, parts, shown_time_s, record.findings);
-  const SeriesView rate = cleaned ? SeriesView(*cleaned) : logged.rate;
+  const std::span<const double> rate = cleaned ? *cleaned : logged.rate;
   if (signal == "rate") find_value_faults(rate, parts, period, record.findings);
   for (const ValueFault& found : record.findings)
     record.notes.push_back(name + ": " + column + ": " + found.text);

@@ -8,7 +8,6 @@
 
 #include "filters/allan/stretches.h"
 #include "filters/rest/rest.h"
-#include "filters/series/series_view.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/table/long_table.h"
 
@@ -20,14 +19,14 @@ std::string six_digits(double value);
 struct AnalysedPart {
   const std::string& capture;  // its file
   const LongTable& table;
-  TimePart::Rows rows;  // in the table
-  SeriesView time_s;    // of these rows, since the table's origin
+  TimePart::Rows rows;             // in the table
+  std::span<const double> time_s;  // of these rows, since the table's origin
   SampleClock clock;
   Rest rest = {};
   std::string slow_turns = {};  // note about turns that remain; "" if none
 
   // For messages; `row` counts in the part.
-  [[nodiscard]] double shown_time_s(std::size_t row) const { return table.origin.in_s(time_s.at(row)); }
+  [[nodiscard]] double shown_time_s(std::size_t row) const { return table.origin.in_s(time_s[row]); }
   // "file:line", or the sample's number if the file is not text.
   [[nodiscard]] std::string place(std::size_t row) const;
 };
@@ -36,7 +35,7 @@ struct AnalysedPart {
 struct LoggedRate {
   const AnalysedPart& of;
   std::string column;
-  SeriesView rate;                      // in the part's rows
+  std::span<const double> rate;         // in the part's rows
   std::span<const ValueFault> repeats;  // repeated values, missing in `rate`
 };
 

@@ -94,10 +94,6 @@ void CaptureInput::tell(const std::vector<std::string>& notices, const std::vect
   for (const std::string& fault : faults) warn("%s\n", fault.c_str());
 }
 
-Capture CaptureInput::read_columns(InputFile& file) const {
-  return capture_of(table_of([&](RowSink& sink) { return column_rows(file, sink); }), file.path());
-}
-
 void CaptureInput::add_driver_to(const Command& command) {
   command.add_option("--driver", driver, "Driver that understands the recording (see 'ifog drivers')")
       .type_name("NAME");

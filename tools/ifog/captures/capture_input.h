@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/capture/capture.h"
+#include "drivers/capture/columns/csv_layout.h"
 #include "drivers/capture/recording.h"
 #include "drivers/capture/times/row_sink.h"
 #include "drivers/host/driver_instance.h"
@@ -57,9 +57,6 @@ struct CaptureInput {
     return !columns.empty() || !time.empty() || !separator.empty() || !group.empty() || !only.empty() ||
            sample_rate_hz > 0.0;
   }
-  // Reads a file of columns with these options, CSV or HDF5; a given driver is ignored because it is for
-  // writing. Prints alternative readings on standard error.
-  [[nodiscard]] Capture read_columns(InputFile& file) const;
 
   // Registers this capture and the files that reading needs as inputs of the run (command_files.h).
   void will_read(const std::string& argument, const std::string& path) const;

@@ -13,7 +13,8 @@
 #include "drivers/capture/candump/candump.h"
 #include "drivers/capture/capture_encoder.h"
 #include "drivers/capture/files/output_file.h"
-#include "filters/series/series_view.h"
+#include "filters/series/median_step.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/column_writer.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/wrong_usage.h"
@@ -23,42 +24,25 @@
 namespace ifog::tools {
 namespace {
 
-// Blocks of rows of a long table as captures; each replaces the previous one.
-class Pieces {
- public:
-  Pieces(const LongTable& table, const CaptureShape& shape) : rows_(table, shape) { next(); }
-  [[nodiscard]] const Capture& piece() const { return piece_; }
-  bool next() {
-    if (!rows_.next()) return false;
-    rows_.as_capture(piece_);
-    return true;
-  }
-
- private:
-  LongRows rows_;
-  Capture piece_;
-};
-
-void to_bytes(CaptureEncoder& encoder, Pieces& pieces, std::size_t rows, const std::string& to) {
+void to_bytes(CaptureEncoder& encoder, std::size_t rows, const std::string& to) {
   std::vector<std::uint8_t> bytes;
   std::size_t count = 0;
   Progress progress("encoding", rows);
   OutputFile file(to);
-  do {
-    while (encoder.next(bytes)) {
-    }
-    encoder.go_on();
+  const auto write = [&] {
     file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
     count += bytes.size();
     bytes.clear();
     progress.at(encoder.rows_done());
-  } while (pieces.next());
+  };
+  while (encoder.next(bytes))
+    if (encoder.rows_done() % RowBatch::kRows == 0) write();
+  write();
   file.finish();
   say("%s: %zu samples, %zu bytes\n", to.c_str(), rows - encoder.rows_left_out(), count);
 }
 
-void to_candump(CaptureEncoder& encoder, Pieces& pieces, std::size_t rows, const std::string& to,
-                const CaptureInput& input) {
+void to_candump(CaptureEncoder& encoder, std::size_t rows, const std::string& to, const CaptureInput& input) {
   const std::string interface = input.channel.empty() ? "vcan0" : input.channel;
   std::string text;
   std::size_t count = 0;
@@ -66,18 +50,19 @@ void to_candump(CaptureEncoder& encoder, Pieces& pieces, std::size_t rows, const
   std::array<char, kCandumpLineMax> line{};
   Progress progress("encoding", rows);
   OutputFile file(to);
-  do {
-    while (encoder.next(frames)) {
-      for (const ifog_can_frame& frame : frames)
-        text.append(line.data(), format_candump_line(frame, interface, line.data()));
-      count += frames.size();
-      frames.clear();
-    }
-    encoder.go_on();
+  const auto write = [&] {
     file.write(text);
     text.clear();
     progress.at(encoder.rows_done());
-  } while (pieces.next());
+  };
+  while (encoder.next(frames)) {
+    for (const ifog_can_frame& frame : frames)
+      text.append(line.data(), format_candump_line(frame, interface, line.data()));
+    count += frames.size();
+    frames.clear();
+    if (encoder.rows_done() % RowBatch::kRows == 0) write();
+  }
+  write();
   file.finish();
   say("%s: %zu samples in %zu frames on %s\n", to.c_str(), rows - encoder.rows_left_out(), count,
       interface.c_str());
@@ -108,7 +93,7 @@ void write_columns(const LongTable& table, const std::string& from, const std::s
 
 void write_recording(const LongTable& table, const std::string& from, const std::string& to,
                      const CaptureInput& input, const std::string& axis) {
-  const CaptureShape shape = capture_shape(table.names(), from, table);
+  const CaptureView capture = view_of(table, from);
   if (!input.has_driver())
     throw WrongUsage(to, "is no .csv or .h5, expected --driver NAME (or --dbc FILE) to encode it with");
   const auto plugin = find_plugin(input.driver_name(), plugin_folders());
@@ -120,13 +105,12 @@ void write_recording(const LongTable& table, const std::string& from, const std:
                              (driver.takes_can() ? "CAN, expected a name ending in .log"
                                                  : "bytes, expected a name ending in .bin or .kvh"));
   try {
-    Pieces pieces(table, shape);
-    CaptureEncoder encoder(pieces.piece(), driver, rate_hz, axis);
+    CaptureEncoder encoder(capture, driver, rate_hz, axis);
     for (const std::string& notice : encoder.notices()) warn("%s: %s\n", from.c_str(), notice.c_str());
     if (log)
-      to_candump(encoder, pieces, table.size(), to, input);
+      to_candump(encoder, table.size(), to, input);
     else
-      to_bytes(encoder, pieces, table.size(), to);
+      to_bytes(encoder, table.size(), to);
     if (encoder.rows_left_out() != 0)
       warn("%s: %zu rows without a rate are dropped: the format cannot say so\n", from.c_str(),
            encoder.rows_left_out());

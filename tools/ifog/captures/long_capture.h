@@ -3,19 +3,25 @@
 #pragma once
 
 #include <string>
+#include <utility>
 
+#include "drivers/capture/capture.h"
 #include "filters/model_file/model.h"
 #include "filters/series/samples.h"
-#include "tools/ifog/captures/capture_view.h"
 #include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/captures/time_part.h"
 
 namespace ifog::tools {
 
+// The table must outlive the view. path: for messages. Throws std::runtime_error with one line: no rate, or a
+// reference without its rate.
+[[nodiscard]] CaptureView view_of(const LongTable& table, const std::string& path);
+
 class LongCapture {
  public:
-  // path: for messages. Throws std::runtime_error with one line: no rate, or a reference without its rate.
-  LongCapture(LongTable table, const std::string& path);
+  // Throws as view_of().
+  LongCapture(LongTable table, const std::string& path)
+      : table_(std::move(table)), view_(view_of(table_, path)) {}
 
   [[nodiscard]] const CaptureView& view() const { return view_; }
   void set_since_power_up(double seconds) { view_.since_power_up_s = seconds; }

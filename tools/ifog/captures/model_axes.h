@@ -5,10 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "drivers/capture/capture.h"
 #include "filters/model_file/model.h"
 #include "filters/model_file/model_axes.h"
 #include "filters/series/samples.h"
-#include "tools/ifog/captures/capture_view.h"
 
 namespace ifog::tools {
 

@@ -2,6 +2,7 @@
 #include "tools/ifog/captures/time_part.h"
 
 #include <optional>
+#include <span>
 #include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
@@ -13,18 +14,16 @@ namespace ifog::tools {
 namespace {
 
 void keep(const TimePart::Rows& rows, Samples& values) {
-  if (values.empty() || (rows.begin == 0 && rows.end == values.size())) return;
-  values.erase(values.begin() + static_cast<std::ptrdiff_t>(rows.end), values.end());
-  values.erase(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(rows.begin));
+  if (!values.empty()) values.keep(rows.begin, rows.end);
 }
 
 // Index of the first row from `begin` on that is not before `wanted`.
-std::size_t first_from(const SeriesView& time_s, const TimeOrigin& origin, std::size_t begin,
+std::size_t first_from(std::span<const double> time_s, const TimeOrigin& origin, std::size_t begin,
                        const SaidTime& wanted) {
   std::size_t end = time_s.size();
   while (begin < end) {
     const std::size_t middle = begin + (end - begin) / 2;
-    if (wanted.is_after(origin, time_s.at(middle)))
+    if (wanted.is_after(origin, time_s[middle]))
       begin = middle + 1;
     else
       end = middle;
@@ -50,12 +49,12 @@ void TimePart::add_to(const Command& command, const std::string& of_from, const 
   add("--to", to, of_to);
 }
 
-TimePart::Rows TimePart::rows(const SeriesView& time_s, const TimeOrigin& origin,
+TimePart::Rows TimePart::rows(std::span<const double> time_s, const TimeOrigin& origin,
                               const std::string& name) const {
   const std::size_t begin = first_from(time_s, origin, 0, from);
   const std::size_t end = first_from(time_s, origin, begin, to);
   if (begin == end && !time_s.empty())
-    refuse_empty(origin.in_s(time_s.at(0)), origin.in_s(time_s.at(time_s.size() - 1)), name);
+    refuse_empty(origin.in_s(time_s.front()), origin.in_s(time_s.back()), name);
   return {begin, end};
 }
 
@@ -67,7 +66,7 @@ void TimePart::refuse_empty(double first_s, double last_s, const std::string& na
 
 std::size_t TimePart::cut(Samples& time_s, const TimeOrigin& origin, std::span<Samples* const> columns,
                           const std::string& name) const {
-  const Rows kept = rows(std::span<const double>(time_s), origin, name);
+  const Rows kept = rows(time_s, origin, name);
   keep(kept, time_s);
   for (Samples* const column : columns) keep(kept, *column);
   return kept.begin;

@@ -9,7 +9,6 @@
 
 #include "drivers/capture/times/time_stamps.h"
 #include "filters/series/samples.h"
-#include "filters/series/series_view.h"
 #include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
@@ -27,10 +26,14 @@ struct TimePart {
 
   struct Rows {
     std::size_t begin, end;
+    [[nodiscard]] std::span<const double> of(std::span<const double> column) const {
+      return column.subspan(begin, end - begin);
+    }
   };
   // The rows inside. origin: of the times; name: for messages. Throws std::runtime_error with one line if
   // there are none.
-  [[nodiscard]] Rows rows(const SeriesView& time_s, const TimeOrigin& origin, const std::string& name) const;
+  [[nodiscard]] Rows rows(std::span<const double> time_s, const TimeOrigin& origin,
+                          const std::string& name) const;
   // Throws the same error for times that were not kept.
   [[noreturn]] void refuse_empty(double first_s, double last_s, const std::string& name) const;
 

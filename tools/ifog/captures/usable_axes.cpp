@@ -8,7 +8,6 @@
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/quoted.h"
-#include "filters/series/series_view.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/console/say.h"
 
@@ -20,10 +19,7 @@ std::string rate_of(const std::string& axis) { return axis.empty() ? "rate" : "r
 void tell_missing(const std::string& name, const std::string& axis, const CaptureView& capture,
                   std::span<const double> rate) {
   const auto none = [](double value) { return std::isnan(value); };
-  std::size_t missing = 0;
-  for_each_piece(rate, 0, rate.size(), [&](std::span<const double> some, std::size_t) {
-    missing += static_cast<std::size_t>(std::count_if(some.begin(), some.end(), none));
-  });
+  const auto missing = static_cast<std::size_t>(std::ranges::count_if(rate, none));
   if (missing == 0) return;
   const auto first = static_cast<std::size_t>(std::find_if(rate.begin(), rate.end(), none) - rate.begin());
   warn("%s: %s\n", name.c_str(),

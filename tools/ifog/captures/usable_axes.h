@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/ifog/captures/capture_view.h"
+#include "drivers/capture/capture.h"
 #include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {

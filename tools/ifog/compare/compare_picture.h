@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/capture/capture.h"
 #include "filters/compare/compare.h"
-#include "tools/ifog/captures/capture_view.h"
 #include "tools/ifog/compare/verdict.h"
 
 namespace ifog::tools {

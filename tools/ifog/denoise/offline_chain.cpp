@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -13,7 +14,7 @@
 #include "drivers/capture/capture.h"
 #include "filters/allan/row_times.h"
 #include "filters/model_file/channel_names.h"
-#include "filters/series/series_view.h"
+#include "filters/series/median_step.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/chain_run.h"
@@ -50,7 +51,7 @@ std::vector<std::size_t> chosen_channels(const LongTable& capture, const Capture
 }
 
 // Rate from the median step, which gaps do not bias; from the mean if the stamps are coarse or scatter.
-double rate_of(const SeriesView& time_s, const SampleClock& clock) {
+double rate_of(std::span<const double> time_s, const SampleClock& clock) {
   constexpr double kCoarse = 1e-4;
   const double median = rounded_rate(median_step(time_s)), mean = rounded_rate(clock.period_s);
   return clock.scatters() || std::abs(mean / median - 1.0) > kCoarse ? mean : median;
@@ -103,39 +104,33 @@ OfflineResult denoise_capture(const LongTable& capture, const std::string& name,
   ChainRun chain(chain_settings_of(capture, name, shape, channels, settings, clock), settings);
   sink.begin(shape.axes);
   // The time, the axes, the channels.
-  std::vector<SeriesView> views{capture.time_s};
+  std::vector<std::span<const double>> views{capture.time_s};
   views.resize(1 + shape.axes.size());
   for (std::size_t c = 0; c < capture.columns.size(); ++c)
     if (shape.places[c].kind == CaptureShape::Place::Kind::rate)
       views[1 + shape.places[c].at] = capture.columns[c].values;
   for (const std::size_t c : channels) views.emplace_back(capture.columns[c].values);
-  std::vector<std::vector<double>> room(views.size());
-  std::vector<std::span<const double>> now(views.size());
   Reading reading;
   ChainOutput out;
   std::optional<RowTimes> times;
   if (capture.size() > 0) times.emplace(views[0], clock);
   Progress progress("denoising", capture.size());
-  for (std::size_t begin = 0; begin < capture.size(); begin += kSeriesPiece) {
-    progress.at(begin);
-    const std::size_t count = std::min(kSeriesPiece, capture.size() - begin);
-    for (std::size_t v = 0; v < views.size(); ++v) now[v] = views[v].piece(begin, count, room[v]);
-    for (std::size_t i = 0; i < count; ++i) {
-      // The file's times serve as the device's clock.
-      reading.device_time_ns = std::llround(times->next(now[0][i]) * 1e9);
-      reading.valid_axes = 0;
-      for (std::size_t axis = 0; axis < shape.axes.size(); ++axis) {
-        reading.value[axis] = now[1 + axis][i];
-        if (std::isfinite(reading.value[axis])) reading.valid_axes |= 1u << axis;
-      }
-      reading.fresh_channels = 0;
-      for (std::size_t c = 0; c < channels.size(); ++c) {
-        reading.channel[c] = now[1 + shape.axes.size() + c][i];
-        if (std::isfinite(reading.channel[c])) reading.fresh_channels |= 1u << c;
-      }
-      if (const Increment* const increment = chain.run(reading, out))
-        chain.count(sink.sample(now[0][i], *increment, out));
+  for (std::size_t i = 0; i < capture.size(); ++i) {
+    if (i % RowBatch::kRows == 0) progress.at(i);
+    // The file's times serve as the device's clock.
+    reading.device_time_ns = std::llround(times->next(views[0][i]) * 1e9);
+    reading.valid_axes = 0;
+    for (std::size_t axis = 0; axis < shape.axes.size(); ++axis) {
+      reading.value[axis] = views[1 + axis][i];
+      if (std::isfinite(reading.value[axis])) reading.valid_axes |= 1u << axis;
     }
+    reading.fresh_channels = 0;
+    for (std::size_t c = 0; c < channels.size(); ++c) {
+      reading.channel[c] = views[1 + shape.axes.size() + c][i];
+      if (std::isfinite(reading.channel[c])) reading.fresh_channels |= 1u << c;
+    }
+    if (const Increment* const increment = chain.run(reading, out))
+      chain.count(sink.sample(views[0][i], *increment, out));
   }
   OfflineResult result = chain.finish();
   // Row times are as logged; no clock was set.

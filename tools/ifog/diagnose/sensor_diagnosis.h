@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "drivers/capture/capture.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/model_file/model.h"
-#include "tools/ifog/captures/capture_view.h"
 #include "tools/ifog/diagnose/diagnosis_json.h"
 
 namespace ifog::tools {

@@ -180,7 +180,7 @@ std::string Night::judge(const std::vector<RecordedFile>& all) {
 // Without the time of power-up the daemon's warm-up correction cannot be repeated. Then the remaining drift
 // would be attributed to another cause and corrected twice.
 std::string Night::why_not_judged(const ModelInUse& in_use, const Recorded& recorded) const {
-  if (!corrects_warm_up(in_use) || recorded.capture.since_power_up_s) return "";
+  if (!corrects_warm_up(in_use) || recorded.capture.view().since_power_up_s) return "";
   return "the model in use corrects a warm-up by the time since power-up, which these recordings do not say: "
          "diagnose them by hand with --since-power-up";
 }
@@ -244,10 +244,10 @@ std::string Night::recordings_name(const std::vector<RecordedFile>& files) const
 std::string Night::diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
                             const ModelInUse& in_use) {
   const Model before = in_use.model.value_or(Model{});
-  CaptureView corrected(recorded.capture);
+  CaptureView corrected = recorded.capture.view();
   const std::vector<Samples> rates = compensated_rates(corrected, before);
   corrected.rate_radps.assign(rates.begin(), rates.end());
-  leave_out(unusable_axes({CaptureView(recorded.capture)}, {sensor_.name}), corrected);
+  leave_out(unusable_axes({recorded.capture.view()}, {sensor_.name}), corrected);
   AxesToDiagnose wanted;
   wanted.fit_to = kFitTo;
   wanted.threads = 1;  // the daemon runs on the same processors
@@ -260,7 +260,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   for (const RecordedFile& file : files)
     all += sha256_hex(InputFile(file.path, std::deque<std::string>{file.path}).bytes());
   const std::vector<std::string> hashes{sha256_hex(all)};
-  const std::vector<double>& time_s = recorded.capture.time_s;
+  const std::span<const double> time_s = recorded.capture.view().time_s;
   const double fitted_to = time_s.front() + kFitTo * (time_s.back() - time_s.front());
   const auto held_out =
       static_cast<std::size_t>(std::lower_bound(time_s.begin(), time_s.end(), fitted_to) - time_s.begin());
@@ -303,7 +303,7 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
   proposal.model_file = file + ".toml";
   proposal.report_file = file + ".html";
   const std::string report =
-      diagnosis_report({CaptureView(recorded.capture)}, found, {name}, hashes, proposal.model_file, "");
+      diagnosis_report({recorded.capture.view()}, found, {name}, hashes, proposal.model_file, "");
   const StateLock hand(field_.state());
   write_proposal(field_.state(), proposal, model, report);
 }

@@ -123,19 +123,17 @@ Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFil
   const ReadingProgress progress(input);
   FlightInput flight(input);
   DriverInstance driver = flight.make_driver("", {}, plugin_folders, &sensor);
-  Recorded out;
-  out.capture = flight.capture(driver);
-  if (out.capture.size() < 2) throw std::runtime_error(folder + ": fewer than two samples recorded");
-  out.period_s = sample_clock(out.capture.time_s).period_s;
-  const std::vector<std::span<const double>> axes(out.capture.rate_radps.begin(),
-                                                  out.capture.rate_radps.end());
-  out.rest = find_rest(axes, out.period_s);
-  return out;
+  LongCapture read(flight.table(driver), folder);
+  const CaptureView& capture = read.view();
+  if (capture.size() < 2) throw std::runtime_error(folder + ": fewer than two samples recorded");
+  const double period_s = sample_clock(capture.time_s).period_s;
+  Rest rest = find_rest(capture.rate_radps, {}, period_s);
+  return {std::move(read), period_s, std::move(rest)};
 }
 
 std::vector<AxisGain> weigh_models(const Recorded& recorded, const Model& before, const Model& after,
                                    std::size_t begin) {
-  const Capture& capture = recorded.capture;
+  const CaptureView& capture = recorded.capture.view();
   const std::vector<Samples> old_rate = compensated_rates(capture, before);
   const std::vector<Samples> new_rate = compensated_rates(capture, after);
   const std::vector<Stretch> at_rest = from_row(recorded.rest.at_rest, begin);

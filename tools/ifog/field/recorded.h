@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "drivers/capture/capture.h"
 #include "filters/model_file/model.h"
 #include "filters/rest/rest.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/field/proposal.h"
 
 namespace ifog::tools {
@@ -30,7 +30,7 @@ struct RecordedFile {
 [[nodiscard]] std::vector<RecordedFile> of_one_power_up(const std::vector<RecordedFile>& files);
 
 struct Recorded {
-  Capture capture;
+  LongCapture capture;
   double period_s = 0.0;
   Rest rest;
 };

@@ -22,7 +22,7 @@ constexpr std::uint64_t kMostBytesBefore = 64'000'000;
 std::size_t rows_to_settle(const SensorConfig& sensor, std::vector<RecordedFile>& files, const Field& field) {
   if (files.empty()) return 0;
   try {
-    return read_recorded(sensor, files, field.required_config().plugin_folders).capture.size();
+    return read_recorded(sensor, files, field.required_config().plugin_folders).capture.view().size();
   } catch (const std::exception&) {
     files.clear();
     return 0;

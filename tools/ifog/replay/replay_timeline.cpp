@@ -7,12 +7,12 @@
 #include <stdexcept>
 
 #include "drivers/capture/candump/candump.h"
-#include "drivers/capture/capture.h"
 #include "drivers/capture/capture_encoder.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/recording.h"
 #include "drivers/host/timeline_frame.h"
 #include "drivers/timeline/timeline.h"
+#include "filters/series/median_step.h"
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/reading_progress.h"
 #include "tools/ifog/console/say.h"
@@ -118,8 +118,9 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   if (!source.input.has_driver())
     throw std::runtime_error(source.path +
                              ": a capture in columns needs --driver NAME, whose frames its rows become");
-  const Capture capture = source.input.read_columns(file);
-  const double rate_hz = sample_rate_hz(median_step_s(capture.time_s));
+  const LongCapture read(source.input.read_long_columns(file), source.path);
+  const CaptureView& capture = read.view();
+  const double rate_hz = capture.size() > 1 ? sample_rate_hz(median_step(capture.time_s)) : 0.0;
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
   DriverInstance driver(plugin, with_rate(rate_hz, *plugin, source.input.settings()));
   CaptureEncoder encoder(capture, driver, rate_hz, source.axis);

@@ -9,8 +9,8 @@
 
 #include <string>
 
+#include "drivers/capture/capture.h"
 #include "filters/model_file/model.h"
-#include "tools/ifog/captures/capture_view.h"
 
 namespace ifog::tools {
 

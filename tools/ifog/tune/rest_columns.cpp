@@ -8,12 +8,12 @@
 #include <stdexcept>
 
 #include "drivers/capture/columns/column_names.h"
-#include "filters/series/series_view.h"
 
 namespace ifog::tools {
 
 Rest rest_of(const CaptureView& capture, double period_s) {
-  std::vector<SeriesView> rates(capture.rate_radps.begin(), capture.rate_radps.end()), references;
+  std::vector<std::span<const double>> rates(capture.rate_radps.begin(), capture.rate_radps.end()),
+      references;
   for (const CaptureView::Channel& channel : capture.channels)
     if (is_other_rate(channel.name)) rates.emplace_back(channel.values);
   for (const std::span<const double> reference : capture.reference_rate_radps)

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "drivers/capture/capture.h"
 #include "filters/rest/rest.h"
-#include "tools/ifog/captures/capture_view.h"
 
 namespace ifog::tools {
 

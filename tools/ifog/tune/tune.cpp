@@ -9,6 +9,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
@@ -170,14 +171,14 @@ std::string axis_label(const CaptureView& capture, std::size_t axis) {
 // Replaces single jumps in the capture by values in `repaired`. Other faults of the logging program are
 // noted, because a fit to such data is not a gyro's noise.
 void leave_out_leaps(CaptureView& capture, const SampleClock& clock, const Rest& rest,
-                     std::vector<LongSeries>& repaired, std::vector<std::string>& notes) {
+                     std::vector<Samples>& repaired, std::vector<std::string>& notes) {
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
     std::span<const double>& rate = capture.rate_radps[a];
     const std::vector<Stretch> parts = common(stretches(capture.time_s, rate, clock), rest.at_rest);
     std::vector<ValueFault> faults;
-    std::optional<LongSeries> cleaned = without_leaps(
+    std::optional<Samples> cleaned = without_leaps(
         rate, rate, parts, [&](std::size_t i) { return capture.shown_time_s(i); }, faults);
-    if (cleaned) rate = repaired.emplace_back(*std::move(cleaned)).all();
+    if (cleaned) rate = repaired.emplace_back(*std::move(cleaned));
     find_value_faults(rate, parts, clock.period_s, faults);
     for (const ValueFault& fault : faults) notes.push_back(axis_label(capture, a) + fault.text);
   }
@@ -285,7 +286,7 @@ void run_tune(const TuneArguments& options) {
                     options.states.empty() ? default_candidates().size() : options.states.size());
   const Rest rest = mostly_at_rest(capture, period, options.capture);
   std::vector<std::string> notes;
-  std::vector<LongSeries> repaired;
+  std::vector<Samples> repaired;
   repaired.reserve(capture.axes.size());
   leave_out_leaps(capture, clock, rest, repaired, notes);
   const NoiseByAxis noise = noise_of(capture, clock, rest, notes);

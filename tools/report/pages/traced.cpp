@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <span>
 
 #include "filters/diagnosis/record/compensated_error.h"
 #include "filters/effects/meaning.h"
@@ -94,7 +95,7 @@ Trace integrated(const Record& record, const Trace& error, const Trace& x, doubl
 
 // Means of x and y in bins of x.
 void bin(const Trace& x, const Trace& y, std::size_t bins, Traced& out) {
-  FiledVector<std::size_t> order;
+  Column<std::size_t> order;
   for (std::size_t k = 0; k < x.size(); ++k)
     if (std::isfinite(x[k]) && std::isfinite(y[k])) order.push_back(k);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return x[a] < x[b]; });
@@ -129,8 +130,8 @@ Traced trace(const std::vector<Record>& records, const Diagnosis& diagnosis, std
     const Trace x = abscissa(record, effect);
     Trace y = error_without(record, diagnosis, index);
     if (out.angle) y = integrated(record, y, x, effect.period);
-    all_x.insert(all_x.end(), x.begin(), x.end());
-    all_y.insert(all_y.end(), y.begin(), y.end());
+    all_x.append(x);
+    all_y.append(y);
   }
   bin(all_x, all_y, bins, out);
   if (out.x.size() < 2 || out.x.back() - out.x.front() <= 0.0) return {};

@@ -185,10 +185,12 @@ std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder&
   return static_cast<double>(first_ns - *powered_ns) * 1e-9;
 }
 
-Capture FlightInput::capture(DriverInstance& driver) {
-  return naming(file_.path(), [&] {
-    return known_part_of(table_of([&](RowSink& sink) { return rows(driver, sink); }), file_.path());
-  });
+LongTable FlightInput::table(DriverInstance& driver) {
+  LongTable table;
+  LongTableSink sink(table);
+  static_cast<RowNotes&>(table) = rows(driver, sink);
+  table.drop_unknown(file_.path());
+  return table;
 }
 
 RowNotes FlightInput::rows(DriverInstance& driver, RowSink& sink) {

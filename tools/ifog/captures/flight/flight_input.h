@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "daemon/config/config.h"
-#include "drivers/capture/capture.h"
 #include "drivers/capture/capture_builder.h"
 #include "drivers/capture/files/input_file.h"
 #include "drivers/capture/recording.h"
@@ -17,6 +16,7 @@
 #include "drivers/host/driver_instance.h"
 #include "filters/estimator/learned_noise.h"
 #include "filters/model_file/model.h"
+#include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {
 
@@ -53,7 +53,7 @@ class FlightInput {
   // Delivers all samples and prints losses on standard error. Throws as above, also if there is no sample.
   RecordingCounts for_each_sample(DriverInstance& driver, const RecordedSamples& sink);
   // All samples as columns, with the channels of other sources.
-  Capture capture(DriverInstance& driver);
+  LongTable table(DriverInstance& driver);
   // The same in blocks, with every axis and channel that is possible.
   RowNotes rows(DriverInstance& driver, RowSink& sink);
   // `bytes`, `can` and `message` entries as recorded, for `ifog replay`.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -35,8 +36,7 @@ void LongTable::drop_unknown(const std::string& path) {
 }
 
 void LongTable::clean(Rule rule) {
-  const SeriesView times = time_s;
-  const auto seconds = [&](std::size_t row) { return origin.in_s(times.at(row)); };
+  const auto seconds = [&](std::size_t row) { return origin.in_s(time_s[row]); };
   share_out(columns.size(), std::thread::hardware_concurrency(), [&](std::size_t c) {
     std::string axis;
     if (axis_of(columns[c].name, "rate", axis)) rule(columns[c].values, seconds, columns[c].repeats);
@@ -72,7 +72,7 @@ void LongTableSink::begin(const std::vector<std::string>& names) {
       if (table_.outlined) table_.outlines.emplace_back(names[i]), outlined_.push_back(i);
       continue;
     }
-    table_.columns.push_back({names[i], LongSeries(), false});
+    table_.columns.push_back({names[i], {}, false});
     from_.push_back(i);
   }
 }
@@ -87,24 +87,24 @@ bool LongTableSink::wants(std::size_t column) const {
 void LongTableSink::take(RowBlock& rows) {
   table_.origin = rows.origin;
   // Creating a file's pages takes longer than reading its rows: two threads share it.
-  const unsigned threads = table_.time_s.will_write(rows.time_s.size()) ? 2 : 1;
+  const unsigned threads = table_.time_s.has_room(rows.size()) ? 1 : 2;
   for (std::size_t i = 0; i < outlined_.size(); ++i) table_.outlines[i].add(rows.columns[outlined_[i]]);
   share_out(from_.size() + 1, threads, [&](std::size_t i) {
     if (i == 0) {
-      table_.time_s.add(rows.time_s);
+      table_.time_s.append(rows.time_s);
       return;
     }
     const std::size_t c = i - 1;
     LongColumn& column = table_.columns[c];
     const std::vector<double>& values = rows.columns[from_[c]];
-    column.values.add(values);
+    column.values.append(values);
     column.known =
         column.known || std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); });
   });
 }
 
 LongRows::LongRows(const LongTable& table, const CaptureShape& shape)
-    : table_(table), shape_(shape), names_{"time_s"}, views_{table.time_s} {
+    : table_(table), names_{"time_s"}, views_{table.time_s} {
   for (const Kind kind : {Kind::rate, Kind::reference, Kind::channel}) {
     const std::size_t many = kind == Kind::channel ? shape.channels : shape.axes.size();
     for (std::size_t at = 0; at < many; ++at)
@@ -112,38 +112,17 @@ LongRows::LongRows(const LongTable& table, const CaptureShape& shape)
         if (shape.places[c].kind == kind && shape.places[c].at == at) {
           names_.push_back(table.columns[c].name);
           views_.emplace_back(table.columns[c].values);
-          from_.push_back(c);
         }
   }
-  room_.resize(views_.size());
   rows_.resize(views_.size());
 }
 
 bool LongRows::next() {
-  const std::size_t count = std::min(kSeriesPiece, table_.size() - at_);
+  const std::size_t count = std::min(RowBatch::kRows, table_.size() - at_);
   if (count == 0) return false;
-  for (std::size_t i = 0; i < views_.size(); ++i) rows_[i] = views_[i].piece(at_, count, room_[i]);
+  for (std::size_t i = 0; i < views_.size(); ++i) rows_[i] = views_[i].subspan(at_, count);
   at_ += count;
   return true;
-}
-
-void LongRows::as_capture(Capture& piece) const {
-  const auto put = [](std::span<const double> from, std::vector<double>& to) {
-    to.assign(from.begin(), from.end());
-  };
-  piece.axes = shape_.axes;
-  piece.rate_radps.resize(shape_.axes.size());
-  piece.reference_rate_radps.resize(shape_.axes.size());
-  piece.channels.resize(shape_.channels);
-  piece.origin = table_.origin;
-  put(rows_[0], piece.time_s);
-  for (std::size_t i = 0; i < from_.size(); ++i) {
-    const CaptureShape::Place& place = shape_.places[from_[i]];
-    if (place.kind == Kind::channel) piece.channels[place.at].name = names_[i + 1];
-    put(rows_[i + 1], place.kind == Kind::rate        ? piece.rate_radps[place.at]
-                      : place.kind == Kind::reference ? piece.reference_rate_radps[place.at]
-                                                      : piece.channels[place.at].values);
-  }
 }
 
 LongTable long_table(Capture capture) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -11,21 +12,20 @@
 #include "filters/rest/channel_outline.h"
 #include "filters/rest/cleaned_rate.h"
 #include "filters/rest/value_faults.h"
-#include "filters/series/long_series.h"
-#include "filters/series/series_view.h"
+#include "filters/series/samples.h"
 
 namespace ifog::tools {
 
 struct LongColumn {
   std::string name;
-  LongSeries values;
+  Samples values;
   bool known = false;                    // has had a value
   std::vector<ValueFault> repeats = {};  // in a rate; see clean()
 };
 
 struct LongTable : RowNotes {
   TimeOrigin origin;  // of time_s
-  LongSeries time_s;
+  Samples time_s;
   std::vector<std::string> header;     // all columns of the file except time_s and dead_axes
   std::vector<LongColumn> columns;     // the wanted ones, in the same order
   std::vector<std::string> dead_axes;  // axes that never have a value; their columns are dropped
@@ -37,7 +37,7 @@ struct LongTable : RowNotes {
   // Drops axes and channels of a recording that never had a value. Throws std::runtime_error if none is left.
   void drop_unknown(const std::string& path);
   // Removes the values that the rule (filters/rest/cleaned_rate.h) finds in the rates.
-  using Rule = void(LongSeries& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
+  using Rule = void(Samples& rate, const TimeOfSample& time_s, std::vector<ValueFault>& faults);
   void clean(Rule rule);
   // The same, and prints them on standard error; path: of the capture.
   void clean_and_tell(Rule rule, const std::string& path);
@@ -71,7 +71,7 @@ class LongTableSink final : public RowSink {
 // Blocks of a table's rows in the order of a capture: rates, references, channels.
 class LongRows {
  public:
-  // Both must outlive this.
+  // The table must outlive this.
   LongRows(const LongTable& table, const CaptureShape& shape);
 
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // time_s first
@@ -79,16 +79,11 @@ class LongRows {
   bool next();
   [[nodiscard]] std::span<const std::span<const double>> rows() const { return rows_; }
   [[nodiscard]] const TimeOrigin& origin() const { return table_.origin; }
-  // The same as a capture, which is reused.
-  void as_capture(Capture& piece) const;
 
  private:
   const LongTable& table_;
-  const CaptureShape& shape_;
   std::vector<std::string> names_;
-  std::vector<SeriesView> views_;
-  std::vector<std::size_t> from_;  // by name except time_s: the table's column
-  std::vector<std::vector<double>> room_;
+  std::vector<std::span<const double>> views_;
   std::vector<std::span<const double>> rows_;
   std::size_t at_ = 0;
 };

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "drivers/capture/columns/column_names.h"
-#include "filters/series/series_view.h"
 #include "tools/ifog/captures/table/long_table.h"
 
 namespace ifog::tools {
@@ -21,10 +20,8 @@ std::vector<bool> rows_with_rate(const LongTable& table) {
   std::vector<bool> with(table.size());
   for (const LongColumn& column : table.columns) {
     if (!is_rate(column.name)) continue;
-    for_each_piece(column.values, 0, table.size(), [&](std::span<const double> values, std::size_t first) {
-      for (std::size_t i = 0; i < values.size(); ++i)
-        if (!std::isnan(values[i])) with[first + i] = true;
-    });
+    for (std::size_t i = 0; i < table.size(); ++i)
+      if (!std::isnan(column.values[i])) with[i] = true;
   }
   return with;
 }
@@ -41,17 +38,15 @@ bool stand_apart(const std::vector<bool>& with) {
 }
 
 // latest: a row without a value gets the last one since the previous kept row.
-LongSeries kept_of(const SeriesView& values, const std::vector<bool>& with, bool latest) {
-  LongSeries kept;
+Samples kept_of(std::span<const double> values, const std::vector<bool>& with, bool latest) {
+  Samples kept;
   double last = kMissing;
-  for_each_piece(values, 0, values.size(), [&](std::span<const double> piece, std::size_t first) {
-    for (std::size_t i = 0; i < piece.size(); ++i) {
-      if (!latest || !std::isnan(piece[i])) last = piece[i];
-      if (!with[first + i]) continue;
-      kept.add(last);
-      last = kMissing;
-    }
-  });
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (!latest || !std::isnan(values[i])) last = values[i];
+    if (!with[i]) continue;
+    kept.push_back(last);
+    last = kMissing;
+  }
   return kept;
 }
 
