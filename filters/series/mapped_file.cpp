@@ -147,9 +147,8 @@ char* mapped(char* at, std::size_t bytes, int protection, int flags, int fd = -1
   return static_cast<char*>(made);
 }
 
-void move_mapping(char* from, std::size_t bytes, char* to) {
-  if (::mremap(from, bytes, bytes, MREMAP_MAYMOVE | MREMAP_FIXED, to) == MAP_FAILED)
-    UnnamedFile::fail("cannot map");
+char* mapped_memory(char* at, std::size_t bytes) {
+  return mapped(at, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS);
 }
 
 }  // namespace
@@ -167,10 +166,9 @@ MappedFile::~MappedFile() {
 void MappedFile::reserve(std::size_t bytes) {
   char* const to = mapped(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE);
   if (filed_ > 0) mapped(to, filed_, PROT_READ | PROT_WRITE, MAP_SHARED, file_.descriptor());
-  if (at_ == nullptr) {
-    mapped(to, kPiece, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS);
-  } else {
-    move_mapping(at_ + filed_, kPiece, to + filed_);
+  char* const piece = mapped_memory(to + filed_, kPiece);
+  if (at_ != nullptr) {
+    std::copy_n(at_ + filed_, kPiece, piece);
     resident().remove(at_);
     ::munmap(at_, reserved_);
   }
@@ -188,7 +186,11 @@ void MappedFile::extend() {
     if (!spares().clear()) throw;
     file_.write(filed_, piece, kPiece);
   }
-  move_mapping(piece, kPiece, piece + kPiece);
+  // The piece keeps its pages, because new ones cost more than the write. Its old addresses stay mapped until the
+  // file replaces them: another thread might map something into a hole. Before Linux 5.7 the pages are new.
+  if (::mremap(piece, kPiece, kPiece, MREMAP_MAYMOVE | MREMAP_FIXED | MREMAP_DONTUNMAP, piece + kPiece) ==
+      MAP_FAILED)
+    mapped_memory(piece + kPiece, kPiece);
   mapped(piece, kPiece, PROT_READ | PROT_WRITE, MAP_SHARED, file_.descriptor(), filed_);
   filed_ += kPiece;
   resident().set(at_, filed_);

@@ -5,10 +5,12 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <string>
 #include <vector>
 
 #include "filters/allan/confidence.h"
 #include "filters/allan/deviation.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -65,6 +67,37 @@ void widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& fou
     }
     if (std::abs(off) > found.curve.departure) found.curve = {std::abs(off), tau_s};
   }
+}
+
+std::string curve_miss_in_words(const NoiseCoefficients& found) {
+  if (found.curve.departure == 0.0) return "";
+  return formatted("fit is %.2g %% off at %.6g s; error bars widened", 100.0 * found.curve.departure,
+                   found.curve.tau_s);
+}
+
+std::vector<std::string> misfit_in_words(const NoiseCoefficients& found) {
+  const auto in_words = [](const std::vector<FrequencyRange>& ranges) {
+    constexpr std::size_t kShown = 6;
+    std::string words;
+    for (std::size_t i = 0; i < std::min(kShown, ranges.size()); ++i)
+      words += formatted("%s%.6g–%.6g", i > 0 ? ", " : "", ranges[i].low, ranges[i].high);
+    if (ranges.size() > kShown) words += " and " + std::to_string(ranges.size() - kShown) + " more";
+    return words + " Hz";
+  };
+  std::vector<std::string> lines;
+  if (!found.lines_hz.empty())
+    lines.push_back("lines, not used in the noise fit: " + in_words(found.lines_hz));
+  if (!found.left_out_hz.empty())
+    lines.push_back(
+        "not used in the fit: Q, N, B, K, R cannot explain these bands (resonance, vibration, a filter): " +
+        in_words(found.left_out_hz));
+  const std::string markov = markov_in_words(found);
+  if (!markov.empty())
+    lines.push_back(markov);
+  else if (found.misfit > 0.0)
+    lines.push_back(formatted("fit is %.2g %% off; error bars widened", 100.0 * found.misfit));
+  if (const std::string miss = curve_miss_in_words(found); !miss.empty()) lines.push_back(miss);
+  return lines;
 }
 
 }  // namespace ifog

@@ -3,6 +3,9 @@
 // where an effect of temperature or vibration may look like another kind of noise; the curve shows it.
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "filters/allan/angle_sum.h"
 #include "filters/allan/noise/noise_coefficients.h"
 
@@ -13,5 +16,11 @@ namespace ifog {
 // bar of the strongest term there is widened to reach the curve. Nothing is changed if the spectrum has lines
 // or dropped bands, which explain the difference.
 void widen_to_curve(const AngleSum& sum, double period_s, NoiseCoefficients& found);
+
+// "fit is 5 % off at 3 s; error bars widened", or "" if it is not.
+[[nodiscard]] std::string curve_miss_in_words(const NoiseCoefficients& found);
+
+// One line each: what the terms do not describe (lines, bands, a correlated bias, a departure from the curve).
+[[nodiscard]] std::vector<std::string> misfit_in_words(const NoiseCoefficients& found);
 
 }  // namespace ifog

@@ -70,10 +70,4 @@ struct NoiseCoefficients {
 // "the bias is correlated: …", or "" if it is not.
 [[nodiscard]] std::string markov_in_words(const NoiseCoefficients& found);
 
-// "fit is 5 % off at 3 s; error bars widened", or "" if it is not.
-[[nodiscard]] std::string curve_miss_in_words(const NoiseCoefficients& found);
-
-// One line each: what the terms do not describe (lines, bands, a correlated bias, a departure from the curve).
-[[nodiscard]] std::vector<std::string> misfit_in_words(const NoiseCoefficients& found);
-
 }  // namespace ifog

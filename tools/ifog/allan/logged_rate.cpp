@@ -7,6 +7,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "filters/allan/noise/curve_miss.h"
 #include "filters/allan/row_times.h"
 #include "filters/rest/cleaned_rate.h"
 #include "filters/rest/followed_channel.h"

@@ -16,6 +16,7 @@
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
+#include "filters/allan/noise/curve_miss.h"
 #include "filters/allan/noise/noise_coefficients.h"
 #include "filters/model_file/model.h"
 #include "filters/rest/cleaned_rate.h"
