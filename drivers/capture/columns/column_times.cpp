@@ -126,8 +126,7 @@ int rank_of(const std::string& name, const Words& words) {
   // UTC_Day, UTC_Second: parts of a date.
   if (words.first() == "utc" && (words.has("day") || words.has("second"))) return 0;
   const auto is_time = [](const std::string& word) {
-    return word.ends_with("time") || word.ends_with("stamp") || says(word, Role::time) ||
-           says(word, Role::ms) || says(word, Role::us) || says(word, Role::ns);
+    return word.ends_with("time") || word.ends_with("stamp") || says(word, Role::time);
   };
   if (words.has("header") && words.has("stamp")) return 4;  // measurement time in ROS
   if (!words.words.empty() && std::ranges::all_of(words.words, is_time)) return 3;

@@ -49,6 +49,26 @@ class Noise:
         path.write_text("time_s,rate_radps\n" + "\n".join(lines) + "\n")
         return path
 
+    def check_what_is_no_noise_is_said_by_every_command(self):
+        """Noise that is held for three samples is no sum of the terms, as the tremor of a hand is none. At 5 Hz there is no deviation
+        at 0.1 s; of 900 samples no noise is learned, and nothing is filtered."""
+        dice, rows = random.Random(3), ["time_s,rate_radps"]
+        held = 0.0
+        for i in range(6000):
+            held = dice.gauss(0, 1e-3) if i % 3 == 0 else held
+            rows.append(f"{i / 5},{held + dice.gauss(0, 2e-4):.7f}")
+        path, short, picture = (self.folder / name for name in ("held.csv", "short.csv", "short.svg"))
+        path.write_text("\n".join(rows) + "\n")
+        allan = self.json("allan", path)["axes"][0]["coefficients"]["N"]["std_error"]
+        tuned = self.json("tune", path, "--state", "random-walk")
+        near(tuned["noise"][0]["coefficients"]["N"]["std_error"], allan, 1e-6 * allan, "bar of N")
+        said = ran("tune", path, "--state", "random-walk").stdout
+        assert "cannot explain these bands" in said and "takes those bands for noise, too" in said, said
+        assert "0.1" not in tuned["models"][0]["held_out"][0]["before"]["adev_radps"], tuned["models"]
+        short.write_text("\n".join(rows[:901]) + "\n")
+        said = ran("denoise", short, "--output", self.folder / "short.out.csv", "--plot", picture)
+        assert "4096 samples at rest are needed" in said.stderr and "Rate, not denoised" in picture.read_text(), said.stderr
+
     def check_hourly_rates_are_asked_about(self):
         """10.3 °/h of Earth's rate in a column of rad/s is interpreted correctly."""
         hourly = self.folder / "hourly.csv"

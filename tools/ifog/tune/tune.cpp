@@ -211,8 +211,7 @@ NoiseByAxis noise_of(const CaptureView& capture, const SampleClock& clock, const
   if (unexplained)
     notes.push_back(
         "a model with coloured noise takes those bands for noise, too: if a hand, an engine or a structure "
-        "moved "
-        "there, record at rest");
+        "moved there, record at rest");
   return noise;
 }
 

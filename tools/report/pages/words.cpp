@@ -115,7 +115,7 @@ Figure figure(const std::string& key) {
   if (key == "residual_rms_radps") return {"RMS of single samples", "°/h", 1.0 / kDegreePerHour};
   if (key == "heading_drift_rad")
     return {"heading at the end, bias from the first tenth", "°", 1.0 / kDegree};
-  if (key == "whiteness") return {"correlation of neighbouring 1 s means", "", 1.0};
+  if (key == "whiteness") return {"correlation of 1 s means (0: white noise)", "", 1.0};
   if (ends_with(key, "_radps", head) && head.rfind("rms_", 0) == 0)
     return {"RMS of " + replaced(head.substr(4), "s", " s") + " means", "°/h", 1.0 / kDegreePerHour};
   if (ends_with(key, "_radps", head) && head.rfind("adev_", 0) == 0)
