@@ -12,6 +12,7 @@ except ModuleNotFoundError:
 
 import best_possible
 import judge
+import score_real
 import sensor
 import signals
 from noise import Noise
@@ -54,6 +55,12 @@ class NoiseTest(unittest.TestCase):
             flicker.append(allan(x, 500) / (only.B * np.sqrt(2 * np.log(2) / np.pi)))
         self.assertAlmostEqual(np.mean(white), 1.0, delta=0.02)
         self.assertAlmostEqual(np.mean(flicker), 1.0, delta=0.08)
+
+    def test_real_noise_is_fitted(self):
+        known = Noise.known(score_real.STEP_S, 2e-6, 3e-8, 1e-9)
+        found = score_real.fitted_noise(known.draw(np.random.default_rng(5), 3000)[0])
+        effect = np.sin(np.arange(3000) * 0.02)
+        self.assertAlmostEqual(found.sigma(effect) / known.sigma(effect), 1.0, delta=0.1)
 
     def test_sigma_in_white_noise_is_the_norm(self):
         plain = noise()
@@ -142,6 +149,29 @@ class JudgeTest(unittest.TestCase):
         self.assertEqual(len(judge.contradictions(self.report, 2.0, 1.0)), 1)
         self.report["remarks"] = ["10 s means grow 1.5 times, but there are 12 of them"]
         self.assertEqual(judge.contradictions(self.report, 2.0, 1.0), [])
+
+    def test_a_heading_is_measured_against_its_prediction(self):
+        rng, dt, aligned, later = np.random.default_rng(3), 0.5, 300, 600
+        report = {"heading_prediction": {"aligned_s": aligned, "after_s": [60, later, 7200],
+                                         "sigma_rad": [0.0, np.sqrt(later * (1 + later / aligned)), 0.0]}}
+        squares = []
+        for _ in range(400):
+            own = rng.normal(size=2400) / np.sqrt(dt)
+            effect = rng.normal(size=2400)
+            capture = sensor.Capture(None, {}, effect, [], None, own)
+            squares.append(judge.heading_square(capture, effect, report, dt))
+        self.assertAlmostEqual(np.mean(squares), 1.0, delta=0.25)
+        self.assertIsNone(judge.heading_square(sensor.Capture(None, {}, own[:500], [], None, own[:500]), own[:500], report, dt))
+
+    def test_a_coefficient_is_measured_in_its_errors(self):
+        truth = next(x.truth for x in (sensor.make(k, "supply") for k in range(1, 99)) if x.truth["role"] == "visible"
+                     and len(x.truth["effects"]) == 1 and not x.truth["faults"])
+        size = truth["effects"][0]["size"]
+        found = self.report["effects"][0]
+        found["parameters"] = {"coefficient": {"value": size + 0.2 * abs(size), "std_error": 0.1 * abs(size)}}
+        self.assertAlmostEqual(judge.coefficient_error(self.report, truth), 2.0)
+        found["channel"] = "laser_mA"
+        self.assertIsNone(judge.coefficient_error(self.report, truth))
 
     def test_means_leave_out_what_is_missing(self):
         x = np.array([1.0, 1.0, np.nan, 3.0, np.nan, np.nan])

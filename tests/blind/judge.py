@@ -96,6 +96,35 @@ def errors(capture, correction, dt, seconds):
             "total_after": size(capture.own + left)}
 
 
+def coefficient_error(report, truth):
+    """Error of a coefficient in its standard errors, where the hidden law is one coefficient of one channel and the report names
+    just that; else None."""
+    effects = [(form, used, e) for form, used, e in claims_of(report) if form not in DESCRIBE]
+    if len(truth["effects"]) != 1 or len(effects) != 1 or truth["faults"]:
+        return None
+    hidden, (form, used, found) = truth["effects"][0], effects[0]
+    if hidden["form"] != "linear" or form != "linear" or len(hidden["channels"]) != 1 or used != [hidden["channel"]] \
+            or "minus_channel" in found:
+        return None
+    said = found["parameters"]["coefficient"]
+    return (said["value"] - hidden["size"]) / said["std_error"]
+
+
+def heading_square(capture, correction, report, dt):
+    """(found / predicted)^2 of the heading error after the longest predicted time that fits into the capture, with the bias
+    from its beginning; None if no time fits."""
+    said = report["heading_prediction"]
+    aligned = round(said["aligned_s"] / dt)
+    left = capture.own + capture.effect - np.where(np.isfinite(correction), correction, 0.0)
+    fit = [(round(t / dt), sigma) for t, sigma in zip(said["after_s"], said["sigma_rad"])
+           if aligned + round(t / dt) <= len(left)]
+    if not fit or aligned == 0:
+        return None
+    n, sigma = fit[-1]
+    heading = np.sum(left[aligned : aligned + n] - np.mean(left[:aligned])) * dt
+    return float((heading / sigma) ** 2)
+
+
 def verdict(truth, report, error):
     extra = unfounded(report, truth)
     corrective = [c for c in claims_of(report) if c[0] not in DESCRIBE]

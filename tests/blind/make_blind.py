@@ -4,7 +4,7 @@
 
 OUTPUT/capture1.csv is to be diagnosed, OUTPUT/next.csv to be corrected with the model found. TRUTH/truth.json names
 the kind, its channels and its visibility in sigma; TRUTH/capture1_effect.csv and next_effect.csv hold, row by row of
-the capture, the effect's rate and the true rotation. Layout and first columns as make_undeclared writes them."""
+the capture, the effect's rate and the true rotation."""
 import argparse
 import json
 import sys

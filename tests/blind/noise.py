@@ -33,6 +33,13 @@ class Noise:
         self.sways, self.lines = [], []
         self.dt = dt
 
+    @classmethod
+    def known(cls, dt, N, B, K):
+        """White noise, flicker and walk of these sizes."""
+        noise = cls.__new__(cls)
+        noise.dt, noise.N, noise.B, noise.K, noise.Q, noise.sways, noise.lines = dt, N, B, K, 0.0, [], []
+        return noise
+
     def flicker_times(self, n):
         count = int(np.ceil(np.log(20.0 * n) / np.log(FLICKER_RATIO)))
         return 0.5 * self.dt * FLICKER_RATIO ** np.arange(count)

@@ -110,7 +110,10 @@ def judged(ifog, seed, only, several, folder):
         dt = 1 / truth["sample_rate_hz"]
         seconds = dt if "ramp" in truth["kind"] else 10.0
         times, took, _ = corrected(ifog, folder, "next", folder / "m.toml", axis, not truth["outside"])
-        error = judge.errors(second, on_rows(second.t, times, took), dt, seconds)
+        took = on_rows(second.t, times, took)
+        error = judge.errors(second, took, dt, seconds)
+        whole = not any(truth["accidents"]) and not truth["outside"]
+        record["heading_square"] = judge.heading_square(second, took, report, dt) if whole else None
         times, took, left = corrected(ifog, folder, "capture1", folder / "m.toml", axis, True)
         reference = fit.columns.get(f"reference_rate_{axis}radps", 0.0)
         before = signals.rms(fit.columns[f"rate_{axis}radps"] - reference, dt)
@@ -122,6 +125,7 @@ def judged(ifog, seed, only, several, folder):
         return record
     record.update(
         error=error, verdict=judge.verdict(truth, report, error), unfounded=judge.unfounded(report, truth),
+        coefficient_error=judge.coefficient_error(report, truth),
         claims=[f"{form} of {' and '.join(used)}" if used else form for form, used, _ in judge.claims_of(report)],
         named=[judge.named(report, e) for e in truth["effects"]],
         contradictions=judge.contradictions(report, before, after), odd_words=judge.odd_words(report),

@@ -78,6 +78,12 @@ def summary(records):
     out["worse"] = _share([r for r in done if r["worse"]], done)
     out["worse_but_for_warm_starts"] = _share([r for r in done if r["worse"] and r not in warm], done)
     out["contradictions"] = _share([r for r in done if r["contradictions"]], done)
+    # The mean square of a right prediction is 1, and 95 % of right intervals hold.
+    squares = [r["heading_square"] for r in done if r["heading_square"] is not None
+               and r["verdict"] in ("right", "left alone")]
+    out["heading_square"] = {"count": len(squares), "mean": float(np.mean(squares))} if squares else None
+    errors = [r["coefficient_error"] for r in done if r["coefficient_error"] is not None]
+    out["intervals_hold"] = {"count": len(errors), "share": _share([e for e in errors if abs(e) < 1.96], errors)}
     for name, outside in (("inside", False), ("outside", True)):
         rows = [r for r in covered if _kept_out(r) and left_range(r) == outside]
         out[f"error_{name}"] = _quantiles(rows)

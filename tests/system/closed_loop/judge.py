@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: Apache-2.0
 """Error of the next capture before and after correction, compared with the sensor's own noise.
 
-usage: judge.py KIND FOLDER
+usage: judge.py FOLDER
 """
 import csv
+import json
 import sys
 
 import numpy
@@ -22,7 +23,8 @@ def spread_of_means(error, dt, seconds=10.0):
     return means.std()
 
 
-kind, folder = sys.argv[1:]
+folder = sys.argv[1]
+kind = json.load(open(folder + "/truth/truth.json"))["kind"]
 denoised, hidden = columns(folder + "/denoised.csv"), columns(folder + "/truth/next_effect.csv")
 raw, compensated = denoised["raw_radps"], denoised["compensated_radps"]
 dt = numpy.median(numpy.diff(denoised["time_s"]))
