@@ -103,6 +103,7 @@ class Run {
     const Eigen::RowVectorXd means = corrected_means();
     const double left = means[0] - means.tail(means.size() - 1).dot(found_.coefficients);
     if (data_.reference >= 0) result_.bias = ModelParameter{"coefficient", left, 0.0, "rad/s"};
+    result_.means.clear();
     subtract_effects(records_, data_, found_, result_, errors_);
   }
 
@@ -177,7 +178,12 @@ class Run {
   void fit_jointly() {
     joint_ = settle(reconstructed_, found_);
     report_effects();
-    if (data_.reference >= 0) name_bias(data_.grid, joint_, corrected_means(), options_.axis, result_);
+    const Eigen::RowVectorXd means = corrected_means();
+    if (data_.reference >= 0)
+      name_bias(data_.grid, joint_, means, options_.axis, result_);
+    else
+      result_.means = means_of_corrections(result_.effects, result_.ranges,
+                                           means.tail(means.size() - column_of(data_.grid, 0)));
     result_.covariance = covariance_of(result_.effects, joint_, data_.grid.constants(), parts_.size());
     subtract_effects(records_, data_, found_, result_, errors_);
     write_before_and_after(errors_, data_.grid.sample_s, data_.reference >= 0, result_);

@@ -242,6 +242,13 @@ bool is_fringe(const BlockData& data, const Candidate& candidate) {
   return candidate.is_periodic() && !(data.channels[candidate.channel].period > 0.0);
 }
 
+bool is_power_beyond(const BlockData& data, const Candidate& candidate) {
+  if (power_of(candidate.form) < 2 || candidate.channel == Candidate::kNone) return false;
+  const FineChannel& source = data.channels[candidate.channel];
+  const double zero = reference_of(source.name);
+  return zero < source.low || zero > source.high;
+}
+
 std::vector<double> time_constants(const BlockGrid& grid, Form form) {
   const double longest = static_cast<double>(grid.longest()) * grid.block_s;
   double from = grid.block_s * kBlocksOfRate;

@@ -70,6 +70,8 @@ std::vector<Candidate> library(const BlockData& data);
 // the path difference, so the bias oscillates. Its period is unknown; this is the spacing of the tries.
 inline constexpr double kStepOfFringes = 0.5;  // in fringes within the range; neighbours correlate by 0.7
 bool is_fringe(const BlockData& data, const Candidate& candidate);
+// A power about a value that its channel never had: within the range it is a line, and a curve only beside one.
+bool is_power_beyond(const BlockData& data, const Candidate& candidate);
 
 // Two effects that form one law; each may be hidden without the other. Laws about an unknown point: k (c -
 // c0)^2, k g (c - c0) while switch g is on, k w (c - c0) of a scale factor; an oscillation of unknown phase;

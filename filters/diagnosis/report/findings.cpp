@@ -263,6 +263,37 @@ std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const
   return covariance;
 }
 
+namespace {
+
+// True if one of its channels had the value at which the effect is zero. An effect of time, of a change, of a phase or of a
+// vibration is zero where the sensor is at rest.
+bool is_zero_within(const Effect& effect, const std::vector<ChannelRange>& ranges) {
+  const auto covers = [&](const std::string& channel, double reference) {
+    const auto range = std::ranges::find(ranges, channel, &ChannelRange::channel);
+    return range == ranges.end() || (range->low <= reference && reference <= range->high);
+  };
+  const Form form = form_named(effect.form).value_or(Form::kBias);
+  if (form == Form::kProduct)
+    return covers(effect.channel, effect.reference) || covers(effect.with_channel, effect.with_reference);
+  return (power_of(form) == 0 && form != Form::kLagged) || covers(effect.channel, effect.reference);
+}
+
+}  // namespace
+
+std::vector<double> means_of_corrections(const std::vector<FoundEffect>& effects,
+                                         const std::vector<ChannelRange>& ranges,
+                                         const Eigen::RowVectorXd& of_chosen) {
+  std::vector<double> means;
+  for (std::size_t i = 0; i < effects.size(); ++i) {
+    const Effect& effect = effects[i].effect;
+    const auto at = static_cast<Eigen::Index>(i);
+    const bool beyond = at < of_chosen.size() && !is_zero_within(effect, ranges);
+    means.resize(means.size() + effect.parameters.size(), 0.0);
+    if (beyond) means[means.size() - effect.parameters.size()] = of_chosen[at];
+  }
+  return means;
+}
+
 std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects) {
   std::vector<ChannelRange> ranges;
   const bool ramp = std::ranges::any_of(

@@ -32,6 +32,11 @@ std::vector<Effect> effects_of(const BlockData& data, const std::vector<Candidat
 std::vector<double> covariance_of(const std::vector<FoundEffect>& effects, const JointFit& joint,
                                   Eigen::Index nuisances, std::size_t jointly);
 
+// Diagnosis::means. of_chosen: means of the regressors of the first effects, zero if not corrected.
+std::vector<double> means_of_corrections(const std::vector<FoundEffect>& effects,
+                                         const std::vector<ChannelRange>& ranges,
+                                         const Eigen::RowVectorXd& of_chosen);
+
 std::vector<ChannelRange> ranges_of(const BlockData& data, const std::vector<FoundEffect>& effects);
 
 // Joint fit of the chosen effects; updates `found`.

@@ -27,6 +27,11 @@ bool swings(std::span<const Candidate> model, const Candidate& half) {
   return std::ranges::any_of(model, [&](const Candidate& each) { return each.swings_with(half); });
 }
 
+bool has_line(std::span<const Candidate> model, std::size_t channel) {
+  return std::ranges::any_of(
+      model, [&](const Candidate& each) { return each.form == Form::kLinear && each.channel == channel; });
+}
+
 std::vector<Candidate> without(std::vector<Candidate> model, std::size_t at) {
   model.erase(model.begin() + static_cast<std::ptrdiff_t>(at));
   return model;
@@ -91,6 +96,7 @@ class EffectSearch {
     double sum = 2.0 * noise.log_likelihood;
     for (std::size_t i = 0; i < model.size(); ++i) {
       if (is_fringe(data_, model[i]) && !swings(model, model[i])) return -1e300;
+      if (is_power_beyond(data_, model[i]) && !has_line(model, model[i].channel)) return -1e300;
       const bool law = completes_a_law(model[i], std::span(model).first(i));
       sum -= complexity(model[i]) + (law ? std::log(n) : threshold(model[i]));
     }

@@ -78,6 +78,36 @@ TEST(Laws, ABiasThatAgesIsCorrectedBySlope) {
   EXPECT_LT(left_of(found, make(2, 0.0, 0.0, false, law)), 0.15);
 }
 
+// Neither the bias at 12 V nor a curve is known from a record at 12.3 V: what is corrected there has mean zero, and is as
+// certain there as the record makes it. At a temperature about 25 degrees the correction is zero at 25.
+TEST(Laws, AwayFromWhereItIsZeroACorrectionKeepsTheMean) {
+  const auto law = [](double, double, double, double supply) { return 2e-5 * supply; };
+  const Capture made = make(1, kWhite, 0.0, false, law);
+  const Diagnosis found = diagnose({made.record()}, {});
+  ASSERT_EQ(all_in_words(found), "linear of supply_V; ");
+  Model model;
+  add_to_model(found, "", model);
+  const auto mean = [](std::span<const double> x) {
+    double sum = 0.0;
+    for (const double v : x) sum += v;
+    return sum / static_cast<double>(x.size());
+  };
+  EXPECT_NEAR(mean(compensated_error(made.record(), model)), mean(made.rate), 1e-3 * kWhite);
+  const double volts = mean(made.supply) - 12.0;
+  ASSERT_EQ(model.covariance.size(), 4U);
+  const double at_mean =
+      volts * volts * model.covariance[0] + 2.0 * volts * model.covariance[1] + model.covariance[3];
+  EXPECT_LT(at_mean, 1e-3 * volts * volts * model.covariance[0]);
+
+  const auto warm = [](double, double, double temperature, double) { return 1e-6 * temperature; };
+  const Capture at_home = make(1, kWhite, 2.0, false, warm);
+  const Diagnosis other = diagnose({at_home.record()}, {});
+  ASSERT_EQ(all_in_words(other), "linear of temperature_degC; ");
+  Model of_temperature;
+  add_to_model(other, "", of_temperature);
+  EXPECT_NEAR(mean(compensated_error(at_home.record(), of_temperature)), 25e-6, 0.1e-6);
+}
+
 TEST(Laws, ATransitionIsFoundAndEndsAtItsLevels) {
   const auto law = [](double, double, double temperature, double) {
     return 8e-7 * std::tanh((temperature - 26.0) / 1.5);

@@ -40,6 +40,8 @@ TEST(ReportText, UnitsOfTheField) {
   EXPECT_EQ(channel_label("accel_x_mps2"), "accel x (m/s²)");
   EXPECT_EQ(field_unit("rad/s/degC").unit, "°/h/°C");
   EXPECT_NEAR(field_unit("rad/s/degC").scale, 206264.806, 1e-3);
+  EXPECT_EQ(field_unit("rad/s^2").unit, "°/h/h");
+  EXPECT_NEAR(field_unit("rad/s^2").scale, 206264.806 * 3600.0, 10.0);
   EXPECT_EQ(field_unit("s").unit, "s");
   EXPECT_EQ(figure("rms_10s_radps").label, "RMS of 10 s means");
   EXPECT_EQ(figure("heading_drift_rad").unit, "°");

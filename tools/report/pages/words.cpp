@@ -129,6 +129,7 @@ Figure figure(const std::string& key) {
 }
 
 FieldUnit field_unit(const std::string& si) {
+  if (si == "rad/s^2") return {1.0 / kDegreePerHourPerHour, "°/h/h"};
   if (si.rfind("rad/s", 0) == 0) {
     const std::string rest = si.substr(5);
     // Errors proportional to the rate are given in ppm.
