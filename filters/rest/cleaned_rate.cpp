@@ -27,11 +27,20 @@ std::vector<Stretch> stuck_runs(std::span<const double> rate, std::span<const St
   return stuck;
 }
 
-std::string in_words(const std::vector<Stretch>& stuck, const TimeOfSample& time_s) {
+std::string in_words(const std::vector<Stretch>& stuck, std::span<const double> rate,
+                     const TimeOfSample& time_s) {
   const std::size_t longest = std::ranges::max_element(stuck, {}, &Stretch::size)->size();
+  double most = 0.0;
+  for (const double value : rate)
+    if (std::abs(value) > most) most = std::abs(value);
+  const bool full_scale =
+      std::ranges::any_of(stuck, [&](const Stretch& each) { return std::abs(rate[each.begin]) == most; });
   return "stands still for up to " + std::to_string(longest) + " samples, " + std::to_string(stuck.size()) +
          (stuck.size() == 1 ? " time" : " times") + ", first at " + told_time(time_s(stuck.front().begin)) +
-         " s: the sensor or the logger repeated a value, not used in these figures";
+         " s: " +
+         (full_scale ? "at its largest value, where the sensor or its number format is at full scale"
+                     : "the sensor or the logger repeated a value") +
+         ", not used in these figures";
 }
 
 // leaps: in order.
@@ -54,7 +63,7 @@ void leave_out_repeats(Samples& rate, const TimeOfSample& time_s, std::vector<Va
   leave_out_placeholders(rate, time_s, faults);
   const std::vector<Stretch> stuck = stuck_runs(rate, stretches({}, rate, {}));
   if (stuck.empty()) return;
-  faults.push_back({"stuck", in_words(stuck, time_s)});
+  faults.push_back({"stuck", in_words(stuck, rate, time_s)});
   std::vector<Glitches::Leap> missing;
   for (const Stretch& each : stuck) missing.push_back({each, std::nan("")});
   rate = *without(rate, missing);

@@ -42,12 +42,20 @@ OwnedRecords without_turns(OwnedRecords given) {
     const Rest rest = find_rest(axes, {}, period_s);
     note_value_faults(record, rest, given.remarks);
     record.at_rest = rest.at_rest;
-    if (rest.turned == 0) continue;
+    std::string moving;
     try {
       require_rest(rest, period_s, start_s);
     } catch (const std::invalid_argument& error) {
-      throw std::invalid_argument(std::string(error.what()) + ", or a reference rate");
+      moving = error.what();
     }
+    if (rest.turned == 0) {
+      // Vibration may be what is tested.
+      if (!moving.empty())
+        given.remarks.push_back(record.name + ": " + in_words(rest, period_s, start_s) +
+                                "; its noise and its lines are also those of the shaking");
+      continue;
+    }
+    if (!moving.empty()) throw std::invalid_argument(moving + ", or a reference rate");
     Samples& rate = given.columns.emplace_back(record.rate_radps.size(), std::nan(""));
     for (const Stretch& part : rest.at_rest)
       for (std::size_t i = part.begin; i < part.end; ++i) rate[i] = record.rate_radps[i];

@@ -151,6 +151,7 @@ class Noise:
         refused(1, "allan", self.capture, "--tau", SECONDS / 2 + 1, says=["overlapping deviation", f"to {SECONDS // 2} s"])
         for tau in ("1e20", "1e-20", "1e308"):  # the number of samples exceeds the range of the number type
             refused(1, "allan", self.capture, "--tau", tau, says=["outside what the overlapping deviation", f"to {SECONDS // 2} s"])
+        assert self.json("allan", self.capture, "--tau", f"1,{SECONDS},2")["axes"][0]["tau_s"] == [1, 2]
         for estimator in ("overlapping", "modified", "hadamard"):
             found = self.json("allan", self.capture, "--estimator", estimator, "--tau", math.floor(third))["axes"][0]
             assert 0 < found["lower_radps"][0] < found["adev_radps"][0] < found["upper_radps"][0], found

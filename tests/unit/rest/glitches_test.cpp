@@ -167,8 +167,11 @@ TEST(Glitches, TheCrestOfABlowIsNone) {
 // By the level between them 0.18 to 0.33 of the step; noise of half a step is resolved.
 TEST(ValueFaults, NoiseBelowTheResolutionIsSaid) {
   for (const auto& [deviation, level, names] :
-       std::initializer_list<std::tuple<double, double, std::vector<std::string>>>{
-           {0.15, 0.0, {"coarse"}}, {0.3, 0.5, {"coarse"}}, {0.5, 0.0, {}}, {0.5, 0.5, {}}}) {
+       std::initializer_list<std::tuple<double, double, std::vector<std::string>>>{{0.15, 0.0, {"coarse"}},
+                                                                                   {0.2, 0.0, {"coarse"}},
+                                                                                   {0.3, 0.5, {"coarse"}},
+                                                                                   {0.5, 0.0, {}},
+                                                                                   {0.5, 0.5, {}}}) {
     std::vector<double> rate = white(20000, 11);
     for (double& value : rate) value = 1e-2 * std::round(level + deviation * (value - 7e-5) / 1e-5);
     std::vector<ValueFault> faults;

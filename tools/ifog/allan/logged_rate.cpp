@@ -27,19 +27,29 @@ const char* words_for(Deviation kind) {
                                         : "the overlapping deviation";
 }
 
+// The averaging times that the user wants and this rate has; notes tell of the others, and of those that are no multiple of the
+// period. Throws std::runtime_error if none is left.
 std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOptions& options, double period,
-                                         std::size_t samples) {
+                                         AllanRecord& record) {
   std::vector<std::size_t> m;
+  const std::size_t most = longest_average(options.kind, record.longest);
+  std::string outside;
   for (const double tau : options.tau_s) {
     const double exact = tau / period;
-    const std::size_t most = longest_average(options.kind, samples);
-    if (!(exact >= 0.5 && std::round(exact) <= static_cast<double>(most)))
-      throw std::runtime_error(name + ": --tau " + six_digits(tau) + " s is outside what " +
-                               words_for(options.kind) + " can tell of the longest stretch, expected " +
-                               six_digits(period) + " to " + six_digits(static_cast<double>(most) * period) +
-                               " s");
+    if (!(exact >= 0.5 && std::round(exact) <= static_cast<double>(most))) {
+      outside = name + ": --tau " + six_digits(tau) + " s is outside what " + words_for(options.kind) +
+                " can tell of the longest stretch, expected " + six_digits(period) + " to " +
+                six_digits(static_cast<double>(most) * period) + " s";
+      record.notes.push_back(outside);
+      continue;
+    }
     m.push_back(static_cast<std::size_t>(std::max(1.0, std::round(exact))));
+    const double used = static_cast<double>(m.back()) * period;
+    if (std::abs(used / tau - 1.0) > 1e-6)
+      record.notes.push_back(name + ": --tau " + six_digits(tau) +
+                             " s is no multiple of the sample time; used: " + six_digits(used) + " s");
   }
+  if (m.empty()) throw std::runtime_error(outside);
   return m;
 }
 
@@ -86,7 +96,7 @@ void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& 
   // Longer averages have too few differences.
   const std::vector<std::size_t> m =
       options.tau_s.empty() ? log_spaced(std::max<std::size_t>(1, record.longest / 4), options.per_decade)
-                            : asked_multiples(name, options, period, record.longest);
+                            : asked_multiples(name, options, period, record);
   try {
     record.fit = noise_coefficients(sum, period);
   } catch (const std::invalid_argument& error) {
@@ -106,11 +116,6 @@ void measure(const LoggedRate& logged, const AngleSum& sum, const AllanOptions& 
   if (options.long_tau) record.longer = theo1(sum, noise, options.confidence, options.per_decade);
   for (LongPoint& point : record.longer) point.tau *= period;
   for (const std::size_t k : m) record.tau_s.push_back(static_cast<double>(k) / record.sample_rate_hz);
-  for (std::size_t i = 0; i < options.tau_s.size(); ++i)
-    if (std::abs(record.tau_s[i] / options.tau_s[i] - 1.0) > 1e-6)
-      record.notes.push_back(name + ": --tau " + six_digits(options.tau_s[i]) +
-                             " s is no multiple of the sample time; used: " + six_digits(record.tau_s[i]) +
-                             " s");
   record.trusted_tau_s = trusted_tau(sum, noise, options.kind, period);
 }
 

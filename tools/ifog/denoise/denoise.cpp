@@ -107,7 +107,8 @@ void tell_unusable(const std::string& name, const DenoisedRows& rows, const Offl
     if (!missing.empty()) warn("%s: %s\n", name.c_str(), missing.c_str());
     if (axis.stuck > 0)
       warn(
-          "%s: %s repeats one value in %zu of %zu rows, stuck or finer than its steps: no measurement "
+          "%s: %s repeats one value in %zu of %zu rows, stuck, at full scale or finer than its steps: no "
+          "measurement "
           "there\n",
           name.c_str(), column.c_str(), axis.stuck, rows.written());
   }
