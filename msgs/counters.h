@@ -47,7 +47,7 @@ inline constexpr std::array kStatusCounters{
                   "samples incomplete"},
     StatusCounter{"sequence_gaps", &status_t::sequence_gaps, kCounterLogged},
     StatusCounter{"sequence_missing", &status_t::sequence_missing, kCounterLogged | kCounterListed,
-                  "missing by the device's counter"},
+                  "missing by the device's counter or clock"},
     StatusCounter{"ring_overflows", &status_t::ring_overflows, kCounterLogged},
     StatusCounter{"samples_merged", &status_t::samples_merged, kCounterLogged, "merged"},
     StatusCounter{"kernel_drops", &status_t::kernel_drops, kCounterLogged | kCounterListed, "kernel drops"},

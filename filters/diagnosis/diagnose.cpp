@@ -61,6 +61,7 @@ class Run {
       drop(*harmful);
       fit_jointly();
     }
+    refuse_other_unit(result_);
     report_figures();
     report_rest();
     return std::move(result_);
@@ -232,7 +233,7 @@ class Run {
                                         options_.significance, result_.noise_changes);
     say(earth_rate_in_words(reconstructed_, earth_, found_));
     say(proxies_in_words(reconstructed_, found_));
-    say(other_unit_in_words(result_));
+    if (!data_.grid.dwells) say(unlike_reference_in_words(records_, errors_, data_.grid.sample_s));
     say(unexplained_despite_claims(result_, records_.size()));
     // With a held-out part, judge() checks it.
     if (TimeShare{options_.fit_from, options_.fit_to}.whole())

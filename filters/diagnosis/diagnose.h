@@ -34,7 +34,7 @@ struct DiagnoseOptions {
 };
 
 // Throws std::invalid_argument with one line: no record, a fitted part that ends before it begins, spans of
-// unequal length, a reference in some records only, fewer than 32 usable samples.
+// unequal length, a reference in some records only or of another sign or unit, fewer than 32 usable samples.
 Diagnosis diagnose(const std::vector<Record>& records, const DiagnoseOptions& options);
 
 }  // namespace ifog

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "filters/diagnosis/report/left_out.h"
 
-#include "filters/effects/form.h"
-#include "filters/effects/meaning.h"
-#include "filters/units/field_units.h"
-#include "filters/units/told_time.h"
-
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
 #include <map>
 #include <set>
+#include <span>
+#include <stdexcept>
 #include <utility>
+
+#include "filters/diagnosis/record/even_grid.h"
+#include "filters/diagnosis/record/figures.h"
+#include "filters/effects/form.h"
+#include "filters/effects/meaning.h"
+#include "filters/rest/rest.h"
+#include "filters/units/field_units.h"
+#include "filters/units/told_time.h"
 
 namespace ifog {
 namespace {
@@ -55,15 +60,39 @@ std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t c
                                : ". The coefficients are compared between the captures given");
 }
 
-std::string other_unit_in_words(const Diagnosis& diagnosis) {
+void refuse_other_unit(const Diagnosis& diagnosis) {
   constexpr double kNear = 0.1;
   for (const FoundEffect& found : diagnosis.effects) {
     if (found.effect.form != "linear" || !is_reference_rate(found.effect.channel)) continue;
     const double times = 1.0 + found.effect.parameters.front().value;
     for (const auto& [expected, why] : std::initializer_list<std::pair<double, const char*>>{
-             {-1.0, "of reversed sign"}, {kDegree, "in degrees"}, {1.0 / kDegree, "in radians"}})
+             {-1.0, "of reversed sign (--column NAME=HEADER:-1UNIT turns it)"},
+             {kDegree, "in degrees"},
+             {1.0 / kDegree, "in radians"}})
       if (std::abs(times / expected - 1.0) < kNear)
-        return formatted("the rate is %.4g times the reference: perhaps the reference is %s", times, why);
+        throw std::invalid_argument(formatted(
+            "the rate is %.4g times the reference, expected about 1: the reference is %s", times, why));
+  }
+}
+
+std::string unlike_reference_in_words(const std::vector<Record>& records,
+                                      const std::vector<EvenError>& errors, double sample_s) {
+  constexpr double kMost = 0.05, kMeans_s = 1.0;
+  const auto many = std::max<std::size_t>(1, static_cast<std::size_t>(kMeans_s / sample_s));
+  for (std::size_t r = 0; r < records.size(); ++r) {
+    const Record& record = records[r];
+    if (record.reference_radps.empty()) continue;
+    const Samples rate = on_even_grid(record, sample_s, record.rate_radps);
+    const double share =
+        variance_of(means_over(*errors[r].after, many)) / variance_of(means_over(rate, many));
+    const auto turns = [&](std::span<const double> signal) {
+      return find_rest(std::span(&signal, 1), {}, sample_s).turned > 0;
+    };
+    if (share > kMost && (turns(rate) || turns(on_even_grid(record, sample_s, record.reference_radps))))
+      return formatted(
+          "%s: %.0f %% of the variance of the rate's 1 s means is not the reference's: is it of this axis, "
+          "and of the same time?",
+          record.name.c_str(), 100.0 * share);
   }
   return "";
 }

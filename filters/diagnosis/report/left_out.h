@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "filters/diagnosis/checks/predicted_capture.h"
+#include "filters/diagnosis/cleaning/even_error.h"
 #include "filters/diagnosis/diagnosis.h"
 #include "filters/diagnosis/record/blocks.h"
 
@@ -23,8 +24,13 @@ std::string denied_in_words(const std::vector<Effect>& effects, const DeniedEffe
 // or no effect uses a channel. captures: number diagnosed together.
 std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t captures);
 
-// Sentence on a reference that seems to have another sign or unit; empty if none does.
-std::string other_unit_in_words(const Diagnosis& diagnosis);
+// Throws std::invalid_argument if the rate is so many times the reference as for another sign or unit, which no scale factor is.
+void refuse_other_unit(const Diagnosis& diagnosis);
+
+// Sentence on a record that turns while more than a twentieth of the variance of 1 s means is not the reference's; empty if
+// none does.
+std::string unlike_reference_in_words(const std::vector<Record>& records,
+                                      const std::vector<EvenError>& errors, double sample_s);
 
 // Sentence on the channels that cannot be used: not in every record, without a value, or constant; empty if
 // there is none. ramps: channels already used by a ramp.

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <string>
 #include <utility>
 
 #include "filters/diagnosis/channels/motion.h"
@@ -15,6 +16,7 @@
 #include "filters/effects/meaning.h"
 #include "filters/model_file/toml_text.h"
 #include "tests/unit/diagnosis/findings.h"
+#include "tests/unit/refusal.h"
 
 namespace ifog {
 namespace {
@@ -81,6 +83,11 @@ TEST(Basics, AreFoundInBroadbandMotion) {
       }
       x += of_reference, y += of_error, xx += of_reference * of_reference, xy += of_reference * of_error;
     }
+    if (error == -2.0) {
+      const std::string said = test::refusal([&] { diagnose({rows.record()}, {}); });
+      EXPECT_NE(said.find("of reversed sign"), std::string::npos) << said;
+      continue;
+    }
     const double slope = (xy - x * y / n) / (xx - x * x / n);
     const Diagnosis found = diagnose({rows.record()}, {});
     const Effect* scale = effect_of(found, "linear");
@@ -88,10 +95,6 @@ TEST(Basics, AreFoundInBroadbandMotion) {
     ASSERT_TRUE(found.bias);
     EXPECT_NEAR(found.bias->value, (y - slope * x) / n, 3e-4) << error;
     EXPECT_LT(std::abs(found.after.at("bias_radps")), 3e-4) << error;
-    const bool said = std::ranges::any_of(found.remarks, [](const std::string& remark) {
-      return remark.find("perhaps the reference is of reversed sign") != std::string::npos;
-    });
-    EXPECT_EQ(said, error == -2.0);
   }
 }
 
