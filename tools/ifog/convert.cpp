@@ -48,7 +48,7 @@ void Convert::run() const {
   LongTable table = input.read_long(file);
   if (from_columns) table.clean_and_tell(leave_out_placeholders, from);
   write_columns(table, from, to);
-  say("%s: %zu samples\n", to.c_str(), table.size());
+  say("{}: {} samples\n", to, table.size());
 }
 
 }  // namespace

@@ -76,7 +76,7 @@ void run_picture(const PictureArguments& a) {
       a.picture,
       report::picture_svg(
           "", {{400.0, {{rate}}}, {520.0, {{allan_chart("Allan deviation, raw and denoised", records)}}}}));
-  say("%s\n", a.picture.c_str());
+  say("{}\n", a.picture);
 }
 
 }  // namespace

@@ -82,29 +82,26 @@ void LcmRecorder::tell_trouble() {
   if ((error != 0) == troubled_) return;
   troubled_ = error != 0;
   if (troubled_)
-    warn("%s: %s; nothing is recorded until it takes more\n", options_.folder.c_str(),
-         messages_.archive().complaint().c_str());
+    warn("{}: {}; nothing is recorded until it takes more\n", options_.folder,
+         messages_.archive().complaint());
   else
-    warn("%s: all is recorded again, %llu messages were lost\n", options_.folder.c_str(),
-         static_cast<unsigned long long>(messages_.books().lost_here));
+    warn("{}: all is recorded again, {} messages were lost\n", options_.folder, messages_.books().lost_here);
 }
 
 void LcmRecorder::tell_books() const {
   const MessageArchive::Books books = messages_.books();
-  say("%s: %llu messages, %llu bytes written, %llu lost here, %llu lost on LCM\n", options_.folder.c_str(),
-      static_cast<unsigned long long>(books.received),
-      static_cast<unsigned long long>(messages_.archive().bytes_written()),
-      static_cast<unsigned long long>(books.lost_here), static_cast<unsigned long long>(books.lost_on_way));
+  say("{}: {} messages, {} bytes written, {} lost here, {} lost on LCM\n", options_.folder, books.received,
+      messages_.archive().bytes_written(), books.lost_here, books.lost_on_way);
   if (!books.two_publishers.empty())
     warn(
-        "%s: two publishers sent on %s (two daemons, or a log played at the same time): their messages "
+        "{}: two publishers sent on {} (two daemons, or a log played at the same time): their messages "
         "are mixed\n",
-        options_.folder.c_str(), books.two_publishers.c_str());
+        options_.folder, books.two_publishers);
   if (books.restarts > 0)
     warn(
-        "%s: %llu times a message's seq was beyond what its sensor can have counted: treated as a new "
+        "{}: {} times a message's seq was beyond what its sensor can have counted: treated as a new "
         "count\n",
-        options_.folder.c_str(), static_cast<unsigned long long>(books.restarts));
+        options_.folder, books.restarts);
 }
 
 void LcmRecorder::run() {
@@ -120,7 +117,7 @@ void LcmRecorder::run() {
   messages_.close(arrival_clock_ns(), realtime_ns());
   tell_books();
   if (messages_.books().received == 0) {
-    warn("ifog record: nothing heard on %s\n", printable(options_.url).c_str());
+    warn("ifog record: nothing heard on {}\n", printable(options_.url));
     throw Failed("nothing heard");
   }
   if (messages_.archive().error() != 0)

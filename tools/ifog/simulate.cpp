@@ -46,7 +46,7 @@ struct Simulate {
         throw WrongUsage(output,
                          "is a capture in columns, which no driver encodes; expected .kvh, .bin or .log");
       write_columns(long_table(made.capture), scenario, output);
-      say("%s: %zu samples\n", output.c_str(), made.capture.size());
+      say("{}: {} samples\n", output, made.capture.size());
     } else {
       write_recording(long_table(made.capture), scenario, output, encoding, axis);
     }
@@ -55,7 +55,7 @@ struct Simulate {
       write_columns(long_table(simulate::truth_capture(made.truth, made.capture)), scenario, truth);
     else
       write_file(truth, simulate::truth_json(made.truth));
-    say("%s: the truth\n", truth.c_str());
+    say("{}: the truth\n", truth);
   }
 };
 

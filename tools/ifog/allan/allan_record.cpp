@@ -216,7 +216,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
     try {
       std::rethrow_exception(each);
     } catch (const std::runtime_error& error) {
-      warn("%s: the axis is dropped\n", error.what());
+      warn("{}: the axis is dropped\n", error.what());
     }
   }
   return analysed;

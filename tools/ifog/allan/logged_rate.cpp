@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/allan/logged_rate.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -122,7 +124,7 @@ std::string AnalysedPart::place(std::size_t row) const {
   return capture + (line > 0 ? ":" + std::to_string(line) : ": sample " + std::to_string(row));
 }
 
-std::string six_digits(double value) { return formatted("%.6g", value); }
+std::string six_digits(double value) { return fmt::format("{:.6g}", value); }
 
 AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const std::string& axis,
                     const Rest& rest, const AllanOptions& options) {
@@ -179,10 +181,10 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
                                 ? followed_channel(rate, parts, logged.of.rows.begin, period,
                                                    logged.of.table.outlines, *record.fit)
                                 : std::nullopt) {
-    fits_badly(
-        formatted("slow means of the rate follow %s by %.2g %% of their variance: an effect of it would pass "
-                  "for noise, and the error bars of B, K and R allow for that; run ifog diagnose",
-                  followed->name.c_str(), 100.0 * followed->share));
+    fits_badly(fmt::format(
+        "slow means of the rate follow {} by {:.2g} % of their variance: an effect of it would pass "
+        "for noise, and the error bars of B, K and R allow for that; run ifog diagnose",
+        followed->name, 100.0 * followed->share));
     add(record.findings.back().text);
   }
   record.noise_changes = noise_changes(rate, parts, period, shown_time_s);

@@ -90,8 +90,8 @@ CsvLayout CaptureInput::layout() const {
 }
 
 void CaptureInput::tell(const std::vector<std::string>& notices, const std::vector<std::string>& faults) {
-  for (const std::string& notice : notices) warn("%s\n", notice.c_str());
-  for (const std::string& fault : faults) warn("%s\n", fault.c_str());
+  for (const std::string& notice : notices) warn("{}\n", notice);
+  for (const std::string& fault : faults) warn("{}\n", fault);
 }
 
 void CaptureInput::add_driver_to(const Command& command) {
@@ -176,7 +176,7 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
     return for_each_sample(file, instance, [&](const ifog_sample& sample) { builder.add(sample); });
   });
   for (const auto& lines : {losses(counts), builder.remarks()})
-    for (const std::string& line : lines) warn("%s: %s\n", path.c_str(), line.c_str());
+    for (const std::string& line : lines) warn("{}: {}\n", path, line);
 }
 
 FileKind CaptureInput::readable(const InputFile& file) const {

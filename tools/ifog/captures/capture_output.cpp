@@ -39,7 +39,7 @@ void to_bytes(CaptureEncoder& encoder, std::size_t rows, const std::string& to) 
     if (encoder.rows_done() % RowBatch::kRows == 0) write();
   write();
   file.finish();
-  say("%s: %zu samples, %zu bytes\n", to.c_str(), rows - encoder.rows_left_out(), count);
+  say("{}: {} samples, {} bytes\n", to, rows - encoder.rows_left_out(), count);
 }
 
 void to_candump(CaptureEncoder& encoder, std::size_t rows, const std::string& to, const CaptureInput& input) {
@@ -64,8 +64,7 @@ void to_candump(CaptureEncoder& encoder, std::size_t rows, const std::string& to
   }
   write();
   file.finish();
-  say("%s: %zu samples in %zu frames on %s\n", to.c_str(), rows - encoder.rows_left_out(), count,
-      interface.c_str());
+  say("{}: {} samples in {} frames on {}\n", to, rows - encoder.rows_left_out(), count, interface);
 }
 
 }  // namespace
@@ -106,31 +105,32 @@ void write_recording(const LongTable& table, const std::string& from, const std:
                                                  : "bytes, expected a name ending in .bin or .kvh"));
   try {
     CaptureEncoder encoder(capture, driver, rate_hz, axis);
-    for (const std::string& notice : encoder.notices()) warn("%s: %s\n", from.c_str(), notice.c_str());
+    for (const std::string& notice : encoder.notices()) warn("{}: {}\n", from, notice);
     if (log)
       to_candump(encoder, table.size(), to, input);
     else
       to_bytes(encoder, table.size(), to);
     if (encoder.rows_left_out() != 0)
-      warn("%s: %zu rows without a rate are dropped: the format cannot say so\n", from.c_str(),
+      warn("{}: {} rows without a rate are dropped: the format cannot say so\n", from,
            encoder.rows_left_out());
     if (const double lost_s = encoder.time_lost_s();
         std::abs(lost_s) > std::max(1.5 / encoder.rate_hz(), 1e-3 * encoder.elapsed_s()))
       warn(
-          "%s: its %.6g s become %.6g s: the format has no clock, and whoever reads it counts %g samples a "
+          "{}: its {:.6g} s become {:.6g} s: the format has no clock, and whoever reads it counts {:g} "
+          "samples a "
           "second\n",
-          from.c_str(), encoder.elapsed_s(), encoder.elapsed_s() - lost_s, encoder.rate_hz());
+          from, encoder.elapsed_s(), encoder.elapsed_s() - lost_s, encoder.rate_hz());
     if (encoder.rows_at_full_scale() != 0)
       warn(
-          "%s: %zu samples at or beyond the sensor's full scale, which every reader of the frames takes for "
+          "{}: {} samples at or beyond the sensor's full scale, which every reader of the frames takes for "
           "missing\n",
-          from.c_str(), encoder.rows_at_full_scale());
+          from, encoder.rows_at_full_scale());
   } catch (const std::runtime_error& error) {
     const std::string line = error.what();
     throw std::runtime_error(line.starts_with(from) || line.starts_with(to) ? line : from + ": " + line);
   }
   if (driver.description().nominal_rate_hz > 0.0 && input.settings().count("rate_hz") == 0)
-    say("to decode it again, add --option rate_hz=%.7g\n", driver.description().nominal_rate_hz);
+    say("to decode it again, add --option rate_hz={:.7g}\n", driver.description().nominal_rate_hz);
 }
 
 }  // namespace ifog::tools

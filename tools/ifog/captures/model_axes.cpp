@@ -31,7 +31,7 @@ std::string place_of(const Model& model, const std::string& channel) {
 void tell_model_of_one_axis(const Model& model, const std::string& path,
                             const std::vector<std::string>& axes) {
   if (const std::string remark = effects_of_no_axis(model, axes); !remark.empty())
-    warn("%s: %s\n", path.c_str(), remark.c_str());
+    warn("{}: {}\n", path, remark);
 }
 
 Model without_axes(Model model, const std::vector<std::string>& axes) {
@@ -47,9 +47,9 @@ Model without_axes(Model model, const std::vector<std::string>& axes) {
     if (is_out(effect.axis)) continue;
     const bool of_rate = is_out(axis_of_rate(effect.channel));
     if (of_rate || is_out(axis_of_rate(effect.with_channel))) {
-      warn("not corrected: %s of %s%s: that axis was dropped\n", effect.form.c_str(),
-           printable(of_rate ? effect.channel : effect.with_channel).c_str(),
-           effect.axis.empty() ? "" : (" in " + effect.axis).c_str());
+      warn("not corrected: {} of {}{}: that axis was dropped\n", effect.form,
+           printable(of_rate ? effect.channel : effect.with_channel),
+           effect.axis.empty() ? "" : " in " + effect.axis);
       continue;
     }
     for (std::size_t row = first; row < all; ++row) rows.push_back(row);

@@ -22,8 +22,7 @@ void tell_missing(const std::string& name, const std::string& axis, const Captur
   const auto missing = static_cast<std::size_t>(std::ranges::count_if(rate, none));
   if (missing == 0) return;
   const auto first = static_cast<std::size_t>(std::find_if(rate.begin(), rate.end(), none) - rate.begin());
-  warn("%s: %s\n", name.c_str(),
-       missing_in_words(rate_of(axis), missing, rate.size(), capture.shown_time_s(first)).c_str());
+  warn("{}: {}\n", name, missing_in_words(rate_of(axis), missing, rate.size(), capture.shown_time_s(first)));
 }
 
 bool has_value(std::span<const double> values) {
@@ -42,8 +41,8 @@ bool repeats_one_value(std::span<const double> values) {
 
 void tell_stuck(const std::string& name, const std::string& axis, std::span<const double> rate) {
   const double value = *std::find_if(rate.begin(), rate.end(), [](double v) { return !std::isnan(v); });
-  warn("%s: %s is %.6g rad/s in all of its %zu rows: the axis is stuck, and dropped\n", name.c_str(),
-       rate_of(axis).c_str(), value, rate.size());
+  warn("{}: {} is {:.6g} rad/s in all of its {} rows: the axis is stuck, and dropped\n", name, rate_of(axis),
+       value, rate.size());
 }
 
 // Unusable axes of one capture.
@@ -83,7 +82,7 @@ std::string missing_in_words(const std::string& column, std::size_t missing, std
 }
 
 void tell_left_out(const std::string& name, const std::string& column, std::size_t rows) {
-  warn("%s: %s is missing in all %zu rows: the axis is dropped\n", name.c_str(), column.c_str(), rows);
+  warn("{}: {} is missing in all {} rows: the axis is dropped\n", name, column, rows);
 }
 
 std::string expected_axes(const std::vector<std::string>& axes) {

@@ -73,7 +73,7 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   app.add_flag_callback(
       "--describe",
       [&app] {
-        say("%s", describe(app).c_str());
+        say("{}", describe(app));
         throw CLI::Success();
       },
       "Print every command with its options as JSON and exit");
@@ -87,15 +87,15 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   int status = 0;
   try {
     app.parse(count, arguments.data());
-    if (const std::string written = written_in_words(); !written.empty()) say("%s\n", written.c_str());
+    if (const std::string written = written_in_words(); !written.empty()) say("{}\n", written);
   } catch (const CLI::ParseError& error) {
     std::ostringstream out, complaint;  // the parser treats --help and --version as errors too
     status = app.exit(error, out, complaint) == 0 ? 0 : 2;
-    say("%s", out.str().c_str());
-    if (status != 0) warn("%s", usage_error(app, count, arguments.data(), error.what()).c_str());
+    say("{}", out.str());
+    if (status != 0) warn("{}", usage_error(app, count, arguments.data(), error.what()));
   } catch (const WrongUsage& error) {
     status = 2;
-    warn("%s", usage_error(app, count, arguments.data(), error.what()).c_str());
+    warn("{}", usage_error(app, count, arguments.data(), error.what()));
   } catch (const Failed&) {
     status = 1;
   }
@@ -115,7 +115,7 @@ int run_command_line(int argc, char** argv, std::span<const AddCommand> commands
   } catch (const ReaderGone&) {
     return kEndedBySigpipe;
   } catch (const std::exception& error) {
-    warn("ifog: %s\n", printable(error.what(), kLongestMessage).c_str());
+    warn("ifog: {}\n", printable(error.what(), kLongestMessage));
   } catch (...) {
     warn("ifog: failed for an unknown reason\n");
   }

@@ -8,7 +8,6 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -18,7 +17,6 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
-#include "filters/units/told_time.h"
 #include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/progress.h"
 
@@ -50,19 +48,9 @@ void put(const std::string& text, std::FILE* where) {
 
 }  // namespace
 
-void say(const char* format, ...) {
-  std::va_list arguments;
-  va_start(arguments, format);
-  put(printable_lines(formatted_list(format, arguments)), people);
-  va_end(arguments);
-}
+void say_text(const std::string& text) { put(printable_lines(text), people); }
 
-void warn(const char* format, ...) {
-  std::va_list arguments;
-  va_start(arguments, format);
-  put(printable_lines(formatted_list(format, arguments)), stderr);
-  va_end(arguments);
-}
+void warn_text(const std::string& text) { put(printable_lines(text), stderr); }
 
 void data_to_standard_output(const std::string& option) {
   if (!data_option.empty())

@@ -157,7 +157,7 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
     if (const Increment* const increment = chain.run(reading, out))
       chain.count(sink.sample(times.now_s(), *increment, out));
   });
-  for (const std::string& loss : losses(counts)) warn("%s: %s\n", file.path().c_str(), loss.c_str());
+  for (const std::string& loss : losses(counts)) warn("{}: {}\n", file.path(), loss);
   return chain.finish();
 }
 

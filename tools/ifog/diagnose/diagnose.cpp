@@ -81,7 +81,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
   const std::vector<AxisDiagnosis> found = diagnose_axes(captures, arguments.captures, wanted);
   if (!arguments.quiet) {
     for (const AxisDiagnosis& each : found)
-      say("%s%s", &each == &found.front() ? "" : "\n", diagnosis_text(each).c_str());
+      say("{}{}", &each == &found.front() ? "" : "\n", diagnosis_text(each));
   }
   if (!arguments.json.empty()) write_json(arguments.json, diagnosis_json(found));
   if (!arguments.write_model.empty()) {
@@ -89,7 +89,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
     const std::size_t longest = longest_of(captures);
     const std::string fitted = fit_noise_left(model, model_with({}, found, arguments.captures, hashes),
                                               captures[longest], arguments.captures[longest]);
-    if (!arguments.quiet && !fitted.empty()) say("\n%s\n", fitted.c_str());
+    if (!arguments.quiet && !fitted.empty()) say("\n{}\n", fitted);
     write_file(arguments.write_model, model_text(model));
   }
   if (arguments.quiet) forget_written_files();

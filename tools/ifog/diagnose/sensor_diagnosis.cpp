@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -147,9 +149,9 @@ std::string vertical_rate(const CaptureView& capture, const std::vector<AxisDiag
   for (const AxisDiagnosis& each : found)
     variance = std::max(variance, mean_variance(each.diagnosis.noise_posterior, span_s));
   if (std::abs(up) > kEarth || variance > std::pow(0.1 * kEarth, 2)) return "";
-  return formatted(
-      "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
-      "Earth's rate at latitude %.2f°",
+  return fmt::format(
+      "the rate along the mean specific force is {:.3f} °/h; if the sensor stood still, that is the "
+      "Earth's rate at latitude {:.2f}°",
       up / kDegreePerHour, std::asin(up / kEarth) / kDegree);
 }
 

@@ -86,10 +86,9 @@ void tell_innovations(const Watched& watched) {
     say("  innovations: no status from the daemon in this time\n");
     return;
   }
-  say("  innovations over %.0f s: %s; %lld gated, %lld divergences\n", watched.seconds,
-      axis_health(watched.nis, watched.whiteness).c_str(), static_cast<long long>(watched.gated),
-      static_cast<long long>(watched.divergences));
-  if (!watched.noticed.empty()) say("  noticed: %s\n", printable(watched.noticed, kLongestMessage).c_str());
+  say("  innovations over {:.0f} s: {}; {} gated, {} divergences\n", watched.seconds,
+      axis_health(watched.nis, watched.whiteness), watched.gated, watched.divergences);
+  if (!watched.noticed.empty()) say("  noticed: {}\n", printable(watched.noticed, kLongestMessage));
 }
 
 struct Adoption {
@@ -134,17 +133,17 @@ void adopt(const AdoptArguments& arguments) {
   const std::optional<std::uint64_t> recorded_before = last_recording(sensor);
   const Adoption now = take_into_use(field, sensor, recorded_before);
   const Proposal& proposal = now.proposal;
-  say("%s: model %s in place of %s: %s\n", sensor.name.c_str(), proposal.model.identity.c_str(),
-      or_none(now.before.name.identity), printable(proposal.why, kLongestMessage).c_str());
+  say("{}: model {} in place of {}: {}\n", sensor.name, proposal.model.identity,
+      or_none(now.before.name.identity), printable(proposal.why, kLongestMessage));
   const auto unwatched = [&](const std::string& why) {
     if (!arguments.json.empty()) write_json(arguments.json, adoption_json(proposal, {}, why));
   };
   if (!now.exchange->daemon_runs()) {
     const std::string why = "the daemon does not run: it begins with this model, and nothing was watched";
-    say("  %s\n", why.c_str());
+    say("  {}\n", why);
     return unwatched(why);
   }
-  say("  the daemon uses it; promised: %s\n", gain_text(proposal.gain).c_str());
+  say("  the daemon uses it; promised: {}\n", gain_text(proposal.gain));
   if (arguments.watch_s <= 0.0) return unwatched("nothing was watched");
   catch_interrupts();
   const Watched watched = watch(now.exchange->live(), field, sensor, now.before.model.value_or(Model{}),
@@ -153,15 +152,15 @@ void adopt(const AdoptArguments& arguments) {
   std::string text = outcome(watched);
   if (!watched.whole)
     text += " (watched for " + std::to_string(static_cast<int>(watched.seconds)) + " s only)";
-  say("  %s\n", text.c_str());
+  say("  {}\n", text);
   if (!arguments.json.empty()) write_json(arguments.json, adoption_json(proposal, watched, text));
   try {
     keep_outcome(field, sensor.name, proposal.model, text);
   } catch (const std::exception& error) {
-    warn("ifog adopt: the outcome is not in the history: %s\n", error.what());
+    warn("ifog adopt: the outcome is not in the history: {}\n", error.what());
   }
   if (verdict_of(watched.gain) == PromiseVerdict::broken) {
-    warn("ifog adopt: back with: %s\n", field.command("revert", sensor.name).c_str());
+    warn("ifog adopt: back with: {}\n", field.command("revert", sensor.name));
     throw Failed("the promise was broken");
   }
 }
@@ -197,8 +196,7 @@ void revert(const AdoptArguments& arguments) {
     history.take_back();
     throw;
   }
-  say("%s: model %s is in place again, %s is kept\n", sensor.name.c_str(), or_none(name.identity),
-      now.name.identity.c_str());
+  say("{}: model {} is in place again, {} is kept\n", sensor.name, or_none(name.identity), now.name.identity);
   if (!exchange.daemon_runs()) say("  the daemon does not run: it begins with this model\n");
   if (!arguments.json.empty())
     write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.revert/1"},

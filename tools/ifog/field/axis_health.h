@@ -2,11 +2,12 @@
 // Innovation statistics of a sensor's axes as text.
 #pragma once
 
+#include <fmt/core.h>
+
 #include <cstddef>
 #include <string>
 #include <vector>
 
-#include "filters/units/told_time.h"
 #include "msgs/axis_name.h"
 
 namespace ifog::tools {
@@ -18,7 +19,7 @@ inline std::string axis_health(const std::vector<double>& nis, const std::vector
   for (std::size_t a = 0; a < nis.size(); ++a) {
     out += a == 0 ? "" : "; ";
     out += axis_name(a, nis.size());
-    out += nis[a] == 0.0 ? " no value" : formatted(" NIS %.3f, whiteness %+.3f", nis[a], whiteness[a]);
+    out += nis[a] == 0.0 ? " no value" : fmt::format(" NIS {:.3f}, whiteness {:+.3f}", nis[a], whiteness[a]);
   }
   return out;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog night: diagnoses what the flight recorder stored since the last run, and proposes a new model if it
 // improves held-out data. Adopts nothing and needs neither device nor daemon.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
@@ -18,7 +20,6 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
 #include "filters/model_file/sha256.h"
-#include "filters/units/told_time.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
@@ -75,7 +76,8 @@ bool pays(const AxisGain& gain) {
 }
 
 std::string in_hours(double seconds) {
-  return seconds < 7200.0 ? formatted("%.0f min", seconds / 60.0) : formatted("%.1f h", seconds / 3600.0);
+  return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0)
+                          : fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
 std::string effects_text(const std::vector<AxisDiagnosis>& found) {
@@ -158,8 +160,8 @@ std::string Night::judge(const std::vector<RecordedFile>& all) {
   // Across several power-ups a warm-up would be found that is not there.
   const std::vector<RecordedFile> files = sensor_.powered_with_computer ? of_one_power_up(all) : all;
   if (files.size() < all.size())
-    warn("%s: of several times that it was switched on the longest is judged: %zu of %zu recordings\n",
-         sensor_.name.c_str(), files.size(), all.size());
+    warn("{}: of several times that it was switched on the longest is judged: {} of {} recordings\n",
+         sensor_.name, files.size(), all.size());
   // Unreadable recordings stay unreadable; an error while writing a proposal may pass.
   processed_ = true;
   const Recorded recorded = read_recorded(sensor_, files, field_.required_config().plugin_folders);
@@ -212,13 +214,13 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
     if (watched.gain.empty()) return;
     promise_ = outcome(watched);
     const std::string text = "night of " + utc_now() + ": " + promise_;
-    say("%s: %s\n", sensor_.name.c_str(), text.c_str());
+    say("{}: {}\n", sensor_.name, text);
     const StateLock hand(field_.state());
     if (History fresh(field_.state(), sensor_.name);
         !fresh.changes().empty() && fresh.changes().back().when == last.when)
       fresh.set_outcome(text);
   } catch (const std::exception& error) {
-    warn("%s: the last adoption cannot be judged: %s\n", sensor_.name.c_str(), error.what());
+    warn("{}: the last adoption cannot be judged: {}\n", sensor_.name, error.what());
   }
 }
 
@@ -229,9 +231,9 @@ std::string Night::closing(const std::vector<RecordedFile>& files) const {
   std::tm opened{};
   if (strptime(last.opened.c_str(), "%Y-%m-%dT%H:%M:%SZ", &opened) == nullptr) return "";
   const std::time_t at = timegm(&opened) + static_cast<std::time_t>(sensor_.record.file_s);
-  return formatted("; the one that is being written, %.1f MB, closes at %.1f MB or at %s",
-                   static_cast<double>(last.bytes) * 1e-6,
-                   static_cast<double>(sensor_.record.file_bytes) * 1e-6, utc_text(at).c_str()) +
+  return fmt::format("; the one that is being written, {:.1f} MB, closes at {:.1f} MB or at {}",
+                     static_cast<double>(last.bytes) * 1e-6,
+                     static_cast<double>(sensor_.record.file_bytes) * 1e-6, utc_text(at)) +
          (at < std::time(nullptr) ? std::string(", which is over: does ifogd run?") : "");
 }
 
@@ -279,7 +281,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   // If the model has no filter, the daemon learns the noise, and this stays so.
   const std::string fitted =
       model.filter ? fit_noise_left(model, model_with({}, found, {name}, hashes), corrected, name) : "";
-  if (!fitted.empty()) say("%s: %s\n", sensor_.name.c_str(), fitted.c_str());
+  if (!fitted.empty()) say("{}: {}\n", sensor_.name, fitted);
   require_that_it_fits(field_, sensor_, model);
   Proposal proposal;
   proposal.against = in_use.name;
@@ -334,9 +336,9 @@ void run_nights(const NightArguments& arguments) {
     const std::string line = sensor.name + ": " + printable(said, kLongestMessage);
     // An error of one sensor does not stop the others.
     if (good)
-      say("%s\n", line.c_str());
+      say("{}\n", line);
     else
-      warn("%s\n", line.c_str());
+      warn("{}\n", line);
     failed = failed || !good;
     all.push_back({{"sensor", sensor.name},
                    {"failed", !good},

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/field/proposal.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
@@ -9,7 +11,6 @@
 #include "daemon/state/state_folder.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
-#include "filters/units/told_time.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
@@ -85,9 +86,9 @@ std::string gain_text(const std::vector<AxisGain>& gain) {
         std::min_element(each.kept.errors.begin(), each.kept.errors.end(),
                          [&](const ErrorOfMeans& a, const ErrorOfMeans& b) { return ratio(a) < ratio(b); });
     if (best == each.kept.errors.end()) continue;
-    out += formatted("%s%s%sRMS of %g s means %.4g -> %.4g °/h", out.empty() ? "" : ", ", each.axis.c_str(),
-                     each.axis.empty() ? "" : ": ", best->averaging_s, best->before_radps / kDegreePerHour,
-                     best->after_radps / kDegreePerHour);
+    out += fmt::format("{}{}{}RMS of {:g} s means {:.4g} -> {:.4g} °/h", out.empty() ? "" : ", ", each.axis,
+                       each.axis.empty() ? "" : ": ", best->averaging_s, best->before_radps / kDegreePerHour,
+                       best->after_radps / kDegreePerHour);
   }
   return out;
 }

@@ -68,7 +68,7 @@ class FleetRun {
     for (const FleetGyro& gyro : manifest.gyros) population_.serials.push_back(gyro.serial);
   }
 
-  void dry_run() { say("%s", engine_->in_words(undiagnosed()).c_str()); }
+  void dry_run() { say("{}", engine_->in_words(undiagnosed())); }
 
   void run() {
     diagnose_all();
@@ -109,7 +109,7 @@ class FleetRun {
     std::map<std::size_t, std::string> ended;
     std::vector<std::size_t> left = missing();
     if (left.empty()) return ended;
-    say("%s %zu of %zu gyros\n", what, left.size(), manifest_.gyros.size());
+    say("{} {} of {} gyros\n", what, left.size(), manifest_.gyros.size());
     for (const std::size_t gyro : left) forget_failure(gyro);
     for (std::size_t attempt = 0; attempt < kAttempts && !left.empty(); ++attempt) {
       Progress progress(what, left.size());
@@ -239,19 +239,19 @@ class FleetRun {
 
   void tell_failures() {
     for (const Population::Failure& each : population_.failed)
-      warn("%s: %s\n", population_.serials[each.gyro].c_str(), printable(each.why, kLongestMessage).c_str());
+      warn("{}: {}\n", population_.serials[each.gyro], printable(each.why, kLongestMessage));
   }
 
   void tell() {
-    say("%s: %zu of %zu gyros diagnosed\n", printable(manifest_.type).c_str(), diagnosed_.gyros.size(),
+    say("{}: {} of {} gyros diagnosed\n", printable(manifest_.type), diagnosed_.gyros.size(),
         manifest_.gyros.size());
-    for (const TypeEffect& each : population_.effects) say("  %s\n", report::in_words(each).c_str());
-    for (const std::string& remark : population_.remarks) say("  %s\n", remark.c_str());
+    for (const TypeEffect& each : population_.effects) say("  {}\n", report::in_words(each));
+    for (const std::string& remark : population_.remarks) say("  {}\n", remark);
     for (const StandingOut& each : population_.standing_out)
-      say("  outlier %s: %s, robust z = %.1f\n", population_.serials[each.gyro].c_str(),
-          printable(population_.parameters[each.parameter].name).c_str(), each.z);
+      say("  outlier {}: {}, robust z = {:.1f}\n", population_.serials[each.gyro],
+          printable(population_.parameters[each.parameter].name), each.z);
     tell_failures();
-    say("%s\n%s\n", results_.path("fleet.html").c_str(), results_.path("fleet.json").c_str());
+    say("{}\n{}\n", results_.path("fleet.html"), results_.path("fleet.json"));
   }
 
   const Manifest& manifest_;

@@ -164,7 +164,7 @@ void work_on(const Results& results, const FleetGyro& gyro, const FleetSettings&
       throw;
     }
     results.write_done(gyro, {inputs, std::nullopt});
-    say("%s: diagnosed\n", gyro.serial.c_str());
+    say("{}: diagnosed\n", gyro.serial);
   }
   const std::optional<TypeToMeasure> type = results.type();
   if (!type || type->effects.empty() || is_measured(results, gyro, options, *type)) return;
@@ -178,7 +178,7 @@ void work_on(const Results& results, const FleetGyro& gyro, const FleetSettings&
   }
   measured.inputs = inputs;
   results.write_measured(gyro, type->id, measured);
-  say("%s: measured\n", gyro.serial.c_str());
+  say("{}: measured\n", gyro.serial);
 }
 
 }  // namespace ifog::tools

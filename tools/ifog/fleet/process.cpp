@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/fleet/process.h"
 
+#include <fmt/core.h>
+
 #include <fcntl.h>
 #include <glib.h>
 #include <sys/mman.h>
@@ -18,7 +20,6 @@
 #include <thread>
 
 #include "drivers/system/fd.h"
-#include "filters/units/told_time.h"
 
 namespace ifog::tools {
 namespace {
@@ -100,8 +101,9 @@ Ran run_to_end(const std::vector<std::string>& words, const std::string& input,
     }
   }
   Ran ran;
-  ran.ended = answered ? ending(status)
-                       : formatted("no answer within %g s", std::chrono::duration<double>(patience).count());
+  ran.ended = answered
+                  ? ending(status)
+                  : fmt::format("no answer within {:g} s", std::chrono::duration<double>(patience).count());
   std::array<char, 4096> part{};
   for (ssize_t got = 0, at = 0; (got = ::pread(out, part.data(), part.size(), at)) > 0; at += got)
     ran.said.append(part.data(), static_cast<std::size_t>(got));

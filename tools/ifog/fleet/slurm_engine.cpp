@@ -71,7 +71,7 @@ class SlurmEngine : public Engine {
                                          const std::function<void(std::size_t)>& done) override {
     // Jobs of an interrupted run are not submitted twice.
     if (under_way(0.0) > 0)
-      say("waiting for the array %s, which is under way\n", name_.c_str());
+      say("waiting for the array {}, which is under way\n", name_);
     else
       for (const std::string& script : scripts(gyros)) submit(script);
     wait(gyros.size(), done);
@@ -111,7 +111,7 @@ class SlurmEngine : public Engine {
   static void submit(const std::string& script) {
     const Ran ran = run_to_end({"sbatch", "--parsable"}, script, kAnswer);
     if (!ran.ended.empty()) throw std::runtime_error("sbatch: " + how(ran));
-    say("submitted the array %s\n", first_line(ran.said).c_str());
+    say("submitted the array {}\n", first_line(ran.said));
   }
 
   // Number of this fleet's jobs that have not ended. patience_s: for a Slurm that does not answer.
@@ -141,9 +141,9 @@ class SlurmEngine : public Engine {
     while (std::chrono::steady_clock::now() < until) {
       if (interrupted()) {
         warn(
-            "ifog: interrupted; the array %s continues, and the same command takes it up (scancel --name=%s "
+            "ifog: interrupted; the array {} continues, and the same command takes it up (scancel --name={} "
             "ends it)\n",
-            name_.c_str(), name_.c_str());
+            name_, name_);
         throw Failed("interrupted");
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(100));

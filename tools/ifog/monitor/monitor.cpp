@@ -55,9 +55,8 @@ Monitor::Monitor(const MonitorOptions& options)
     blocked_signals();  // before threads are started
     web_ = std::make_unique<WebMonitor>(*page_address(options.web), sensors_, known_,
                                         [this] { return waiting().front() + " " + waiting().back(); });
-    say("http://%s/ shows it; Ctrl-C ends this\n", options.web.find(':') == std::string::npos
-                                                       ? ("localhost:" + options.web).c_str()
-                                                       : options.web.c_str());
+    say("http://{}/ shows it; Ctrl-C ends this\n",
+        options.web.find(':') == std::string::npos ? "localhost:" + options.web : options.web);
     finish_saying();
   } else if (people && !options.plain && !options.once && options.json.empty()) {
     screen_.emplace();
@@ -139,13 +138,13 @@ void Monitor::say_what_is_waited_for() {
   if (screen_ || waiting_reported_ || !sensors_.empty() || seconds_since(start_) < kPatience_s) return;
   waiting_reported_ = true;
   if (const std::string others = who_publishes(); !others.empty()) {
-    warn("%s; these publish: %s\n", (waiting().front() + " " + waiting().back()).c_str(), others.c_str());
+    warn("{}; these publish: {}\n", waiting().front() + " " + waiting().back(), others);
     return;
   }
   warn(
-      "%s; is ifogd running, with this lcm_url, and a route for its multicast "
+      "{}; is ifogd running, with this lcm_url, and a route for its multicast "
       "(ip route add 224.0.0.0/4 dev lo)?\n",
-      (waiting().front() + " " + waiting().back()).c_str());
+      waiting().front() + " " + waiting().back());
 }
 
 bool Monitor::received_any() const {
@@ -235,10 +234,10 @@ void add_monitor(const Command& program) {
     Monitor monitor(*options);
     if (!monitor.run()) {
       if (const std::string others = monitor.who_publishes(); !others.empty())
-        warn("ifog monitor: --sensor %s: none of that name publishes, expected one of: %s\n",
-             in_quotes(options->sensor).c_str(), others.c_str());
+        warn("ifog monitor: --sensor {}: none of that name publishes, expected one of: {}\n",
+             in_quotes(options->sensor), others);
       else
-        warn("ifog monitor: nothing heard on %s\n", options->url.c_str());
+        warn("ifog monitor: nothing heard on {}\n", options->url);
       throw Failed("nothing heard");
     }
   });

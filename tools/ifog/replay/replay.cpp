@@ -126,7 +126,7 @@ void prepare(const ReplaySettings& settings) {
   prctl(PR_SET_TIMERSLACK, 1UL);
   if (!settings.realtime) return;
   const auto going_without = [](const char* what) {
-    warn("ifog replay: no %s (%s), going on without\n", what, std::generic_category().message(errno).c_str());
+    warn("ifog replay: no {} ({}), going on without\n", what, std::generic_category().message(errno));
   };
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) going_without("locked memory");
   sched_param priority{};
@@ -143,14 +143,13 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
             const ReplayResult& result) {
   const bool paced = settings.speed > 0.0 && result.sent > 0;
   const std::string of = result.wanted > result.sent ? " of " + std::to_string(result.wanted) : "";
-  say("%ssent %llu%s %s in %.3f s, %llu retries\n",
+  say("{}sent {}{} {} in {:.3f} s, {} retries\n",
       result.failed   ? "failed: "
       : interrupted() ? "interrupted: "
                       : "",
-      static_cast<unsigned long long>(result.sent), of.c_str(), timeline.is_can() ? "frames" : "blocks",
-      result.seconds, static_cast<unsigned long long>(target.retries()));
+      result.sent, of, timeline.is_can() ? "frames" : "blocks", result.seconds, target.retries());
   if (paced)
-    say("lateness p50 %.1f µs, p99 %.1f µs, max %.1f µs\n", result.late.percentile_us(0.5),
+    say("lateness p50 {:.1f} µs, p99 {:.1f} µs, max {:.1f} µs\n", result.late.percentile_us(0.5),
         result.late.percentile_us(0.99), result.late.max_us());
   if (settings.json.empty()) return;
   nlohmann::json json = {{"schema", "ifog.replay/1"},
@@ -198,7 +197,7 @@ void run(ReplaySettings settings) {
   try {
     replay(timeline, settings, *target, result);
   } catch (const std::exception& error) {
-    warn("ifog replay: %s\n", error.what());
+    warn("ifog replay: {}\n", error.what());
     result.failed = true;
   }
   result.sent -= target->buffered();

@@ -41,7 +41,7 @@ std::unique_ptr<OutputFile> open_fifo(const std::string& name) {
   const bool there = stat(name.c_str(), &info) == 0;
   if (!there && mkfifo(name.c_str(), 0644) != 0) fail(name, "cannot make a FIFO", errno);
   if (there && !S_ISFIFO(info.st_mode)) throw std::runtime_error(name + ": is no FIFO, expected one");
-  warn("%s: waiting for a reader\n", name.c_str());
+  warn("{}: waiting for a reader\n", name);
   for (;;) {
     const int fd = open(name.c_str(), O_WRONLY | O_CLOEXEC);
     if (fd >= 0) return std::make_unique<OutputFile>(name, fd);
@@ -98,7 +98,7 @@ IpSocket served_tcp(const std::string& name) {
     fail(name, "cannot listen", error);
   if (const int error = listener.bind(address, size); error != 0) fail(name, "cannot listen", error);
   if (listen(listener.fd(), 1) != 0) fail(name, "cannot listen", errno);
-  warn("%s: waiting for a connection\n", name.c_str());
+  warn("{}: waiting for a connection\n", name);
   for (;;) {
     IpSocket served = IpSocket::accepted(listener);
     if (served.is_open()) {

@@ -58,10 +58,10 @@ ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
           two = two_interfaces(source.path, other, from);
       });
   if (lost.remote + lost.error > 0)
-    warn("%s: %zu remote and %zu error frames are not sent\n", source.path.c_str(), lost.remote, lost.error);
-  if (lost.cut_off) warn("%s: the last line is no whole frame and is not sent\n", source.path.c_str());
+    warn("{}: {} remote and {} error frames are not sent\n", source.path, lost.remote, lost.error);
+  if (lost.cut_off) warn("{}: the last line is no whole frame and is not sent\n", source.path);
   if (file.ends_early())
-    warn("%s: the gzip stream ends early (truncated file); what is there is sent\n", source.path.c_str());
+    warn("{}: the gzip stream ends early (truncated file); what is there is sent\n", source.path);
   if (source.prefer_can && !two.empty()) throw std::runtime_error(two);
   return timeline;
 }
@@ -124,7 +124,7 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
   DriverInstance driver(plugin, with_rate(rate_hz, *plugin, source.input.settings()));
   CaptureEncoder encoder(capture, driver, rate_hz, source.axis);
-  for (const std::string& notice : encoder.notices()) warn("%s: %s\n", source.path.c_str(), notice.c_str());
+  for (const std::string& notice : encoder.notices()) warn("{}: {}\n", source.path, notice);
   ReplayTimeline timeline;
   timeline.baud = driver.description().baud;
   if (driver.takes_can() && (source.prefer_can || !driver.takes_bytes())) {
@@ -137,7 +137,7 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
             {nanoseconds(capture.time_s[encoder.rows_done() - 1]), timeline.bytes.size()});
   }
   if (encoder.rows_left_out() > 0)
-    warn("%s: %zu rows without a rate are not sent: the format cannot say so\n", source.path.c_str(),
+    warn("{}: {} rows without a rate are not sent: the format cannot say so\n", source.path,
          encoder.rows_left_out());
   return timeline;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/tune/noise_left.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <exception>
@@ -11,7 +13,6 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/allan/stretches.h"
 #include "filters/tune/tune.h"
-#include "filters/units/told_time.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/tune/rest_columns.h"
 
@@ -61,9 +62,9 @@ std::string fit_noise_left(Model& model, const Model& added, const CaptureView& 
       rates.reference_rate_radps[a] = {};
     }
     const TunedModel found = fitted(rates, filter.state, path);
-    std::string text = formatted(
-        "noise of the filter, fitted to the corrected rate: process_noise %.4g (rad/s)^2/s, "
-        "measurement_noise %.4g (rad/s)^2",
+    std::string text = fmt::format(
+        "noise of the filter, fitted to the corrected rate: process_noise {:.4g} (rad/s)^2/s, "
+        "measurement_noise {:.4g} (rad/s)^2",
         found.settings.process_noise, found.settings.measurement_noise);
     filter.process_noise = found.settings.process_noise;
     filter.measurement_noise = found.settings.measurement_noise;

@@ -49,7 +49,7 @@ DriverInstance driver_of_run(const std::string& name, const DriverSettings& sett
   for (const std::string& key : file_settings(plugin->table(), settings))
     will_read("option " + key + " of driver " + name, settings.at(key));
   DriverInstance made(std::move(plugin), settings);
-  for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
+  for (const std::string& warning : made.warnings()) warn("{}\n", warning);
   return made;
 }
 
@@ -124,8 +124,7 @@ std::optional<LearnedNoise> FlightInput::noise(const SensorConfig& sensor) const
 }
 
 void FlightInput::tell_losses() const {
-  for (const std::string& loss : losses(reader_.counts()))
-    warn("%s: %s\n", file_.path().c_str(), loss.c_str());
+  for (const std::string& loss : losses(reader_.counts())) warn("{}: {}\n", file_.path(), loss);
 }
 
 RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const RecordedSamples& sink) {
@@ -178,7 +177,7 @@ std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder&
                                {},
                                [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
   for (const auto& lines : {losses(counts), builder.remarks()})
-    for (const std::string& line : lines) warn("%s: %s\n", file_.path().c_str(), line.c_str());
+    for (const std::string& line : lines) warn("{}: {}\n", file_.path(), line);
   // From the first file's header; later power-ups are visible in the times.
   const auto powered_ns = header().powered_ns;
   if (!powered_ns || first_ns < *powered_ns) return std::nullopt;

@@ -108,11 +108,11 @@ void LcmEvents::fail() const { throw std::runtime_error(path_ + ": " + std::stre
 void LcmEvents::say_damage(const std::string& path) const {
   if (places_ > 0)
     warn(
-        "%s: %zu bytes in %zu place(s) are no messages and are dropped, the first from byte %zu on (is the "
+        "{}: {} bytes in {} place(s) are no messages and are dropped, the first from byte {} on (is the "
         "file damaged?)\n",
-        path.c_str(), damaged_, places_, first_place_);
+        path, damaged_, places_, first_place_);
   if (size_ > at_)
-    warn("%s: its last %zu bytes are no whole message (is the file cut off?)\n", path.c_str(), size_ - at_);
+    warn("{}: its last {} bytes are no whole message (is the file cut off?)\n", path, size_ - at_);
 }
 
 NamedLog::NamedLog(InputFile& file) : name_(file.path()) {

@@ -172,19 +172,18 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   order.flush(hand_on);
   if (way.had_two_publishers())
     warn(
-        "%s: two publishers sent on %s (two daemons, or a log played at the same time): their messages are "
+        "{}: two publishers sent on {} (two daemons, or a log played at the same time): their messages are "
         "mixed\n",
-        path.c_str(), printable(wanted).c_str());
+        path, printable(wanted));
   if (axes == 0) throw std::runtime_error(path + ": has no message on channel " + wanted);
   if (way.lost() > 0)
-    warn("%s: %lld samples on %s are missing by their counts (%s lost them)\n", path.c_str(),
-         static_cast<long long>(way.lost()), printable(wanted).c_str(),
-         chosen.peer ? "the sensor, its driver or LCM" : "LCM or the recorder");
+    warn("{}: {} samples on {} are missing by their counts ({} lost them)\n", path, way.lost(),
+         printable(wanted), chosen.peer ? "the sensor, its driver or LCM" : "LCM or the recorder");
   if (left_out > 0)
     warn(
-        "%s: %zu messages on %s came twice or after one that follows, and are dropped (two recorders wrote "
+        "{}: {} messages on {} came twice or after one that follows, and are dropped (two recorders wrote "
         "at once, or a clock was set back)\n",
-        path.c_str(), left_out, printable(wanted).c_str());
+        path, left_out, printable(wanted));
   log.say_damage(path);
 }
 
@@ -216,8 +215,7 @@ void look_through(ChosenLog& chosen, LcmChannels& channels) {
 void tell_start(const std::string& path, const rate_t& first) {
   const TimeOrigin origin = TimeOrigin::of(first.utime * 1000);
   if (origin == TimeOrigin{}) return;
-  warn("%s: t = 0 is %s, the first message\n", path.c_str(),
-       utc_text(origin.s, "%Y-%m-%d %H:%M:%S UTC").c_str());
+  warn("{}: t = 0 is {}, the first message\n", path, utc_text(origin.s, "%Y-%m-%d %H:%M:%S UTC"));
 }
 
 }  // namespace

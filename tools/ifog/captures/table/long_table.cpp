@@ -47,7 +47,7 @@ void LongTable::clean_and_tell(Rule rule, const std::string& path) {
   clean(rule);
   for (const LongColumn& column : columns)
     for (const ValueFault& repeat : column.repeats)
-      warn("%s\n", faults.emplace_back(path + ": " + column.name + ": " + repeat.text).c_str());
+      warn("{}\n", faults.emplace_back(path + ": " + column.name + ": " + repeat.text));
 }
 
 std::vector<std::string> LongTable::drop_dead_axes() {
