@@ -13,10 +13,6 @@
 namespace ifog::tools {
 namespace {
 
-void keep(const TimePart::Rows& rows, Samples& values) {
-  if (!values.empty()) values.keep(rows.begin, rows.end);
-}
-
 // Index of the first row from `begin` on that is not before `wanted`.
 std::size_t first_from(std::span<const double> time_s, const TimeOrigin& origin, std::size_t begin,
                        const SaidTime& wanted) {
@@ -62,14 +58,6 @@ void TimePart::refuse_empty(double first_s, double last_s, const std::string& na
   throw std::runtime_error(name + ": nothing between --from" + (from.text.empty() ? "" : " " + from.text) +
                            " and --to" + (to.text.empty() ? "" : " " + to.text) + ", expected times within " +
                            told_time(first_s) + " … " + told_time(last_s) + " s");
-}
-
-std::size_t TimePart::cut(Samples& time_s, const TimeOrigin& origin, std::span<Samples* const> columns,
-                          const std::string& name) const {
-  const Rows kept = rows(time_s, origin, name);
-  keep(kept, time_s);
-  for (Samples* const column : columns) keep(kept, *column);
-  return kept.begin;
 }
 
 }  // namespace ifog::tools
