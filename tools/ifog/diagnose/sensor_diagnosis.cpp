@@ -157,6 +157,17 @@ std::string vertical_rate(const CaptureView& capture, const std::vector<AxisDiag
 
 }  // namespace
 
+void AxesToDiagnose::add_earth_to(const Command& command) {
+  command.add_flag("--earth", options.subtract_earth_rate,
+                   "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; "
+                   "otherwise it is shown");
+  command
+      .add_taken<double>(
+          "--latitude", [this](double degrees) { options.latitude_rad = degrees * kDegree; },
+          "of the captures, degrees: bounds what can be the Earth's rate")
+      .within(-90.0, 90.0);
+}
+
 std::vector<Record> records_of(const std::vector<CaptureView>& captures,
                                const std::vector<std::string>& names, std::size_t axis) {
   std::vector<Record> records;
@@ -205,21 +216,13 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
                                          const std::vector<std::string>& names,
                                          const std::vector<std::size_t>& axes, const AxesToDiagnose& wanted) {
   if (axes.empty()) return {};
-  DiagnoseOptions options;
-  options.significance = wanted.significance;
-  options.fit_from = wanted.fit_from;
-  options.fit_to = wanted.fit_to;
-  options.subtract_earth_rate = wanted.earth;
-  options.latitude_rad = wanted.latitude_rad;
-  options.allow_motion_channels = wanted.allow_motion_channels;
-  options.allow_proxies = wanted.allow_proxies;
-  SharedProgress progress("diagnose", axes.size(), options.most_effects + 1);
+  SharedProgress progress("diagnose", axes.size(), wanted.options.most_effects + 1);
   std::vector<AxisDiagnosis> found(axes.size());
   std::vector<std::exception_ptr> failed(axes.size());
   // One thread per axis: with two processors and two threads, the third axis would leave one idle.
   const auto threads = wanted.threads == 0 ? static_cast<unsigned>(axes.size()) : wanted.threads;
   share_out(axes.size(), threads, [&](std::size_t i) {
-    DiagnoseOptions own = options;
+    DiagnoseOptions own = wanted.options;
     own.axis = found[i].axis = captures.front().axes[axes[i]];
     own.progress = [&, i](std::size_t done, std::size_t) { progress.at(i, done); };
     try {

@@ -251,7 +251,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   corrected.rate_radps.assign(rates.begin(), rates.end());
   leave_out(unusable_axes({recorded.capture.view()}, {sensor_.name}), corrected);
   AxesToDiagnose wanted;
-  wanted.fit_to = kFitTo;
+  wanted.options.fit_to = kFitTo;
   wanted.threads = 1;  // the daemon runs on the same processors
   const std::string name = recordings_name(files);
   std::vector<AxisDiagnosis> found = diagnose_axes({corrected}, {name}, wanted);

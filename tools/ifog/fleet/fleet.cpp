@@ -15,7 +15,6 @@
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
-#include "filters/units/field_units.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/interrupt.h"
@@ -43,7 +42,6 @@ struct FleetArguments {
   std::size_t jobs = 0;
   std::optional<std::size_t> one;
   bool dry_run = false;
-  std::optional<double> latitude_deg;
   FleetSettings settings;
 };
 
@@ -61,7 +59,7 @@ class FleetRun {
       : manifest_(manifest),
         results_(results),
         options_(arguments.settings.text()),
-        level_(arguments.settings.wanted.significance),
+        level_(arguments.settings.wanted.options.significance),
         engine_(engine_named(arguments, results)) {
     population_.type = manifest.type;
     population_.significance = level_;
@@ -275,8 +273,7 @@ void end_with_the_terminal() {
   if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &interrupt, nullptr);
 }
 
-void run_fleet(FleetArguments& arguments) {
-  if (arguments.latitude_deg) arguments.settings.wanted.latitude_rad = *arguments.latitude_deg * kDegree;
+void run_fleet(const FleetArguments& arguments) {
   const Manifest manifest = read_manifest(arguments.manifest);
   if (arguments.one && *arguments.one >= manifest.gyros.size())
     throw WrongUsage("--one", std::to_string(*arguments.one) + " is no gyro of " + arguments.manifest +
@@ -327,17 +324,11 @@ void add_fleet(const Command& program) {
   arguments->settings.part.add_to(command);
   command.add_option("--axis", arguments->settings.wanted.axes, "only these axes");
   command
-      .add_option("--significance", arguments->settings.wanted.significance,
+      .add_option("--significance", arguments->settings.wanted.options.significance,
                   "chance of a false effect in a gyro, after correction for all tried")
       .within(1e-9, 0.5)
       .shows_default();
-  command.add_flag("--earth", arguments->settings.wanted.earth,
-                   "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; "
-                   "otherwise it is shown");
-  command
-      .add_option("--latitude", arguments->latitude_deg,
-                  "of the captures, degrees: bounds what can be the Earth's rate")
-      .within(-90.0, 90.0);
+  arguments->settings.wanted.add_earth_to(command);
   command.footer("Example:\n  ifog fleet lot7.toml --jobs 8");
   command.callback([arguments] { run_fleet(*arguments); });
 }

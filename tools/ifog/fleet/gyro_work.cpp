@@ -100,7 +100,7 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
     if (wanted.together.empty()) continue;
     MeasuredEffects found = naming(gyro.captures.front(), [&] {
       return measure_effects(records_of(opened.captures, gyro.captures, a), wanted, axes[a],
-                             settings.wanted.significance);
+                             settings.wanted.options.significance);
     });
     for (std::size_t i = 0; i < numbers.size(); ++i)
       axis.together.push_back({std::move(found.together[i]), numbers[i]});
@@ -126,9 +126,13 @@ std::string files_of(const DriverSettings& settings) {
 }  // namespace
 
 std::string FleetSettings::text() const {
-  const nlohmann::json of_diagnosis = {wanted.axes,  part.from.text,
-                                       part.to.text, wanted.significance,
-                                       wanted.earth, wanted.latitude_rad.value_or(NAN)};
+  const DiagnoseOptions& options = wanted.options;
+  const nlohmann::json of_diagnosis = {wanted.axes,
+                                       part.from.text,
+                                       part.to.text,
+                                       options.significance,
+                                       options.subtract_earth_rate,
+                                       options.latitude_rad.value_or(NAN)};
   // Another version may have other results.
   return "ifog " IFOG_VERSION + input.as_typed() + files_of(input.settings()) + of_diagnosis.dump();
 }
