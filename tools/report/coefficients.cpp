@@ -63,15 +63,11 @@ std::string coefficient_lines(const NoiseCoefficients& found) {
 }
 
 nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found) {
-  const auto finite = [](double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-  };
   auto out = nlohmann::ordered_json::object();
   for (const NamedCoefficient& named : named_coefficients()) {
     const NoiseCoefficient& c = found.*named.member;
-    out[named.letter] = {{"value", c.value},         {"std_error", finite(c.std_error)},
-                         {"upper", finite(c.upper)}, {"unit", named.si_unit},
-                         {"present", c.present},     {"from_tau_s", c.from_s}};
+    out[named.letter] = {{"value", c.value},      {"std_error", c.std_error}, {"upper", c.upper},
+                         {"unit", named.si_unit}, {"present", c.present},     {"from_tau_s", c.from_s}};
   }
   return out;
 }
@@ -82,8 +78,7 @@ nlohmann::ordered_json markov_json(const std::optional<MarkovNoise>& found) {
   return {{"sigma_radps", markov.sigma_radps},
           {"correlation_s", markov.correlation_s},
           {"lower_s", markov.lower_s},
-          {"upper_s", std::isfinite(markov.upper_s) ? nlohmann::ordered_json(markov.upper_s)
-                                                    : nlohmann::ordered_json(nullptr)},
+          {"upper_s", markov.upper_s},
           {"K", markov.walk},
           {"K_until_s", markov.walk_until_s}};
 }

@@ -7,7 +7,6 @@
 
 #include "filters/units/field_units.h"
 #include "tools/ifog/allan/allan_record.h"
-#include "tools/ifog/console/listed_fields.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -33,9 +32,9 @@ ordered_json theo1_json(const std::vector<LongPoint>& points) {
     out[key] = ordered_json::array();
   for (const LongPoint& point : points) {
     out["tau_s"].push_back(point.tau);
-    out["adev_radps"].push_back(as_json(std::sqrt(point.variance)));
-    out["lower_radps"].push_back(as_json(point.interval.lower_radps));
-    out["upper_radps"].push_back(as_json(point.interval.upper_radps));
+    out["adev_radps"].push_back(std::sqrt(point.variance));
+    out["lower_radps"].push_back(point.interval.lower_radps);
+    out["upper_radps"].push_back(point.interval.upper_radps);
     out["degrees_of_freedom"].push_back(point.interval.degrees);
     out["bias"].push_back(point.bias);
   }
@@ -75,9 +74,9 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
       axis[key] = ordered_json::array();
     for (std::size_t i = 0; i < record.points.size(); ++i) {
       const AllanInterval& interval = record.intervals[i];
-      axis["adev_radps"].push_back(as_json(std::sqrt(record.points[i].variance)));
-      axis["lower_radps"].push_back(as_json(interval.lower_radps));
-      axis["upper_radps"].push_back(as_json(interval.upper_radps));
+      axis["adev_radps"].push_back(std::sqrt(record.points[i].variance));
+      axis["lower_radps"].push_back(interval.lower_radps);
+      axis["upper_radps"].push_back(interval.upper_radps);
       axis["degrees_of_freedom"].push_back(interval.degrees);
       axis["noise_type"].push_back(term_name(interval.strongest));
       axis["terms"].push_back(record.points[i].terms);
@@ -88,7 +87,7 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
     axis["coefficients"] = report::coefficients_json(record.fit ? *record.fit : NoiseCoefficients{});
     if (!record.fit)
       for (auto& term : axis["coefficients"]) term["std_error"] = term["upper"] = nullptr;
-    axis["misfit"] = record.fit ? as_json(record.fit->misfit) : ordered_json(nullptr);
+    axis["misfit"] = record.fit ? ordered_json(record.fit->misfit) : ordered_json(nullptr);
     axis["gauss_markov"] = record.fit ? report::markov_json(record.fit->markov) : ordered_json(nullptr);
     axis["noise_changes"] = report::noise_changes_json(record.noise_changes);
     axis["findings"] = ordered_json::array();
