@@ -104,6 +104,14 @@ nlohmann::ordered_json as_json(const T& value) {
   return FieldsWriter::of(value);
 }
 
+// The schema's name, followed by the fields of `what`.
+template <typename T>
+nlohmann::ordered_json with_schema(const char* schema, const T& what) {
+  nlohmann::ordered_json out{{"schema", schema}};
+  out.update(as_json(what));
+  return out;
+}
+
 template <typename T>
 T from_json(const nlohmann::json& json) {
   T out{};

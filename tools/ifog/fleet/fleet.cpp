@@ -61,7 +61,7 @@ class FleetRun {
         options_(arguments.settings.text()),
         level_(arguments.settings.wanted.options.significance),
         engine_(engine_named(arguments, results)) {
-    population_.type = manifest.type;
+    population_.type = type_.type = manifest.type;
     population_.significance = level_;
     for (const FleetGyro& gyro : manifest.gyros) population_.serials.push_back(gyro.serial);
   }
@@ -72,7 +72,8 @@ class FleetRun {
     diagnose_all();
     if (diagnosed_.gyros.empty()) {
       forget_with_prior();
-      results_.forget_population();
+      results_.forget("fleet.json");
+      results_.forget("fleet.html");
       tell_failures();
       throw Failed("no gyro was diagnosed");
     }
@@ -132,20 +133,20 @@ class FleetRun {
   // Removes the failure of an earlier run.
   void forget_failure(std::size_t gyro) const {
     const FleetGyro& of = manifest_.gyros[gyro];
-    if (const auto done = results_.done(of); done && done->failed) results_.forget_done(of);
+    if (const auto done = results_.done(of); done && done->failed) results_.forget(of, "gyro.json");
     if (type_.id.empty()) return;
     if (const auto measured = results_.measured(of, type_.id); measured && measured->failed)
-      results_.forget_measured(of, type_.id);
+      results_.forget(of, measured_name(type_.id));
   }
 
   // Removes results of an earlier run.
   void forget_with_prior() const {
-    for (const FleetGyro& gyro : manifest_.gyros) results_.forget_with_prior(gyro);
+    for (const FleetGyro& gyro : manifest_.gyros) results_.forget(gyro, "with_prior.toml");
   }
 
   void diagnose_all() {
     absent_ = without_captures();
-    if (!absent_.empty() || !undiagnosed().empty()) results_.forget_type();
+    if (!absent_.empty() || !undiagnosed().empty()) results_.forget("type.json");
     const auto said_why = [&](std::size_t gyro) {
       const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
       return done && done->failed.has_value();
@@ -173,12 +174,12 @@ class FleetRun {
     if (diagnosed_.gyros.size() < kFewestOfType) {
       population_.remarks.push_back("fleet statistics need " + std::to_string(kFewestOfType) +
                                     " gyros; see each gyro's report");
-      results_.forget_type();
+      results_.forget("type.json");
       return;
     }
     type_.effects = type_candidates(diagnosed_.found, diagnosed_.gyros.size(), level_);
     for (std::size_t round = 0; !type_.effects.empty(); ++round) {
-      results_.write_type(manifest_.type, type_);
+      results_.write(type_);
       std::vector<Population::Failure> failed;
       measured_ = measure_all(failed);
       const bool enough = measured_.size() >= kFewestOfType;
@@ -197,7 +198,7 @@ class FleetRun {
     population_.remarks.push_back(
         "no effect is the type's: none shows in more gyros than false alarms explain, or what shows is not "
         "the same in them");
-    results_.write_type(manifest_.type, type_);
+    results_.write(type_);
   }
 
   std::map<std::size_t, GyroMeasured> measure_all(std::vector<Population::Failure>& failed) {

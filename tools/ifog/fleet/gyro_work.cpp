@@ -44,7 +44,7 @@ void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSet
   Model model = model_with({}, found, gyro.captures, opened.hashes);
   model.sensor = gyro.serial;
   const std::string model_path = results.path(gyro, "model.toml");
-  results.forget_done(gyro);  // until all files belong to this diagnosis
+  results.forget(gyro, "gyro.json");  // until all files belong to this diagnosis
   write_json(results.path(gyro, "diagnosis.json"), diagnosis_json(found));
   write_file(model_path, model_text(model));
   write_file(results.path(gyro, "report.html"),
@@ -87,10 +87,11 @@ void refuse_without_error(AxisMeasured& axis) {
   }
 }
 
-GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const FleetSettings& settings,
-                          const TypeToMeasure& type, const Opened& opened) {
+std::vector<AxisMeasured> measure_gyro(const Results& results, const FleetGyro& gyro,
+                                       const FleetSettings& settings, const TypeToMeasure& type,
+                                       const Opened& opened) {
   const Model model = read_model(results.path(gyro, "model.toml"));
-  GyroMeasured measured;
+  std::vector<AxisMeasured> measured;
   const std::vector<std::string>& axes = opened.captures.front().axes;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     AxisMeasured axis;
@@ -109,7 +110,7 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
     axis.means = std::move(found.means);
     axis.ranges = std::move(found.ranges);
     refuse_without_error(axis);
-    measured.axes.push_back(std::move(axis));
+    measured.push_back(std::move(axis));
   }
   return measured;
 }
@@ -164,24 +165,24 @@ void work_on(const Results& results, const FleetGyro& gyro, const FleetSettings&
       opened = read_captures(gyro, settings);
       diagnose_gyro(results, gyro, settings, *opened);
     } catch (const std::runtime_error& error) {
-      results.write_done(gyro, {inputs, error.what()});
+      results.write(gyro, GyroDone{gyro.serial, gyro.captures, inputs, error.what()});
       throw;
     }
-    results.write_done(gyro, {inputs, std::nullopt});
+    results.write(gyro, GyroDone{gyro.serial, gyro.captures, inputs, std::nullopt});
     say("{}: diagnosed\n", gyro.serial);
   }
   const std::optional<TypeToMeasure> type = results.type();
   if (!type || type->effects.empty() || is_measured(results, gyro, options, *type)) return;
-  GyroMeasured measured;
+  GyroMeasured measured{gyro.serial, type->id, inputs, std::nullopt, {}};
   try {
     if (!opened) opened = read_captures(gyro, settings);
-    measured = measure_gyro(results, gyro, settings, *type, *opened);
+    measured.axes = measure_gyro(results, gyro, settings, *type, *opened);
   } catch (const std::runtime_error& error) {
-    results.write_measured(gyro, type->id, {inputs, error.what(), {}});
+    measured.failed = error.what();
+    results.write(gyro, measured);
     throw;
   }
-  measured.inputs = inputs;
-  results.write_measured(gyro, type->id, measured);
+  results.write(gyro, measured);
   say("{}: measured\n", gyro.serial);
 }
 
