@@ -56,9 +56,6 @@ struct ReplayResult {
 // From the start to the first deadline, so that the first item is delayed like the others.
 constexpr std::int64_t kLead_ns = 20'000'000;
 constexpr std::int64_t kLongestSleep_ns = 100'000'000;
-// The progress bar is drawn only in pauses of at least this length.
-constexpr std::int64_t kPauseForProgress_ns = 2'000'000;
-constexpr std::int64_t kProgressEvery_ns = 500'000'000;  // interval within a long pause
 
 // False: interrupted.
 bool sleep_until(std::int64_t due_ns, std::int64_t spin_ns) {
@@ -88,36 +85,26 @@ void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, Repl
   const bool paced = settings.speed > 0.0;
   const auto spin_ns = static_cast<std::int64_t>(settings.spin_us * 1e3);
   const std::int64_t round = round_ns(timeline);
-  // Progress by recorded time if paced, so that pauses count.
-  constexpr double kPerSecond = 1e3;
-  const double length_s = static_cast<double>(round) * 1e-9 * static_cast<double>(settings.loops);
-  const auto steps = [&](double recorded_s) { return static_cast<std::size_t>(recorded_s * kPerSecond); };
-  Progress progress("replay", paced ? steps(length_s) : result.wanted, Progress::Between::nothing);
+  // Progress by recorded time if paced, in ms, so that pauses count.
+  const auto in_ms = [](double time_ns) { return static_cast<std::size_t>(time_ns * 1e-6); };
+  Progress progress("replay", paced ? in_ms(static_cast<double>(round) * static_cast<double>(settings.loops))
+                                    : result.wanted);
   Pace pace(paced ? settings.speed : 1.0);
   result.begin_ns = monotonic_ns() + (paced ? kLead_ns : 0);
   pace.start(timeline.time_ns(0), result.begin_ns);
+  // False: interrupted.
+  const auto send = [&](std::size_t i, std::int64_t shift) {
+    const std::int64_t recorded_ns = timeline.time_ns(i) + shift, due = pace.due_ns(recorded_ns);
+    if (paced ? !sleep_until(due, spin_ns) : interrupted()) return false;
+    if (!target.send(i)) return false;
+    if (paced) result.late.add(monotonic_ns() - due);
+    ++result.sent;
+    progress.at(paced ? in_ms(static_cast<double>(recorded_ns - timeline.time_ns(0))) : result.sent);
+    return true;
+  };
   bool going = true;
-  for (std::uint64_t loop = 0; going && (settings.loops == 0 || loop < settings.loops); ++loop) {
-    const std::int64_t shift = static_cast<std::int64_t>(loop) * round;
-    for (std::size_t i = 0; going && i < n; ++i) {
-      const std::int64_t due = pace.due_ns(timeline.time_ns(i) + shift);
-      const auto tell = [&] {
-        const double since_s = static_cast<double>(monotonic_ns() - result.begin_ns) * 1e-9;
-        progress.at(paced ? steps(std::clamp(since_s * settings.speed, 0.0, length_s)) : result.sent);
-      };
-      if (settings.loops != 0 && (!paced || due - monotonic_ns() > kPauseForProgress_ns)) tell();
-      for (std::int64_t now = monotonic_ns();
-           paced && settings.loops != 0 && due - now > 2 * kProgressEvery_ns && going; now = monotonic_ns()) {
-        going = sleep_until(now + kProgressEvery_ns, 0);
-        tell();
-      }
-      if (!going) break;
-      going = paced ? sleep_until(due, spin_ns) && target.send(i) : !interrupted() && target.send(i);
-      if (!going) break;
-      if (paced) result.late.add(monotonic_ns() - due);
-      ++result.sent;
-    }
-  }
+  for (std::uint64_t loop = 0; going && (settings.loops == 0 || loop < settings.loops); ++loop)
+    for (std::size_t i = 0; going && i < n; ++i) going = send(i, static_cast<std::int64_t>(loop) * round);
   target.finish();
 }
 
