@@ -34,34 +34,28 @@ bool carries_rates(const std::string& channel) {
   return channel_name(channel).content == ChannelContent::rate;
 }
 
-// The first channel with our rates, or else with a supported type of another program.
-std::string first_channel(const NamedLog& source, const std::string& path) {
-  LcmEvents log(source.name());
-  std::string peer, bytes;
-  while (const LcmEvents::Event* event = log.next()) {
-    if (carries_rates(event->channel)) return event->channel;
-    if (peer.empty() && peer_type(event->data) != nullptr) peer = event->channel;
-    if (bytes.empty() && carries_bytes(event->data)) bytes = event->channel;
-  }
-  if (!peer.empty()) return peer;
-  throw std::runtime_error(
-      path + (bytes.empty() ? ": has no channel IFOG_<NAME>, and none with rates of another program's type"
-                            : ": has bytes of a device on " + printable(bytes) +
-                                  ", expected --driver NAME to decode them with"));
-}
-
-// A log and its channel of rates: the requested one, or else the first, which must then be the only one
-// (look_through).
+// A log and its channel of rates: the requested one, or else the first with our rates, or else the first with
+// a supported type of another program. Without a request it must be the only one (look_through).
 struct ChosenLog {
   ChosenLog(InputFile& file, const std::string& channel)
-      : path(file.path()), source(file), asked_for(!channel.empty()) {
-    rates = asked_for ? channel : first_channel(source, path);
+      : path(file.path()), source(file), asked_for(!channel.empty()), rates(channel) {
+    std::string bytes;
     LcmEvents log(source.name());
     while (const LcmEvents::Event* event = log.next()) {
-      if (event->channel != rates) continue;
-      if (const PeerType* const type = peer_type(event->data)) peer.emplace(*type);
-      return;
+      const bool wanted = asked_for ? event->channel == channel : carries_rates(event->channel);
+      const PeerType* const type = peer_type(event->data);
+      if (wanted || (rates.empty() && type != nullptr)) {
+        rates = event->channel;
+        peer = type != nullptr ? std::optional<PeerReader>(*type) : std::nullopt;
+      }
+      if (wanted) return;
+      if (bytes.empty() && carries_bytes(event->data)) bytes = event->channel;
     }
+    if (!rates.empty()) return;
+    throw std::runtime_error(
+        path + (bytes.empty() ? ": has no channel IFOG_<NAME>, and none with rates of another program's type"
+                              : ": has bytes of a device on " + printable(bytes) +
+                                    ", expected --driver NAME to decode them with"));
   }
   std::string path;
   NamedLog source;
