@@ -2,13 +2,10 @@
 #include "tools/ifog/monitor/monitor.h"
 
 #include <poll.h>
-#include <signal.h>
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <ifog/decode.h>
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <memory>
 #include <mutex>
@@ -22,37 +19,24 @@
 #include "msgs/channel_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/monitor/message_json.h"
 
 namespace ifog::tools {
-namespace {
-
-// Signals that end the monitor; blocked in every thread so that run() receives them.
-sigset_t blocked_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
-  sigprocmask(SIG_BLOCK, &set, nullptr);
-  return set;
-}
-
-}  // namespace
-
 Monitor::Monitor(const MonitorOptions& options)
     : options_(options),
       listener_(options.url, [this](const lcm_recv_buf_t& message,
                                     const std::string& channel) { take(message, channel); }),
       known_(options.field) {
+  catch_interrupts();  // before the screen, which would catch them in another way
   // All sensors, so that for an unknown name the publishing ones can be listed.
   listener_.listen_to_sensor("");
   if (!options.json.empty()) json_.emplace(options.json);
   const bool people = isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1;
   if (!options.web.empty()) {
-    blocked_signals();  // before threads are started
     web_ = std::make_unique<WebMonitor>(*page_address(options.web), sensors_, known_,
                                         [this] { return waiting().front() + " " + waiting().back(); });
     say("http://{}/ shows it; Ctrl-C ends this\n",
@@ -158,20 +142,18 @@ bool Monitor::all_shown() const {
 }
 
 bool Monitor::run() {
-  const sigset_t set = blocked_signals();
-  const int stop = signalfd(-1, &set, SFD_CLOEXEC);
   auto shown = start_;
-  std::array<pollfd, 3> wanted{pollfd{stop, POLLIN, 0}, pollfd{listener_.descriptor(), POLLIN, 0},
-                               pollfd{screen_ ? STDIN_FILENO : -1, POLLIN, 0}};
+  pollfd wanted[2]{{listener_.descriptor(), POLLIN, 0}, {screen_ ? STDIN_FILENO : -1, POLLIN, 0}};
+  const pollfd &messages = wanted[0], &keys = wanted[1];
   if (screen_) draw();
   auto drawn = start_;
   for (bool on = true; on;) {
-    const int ready = poll(wanted.data(), wanted.size(), 50);
+    const int ready = poll(wanted, 2, 50);
     if (reader_gone()) throw ReaderGone();
-    if (ready > 0 && (wanted[0].revents & POLLIN) != 0) break;
+    if (interrupted()) break;
     const auto held = web_ ? std::unique_lock(web_->guard()) : std::unique_lock<std::mutex>();
-    if (ready > 0 && (wanted[1].revents & POLLIN) != 0) listener_.take();
-    const bool pressed = ready > 0 && wanted[2].revents != 0;
+    if (ready > 0 && (messages.revents & POLLIN) != 0) listener_.take();
+    const bool pressed = ready > 0 && keys.revents != 0;
     if (seconds_since(shown) >= 1.0) {
       end_interval(seconds_since(shown));
       shown = Clock::now();
@@ -182,11 +164,10 @@ bool Monitor::run() {
     if (!screen_ || (!pressed && ready >= 0 && seconds_since(drawn) < 0.25)) continue;
     for (int key = screen_->key(); on && key != 0; key = screen_->key()) on = obey(key);
     // A closed terminal is always ready for reading.
-    if ((wanted[2].revents & (POLLHUP | POLLERR)) != 0) break;
+    if ((keys.revents & (POLLHUP | POLLERR)) != 0) break;
     draw();
     drawn = Clock::now();
   }
-  close(stop);
   web_.reset();
   look_.paused.reset();
   if (!options_.once && options_.web.empty() && seconds_since(shown) > 0.2)
