@@ -93,29 +93,53 @@ std::string effects_text(const std::vector<AxisDiagnosis>& found) {
   return out;
 }
 
-// Processes one sensor; the result is one line of text.
+// Without the time of power-up the daemon's warm-up correction cannot be repeated. Then the remaining drift
+// would be attributed to another cause and corrected twice.
+bool needs_power_up(const SensorConfig& sensor, const ModelInUse& in_use) {
+  return sensor.powered_with_computer && in_use.model &&
+         std::ranges::count(in_use.model->effects, "warm_up", &Effect::form) > 0;
+}
+
+std::string recordings_name(const SensorConfig& sensor, const std::vector<RecordedFile>& files) {
+  const std::string first = std::filesystem::path(files.front().path).filename().string();
+  const std::string last = std::filesystem::path(files.back().path).filename().string();
+  return sensor.name + " " + first + (files.size() > 1 ? " to " + last : "");
+}
+
+// Time when the newest recording will be closed; "" if none is being written.
+std::string closing(const SensorConfig& sensor, const std::vector<RecordedFile>& files) {
+  if (files.empty() || !files.back().open) return "";
+  const RecordedFile& last = files.back();
+  std::tm opened{};
+  if (strptime(last.opened.c_str(), "%Y-%m-%dT%H:%M:%SZ", &opened) == nullptr) return "";
+  const std::time_t at = timegm(&opened) + static_cast<std::time_t>(sensor.record.file_s);
+  return fmt::format("; the one that is being written, {:.1f} MB, closes at {:.1f} MB or at {}{}",
+                     static_cast<double>(last.bytes) * 1e-6,
+                     static_cast<double>(sensor.record.file_bytes) * 1e-6, utc_text(at),
+                     at < std::time(nullptr) ? ", which is over: does ifogd run?" : "");
+}
+
+struct NightResult {
+  std::string said;  // one line
+  bool failed = false;
+  std::string proposed;  // identity of the proposed model, "": none
+  std::string promise;   // outcome of the last adoption as text; "" if not evaluated
+};
+
+// Processes one sensor.
 class Night {
  public:
   Night(const NightArguments& arguments, const Field& field, const SensorConfig& sensor)
       : arguments_(arguments), field_(field), sensor_(sensor) {}
 
-  std::string run();
-  // True if the recordings could not be evaluated; run() returned the reason.
-  [[nodiscard]] bool failed() const { return failed_; }
-  // Identity of the proposed model, "": none.
-  [[nodiscard]] const std::string& proposed() const { return proposed_; }
-  // Outcome of the last adoption as text; "" if not evaluated.
-  [[nodiscard]] const std::string& promise() const { return promise_; }
+  NightResult run();
 
  private:
+  std::string process();
   std::string judge(const std::vector<RecordedFile>& all);
-  [[nodiscard]] std::string why_not_judged(const ModelInUse& in_use, const Recorded& recorded) const;
-  [[nodiscard]] bool corrects_warm_up(const ModelInUse& in_use) const;
   std::string diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
                        const ModelInUse& in_use);
   void judge_last_adoption(const std::vector<RecordedFile>& files, const ModelInUse& in_use);
-  [[nodiscard]] std::string closing(const std::vector<RecordedFile>& files) const;
-  [[nodiscard]] std::string recordings_name(const std::vector<RecordedFile>& files) const;
   void propose(Proposal proposal, const Model& model, const Recorded& recorded,
                const std::vector<AxisDiagnosis>& found, const std::string& name,
                const std::vector<std::string>& hashes);
@@ -124,14 +148,24 @@ class Night {
   const Field& field_;
   const SensorConfig& sensor_;
   bool processed_ = false;  // these recordings need not be processed again
-  bool failed_ = false;
-  std::string proposed_, promise_;
+  NightResult result_;
 };
 
-std::string Night::run() {
+// An error of one sensor does not stop the others.
+NightResult Night::run() {
+  try {
+    result_.said = process();
+  } catch (const std::exception& error) {
+    result_.said = error.what();
+    result_.failed = true;
+  }
+  return result_;
+}
+
+std::string Night::process() {
   if (sensor_.record.folder.empty()) return "nothing is recorded ([sensor.record])";
   std::vector<RecordedFile> files = recorded_files(sensor_);
-  const std::string written = closing(files);
+  const std::string written = closing(sensor_, files);
   std::erase_if(files, [](const RecordedFile& file) { return file.open; });
   const std::optional<Bookmark> bookmark = read_bookmark(field_.state(), sensor_.name);
   // Lower numbers belong to a new folder.
@@ -145,12 +179,12 @@ std::string Night::run() {
     said = judge(newest(std::move(files), arguments_.most_bytes));
   } catch (const std::exception& error) {
     said = error.what();
-    failed_ = true;
+    result_.failed = true;
   }
   // The stored text must not quote content of a recording.
   if (processed_) {
     const StateLock hand(field_.state());
-    write_bookmark(field_.state(), sensor_.name, {until, utc_now(), failed_ ? kCannotBeJudged : said});
+    write_bookmark(field_.state(), {sensor_.name, until, utc_now(), result_.failed ? kCannotBeJudged : said});
   }
   return said;
 }
@@ -172,26 +206,13 @@ std::string Night::judge(const std::vector<RecordedFile>& all) {
            in_hours(static_cast<double>(recorded.rest.samples) * recorded.period_s) + " recorded, expected " +
            in_hours(arguments_.least_rest_s) + " at least: waits for more";
   }
-  if (std::string why = why_not_judged(in_use, recorded); !why.empty()) return why;
+  if (needs_power_up(sensor_, in_use) && !recorded.capture.view().since_power_up_s)
+    return "the model in use corrects a warm-up by the time since power-up, which these recordings do not "
+           "say: diagnose them by hand with --since-power-up";
   judge_last_adoption(files, in_use);
   std::string said = diagnose(recorded, files, in_use);
   processed_ = true;
   return said;
-}
-
-// Without the time of power-up the daemon's warm-up correction cannot be repeated. Then the remaining drift
-// would be attributed to another cause and corrected twice.
-std::string Night::why_not_judged(const ModelInUse& in_use, const Recorded& recorded) const {
-  if (!corrects_warm_up(in_use) || recorded.capture.view().since_power_up_s) return "";
-  return "the model in use corrects a warm-up by the time since power-up, which these recordings do not say: "
-         "diagnose them by hand with --since-power-up";
-}
-
-bool Night::corrects_warm_up(const ModelInUse& in_use) const {
-  if (!sensor_.powered_with_computer || !in_use.model) return false;
-  const auto& effects = in_use.model->effects;
-  return std::any_of(effects.begin(), effects.end(),
-                     [](const Effect& each) { return each.form == "warm_up"; });
 }
 
 // Evaluates the last adoption with everything recorded since.
@@ -212,8 +233,8 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
     Watched watched;
     watched.gain = weigh_models(recorded, history.kept(last.replaced).value_or(Model{}), *in_use.model, 0);
     if (watched.gain.empty()) return;
-    promise_ = outcome(watched);
-    const std::string text = "night of " + utc_now() + ": " + promise_;
+    result_.promise = outcome(watched);
+    const std::string text = "night of " + utc_now() + ": " + result_.promise;
     say("{}: {}\n", sensor_.name, text);
     const StateLock hand(field_.state());
     if (History fresh(field_.state(), sensor_.name);
@@ -222,25 +243,6 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
   } catch (const std::exception& error) {
     warn("{}: the last adoption cannot be judged: {}\n", sensor_.name, error.what());
   }
-}
-
-// Time when the newest recording will be closed; "" if none is being written.
-std::string Night::closing(const std::vector<RecordedFile>& files) const {
-  if (files.empty() || !files.back().open) return "";
-  const RecordedFile& last = files.back();
-  std::tm opened{};
-  if (strptime(last.opened.c_str(), "%Y-%m-%dT%H:%M:%SZ", &opened) == nullptr) return "";
-  const std::time_t at = timegm(&opened) + static_cast<std::time_t>(sensor_.record.file_s);
-  return fmt::format("; the one that is being written, {:.1f} MB, closes at {:.1f} MB or at {}",
-                     static_cast<double>(last.bytes) * 1e-6,
-                     static_cast<double>(sensor_.record.file_bytes) * 1e-6, utc_text(at)) +
-         (at < std::time(nullptr) ? std::string(", which is over: does ifogd run?") : "");
-}
-
-std::string Night::recordings_name(const std::vector<RecordedFile>& files) const {
-  const std::string first = std::filesystem::path(files.front().path).filename().string();
-  const std::string last = std::filesystem::path(files.back().path).filename().string();
-  return sensor_.name + " " + first + (files.size() > 1 ? " to " + last : "");
 }
 
 std::string Night::diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
@@ -253,7 +255,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   AxesToDiagnose wanted;
   wanted.options.fit_to = kFitTo;
   wanted.threads = 1;  // the daemon runs on the same processors
-  const std::string name = recordings_name(files);
+  const std::string name = recordings_name(sensor_, files);
   std::vector<AxisDiagnosis> found = diagnose_axes({corrected}, {name}, wanted);
   std::erase_if(found, [](const AxisDiagnosis& axis) { return axis.diagnosis.effects.empty(); });
   if (found.empty()) return "nothing found that the model in use leaves";
@@ -290,7 +292,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
                  in_hours(proposal.gain.front().kept.seconds) + " held out";
   const std::string why = proposal.why;
   propose(std::move(proposal), model, recorded, found, name, hashes);
-  proposed_ = model.identity();
+  result_.proposed = model.identity();
   return "proposes model " + model.identity() + " against " +
          (in_use.name.identity.empty() ? "none" : in_use.name.identity) + ": " + why;
 }
@@ -324,27 +326,15 @@ void run_nights(const NightArguments& arguments) {
     if (!arguments.sensors.empty() &&
         std::find(arguments.sensors.begin(), arguments.sensors.end(), sensor.name) == arguments.sensors.end())
       continue;
-    std::string said;
-    Night night(arguments, field, sensor);
-    bool good = false;
-    try {
-      said = night.run();
-      good = !night.failed();
-    } catch (const std::exception& error) {
-      said = error.what();
-    }
-    const std::string line = sensor.name + ": " + printable(said, kLongestMessage);
-    // An error of one sensor does not stop the others.
-    if (good)
-      say("{}\n", line);
-    else
-      warn("{}\n", line);
-    failed = failed || !good;
+    const NightResult night = Night(arguments, field, sensor).run();
+    const std::string line = sensor.name + ": " + printable(night.said, kLongestMessage);
+    night.failed ? warn("{}\n", line) : say("{}\n", line);
+    failed = failed || night.failed;
     all.push_back({{"sensor", sensor.name},
-                   {"failed", !good},
-                   {"said", said},
-                   {"proposed", night.proposed()},
-                   {"promise", night.promise()}});
+                   {"failed", night.failed},
+                   {"said", night.said},
+                   {"proposed", night.proposed},
+                   {"promise", night.promise}});
   }
   if (!arguments.json.empty())
     write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.night_report/1"}, {"sensors", all}});
