@@ -91,6 +91,19 @@ void tell_innovations(const Watched& watched) {
   if (!watched.noticed.empty()) say("  noticed: {}\n", printable(watched.noticed, kLongestMessage));
 }
 
+// Writes the change into the history and exchanges the model, in this order, so that an interruption loses
+// nothing.
+void exchange(ModelExchange& place, const std::optional<Model>& model, const ModelInUse& before,
+              History& history, ModelChange change) {
+  history.add(std::move(change), before.model);
+  try {
+    place.exchange(model, before.model);
+  } catch (...) {
+    history.take_back();
+    throw;
+  }
+}
+
 struct Adoption {
   Proposal proposal;
   Model model;
@@ -110,16 +123,9 @@ Adoption take_into_use(const Field& field, const SensorConfig& sensor,
   now.exchange = std::make_unique<ModelExchange>(field, sensor, now.before.name);
   History history(field.state(), sensor.name);
   history.drop_incomplete_change(now.before.name);
-  // In this order (history, exchange, removal of the proposal) an interruption loses nothing.
-  history.add({"adopt", utc_now(), now.proposal.model, now.before.name, now.proposal.why, now.proposal.gain,
-               "", recorded_before},
-              now.before.model);
-  try {
-    now.exchange->exchange(now.model, now.before.model);
-  } catch (...) {
-    history.take_back();
-    throw;
-  }
+  exchange(*now.exchange, now.model, now.before, history,
+           {"adopt", utc_now(), now.proposal.model, now.before.name, now.proposal.why, now.proposal.gain, "",
+            recorded_before});
   remove_proposal(field.state(), sensor.name);
   return now;
 }
@@ -186,25 +192,19 @@ void revert(const AdoptArguments& arguments) {
                              ": expected that one, it was changed by other means");
   const std::optional<Model> back = history.kept(in_force->replaced);
   if (back) require_that_it_fits(field, sensor, *back);
-  ModelExchange exchange(field, sensor, now.name);
+  ModelExchange place(field, sensor, now.name);
   const ModelName name = in_force->replaced;
   const std::string when = utc_now();
-  history.add({"revert", when, name, now.name, "", {}, "", last_recording(sensor)}, now.model);
-  try {
-    exchange.exchange(back, now.model);
-  } catch (...) {
-    history.take_back();
-    throw;
-  }
+  exchange(place, back, now, history, {"revert", when, name, now.name, "", {}, "", last_recording(sensor)});
   say("{}: model {} is in place again, {} is kept\n", sensor.name, or_none(name.identity), now.name.identity);
-  if (!exchange.daemon_runs()) say("  the daemon does not run: it begins with this model\n");
+  if (!place.daemon_runs()) say("  the daemon does not run: it begins with this model\n");
   if (!arguments.json.empty())
     write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.revert/1"},
                                                       {"sensor", sensor.name},
                                                       {"when", when},
                                                       {"model", name.identity},
                                                       {"replaced", now.name.identity},
-                                                      {"running", exchange.daemon_runs()}});
+                                                      {"running", place.daemon_runs()}});
 }
 
 }  // namespace
