@@ -229,8 +229,8 @@ bool CaptureInput::holds_rates(const InputFile& file, FileKind found) const {
 
 RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
   const FileKind found = readable(file);
-  const ReadingProgress progress(file);
   if (found == FileKind::capture) return column_rows(file, sink);
+  const ReadingProgress progress(file);
   if (holds_rates(file, found)) {
     read_lcm_log(file, channel, sink);
     return {};

@@ -124,16 +124,7 @@ void leave_out(const std::vector<std::string>& axes, CaptureView& capture) {
   }
 }
 
-void keep_usable_axes(std::vector<CaptureView>& captures, const std::vector<std::string>& names) {
-  const std::vector<std::string> out = unusable_axes(captures, names);
-  for (CaptureView& capture : captures) leave_out(out, capture);
-}
-
-void keep_usable_axes(CaptureView& capture, const std::string& name) {
-  leave_out(unusable(capture, name), capture);
-}
-
-void keep_usable_axes(LongTable& table, const std::string& name) {
+void leave_out_dead_axes(LongTable& table, const std::string& name) {
   std::string axis;
   std::size_t rates = 0, alive = 0;
   for (const LongColumn& column : table.columns)

@@ -241,7 +241,7 @@ void run_compare(const CompareArguments& options) {
   });
   read.cut(options.part, options.capture);
   CaptureView capture = read.view();
-  keep_usable_axes(capture, options.capture);
+  leave_out(unusable_axes({capture}, {options.capture}), capture);
   ComparisonInput in;
   in.time_s = capture.time_s;
   if (capture.size() < 16)

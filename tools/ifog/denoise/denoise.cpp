@@ -246,7 +246,7 @@ OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, c
                             DenoisedRows& rows, const OfflineSink& sink) {
   LongTable table = options.input.read_long(capture);
   table.clean_and_tell(leave_out_placeholders, options.capture);
-  keep_usable_axes(table, options.capture);
+  leave_out_dead_axes(table, options.capture);
   rows.count_from(table.origin);
   OfflineSettings of = settings();
   tell_other_rate(options, of.sensor.nominal_rate_hz, table);

@@ -32,7 +32,8 @@ Opened read_captures(const FleetGyro& gyro, const FleetSettings& settings) {
     opened.read.back().cut(settings.part, path);
     opened.captures.push_back(opened.read.back().view());
   }
-  keep_usable_axes(opened.captures, gyro.captures);
+  const std::vector<std::string> unusable = unusable_axes(opened.captures, gyro.captures);
+  for (CaptureView& capture : opened.captures) leave_out(unusable, capture);
   return opened;
 }
 

@@ -170,10 +170,8 @@ bool ReplayTarget::flush() {
   return done;
 }
 
-bool ReplayTarget::finish() {
-  if (!flush()) return false;
-  finish_();
-  return true;
+void ReplayTarget::finish() {
+  if (flush()) finish_();
 }
 
 std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const ReplayTimeline& timeline,

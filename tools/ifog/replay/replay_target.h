@@ -31,8 +31,8 @@ class ReplayTarget {
   // Sends item i and returns when the system has accepted it; waits while the system has no space. False:
   // interrupted. Throws std::runtime_error if the target is closed.
   bool send(std::size_t i);
-  // Sends what is still buffered. False: interrupted.
-  bool finish();
+  // Sends what is still buffered, unless interrupted.
+  void finish();
   // Items in the buffer, accepted by send() but not yet by the system.
   [[nodiscard]] std::uint64_t buffered() const { return buffered_items_; }
   [[nodiscard]] std::uint64_t retries() const { return outlet_.retries(); }

@@ -275,7 +275,7 @@ void run_tune(const TuneArguments& options) {
   LongCapture read = read_rates(options, before);
   read.cut(options.part, options.capture);
   CaptureView capture = read.view();
-  keep_usable_axes(capture, options.capture);
+  leave_out(unusable_axes({capture}, {options.capture}), capture);
   if (capture.size() < 3)
     throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
                              " rows, expected at least 200");
