@@ -6,8 +6,11 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/capture/candump/candump.h"
@@ -80,13 +83,20 @@ void expect_capture_name(const std::string& option, const std::string& path, con
 
 void write_columns(const LongTable& table, const std::string& from, const std::string& to) {
   const CaptureShape shape = capture_shape(table.names(), from, table);
-  LongRows rows(table, shape);
-  ColumnWriter file(to, table.comments, rows.names());
-  Progress progress("writing " + std::filesystem::path(to).filename().string(), table.size());
-  for (std::size_t done = 0; rows.next(); progress.at(done)) {
-    file.rows(rows.rows(), rows.origin());
-    done += rows.rows().front().size();
+  // In the order of a capture: rates, references, channels.
+  std::vector<std::size_t> order(table.columns.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {},
+                    [&](std::size_t c) { return std::pair(shape.places[c].kind, shape.places[c].at); });
+  std::vector<std::string> names{"time_s"};
+  std::vector<std::span<const double>> columns{table.time_s};
+  for (const std::size_t c : order) {
+    names.push_back(table.columns[c].name);
+    columns.emplace_back(table.columns[c].values);
   }
+  ColumnWriter file(to, table.comments, names);
+  Progress progress("writing " + std::filesystem::path(to).filename().string(), table.size());
+  file.rows(columns, table.origin, [&](std::size_t done) { progress.at(done); });
   file.finish();
 }
 

@@ -10,8 +10,6 @@
 
 namespace ifog::tools {
 
-constexpr std::size_t kRowsTogether = std::size_t{1} << 14U;  // rows per write
-
 DenoisedRows::DenoisedRows(std::string output, TimePart part, bool keep, bool smooth)
     : output_(std::move(output)), part_(std::move(part)), keep_(keep || smooth), smooth_(smooth) {}
 
@@ -41,13 +39,9 @@ std::vector<Samples*> DenoisedRows::written_columns() {
 }
 
 void DenoisedRows::write() {
-  const std::size_t rows = columns_.time_s.size();
-  for (std::size_t begin = 0; begin < rows; begin += kRowsTogether) {
-    std::vector<std::span<const double>> block;
-    for (const Samples* const column : written_columns())
-      block.push_back(std::span(*column).subspan(begin, std::min(kRowsTogether, rows - begin)));
-    file_->rows(block, origin_);
-  }
+  std::vector<std::span<const double>> columns;
+  for (const Samples* const column : written_columns()) columns.emplace_back(*column);
+  file_->rows(columns, origin_);
 }
 
 void DenoisedRows::count(const ChainOutput& out) {
@@ -90,7 +84,7 @@ bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
     of_axis.compensated.add(compensated);
     of_axis.denoised.add(denoised);
   }
-  if (!keep_ && columns_.time_s.size() == kRowsTogether) {
+  if (!keep_ && columns_.time_s.size() == RowBatch::kRows) {
     write();
     for (Samples* const column : written_columns()) column->keep(0, 0);
   }

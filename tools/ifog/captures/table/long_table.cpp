@@ -14,8 +14,6 @@
 
 namespace ifog::tools {
 
-using Kind = CaptureShape::Place::Kind;
-
 std::vector<std::string> LongTable::names() const {
   std::vector<std::string> out;
   for (const LongColumn& column : columns) out.push_back(column.name);
@@ -101,28 +99,6 @@ void LongTableSink::take(RowBlock& rows) {
     column.known =
         column.known || std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); });
   });
-}
-
-LongRows::LongRows(const LongTable& table, const CaptureShape& shape)
-    : table_(table), names_{"time_s"}, views_{table.time_s} {
-  for (const Kind kind : {Kind::rate, Kind::reference, Kind::channel}) {
-    const std::size_t many = kind == Kind::channel ? shape.channels : shape.axes.size();
-    for (std::size_t at = 0; at < many; ++at)
-      for (std::size_t c = 0; c < shape.places.size(); ++c)
-        if (shape.places[c].kind == kind && shape.places[c].at == at) {
-          names_.push_back(table.columns[c].name);
-          views_.emplace_back(table.columns[c].values);
-        }
-  }
-  rows_.resize(views_.size());
-}
-
-bool LongRows::next() {
-  const std::size_t count = std::min(RowBatch::kRows, table_.size() - at_);
-  if (count == 0) return false;
-  for (std::size_t i = 0; i < views_.size(); ++i) rows_[i] = views_[i].subspan(at_, count);
-  at_ += count;
-  return true;
 }
 
 LongTable long_table(Capture capture) {

@@ -68,24 +68,4 @@ class LongTableSink final : public RowSink {
   std::vector<std::size_t> from_, outlined_;  // column of the rows, by column and by outline of the table
 };
 
-// Blocks of a table's rows in the order of a capture: rates, references, channels.
-class LongRows {
- public:
-  // The table must outlive this.
-  LongRows(const LongTable& table, const CaptureShape& shape);
-
-  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // time_s first
-  // The next rows, by name; false at the end. Valid until the next call.
-  bool next();
-  [[nodiscard]] std::span<const std::span<const double>> rows() const { return rows_; }
-  [[nodiscard]] const TimeOrigin& origin() const { return table_.origin; }
-
- private:
-  const LongTable& table_;
-  std::vector<std::string> names_;
-  std::vector<std::span<const double>> views_;
-  std::vector<std::span<const double>> rows_;
-  std::size_t at_ = 0;
-};
-
 }  // namespace ifog::tools
