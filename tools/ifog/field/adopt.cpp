@@ -131,7 +131,6 @@ Adoption take_into_use(const Field& field, const SensorConfig& sensor,
 }
 
 void adopt(const AdoptArguments& arguments) {
-  will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
@@ -172,7 +171,6 @@ void adopt(const AdoptArguments& arguments) {
 }
 
 void revert(const AdoptArguments& arguments) {
-  will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);

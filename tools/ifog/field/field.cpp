@@ -19,6 +19,7 @@
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/ifog/captures/configured_files.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
@@ -47,6 +48,7 @@ std::string Field::command(const std::string& name, const std::string& sensor) c
 }
 
 Field::Field(const FieldOptions& options) : typed_(options.as_typed()) {
+  will_read("--config", options.config);
   config_path_ = options.config.empty() ? kServiceConfig : options.config;
   std::error_code none;
   if (!options.config.empty() || std::filesystem::exists(config_path_, none))

@@ -313,7 +313,6 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
 }
 
 void run_nights(const NightArguments& arguments) {
-  will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);

@@ -33,7 +33,6 @@ std::string why_stale(const Field& field, const Proposal& proposal) {
 }
 
 void list_proposals(const ProposalsArguments& arguments) {
-  will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();

@@ -259,7 +259,6 @@ Running running(const Field& field, double wait_s) {
 }
 
 void show_status(const StatusArguments& arguments) {
-  will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
   const Running now = running(field, arguments.wait_s);
