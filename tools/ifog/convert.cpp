@@ -67,8 +67,7 @@ void add_convert(const Command& program) {
       .add_option("TO", state->to, "What to make of it, by its ending: .csv, .csv.gz, .h5, .bin, .kvh, .log")
       .required();
   state->input.add_to(command);
-  command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
-      .type_name("NAME");
+  command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to");
   command.footer(
       "Examples:\n"
       "  ifog convert gyro.csv gyro.kvh --driver kvh1750 --option format=b\n"

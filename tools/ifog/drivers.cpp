@@ -118,7 +118,7 @@ void add_drivers(const Command& program) {
   const Command command =
       program.add_subcommand("drivers", "List the protocol drivers found, their options, and refused ones");
   command.add_option("NAME", *name, "Only this driver");
-  command.add_option("--json", *json, "Write the list here").type_name("FILE");
+  command.add_option("--json", *json, "Write the list here");
   command.callback([name, json] { run_drivers(*name, *json); });
 }
 

@@ -91,8 +91,7 @@ void add_picture(const Command& program) {
   a->part.add_to(command);
   command.add_option("-o,--output", a->picture, "Picture, .svg or .png")
       .required()
-      .check(report::wrong_picture_name)
-      .type_name("FILE");
+      .check(report::wrong_picture_name);
   command.callback([a] { run_picture(*a); });
 }
 

@@ -111,7 +111,7 @@ void add_record(const Command& program) {
   command.add_option("-o,--output", options->folder, "Folder of the recordings; made if it is not there")
       .required()
       .type_name("FOLDER");
-  command.add_option("--sensor", options->sensor, "Only this sensor").type_name("NAME");
+  command.add_option("--sensor", options->sensor, "Only this sensor");
   command
       .add_option("--lcm-channel", options->channels,
                   "Another LCM channel, with ifog.channel_t; may stand several times")

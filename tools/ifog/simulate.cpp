@@ -75,8 +75,7 @@ void add_simulate(const Command& program) {
                      "and each effect");
   const Option seed = command.add_option("--seed", state->seed, "Instead of the scenario's");
   state->encoding.add_driver_to(command);
-  command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
-      .type_name("NAME");
+  command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to");
   command.footer(
       "Examples:\n  ifog simulate /usr/share/ifogd/scenarios/rest.toml --output rest.csv.gz --truth "
       "rest.truth.json");

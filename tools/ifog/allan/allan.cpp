@@ -96,8 +96,7 @@ void add_allan(const Command& program) {
   a->options.part.add_to(command);
   command.add_option("--json", a->json, "Write the analysis here, in SI");
   command.add_option("--plot", a->picture, "Write a picture here (.svg or .png)")
-      .check(report::wrong_picture_name)
-      .type_name("FILE");
+      .check(report::wrong_picture_name);
   command.callback([a] { run_allan(*a); });
 }
 

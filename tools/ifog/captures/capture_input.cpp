@@ -99,10 +99,8 @@ void CaptureInput::add_driver_to(const Command& command) {
       .type_name("NAME");
   command.add_option("--option", options, "Option of the driver; may stand several times")
       .type_name("KEY=VALUE");
-  command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc")
-      .type_name("FILE");
-  command.add_option("--channel", channel, "CAN interface in a candump log, or channel in an LCM log")
-      .type_name("NAME");
+  command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc");
+  command.add_option("--channel", channel, "CAN interface in a candump log, or channel in an LCM log");
 }
 
 std::string CaptureInput::as_typed() const {

@@ -296,8 +296,7 @@ void add_compare(const Command& program) {
   command.add_option("--model", options->model, "model file whose [filter] gives the settings");
   command.add_option("--json", options->json_file, "write the figures as JSON");
   command.add_option("--plot", options->plot_file, "write a picture, .svg or .png")
-      .check(report::wrong_picture_name)
-      .type_name("FILE");
+      .check(report::wrong_picture_name);
   options->input.add_to(command);
   options->part.add_to(command);
   add_filter_options(command, options->choice, false);

@@ -328,23 +328,19 @@ void add_denoise(const Command& program) {
   command
       .add_option("-o,--output", options->output,
                   "CSV or HDF5 (.h5): time_s, raw, compensated, denoised, variance by axis")
-      .required()
-      .type_name("FILE");
+      .required();
   options->input.add_to(command);
   add_filter_options(command, options->filter);
   command.add_flag("--smooth", options->smooth,
                    "Add columns smoothed, smoothed_variance: from the whole recording, later samples too");
-  command.add_option("--model", options->model, "Model file of the sensor").type_name("FILE");
-  command
-      .add_option("--noise", options->noise,
-                  "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say")
-      .type_name("FILE");
-  command
-      .add_option("--config", options->config,
-                  "Take all settings from the daemon's configuration; of a flight recording else those it "
-                  "was recorded with")
-      .type_name("FILE");
-  command.add_option("--sensor", options->sensor, "Which sensor of the configuration").type_name("NAME");
+  command.add_option("--model", options->model, "Model file of the sensor");
+  command.add_option(
+      "--noise", options->noise,
+      "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say");
+  command.add_option("--config", options->config,
+                     "Take all settings from the daemon's configuration; of a flight recording else those it "
+                     "was recorded with");
+  command.add_option("--sensor", options->sensor, "Which sensor of the configuration");
   command
       .add_option("--rate", options->nominal_rate_hz,
                   "Nominal sample rate, Hz; else the driver's or the capture's")
@@ -364,10 +360,8 @@ void add_denoise(const Command& program) {
       .type_name("S");
   options->part.add_to(command, "Write nothing before this time, s; filter from the beginning",
                        "Write nothing from this time on, s");
-  command.add_option("--json", options->json, "Summary as JSON").type_name("FILE");
-  command.add_option("--plot", options->picture, "Picture, .svg or .png")
-      .check(report::wrong_picture_name)
-      .type_name("FILE");
+  command.add_option("--json", options->json, "Summary as JSON");
+  command.add_option("--plot", options->picture, "Picture, .svg or .png").check(report::wrong_picture_name);
   command.callback([options] { run_denoise(*options); });
 }
 

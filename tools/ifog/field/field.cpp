@@ -25,9 +25,8 @@
 namespace ifog::tools {
 
 void FieldOptions::add_to(const Command& command) {
-  command
-      .add_option("--config", config, std::string("the daemon's configuration; default: ") + kServiceConfig)
-      .type_name("FILE");
+  command.add_option("--config", config,
+                     std::string("the daemon's configuration; default: ") + kServiceConfig);
   command
       .add_option(
           "--state", state,

@@ -347,7 +347,7 @@ void add_night(const Command& program) {
   const Command command = program.add_subcommand(
       "night", "Diagnose what was recorded since the last time, and propose a model where that pays");
   arguments->field.add_to(command);
-  command.add_option("--sensor", arguments->sensors, "only these sensors").type_name("NAME");
+  command.add_option("--sensor", arguments->sensors, "only these sensors");
   command.add_option("--least-rest", arguments->least_rest_s, "with less time at rest wait for more, s")
       .within(60.0, 1e7)
       .shows_default()

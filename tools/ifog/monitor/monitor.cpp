@@ -184,14 +184,13 @@ bool Monitor::run() {
 void add_monitor(const Command& program) {
   const Command command = program.add_subcommand("monitor", "Show live what the daemon publishes");
   auto options = std::make_shared<MonitorOptions>();
-  command.add_option("--sensor", options->sensor, "Only this sensor").type_name("NAME");
+  command.add_option("--sensor", options->sensor, "Only this sensor");
   command.add_option("--seconds", options->seconds, "Stop after this long").positive();
   command.add_flag("--once", options->once, "Stop after one second of data of every sensor");
   command.add_flag("--plain", options->plain, "Lines instead of a screen with keys, at a terminal, too");
-  command
-      .add_option("--json", options->json,
-                  "Instead of the figures every message as a line of JSON to this file; - is standard output")
-      .type_name("FILE");
+  command.add_option(
+      "--json", options->json,
+      "Instead of the figures every message as a line of JSON to this file; - is standard output");
   command
       .add_option("--web", options->web,
                   "Instead of the figures a page for a browser, at this port of 127.0.0.1 or of another "
