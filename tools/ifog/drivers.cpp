@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog drivers: the protocol plugins with folder and options, and the rejected ones with the reason.
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <stdexcept>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog picture: raw and denoised rate of a log as one picture: over time, and as Allan curves.
-#include <cstdio>
 #include <memory>
 #include <span>
 #include <stdexcept>

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog allan: overlapping Allan deviation and noise coefficients of captures.
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>

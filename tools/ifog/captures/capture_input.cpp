@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/capture_input.h"
 
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
 

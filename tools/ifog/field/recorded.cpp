@@ -9,7 +9,6 @@
 #include <deque>
 #include <filesystem>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <string_view>
 

@@ -2,7 +2,6 @@
 #include "tools/ifog/monitor/message_json.h"
 
 #include <array>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <utility>
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include "daemon/sensor/flight_header.h"
