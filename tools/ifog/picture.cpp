@@ -10,7 +10,6 @@
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
-#include "tools/ifog/allan/allan_picture.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
 #include "tools/ifog/captures/table/long_table.h"

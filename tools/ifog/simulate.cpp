@@ -14,7 +14,7 @@
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/simulate/simulator.h"

@@ -5,7 +5,6 @@
 #include <utility>
 #include <vector>
 
-#include "tools/ifog/allan/allan_picture.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"

@@ -8,7 +8,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 
 namespace ifog::tools {
 namespace {

@@ -15,12 +15,11 @@
 #include "daemon/config/version_text.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
-#include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/options/describe.h"
 #include "tools/ifog/console/options/help_text.h"
 #include "tools/ifog/console/options/usage_error.h"
-#include "tools/ifog/console/options/wrong_usage.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
 
 namespace ifog::tools {

@@ -18,8 +18,7 @@
 #include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/diagnose/diagnosis_json.h"
-#include "tools/ifog/diagnose/diagnosis_text.h"
+#include "tools/ifog/diagnose/axis_diagnosis.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/tune/noise_left.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/diagnose/diagnosis_text.h"
+#include "tools/ifog/diagnose/axis_diagnosis.h"
 
 #include <fmt/core.h>
 

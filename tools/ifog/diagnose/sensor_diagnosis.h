@@ -10,7 +10,7 @@
 #include "filters/diagnosis/diagnose.h"
 #include "filters/model_file/model.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/diagnose/diagnosis_json.h"
+#include "tools/ifog/diagnose/axis_diagnosis.h"
 
 namespace ifog::tools {
 

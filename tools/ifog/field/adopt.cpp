@@ -17,10 +17,11 @@
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/field/axis_health.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/history.h"
+#include "tools/ifog/field/status_text.h"
 #include "tools/ifog/field/watch.h"
 
 namespace ifog::tools {

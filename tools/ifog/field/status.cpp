@@ -20,11 +20,10 @@
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/hertz.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/field/axis_health.h"
-#include "tools/ifog/field/books.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/field/history.h"
 #include "tools/ifog/field/live_status.h"
+#include "tools/ifog/field/status_text.h"
 
 namespace ifog::tools {
 namespace {

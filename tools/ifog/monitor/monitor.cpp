@@ -21,7 +21,7 @@
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/monitor/message_json.h"
 

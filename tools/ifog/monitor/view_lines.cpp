@@ -12,7 +12,7 @@
 #include "msgs/axis_name.h"
 #include "msgs/state_name.h"
 #include "tools/ifog/console/options/hertz.h"
-#include "tools/ifog/field/books.h"
+#include "tools/ifog/field/status_text.h"
 #include "tools/ifog/monitor/spark_line.h"
 #include "tools/report/text.h"
 

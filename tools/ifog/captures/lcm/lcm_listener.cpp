@@ -8,7 +8,7 @@
 
 #include "daemon/config/lcm_url.h"
 #include "drivers/ifog/quoted.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 
 namespace ifog::tools {
 
