@@ -2,7 +2,6 @@
 // ifog picture: raw and denoised rate of a log as one picture: over time, and as Allan curves.
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/report/picture.h"
 #include "tools/report/text.h"
@@ -35,7 +35,7 @@ void run_picture(const PictureArguments& a) {
   will_write("--output", a.picture);
   InputFile log(a.log);
   if (const FileKind kind = file_kind(log); kind != FileKind::lcm_log && kind != FileKind::flight)
-    throw std::runtime_error(a.log + ": is no log of lcm-logger");
+    throw refusal("{}: is no log of lcm-logger", a.log);
   LongTable table;
   LongTableSink sink(table);
   read_published(log, a.channel, sink);
@@ -58,8 +58,8 @@ void run_picture(const PictureArguments& a) {
                       time(shown(table.time_s, 1.0)), shown(column.values, 1.0 / kDegreePerHour));
   }
   if (curves != 2)
-    throw std::runtime_error(a.log + ": --axis " + in_quotes(a.axis) + ": expected " +
-                             (axes == 1 ? "none, the sensor has one axis" : "x, y or z"));
+    throw refusal("{}: --axis {}: expected {}", a.log, in_quotes(a.axis),
+                  axes == 1 ? "none, the sensor has one axis" : "x, y or z");
   AllanOptions options;
   options.axis = a.axis;
   options.part = a.part;

@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -99,7 +99,7 @@ void record(const RecordOptions& options) {
     throw Failed("nothing heard");
   }
   if (messages.archive().error() != 0)
-    throw std::runtime_error(options.folder + ": " + messages.archive().complaint());
+    throw refusal("{}: {}", options.folder, messages.archive().complaint());
 }
 
 }  // namespace

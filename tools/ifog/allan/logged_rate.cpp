@@ -17,6 +17,7 @@
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -36,10 +37,9 @@ std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOpt
     const double exact = tau / period;
     const std::size_t most = longest_average(options.kind, samples);
     if (!(exact >= 0.5 && std::round(exact) <= static_cast<double>(most)))
-      throw std::runtime_error(name + ": --tau " + six_digits(tau) + " s is outside what " +
-                               words_for(options.kind) + " can tell of the longest stretch, expected " +
-                               six_digits(period) + " to " + six_digits(static_cast<double>(most) * period) +
-                               " s");
+      throw refusal("{}: --tau {} s is outside what {} can tell of the longest stretch, expected {} to {} s",
+                    name, six_digits(tau), words_for(options.kind), six_digits(period),
+                    six_digits(static_cast<double>(most) * period));
     m.push_back(static_cast<std::size_t>(std::max(1.0, std::round(exact))));
   }
   return m;
@@ -59,7 +59,7 @@ double trusted_tau(const AngleSum& sum, const TermVariances& noise, Deviation ki
 void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
   const SampleClock& clock = logged.of.clock;
   const auto note = [&](std::size_t row, const std::string& what) {
-    if (refuse) throw std::runtime_error(logged.of.place(row) + ": " + what + ", expected none");
+    if (refuse) throw refusal("{}: {}, expected none", logged.of.place(row), what);
     record.notes.push_back(logged.of.place(row) + ": " + what);
   };
   std::size_t nans = 0, first_nan = 0;
@@ -141,7 +141,7 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
 
   const std::vector<Stretch> parts =
       common(stretches(logged.of.time_s, logged.rate, logged.of.clock), rest.at_rest);
-  if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
+  if (parts.empty()) throw refusal("{}: {} has no values", name, column);
   const auto shown_time_s = [&](std::size_t row) { return logged.of.shown_time_s(row); };
   // A filter's gain makes jumps of its own; faults of the logger are visible in the raw rate.
   record.findings.assign(logged.repeats.begin(), logged.repeats.end());
@@ -157,8 +157,7 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   record.longest = sum.longest();
   record.mean_radps = sum.mean_radps();
   if (record.longest < 2)
-    throw std::runtime_error(name + ": " + column +
-                             " has no two samples in a row, expected a record without so many gaps");
+    throw refusal("{}: {} has no two samples in a row, expected a record without so many gaps", name, column);
   if (sum.filled() > 0)
     record.notes.push_back(name + ": " + column + ": averages reach across " + std::to_string(sum.filled()) +
                            (sum.filled() == 1 ? " missing sample" : " missing samples") +

@@ -21,6 +21,7 @@
 #include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -163,8 +164,8 @@ RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& i
   if (counts.samples != 0) return counts;
   std::string why;
   for (const std::string& loss : losses(counts)) why += (why.empty() ? "" : "; ") + loss;
-  throw std::runtime_error(file.path() + ": driver " + driver_name() + " finds no sample in it" +
-                           (why.empty() ? "" : " (" + why + ")"));
+  throw refusal("{}: driver {} finds no sample in it{}", file.path(), driver_name(),
+                why.empty() ? "" : " (" + why + ")");
 }
 
 void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder) const {
@@ -179,17 +180,15 @@ void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuild
 FileKind CaptureInput::readable(const InputFile& file) const {
   std::string other = foreign_can_log(file.head());
   if (other.empty() && !has_driver()) other = foreign_container(file.head());
-  if (!other.empty()) throw std::runtime_error(file.path() + ": " + other);
+  if (!other.empty()) throw refusal("{}: {}", file.path(), other);
   if (has_ending(file.path(), ".toml"))
-    throw std::runtime_error(file.path() +
-                             ": is a TOML file, expected a capture; a model is given by --model FILE");
+    throw refusal("{}: is a TOML file, expected a capture; a model is given by --model FILE", file.path());
   const FileKind found = kind(file);
   if (found == FileKind::capture && has_driver())
-    throw std::runtime_error(file.path() +
-                             ": is a capture in columns, expected none of --driver and --dbc with it");
+    throw refusal("{}: is a capture in columns, expected none of --driver and --dbc with it", file.path());
   if ((found == FileKind::bytes || found == FileKind::candump || found == FileKind::unknown) && !has_driver())
-    throw std::runtime_error(
-        file.path() + ": is no capture in columns, expected --driver NAME (or --dbc FILE) to decode it with");
+    throw refusal("{}: is no capture in columns, expected --driver NAME (or --dbc FILE) to decode it with",
+                  file.path());
   return found;
 }
 

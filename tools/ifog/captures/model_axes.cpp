@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
@@ -11,6 +10,7 @@
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -70,8 +70,8 @@ std::vector<Samples> compensated_rates(const CaptureView& capture, const Model& 
     for (const CaptureView::Channel& channel : capture.channels)
       if (channel.name == name) found = &channel;
     if (!found)
-      throw std::runtime_error("the model wants channel " + in_quotes(name) + place_of(model, name) +
-                               ", which the capture does not have");
+      throw refusal("the model wants channel {}{}, which the capture does not have", in_quotes(name),
+                    place_of(model, name));
     series.channels.emplace_back(found->values);
   }
   std::vector<Samples> out(capture.axes.size(), Samples(capture.size()));

@@ -3,12 +3,12 @@
 
 #include <optional>
 #include <span>
-#include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -55,9 +55,9 @@ TimePart::Rows TimePart::rows(std::span<const double> time_s, const TimeOrigin& 
 }
 
 void TimePart::refuse_empty(double first_s, double last_s, const std::string& name) const {
-  throw std::runtime_error(name + ": nothing between --from" + (from.text.empty() ? "" : " " + from.text) +
-                           " and --to" + (to.text.empty() ? "" : " " + to.text) + ", expected times within " +
-                           told_time(first_s) + " … " + told_time(last_s) + " s");
+  throw refusal("{}: nothing between --from{} and --to{}, expected times within {} … {} s", name,
+                from.text.empty() ? "" : " " + from.text, to.text.empty() ? "" : " " + to.text,
+                told_time(first_s), told_time(last_s));
 }
 
 }  // namespace ifog::tools

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <stdexcept>
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/units/told_time.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -93,8 +93,7 @@ std::string expected_axes(const std::vector<std::string>& axes) {
 }
 
 void refuse_without_rates(const std::string& name, std::size_t rows) {
-  throw std::runtime_error(name + ": no axis has a value in any of " + std::to_string(rows) +
-                           " rows, expected rates");
+  throw refusal("{}: no axis has a value in any of {} rows, expected rates", name, rows);
 }
 
 std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
@@ -106,8 +105,7 @@ std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
   for (std::size_t c = 0; c < captures.size(); ++c) {
     CaptureView left = captures[c];
     leave_out(all, left);
-    if (left.axes.empty())
-      throw std::runtime_error(names[c] + ": no axis is left that can be used in every capture");
+    if (left.axes.empty()) throw refusal("{}: no axis is left that can be used in every capture", names[c]);
   }
   return all;
 }

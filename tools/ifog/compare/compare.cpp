@@ -35,6 +35,7 @@
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/filter_options.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/tune/rest_columns.h"
 #include "tools/report/picture.h"
@@ -245,8 +246,7 @@ void run_compare(const CompareArguments& options) {
   ComparisonInput in;
   in.time_s = capture.time_s;
   if (capture.size() < 16)
-    throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
-                             " rows, expected at least 16");
+    throw refusal("{}: {} rows, expected at least 16", options.capture, capture.size());
   in.period_s = sample_clock(capture.time_s).period_s;
   const Motion motion = motion_of(capture, in.period_s);
   if (motion.left_out) in.at_rest = motion.rest.at_rest;

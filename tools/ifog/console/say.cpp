@@ -11,7 +11,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -19,6 +18,7 @@
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -83,7 +83,7 @@ void finish_saying() {
   if (std::fflush(stdout) != 0 && failure == 0) failure = errno;
   if (failure == EPIPE) throw ReaderGone();
   if (std::ferror(stdout) != 0 || failure != 0)
-    throw std::runtime_error("standard output: cannot write: " + std::generic_category().message(failure));
+    throw refusal("standard output: cannot write: {}", std::generic_category().message(failure));
 }
 
 void prepare_standard_streams() {

@@ -38,6 +38,7 @@
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/options/filter_options.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/denoise_picture.h"
 #include "tools/ifog/denoise/denoise_settings.h"
@@ -294,10 +295,10 @@ void run_denoise(DenoiseOptions options) {
              (kind == FileKind::lcm_log && options.input.has_driver())) {
     if (!options.input.has_driver()) {
       const std::string foreign = foreign_container(capture.head());
-      throw std::runtime_error(
-          options.capture + ": " +
-          (foreign.empty() ? "is no capture in columns, expected --driver NAME, --dbc FILE or --config F"
-                           : foreign));
+      throw refusal("{}: {}", options.capture,
+                    foreign.empty()
+                        ? "is no capture in columns, expected --driver NAME, --dbc FILE or --config F"
+                        : foreign);
     }
     DriverInstance driver = options.input.make_driver(folders);
     result = denoise_recording(options.input, capture, driver, settings(), sink);

@@ -29,6 +29,7 @@
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/report/pages/diagnosis_page.h"
 
 namespace ifog::tools {
@@ -112,8 +113,8 @@ void require_each_once(const std::vector<CaptureView>& captures, const std::vect
       if (!whole && common.rows <= kByChance) continue;
       const std::string where =
           whole ? "" : " from " + told_time(common.from_s) + " to " + told_time(common.to_s) + " s";
-      throw std::runtime_error(names[later] + ": holds the same samples as " + names[c] + where +
-                               ", expected each record once");
+      throw refusal("{}: holds the same samples as {}{}, expected each record once", names[later], names[c],
+                    where);
     }
 }
 
@@ -173,7 +174,7 @@ std::vector<Record> records_of(const std::vector<CaptureView>& captures,
   std::vector<Record> records;
   for (std::size_t c = 0; c < captures.size(); ++c) {
     if (captures[c].axes != captures.front().axes)
-      throw std::runtime_error(names[c] + ": has other axes than " + names[0]);
+      throw refusal("{}: has other axes than {}", names[c], names[0]);
     records.push_back(record_of(captures[c], names[c], axis));
   }
   return records;
@@ -246,8 +247,7 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
   const std::vector<std::string>& axes = captures.front().axes;
   for (const std::string& axis : wanted.axes)
     if (std::find(axes.begin(), axes.end(), axis) == axes.end())
-      throw std::runtime_error(names[0] + ": --axis is " + in_quotes(axis) + ", expected " +
-                               expected_axes(axes));
+      throw refusal("{}: --axis is {}, expected {}", names[0], in_quotes(axis), expected_axes(axes));
   require_each_once(captures, names);
   std::vector<std::size_t> chosen;
   for (std::size_t axis = 0; axis < axes.size(); ++axis)

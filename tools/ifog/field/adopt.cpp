@@ -5,7 +5,6 @@
 #include <exception>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/history.h"
@@ -37,12 +37,13 @@ const char* or_none(const std::string& identity) { return identity.empty() ? "no
 
 Proposal waiting(const std::string& state, const std::string& sensor, const ModelName& in_use) {
   std::optional<Proposal> found = read_proposal(state, sensor);
-  if (!found) throw std::runtime_error("no proposal waits for sensor " + in_quotes(sensor) + " in " + state);
+  if (!found) throw refusal("no proposal waits for sensor {} in {}", in_quotes(sensor), state);
   if (found->against != in_use)
-    throw std::runtime_error("the proposal of " + printable(found->made) + " for sensor " +
-                             in_quotes(sensor) + " was made against model " +
-                             or_none(found->against.identity) + ", in use is " + or_none(in_use.identity) +
-                             ": expected a new one, which the next night brings");
+    throw refusal(
+        "the proposal of {} for sensor {} was made against model {}, in use is {}: expected a new one, which "
+        "the next night brings",
+        printable(found->made), in_quotes(sensor), or_none(found->against.identity),
+        or_none(in_use.identity));
   return std::move(*found);
 }
 
@@ -182,13 +183,11 @@ void revert(const AdoptArguments& arguments) {
   history.drop_incomplete_change(now.name);
   const ModelChange* const in_force = history.in_force();
   if (in_force == nullptr)
-    throw std::runtime_error("nothing was adopted for sensor " + in_quotes(sensor.name) +
-                             " that could be reverted");
+    throw refusal("nothing was adopted for sensor {} that could be reverted", in_quotes(sensor.name));
   if (now.name != in_force->model)
-    throw std::runtime_error("sensor " + in_quotes(sensor.name) + " uses model " +
-                             or_none(now.name.identity) + ", last adopted was " +
-                             printable(in_force->model.identity) +
-                             ": expected that one, it was changed by other means");
+    throw refusal(
+        "sensor {} uses model {}, last adopted was {}: expected that one, it was changed by other means",
+        in_quotes(sensor.name), or_none(now.name.identity), printable(in_force->model.identity));
   const std::optional<Model> back = history.kept(in_force->replaced);
   if (back) require_that_it_fits(field, sensor, *back);
   ModelExchange place(field, sensor, now.name);

@@ -11,7 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -27,6 +26,7 @@
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/field/bookmark.h"
@@ -319,7 +319,7 @@ void run_nights(const NightArguments& arguments) {
   const Field field(arguments.field);
   for (const std::string& name : arguments.sensors) (void)field.sensor(name);
   if (std::error_code none; !std::filesystem::is_directory(field.state(), none))
-    throw std::runtime_error(field.state() + ": is no folder, expected the daemon's state folder (--state)");
+    throw refusal("{}: is no folder, expected the daemon's state folder (--state)", field.state());
   bool failed = false;
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const SensorConfig& sensor : field.required_config().sensors) {

@@ -11,6 +11,7 @@
 #include "daemon/state/state_folder.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
@@ -43,7 +44,7 @@ void remove_others(const std::string& state, const std::string& sensor, const st
 // Files named in the index must be in the same folder.
 void require_plain_name(const std::string& name, const std::string& path) {
   if (name.empty() || name != fs::path(name).filename().string())
-    throw std::runtime_error(path + ": names a file outside of its folder");
+    throw refusal("{}: names a file outside of its folder", path);
 }
 
 }  // namespace
@@ -126,7 +127,7 @@ std::optional<Proposal> read_proposal(const std::string& state, const std::strin
   if (!index) return std::nullopt;
   return with_keys(path, [&]() -> std::optional<Proposal> {
     auto out = from_json<Proposal>(*index);
-    if (out.sensor != sensor) throw std::runtime_error(path + ": belongs to another sensor");
+    if (out.sensor != sensor) throw refusal("{}: belongs to another sensor", path);
     require_plain_name(out.model_file, path);
     require_plain_name(out.report_file, path);
     return out;
@@ -137,8 +138,8 @@ Model proposed_model(const std::string& state, const Proposal& proposal) {
   const std::string path = inside(state, proposal.model_file);
   Model model = parsed_state_file(path, parse_model);
   if (name_of(model).sha256 != proposal.model.sha256)
-    throw std::runtime_error(path + ": is another model than that of the proposal, expected " +
-                             proposal.model.identity);
+    throw refusal("{}: is another model than that of the proposal, expected {}", path,
+                  proposal.model.identity);
   return model;
 }
 

@@ -13,6 +13,7 @@
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -83,8 +84,7 @@ void refuse_without_error(AxisMeasured& axis) {
     const ModelParameter& coefficient = each.effect.parameters.front();
     if (!std::isfinite(coefficient.value) || !std::isfinite(coefficient.std_error) ||
         !(coefficient.std_error > 0.0))
-      throw std::runtime_error(each.effect.form + " of " + each.effect.channel +
-                               " has no finite error on these captures");
+      throw refusal("{} of {} has no finite error on these captures", each.effect.form, each.effect.channel);
   }
 }
 

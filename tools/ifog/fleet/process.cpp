@@ -15,11 +15,11 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <system_error>
 #include <thread>
 
 #include "drivers/system/fd.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -27,7 +27,7 @@ namespace {
 constexpr std::chrono::milliseconds kBetweenLooks{5};
 
 [[noreturn]] void refuse(const std::string& what, int error) {
-  throw std::runtime_error(what + ": " + std::generic_category().message(error));
+  throw refusal("{}: {}", what, std::generic_category().message(error));
 }
 
 Fd opened(int fd, const std::string& name) {
@@ -63,7 +63,7 @@ pid_t spawn(const std::vector<std::string>& words, int in, int out) {
                              &tie_to_parent, &parent, &child, in, out, out, &error) != 0)
     return child;
   const std::unique_ptr<GError, decltype(&g_error_free)> owned(error, &g_error_free);
-  throw std::runtime_error(words.front() + ": cannot be started: " + owned->message);
+  throw refusal("{}: cannot be started: {}", words.front(), owned->message);
 }
 
 Fd memory(const char* name) { return opened(memfd_create(name, MFD_CLOEXEC), name); }

@@ -8,13 +8,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <stdexcept>
 #include <system_error>
 
 #include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
@@ -31,8 +31,8 @@ void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error || !fs::is_directory(path))
-    throw std::runtime_error(path.string() + ": cannot make the folder: " +
-                             (error ? error.message() : "something of that name exists"));
+    throw refusal("{}: cannot make the folder: {}", path.string(),
+                  error ? error.message() : "something of that name exists");
 }
 
 // nullopt: missing, truncated, or from another program.
@@ -169,7 +169,7 @@ void Results::write(const FleetGyro& gyro, const GyroMeasured& measured) const {
 void Results::forget(const std::string& file) const {
   std::error_code error;
   fs::remove(path(file), error);
-  if (error) throw std::runtime_error(path(file) + ": cannot be removed: " + error.message());
+  if (error) throw refusal("{}: cannot be removed: {}", path(file), error.message());
 }
 
 void Results::forget(const FleetGyro& gyro, const std::string& file) const {

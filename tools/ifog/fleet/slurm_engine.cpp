@@ -11,6 +11,7 @@
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/fleet/engine.h"
 #include "tools/ifog/fleet/process.h"
@@ -110,7 +111,7 @@ class SlurmEngine : public Engine {
 
   static void submit(const std::string& script) {
     const Ran ran = run_to_end({"sbatch", "--parsable"}, script, kAnswer);
-    if (!ran.ended.empty()) throw std::runtime_error("sbatch: " + how(ran));
+    if (!ran.ended.empty()) throw refusal("sbatch: {}", how(ran));
     say("submitted the array {}\n", first_line(ran.said));
   }
 
@@ -122,7 +123,7 @@ class SlurmEngine : public Engine {
           {"squeue", "--noheader", "--array", "--me", "--name=" + name_, "--format=%i"}, "", kAnswer);
       if (ran.ended.empty()) return jobs_in(ran.said);
       if (Seconds(std::chrono::steady_clock::now() - since).count() >= patience_s)
-        throw std::runtime_error("squeue: " + how(ran));
+        throw refusal("squeue: {}", how(ran));
       pause(kFirstPause_s);
     }
   }

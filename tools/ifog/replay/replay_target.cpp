@@ -13,7 +13,6 @@
 #include <cerrno>
 #include <charconv>
 #include <span>
-#include <stdexcept>
 #include <system_error>
 
 #include "drivers/capture/candump/candump.h"
@@ -23,6 +22,7 @@
 #include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/network/ip_socket.h"
 #include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -32,7 +32,7 @@ constexpr int kLook_ms = 100;                   // between checks for an interru
 constexpr std::size_t kBufferSize = 1U << 16U;  // buffer size in bytes if items have no deadlines
 
 [[noreturn]] void fail(const std::string& name, const std::string& what, int error) {
-  throw std::runtime_error(name + ": " + what + ": " + std::generic_category().message(error));
+  throw refusal("{}: {}: {}", name, what, std::generic_category().message(error));
 }
 
 // Null if interrupted while waiting for the FIFO's reader.
@@ -40,7 +40,7 @@ std::unique_ptr<OutputFile> open_fifo(const std::string& name) {
   struct stat info {};
   const bool there = stat(name.c_str(), &info) == 0;
   if (!there && mkfifo(name.c_str(), 0644) != 0) fail(name, "cannot make a FIFO", errno);
-  if (there && !S_ISFIFO(info.st_mode)) throw std::runtime_error(name + ": is no FIFO, expected one");
+  if (there && !S_ISFIFO(info.st_mode)) throw refusal("{}: is no FIFO, expected one", name);
   warn("{}: waiting for a reader\n", name);
   for (;;) {
     const int fd = open(name.c_str(), O_WRONLY | O_CLOEXEC);
@@ -68,8 +68,8 @@ HostAndPort read_host_and_port(const std::string& text) {
                      std::from_chars(text.data() + colon + 1, end, port).ptr == end && port >= 1 &&
                      port <= 65535;
   if (!whole || !address || address->is_v6() != bracketed)
-    throw std::runtime_error("--to is " + in_quotes(text) +
-                             ", expected a numeric address and a port, 127.0.0.1:4001 or [::1]:4001");
+    throw refusal("--to is {}, expected a numeric address and a port, 127.0.0.1:4001 or [::1]:4001",
+                  in_quotes(text));
   return {*address, static_cast<std::uint16_t>(port)};
 }
 
@@ -129,14 +129,13 @@ ReplayDestination ReplayDestination::parse(const std::string& text) {
       ReplayDestination out{kind, text.substr(std::string(prefix).size())};
       if (kind == Kind::udp || kind == Kind::tcp) read_host_and_port(out.name);
       if (kind == Kind::file && is_packed_name(out.name))
-        throw std::runtime_error("--to is " + in_quotes(text) +
-                                 ", expected a name without .gz: nothing is packed");
+        throw refusal("--to is {}, expected a name without .gz: nothing is packed", in_quotes(text));
       return out;
     }
-  throw std::runtime_error(
-      "--to is " + in_quotes(text) +
-      ", expected can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT, file:PATH, "
-      "fifo:PATH or -");
+  throw refusal(
+      "--to is {}, expected can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT, file:PATH, fifo:PATH "
+      "or -",
+      in_quotes(text));
 }
 
 bool ReplayTarget::send(std::size_t i) {
@@ -182,14 +181,13 @@ std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const Rep
     return std::make_unique<ReplayTarget>(to.name, fd, form, timeline, buffering, std::move(finish));
   };
   const auto expect_bytes = [&](const char* where) {
-    if (timeline.is_can())
-      throw std::runtime_error(to.name + ": CAN frames cannot go " + where + ", expected bytes");
+    if (timeline.is_can()) throw refusal("{}: CAN frames cannot go {}, expected bytes", to.name, where);
   };
   switch (to.kind) {
     case Kind::can: {
       if (!timeline.is_can())
-        throw std::runtime_error(
-            to.name + ": raw bytes cannot go onto a CAN bus, expected a candump log or a CSV capture");
+        throw refusal("{}: raw bytes cannot go onto a CAN bus, expected a candump log or a CSV capture",
+                      to.name);
       const auto socket = std::make_shared<CanSocket>(to.name);
       socket->receive_nothing();
       return target(socket->fd(), Form::can_frames, [socket] {});
@@ -198,7 +196,7 @@ std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const Rep
       expect_bytes("onto a serial line");
       line.device = to.name;
       if (line.baud == 0) line.baud = timeline.baud;
-      if (line.baud == 0) throw std::runtime_error(to.name + ": no speed known, expected --baud");
+      if (line.baud == 0) throw refusal("{}: no speed known, expected --baud", to.name);
       std::string warning;
       const std::shared_ptr<SerialPort> port = open_serial_port(line, warning);
       return target(port->fd(), Form::stream, [port] { tcdrain(port->fd()); });

@@ -36,6 +36,7 @@
 #include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/tune/rest_columns.h"
 #include "tools/report/coefficients.h"
@@ -277,8 +278,7 @@ void run_tune(const TuneArguments& options) {
   CaptureView capture = read.view();
   leave_out(unusable_axes({capture}, {options.capture}), capture);
   if (capture.size() < 3)
-    throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
-                             " rows, expected at least 200");
+    throw refusal("{}: {} rows, expected at least 200", options.capture, capture.size());
   const SampleClock clock = sample_clock(capture.time_s);
   const double period = clock.period_s;
   Progress progress("fitting state models",

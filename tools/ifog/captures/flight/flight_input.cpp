@@ -15,6 +15,7 @@
 #include "filters/model_file/kept_noise.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -90,8 +91,8 @@ DriverInstance FlightInput::made() const {
       const auto found = header().files.find(value);
       if (settings.contains(key)) continue;
       if (names_file && found == header().files.end() && !own.contains(key))
-        throw std::runtime_error("does not carry the file of its driver's option " + key + ", expected " +
-                                 (key == "dbc" ? "--dbc FILE" : "--option " + key + "=FILE"));
+        throw refusal("does not carry the file of its driver's option {}, expected {}", key,
+                      key == "dbc" ? "--dbc FILE" : "--option " + key + "=FILE");
       settings[key] = !names_file || found != header().files.end() ? value : own.at(key);
       if (!names_file || found == header().files.end()) continue;
       UnnamedFile& text = carried.emplace_back();
@@ -110,9 +111,9 @@ std::shared_ptr<const Model> FlightInput::model(const SensorConfig& sensor) cons
   const auto found = header().files.find(sensor.model);
   if (sensor.model.empty()) return nullptr;
   if (found == header().files.end())
-    throw std::runtime_error(file_.path() +
-                             ": does not carry the model that it was recorded with, expected --model FILE or "
-                             "--config FILE");
+    throw refusal(
+        "{}: does not carry the model that it was recorded with, expected --model FILE or --config FILE",
+        file_.path());
   return std::make_shared<const Model>(parse_model(found->second, sensor.model));
 }
 
@@ -150,8 +151,7 @@ RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const Recor
     counts.bytes_at_end = driver.counters().bytes_skipped - before;
     add(driver.counters(), counts.driver);
     tell_losses();
-    if (counts.samples == 0)
-      throw std::runtime_error("driver " + std::string(driver.table().name) + " finds no sample in it");
+    if (counts.samples == 0) throw refusal("driver {} finds no sample in it", driver.table().name);
     return counts;
   });
 }

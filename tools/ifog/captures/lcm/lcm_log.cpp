@@ -11,7 +11,6 @@
 #include <optional>
 #include <set>
 #include <span>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -25,6 +24,7 @@
 #include "tools/ifog/captures/lcm/lcm_loss.h"
 #include "tools/ifog/captures/lcm/peer_reader.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -52,10 +52,10 @@ struct ChosenLog {
       if (bytes.empty() && carries_bytes(event->data)) bytes = event->channel;
     }
     if (!rates.empty()) return;
-    throw std::runtime_error(
-        path + (bytes.empty() ? ": has no channel IFOG_<NAME>, and none with rates of another program's type"
-                              : ": has bytes of a device on " + printable(bytes) +
-                                    ", expected --driver NAME to decode them with"));
+    if (bytes.empty())
+      throw refusal("{}: has no channel IFOG_<NAME>, and none with rates of another program's type", path);
+    throw refusal("{}: has bytes of a device on {}, expected --driver NAME to decode them with", path,
+                  printable(bytes));
   }
   std::string path;
   NamedLog source;
@@ -144,7 +144,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
       continue;
     }
     const auto refuse = [&](const std::string& why) {
-      throw std::runtime_error(path + ": message " + std::to_string(number) + " on " + wanted + " " + why);
+      throw refusal("{}: message {} on {} {}", path, number, wanted, why);
     };
     const auto take = [&](MeasuredRate&& message) {
       if (axes == 0) axes = message.raw.size();
@@ -169,7 +169,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
         "{}: two publishers sent on {} (two daemons, or a log played at the same time): their messages are "
         "mixed\n",
         path, printable(wanted));
-  if (axes == 0) throw std::runtime_error(path + ": has no message on channel " + wanted);
+  if (axes == 0) throw refusal("{}: has no message on channel {}", path, wanted);
   if (way.lost() > 0)
     warn("{}: {} samples on {} are missing by their counts ({} lost them)\n", path, way.lost(),
          printable(wanted), chosen.peer ? "the sensor, its driver or LCM" : "LCM or the recorder");
@@ -202,7 +202,7 @@ void look_through(ChosenLog& chosen, LcmChannels& channels) {
   with_rates.insert(chosen.rates);
   std::string list;
   for (const std::string& each : with_rates) list += (list.empty() ? "" : ", ") + printable(each);
-  throw std::runtime_error(chosen.path + ": has several channels, expected --channel with one of " + list);
+  throw refusal("{}: has several channels, expected --channel with one of {}", chosen.path, list);
 }
 
 // Prints the date of t = 0, which the times do not contain.
@@ -246,9 +246,8 @@ void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
 void read_published(InputFile& file, const std::string& channel, RowSink& sink) {
   ChosenLog chosen(file, channel);
   if (chosen.peer)
-    throw std::runtime_error(chosen.path + ": " + printable(chosen.rates) + " carries " +
-                             std::string(chosen.peer->type().name) +
-                             ", expected --channel with one that carries ifog.rate_t");
+    throw refusal("{}: {} carries {}, expected --channel with one that carries ifog.rate_t", chosen.path,
+                  printable(chosen.rates), chosen.peer->type().name);
   LcmChannels unused(chosen.rates);
   if (!chosen.asked_for) look_through(chosen, unused);
   RowBatch rows(sink);

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "filters/threads/share_out.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -23,7 +23,7 @@ void LongTable::drop_unknown(const std::string& path) {
   const bool any = std::any_of(columns.begin(), columns.end(), [](const LongColumn& column) {
     return column.known && column.name.starts_with("rate");
   });
-  if (!any) throw std::runtime_error(path + ": the device marks every value of every axis invalid");
+  if (!any) throw refusal("{}: the device marks every value of every axis invalid", path);
   drop_dead_axes();
   std::erase_if(header, [&](const std::string& name) {
     return std::any_of(columns.begin(), columns.end(),
