@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -75,11 +76,14 @@ void tell_books(const MessageArchive& messages, const std::string& folder) {
 
 void record(const RecordOptions& options) {
   constexpr int kTurn_ms = 50;
-  MessageArchive messages(make_flight_folder(options.folder), limits(options), header(options));
+  std::optional<MessageArchive> archive;
+  // Before the folder is made, because a wrong address is refused here.
   LcmListener listener(options.url, [&](const lcm_recv_buf_t& buffer, const std::string& channel) {
-    messages.take(channel, {static_cast<const std::uint8_t*>(buffer.data), buffer.data_size},
+    archive->take(channel, {static_cast<const std::uint8_t*>(buffer.data), buffer.data_size},
                   buffer.recv_utime, arrival_clock_ns(), realtime_ns());
   });
+  MessageArchive& messages =
+      archive.emplace(make_flight_folder(options.folder), limits(options), header(options));
   // Before listening, because until then another recorder may own the folder.
   messages.open(arrival_clock_ns(), realtime_ns());
   listener.listen_to_sensor(options.sensor);
