@@ -89,11 +89,6 @@ CsvLayout CaptureInput::layout() const {
   return out;
 }
 
-void CaptureInput::tell(const std::vector<std::string>& notices, const std::vector<std::string>& faults) {
-  for (const std::string& notice : notices) warn("{}\n", notice);
-  for (const std::string& fault : faults) warn("{}\n", fault);
-}
-
 void CaptureInput::add_driver_to(const Command& command) {
   command.add_option("--driver", driver, "Driver that understands the recording (see 'ifog drivers')")
       .type_name("NAME");
@@ -168,15 +163,6 @@ RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& i
                 why.empty() ? "" : " (" + why + ")");
 }
 
-void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder) const {
-  const std::string& path = file.path();
-  const RecordingCounts counts = naming(path, [&] {
-    return for_each_sample(file, instance, [&](const ifog_sample& sample) { builder.add(sample); });
-  });
-  for (const auto& lines : {losses(counts), builder.remarks()})
-    for (const std::string& line : lines) warn("{}: {}\n", path, line);
-}
-
 FileKind CaptureInput::readable(const InputFile& file) const {
   std::string other = foreign_can_log(file.head());
   if (other.empty() && !has_driver()) other = foreign_container(file.head());
@@ -200,7 +186,8 @@ RowNotes CaptureInput::column_rows(InputFile& file, RowSink& sink) const {
     throw WrongUsage("--group", "cannot go with " + in_quotes(file.path()) + ", expected an HDF5 file");
   const ReadingProgress progress(file);
   RowNotes notes = hdf5 ? read_hdf5_rows(file, group, layout(), sink) : read_csv_rows(file, layout(), sink);
-  tell(notes.notices, notes.faults);
+  for (const auto& lines : {notes.notices, notes.faults})
+    for (const std::string& line : lines) warn("{}\n", line);
   return notes;
 }
 
@@ -208,14 +195,8 @@ LongTable CaptureInput::read_long_columns(InputFile& file, const LongTableSink::
   LongTable table;
   LongTableSink sink(table, wanted);
   static_cast<RowNotes&>(table) = column_rows(file, sink);
-  keep_rates(table, file.path());
+  table.keep_rate_rows(file.path());
   return table;
-}
-
-void CaptureInput::keep_rates(LongTable& table, const std::string& path) {
-  const std::size_t before = table.notices.size();
-  table.keep_rate_rows(path);
-  tell({table.notices.begin() + static_cast<std::ptrdiff_t>(before), table.notices.end()}, {});
 }
 
 // A log has rates as messages; with a driver it has a device's bytes instead.
@@ -239,7 +220,11 @@ RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
   DriverInstance instance = make_driver();
   CaptureBuilder builder(instance.description(), sink);
   if (instance.takes_can()) builder.keep_stamps(zero_of_stamps(file.head()));
-  build(file, instance, builder);
+  const RecordingCounts counts = naming(file.path(), [&] {
+    return for_each_sample(file, instance, [&](const ifog_sample& sample) { builder.add(sample); });
+  });
+  for (const auto& lines : {losses(counts), builder.remarks()})
+    for (const std::string& line : lines) warn("{}: {}\n", file.path(), line);
   builder.finish();
   return {};
 }
@@ -253,7 +238,7 @@ LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& 
   static_cast<RowNotes&>(table) = read_rows(file, sink);
   // A driver declares what its device can send, so columns without values are dropped.
   if (!whole) table.drop_unknown(file.path());
-  if (found == FileKind::capture) keep_rates(table, file.path());
+  if (found == FileKind::capture) table.keep_rate_rows(file.path());
   return table;
 }
 

@@ -26,47 +26,35 @@
 namespace ifog::tools {
 namespace {
 
-void to_bytes(CaptureEncoder& encoder, std::size_t rows, const std::string& to) {
-  std::vector<std::uint8_t> bytes;
+// Writes the encoder's bytes or frames, a block of them as `text_of` makes it, and returns their number.
+template <typename Part, typename TextOf>
+std::size_t write_encoded(CaptureEncoder& encoder, std::size_t rows, const std::string& to,
+                          const TextOf& text_of) {
+  std::vector<Part> block;
   std::size_t count = 0;
   Progress progress("encoding", rows);
   OutputFile file(to);
   const auto write = [&] {
-    file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    count += bytes.size();
-    bytes.clear();
+    file.write(text_of(block));
+    count += block.size();
+    block.clear();
     progress.at(encoder.rows_done());
   };
-  while (encoder.next(bytes))
+  while (encoder.next(block))
     if (encoder.rows_done() % RowBatch::kRows == 0) write();
   write();
   file.finish();
-  say("{}: {} samples, {} bytes\n", to, rows - encoder.rows_left_out(), count);
+  return count;
 }
 
-void to_candump(CaptureEncoder& encoder, std::size_t rows, const std::string& to, const CaptureInput& input) {
-  const std::string interface = input.channel.empty() ? "vcan0" : input.channel;
+std::string bytes_in(const std::vector<std::uint8_t>& block) { return {block.begin(), block.end()}; }
+
+std::string candump_lines(const std::vector<ifog_can_frame>& block, const std::string& interface) {
   std::string text;
-  std::size_t count = 0;
-  std::vector<ifog_can_frame> frames;
   std::array<char, kCandumpLineMax> line{};
-  Progress progress("encoding", rows);
-  OutputFile file(to);
-  const auto write = [&] {
-    file.write(text);
-    text.clear();
-    progress.at(encoder.rows_done());
-  };
-  while (encoder.next(frames)) {
-    for (const ifog_can_frame& frame : frames)
-      text.append(line.data(), format_candump_line(frame, interface, line.data()));
-    count += frames.size();
-    frames.clear();
-    if (encoder.rows_done() % RowBatch::kRows == 0) write();
-  }
-  write();
-  file.finish();
-  say("{}: {} samples in {} frames on {}\n", to, rows - encoder.rows_left_out(), count, interface);
+  for (const ifog_can_frame& frame : block)
+    text.append(line.data(), format_candump_line(frame, interface, line.data()));
+  return text;
 }
 
 }  // namespace
@@ -115,10 +103,16 @@ void write_recording(const LongTable& table, const std::string& from, const std:
   try {
     CaptureEncoder encoder(capture, driver, rate_hz, axis);
     for (const std::string& notice : encoder.notices()) warn("{}: {}\n", from, notice);
-    if (log)
-      to_candump(encoder, table.size(), to, input);
-    else
-      to_bytes(encoder, table.size(), to);
+    if (log) {
+      const std::string interface = input.channel.empty() ? "vcan0" : input.channel;
+      const std::size_t frames = write_encoded<ifog_can_frame>(
+          encoder, table.size(), to, [&](const auto& block) { return candump_lines(block, interface); });
+      say("{}: {} samples in {} frames on {}\n", to, table.size() - encoder.rows_left_out(), frames,
+          interface);
+    } else {
+      const std::size_t bytes = write_encoded<std::uint8_t>(encoder, table.size(), to, bytes_in);
+      say("{}: {} samples, {} bytes\n", to, table.size() - encoder.rows_left_out(), bytes);
+    }
     if (encoder.rows_left_out() != 0)
       warn("{}: {} rows without a rate are dropped: the format cannot say so\n", from,
            encoder.rows_left_out());
@@ -126,8 +120,7 @@ void write_recording(const LongTable& table, const std::string& from, const std:
         std::abs(lost_s) > std::max(1.5 / encoder.rate_hz(), 1e-3 * encoder.elapsed_s()))
       warn(
           "{}: its {:.6g} s become {:.6g} s: the format has no clock, and whoever reads it counts {:g} "
-          "samples a "
-          "second\n",
+          "samples a second\n",
           from, encoder.elapsed_s(), encoder.elapsed_s() - lost_s, encoder.rate_hz());
     if (encoder.rows_at_full_scale() != 0)
       warn(

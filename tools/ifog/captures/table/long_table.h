@@ -41,8 +41,8 @@ struct LongTable : RowNotes {
   // The same, and prints them on standard error; path: of the capture.
   void clean_and_tell(Rule rule, const std::string& path);
   // For a table merged from sensors of different rates, e.g. a gyro in every fourth row: keeps only rows with
-  // a rate, with the channels' latest values. Then the clock is that of the rates. Adds a notice. Does
-  // nothing if rates are in adjacent rows. path: of the capture.
+  // a rate, with the channels' latest values. Then the clock is that of the rates. Prints so on
+  // standard error. Does nothing if rates are in adjacent rows. path: of the capture.
   void keep_rate_rows(const std::string& path);
   // Drops the axes that never have a rate, with their references; returns them.
   std::vector<std::string> drop_dead_axes();
