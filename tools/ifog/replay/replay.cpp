@@ -14,7 +14,6 @@
 #include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -37,7 +36,8 @@ namespace {
 
 struct ReplaySettings {
   ReplaySource source;
-  std::string to, json;
+  ReplayDestination to;
+  std::string json;
   SerialSettings line;
   double speed = 1.0;
   std::uint64_t loops = 1;  // 0: unlimited
@@ -158,7 +158,7 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
 }
 
 void run(ReplaySettings settings) {
-  const ReplayDestination to = ReplayDestination::parse(settings.to);
+  const ReplayDestination& to = settings.to;
   settings.source.input.will_read("capture", settings.source.path);
   if (to.kind == ReplayDestination::Kind::standard_output) will_write("--to", "-");
   if (to.kind == ReplayDestination::Kind::file) will_write("--to", to.name);
@@ -194,17 +194,6 @@ void run(ReplaySettings settings) {
   if (!complete(result)) throw Failed("not all was sent");
 }
 
-// "" or the error in the value, for CLI11.
-std::string names_a_target(const std::string& text) {
-  try {
-    ReplayDestination::parse(text);
-    return {};
-  } catch (const std::runtime_error& error) {
-    const std::string said = error.what();
-    return said.starts_with("--to ") ? said.substr(5) : said;
-  }
-}
-
 }  // namespace
 
 void add_replay(const Command& program) {
@@ -217,11 +206,11 @@ void add_replay(const Command& program) {
                   "Flight recording, candump log, raw bytes, or a capture (.csv, .h5)")
       .required();
   command
-      .add_option("--to", settings->to,
-                  "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
-                  "fifo:PATH or - (standard output)")
-      .required()
-      .check(names_a_target);
+      .add_taken<std::string>(
+          "--to", [settings](const std::string& text) { settings->to = ReplayDestination::parse(text); },
+          "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
+          "fifo:PATH or - (standard output)")
+      .required();
   command.add_option("--format", source.format, "of the recording")
       .one_of({"auto", "candump", "bytes", "csv"})
       .shows_default();

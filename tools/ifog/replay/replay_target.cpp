@@ -22,6 +22,7 @@
 #include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/network/ip_socket.h"
 #include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
@@ -50,11 +51,6 @@ std::unique_ptr<OutputFile> open_fifo(const std::string& name) {
   }
 }
 
-struct HostAndPort {
-  IpAddress host;
-  std::uint16_t port = 0;
-};
-
 // "127.0.0.1:4001" or "[::1]:4001".
 HostAndPort read_host_and_port(const std::string& text) {
   const std::size_t colon = text.rfind(':');
@@ -68,8 +64,8 @@ HostAndPort read_host_and_port(const std::string& text) {
                      std::from_chars(text.data() + colon + 1, end, port).ptr == end && port >= 1 &&
                      port <= 65535;
   if (!whole || !address || address->is_v6() != bracketed)
-    throw refusal("--to is {}, expected a numeric address and a port, 127.0.0.1:4001 or [::1]:4001",
-                  in_quotes(text));
+    throw WrongUsage("--to", "is " + in_quotes(text) +
+                                 ", expected a numeric address and a port, 127.0.0.1:4001 or [::1]:4001");
   return {*address, static_cast<std::uint16_t>(port)};
 }
 
@@ -79,8 +75,7 @@ sockaddr_storage socket_address(const HostAndPort& at, const std::string& name, 
   return *address;
 }
 
-IpSocket connected_udp(const std::string& name) {
-  const HostAndPort to = read_host_and_port(name);
+IpSocket connected_udp(const HostAndPort& to, const std::string& name) {
   socklen_t size = 0;
   const sockaddr_storage address = socket_address(to, name, size);
   IpSocket socket(to.host.family(), SOCK_DGRAM, name);
@@ -89,8 +84,7 @@ IpSocket connected_udp(const std::string& name) {
 }
 
 // Listens like a sensor or serial server and accepts the first client. Not open if interrupted.
-IpSocket served_tcp(const std::string& name) {
-  const HostAndPort at = read_host_and_port(name);
+IpSocket served_tcp(const HostAndPort& at, const std::string& name) {
   socklen_t size = 0;
   const sockaddr_storage address = socket_address(at, name, size);
   IpSocket listener(at.host.family(), SOCK_STREAM, name);
@@ -118,24 +112,24 @@ IpSocket served_tcp(const std::string& name) {
 }  // namespace
 
 ReplayDestination ReplayDestination::parse(const std::string& text) {
-  if (text == "-") return {Kind::standard_output, "standard output"};
-  for (const auto& [prefix, kind] : {std::pair{"can:", Kind::can},
+  if (text == "-") return {Kind::standard_output, "standard output", {}};
+  for (const auto& [prefix, kind] : {std::pair<std::string, Kind>{"can:", Kind::can},
                                      {"serial:", Kind::serial},
                                      {"udp:", Kind::udp},
                                      {"tcp:", Kind::tcp},
                                      {"file:", Kind::file},
                                      {"fifo:", Kind::fifo}})
-    if (text.starts_with(prefix) && text.size() > std::string(prefix).size()) {
-      ReplayDestination out{kind, text.substr(std::string(prefix).size())};
-      if (kind == Kind::udp || kind == Kind::tcp) read_host_and_port(out.name);
+    if (text.starts_with(prefix) && text.size() > prefix.size()) {
+      ReplayDestination out{kind, text.substr(prefix.size()), {}};
+      if (kind == Kind::udp || kind == Kind::tcp) out.at = read_host_and_port(out.name);
       if (kind == Kind::file && is_packed_name(out.name))
-        throw refusal("--to is {}, expected a name without .gz: nothing is packed", in_quotes(text));
+        throw WrongUsage("--to",
+                         "is " + in_quotes(text) + ", expected a name without .gz: nothing is packed");
       return out;
     }
-  throw refusal(
-      "--to is {}, expected can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT, file:PATH, fifo:PATH "
-      "or -",
-      in_quotes(text));
+  throw WrongUsage("--to", "is " + in_quotes(text) +
+                               ", expected can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT, "
+                               "file:PATH, fifo:PATH or -");
 }
 
 bool ReplayTarget::send(std::size_t i) {
@@ -203,12 +197,12 @@ std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const Rep
     }
     case Kind::udp: {
       expect_bytes("over UDP");
-      const auto socket = std::make_shared<IpSocket>(connected_udp(to.name));
+      const auto socket = std::make_shared<IpSocket>(connected_udp(to.at, to.name));
       return target(socket->fd(), Form::datagrams, [socket] {});
     }
     case Kind::tcp: {
       expect_bytes("over TCP");
-      const auto socket = std::make_shared<IpSocket>(served_tcp(to.name));
+      const auto socket = std::make_shared<IpSocket>(served_tcp(to.at, to.name));
       if (!socket->is_open()) return nullptr;
       return target(socket->fd(), Form::stream, [socket] {});
     }
