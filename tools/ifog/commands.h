@@ -2,20 +2,12 @@
 // The commands of `ifog`. Each has its own file and adds itself to the command line.
 #pragma once
 
-#include <stdexcept>
-
 #include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
 
 void add_allan(const Command& program);
 void add_simulate(const Command& program);
-
-// Thrown by a command that has printed its error: exit code 1, no further message.
-struct Failed : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
 void add_compare(const Command& program);
 void add_convert(const Command& program);
 void add_denoise(const Command& program);

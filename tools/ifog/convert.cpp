@@ -11,7 +11,7 @@
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -48,7 +48,7 @@ void Convert::run() const {
   LongTable table = input.read_long(file);
   if (from_columns) table.clean_and_tell(leave_out_placeholders, from);
   write_columns(table, from, to);
-  say("%s: %zu samples\n", to.c_str(), table.size());
+  say("{}: {} samples\n", to, table.size());
 }
 
 }  // namespace
@@ -67,8 +67,7 @@ void add_convert(const Command& program) {
       .add_option("TO", state->to, "What to make of it, by its ending: .csv, .csv.gz, .h5, .bin, .kvh, .log")
       .required();
   state->input.add_to(command);
-  command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
-      .type_name("NAME");
+  command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to");
   command.footer(
       "Examples:\n"
       "  ifog convert gyro.csv gyro.kvh --driver kvh1750 --option format=b\n"

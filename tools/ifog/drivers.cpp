@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog drivers: the protocol plugins with folder and options, and the rejected ones with the reason.
 #include <algorithm>
-#include <cstdio>
 #include <cstring>
 #include <memory>
 #include <stdexcept>
@@ -32,8 +31,8 @@ std::string note_of(const FoundPlugin& found) {
 
 void print_driver(const FoundPlugin& found) {
   const ifog_driver& table = found.plugin->table();
-  say("%s %s: %s\n  takes %s; interface version %u\n  %s%s\n", table.name, table.version, table.summary,
-      transports(table).c_str(), table.abi, found.path.c_str(), note_of(found).c_str());
+  say("{} {}: {}\n  takes {}; interface version {}\n  {}{}\n", table.name, table.version, table.summary,
+      transports(table), table.abi, found.path, note_of(found));
   std::size_t width = 0;
   for (const ifog_option* option = table.options; option->key != nullptr; ++option)
     width = std::max(width, std::strlen(option->key));
@@ -42,8 +41,8 @@ void print_driver(const FoundPlugin& found) {
     if (option->default_value != nullptr)
       standard =
           option->default_value[0] == '\0' ? "default none" : std::string("default ") + option->default_value;
-    say("    %-*s  %s\n    %-*s  %s; %s\n", static_cast<int>(width), option->key, option->help,
-        static_cast<int>(width), "", option->values, standard.c_str());
+    say("    {:<{}}  {}\n    {:<{}}  {}; {}\n", option->key, width, option->help, "", width, option->values,
+        standard);
   }
   say("\n");
 }
@@ -105,9 +104,9 @@ void run_drivers(const std::string& name, const std::string& json) {
     print_driver(found);
   }
   for (const FoundPlugin& found : all)
-    if (!found.plugin) say("refused: %s\n", found.refusal.c_str());
+    if (!found.plugin) say("refused: {}\n", found.refusal);
   say("looked in:\n");
-  for (const std::string& folder : folders) say("  %s\n", folder.c_str());
+  for (const std::string& folder : folders) say("  {}\n", folder);
   if (usable == 0) throw std::runtime_error("no driver found; IFOG_PLUGIN_PATH may name folders to look in");
 }
 
@@ -118,7 +117,7 @@ void add_drivers(const Command& program) {
   const Command command =
       program.add_subcommand("drivers", "List the protocol drivers found, their options, and refused ones");
   command.add_option("NAME", *name, "Only this driver");
-  command.add_option("--json", *json, "Write the list here").type_name("FILE");
+  command.add_option("--json", *json, "Write the list here");
   command.callback([name, json] { run_drivers(*name, *json); });
 }
 

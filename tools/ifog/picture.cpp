@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog picture: raw and denoised rate of a log as one picture: over time, and as Allan curves.
-#include <cstdio>
 #include <memory>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,7 +9,6 @@
 #include "drivers/capture/recording.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
-#include "tools/ifog/allan/allan_picture.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/lcm/lcm_log.h"
 #include "tools/ifog/captures/table/long_table.h"
@@ -19,6 +16,7 @@
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/report/picture.h"
 #include "tools/report/text.h"
@@ -37,7 +35,7 @@ void run_picture(const PictureArguments& a) {
   will_write("--output", a.picture);
   InputFile log(a.log);
   if (const FileKind kind = file_kind(log); kind != FileKind::lcm_log && kind != FileKind::flight)
-    throw std::runtime_error(a.log + ": is no log of lcm-logger");
+    throw refusal("{}: is no log of lcm-logger", a.log);
   LongTable table;
   LongTableSink sink(table);
   read_published(log, a.channel, sink);
@@ -60,8 +58,8 @@ void run_picture(const PictureArguments& a) {
                       time(shown(table.time_s, 1.0)), shown(column.values, 1.0 / kDegreePerHour));
   }
   if (curves != 2)
-    throw std::runtime_error(a.log + ": --axis " + in_quotes(a.axis) + ": expected " +
-                             (axes == 1 ? "none, the sensor has one axis" : "x, y or z"));
+    throw refusal("{}: --axis {}: expected {}", a.log, in_quotes(a.axis),
+                  axes == 1 ? "none, the sensor has one axis" : "x, y or z");
   AllanOptions options;
   options.axis = a.axis;
   options.part = a.part;
@@ -76,7 +74,7 @@ void run_picture(const PictureArguments& a) {
       a.picture,
       report::picture_svg(
           "", {{400.0, {{rate}}}, {520.0, {{allan_chart("Allan deviation, raw and denoised", records)}}}}));
-  say("%s\n", a.picture.c_str());
+  say("{}\n", a.picture);
 }
 
 }  // namespace
@@ -91,8 +89,7 @@ void add_picture(const Command& program) {
   a->part.add_to(command);
   command.add_option("-o,--output", a->picture, "Picture, .svg or .png")
       .required()
-      .check(report::wrong_picture_name)
-      .type_name("FILE");
+      .check(report::wrong_picture_name);
   command.callback([a] { run_picture(*a); });
 }
 

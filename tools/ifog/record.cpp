@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <stdexcept>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -17,7 +17,8 @@
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -30,101 +31,79 @@ struct RecordOptions {
   double bytes = 1e9, days = 30.0, file_bytes = 16e6;
 };
 
-constexpr int kTurn_ms = 50;
+ArchiveLimits limits(const RecordOptions& options) {
+  ArchiveLimits out;
+  out.bytes = static_cast<std::uint64_t>(options.bytes);
+  out.age_ns = static_cast<std::int64_t>(options.days * 86'400e9);
+  out.file_bytes = static_cast<std::uint64_t>(options.file_bytes);
+  return out;
+}
 
-class LcmRecorder {
- public:
-  explicit LcmRecorder(const RecordOptions& options)
-      : options_(options),
-        listener_(options.url, [this](const lcm_recv_buf_t& message,
-                                      const std::string& channel) { take(message, channel); }),
-        messages_(make_flight_folder(options.folder), limits(options), header(options)) {
-    // Before listening, because until then another recorder may own the folder.
-    messages_.open(arrival_clock_ns(), realtime_ns());
-    listener_.listen_to_sensor(options.sensor);
-    for (const std::string& channel : options.channels) listener_.listen_to(channel);
-  }
-
-  void run();
-
- private:
-  static ArchiveLimits limits(const RecordOptions& options) {
-    ArchiveLimits out;
-    out.bytes = static_cast<std::uint64_t>(options.bytes);
-    out.age_ns = static_cast<std::int64_t>(options.days * 86'400e9);
-    out.file_bytes = static_cast<std::uint64_t>(options.file_bytes);
-    return out;
-  }
-  static FlightHeader header(const RecordOptions& options) {
-    FlightHeader out;
-    out.program = IFOG_VERSION;
-    out.sensor = options.sensor;
-    out.carries = FlightHeader::Carries::messages;
-    out.source = options.url;
-    return out;
-  }
-  void take(const lcm_recv_buf_t& buffer, const std::string& channel) {
-    messages_.take(channel, {static_cast<const std::uint8_t*>(buffer.data), buffer.data_size},
-                   buffer.recv_utime, arrival_clock_ns(), realtime_ns());
-  }
-  void tell_trouble();
-  void tell_books() const;
-
-  const RecordOptions& options_;
-  LcmListener listener_;
-  MessageArchive messages_;
-  bool troubled_ = false;
-};
+FlightHeader header(const RecordOptions& options) {
+  FlightHeader out;
+  out.program = IFOG_VERSION;
+  out.sensor = options.sensor;
+  out.carries = FlightHeader::Carries::messages;
+  out.source = options.url;
+  return out;
+}
 
 // Reports a disk error once, and its end once.
-void LcmRecorder::tell_trouble() {
-  const int error = messages_.archive().error();
-  if ((error != 0) == troubled_) return;
-  troubled_ = error != 0;
-  if (troubled_)
-    warn("%s: %s; nothing is recorded until it takes more\n", options_.folder.c_str(),
-         messages_.archive().complaint().c_str());
+void tell_trouble(const MessageArchive& messages, const std::string& folder, bool& troubled) {
+  if ((messages.archive().error() != 0) == troubled) return;
+  troubled = !troubled;
+  if (troubled)
+    warn("{}: {}; nothing is recorded until it takes more\n", folder, messages.archive().complaint());
   else
-    warn("%s: all is recorded again, %llu messages were lost\n", options_.folder.c_str(),
-         static_cast<unsigned long long>(messages_.books().lost_here));
+    warn("{}: all is recorded again, {} messages were lost\n", folder, messages.books().lost_here);
 }
 
-void LcmRecorder::tell_books() const {
-  const MessageArchive::Books books = messages_.books();
-  say("%s: %llu messages, %llu bytes written, %llu lost here, %llu lost on LCM\n", options_.folder.c_str(),
-      static_cast<unsigned long long>(books.received),
-      static_cast<unsigned long long>(messages_.archive().bytes_written()),
-      static_cast<unsigned long long>(books.lost_here), static_cast<unsigned long long>(books.lost_on_way));
+void tell_books(const MessageArchive& messages, const std::string& folder) {
+  const MessageArchive::Books books = messages.books();
+  say("{}: {} messages, {} bytes written, {} lost here, {} lost on LCM\n", folder, books.received,
+      messages.archive().bytes_written(), books.lost_here, books.lost_on_way);
   if (!books.two_publishers.empty())
     warn(
-        "%s: two publishers sent on %s (two daemons, or a log played at the same time): their messages "
+        "{}: two publishers sent on {} (two daemons, or a log played at the same time): their messages "
         "are mixed\n",
-        options_.folder.c_str(), books.two_publishers.c_str());
+        folder, books.two_publishers);
   if (books.restarts > 0)
     warn(
-        "%s: %llu times a message's seq was beyond what its sensor can have counted: treated as a new "
+        "{}: {} times a message's seq was beyond what its sensor can have counted: treated as a new "
         "count\n",
-        options_.folder.c_str(), static_cast<unsigned long long>(books.restarts));
+        folder, books.restarts);
 }
 
-void LcmRecorder::run() {
+void record(const RecordOptions& options) {
+  constexpr int kTurn_ms = 50;
+  std::optional<MessageArchive> archive;
+  // Before the folder is made, because a wrong address is refused here.
+  LcmListener listener(options.url, [&](const lcm_recv_buf_t& buffer, const std::string& channel) {
+    archive->take(channel, {static_cast<const std::uint8_t*>(buffer.data), buffer.data_size},
+                  buffer.recv_utime, arrival_clock_ns(), realtime_ns());
+  });
+  MessageArchive& messages =
+      archive.emplace(make_flight_folder(options.folder), limits(options), header(options));
+  // Before listening, because until then another recorder may own the folder.
+  messages.open(arrival_clock_ns(), realtime_ns());
+  listener.listen_to_sensor(options.sensor);
+  for (const std::string& channel : options.channels) listener.listen_to(channel);
   catch_interrupts();
-  const std::int64_t start_ns = monotonic_ns();
-  const auto end_ns = start_ns + static_cast<std::int64_t>(options_.seconds * 1e9);
-  pollfd wanted{listener_.descriptor(), POLLIN, 0};
-  while (!interrupted() && (options_.seconds <= 0.0 || monotonic_ns() < end_ns)) {
-    if (poll(&wanted, 1, kTurn_ms) > 0) listener_.take();
-    messages_.turn(arrival_clock_ns(), realtime_ns());
-    tell_trouble();
+  const auto end_ns = monotonic_ns() + static_cast<std::int64_t>(options.seconds * 1e9);
+  pollfd wanted{listener.descriptor(), POLLIN, 0};
+  for (bool troubled = false; !interrupted() && (options.seconds <= 0.0 || monotonic_ns() < end_ns);) {
+    if (poll(&wanted, 1, kTurn_ms) > 0) listener.take();
+    messages.turn(arrival_clock_ns(), realtime_ns());
+    tell_trouble(messages, options.folder, troubled);
   }
-  messages_.close(arrival_clock_ns(), realtime_ns());
-  tell_books();
-  if (messages_.books().received == 0) {
-    warn("ifog record: nothing heard on %s\n", printable(options_.url).c_str());
+  messages.close(arrival_clock_ns(), realtime_ns());
+  tell_books(messages, options.folder);
+  if (messages.books().received == 0) {
+    warn("ifog record: nothing heard on {}\n", printable(options.url));
     throw Failed("nothing heard");
   }
-  if (messages_.archive().error() != 0)
-    throw std::runtime_error(options_.folder + ": " + messages_.archive().complaint());
+  if (messages.archive().error() != 0)
+    throw refusal("{}: {}", options.folder, messages.archive().complaint());
 }
 
 }  // namespace
@@ -136,7 +115,7 @@ void add_record(const Command& program) {
   command.add_option("-o,--output", options->folder, "Folder of the recordings; made if it is not there")
       .required()
       .type_name("FOLDER");
-  command.add_option("--sensor", options->sensor, "Only this sensor").type_name("NAME");
+  command.add_option("--sensor", options->sensor, "Only this sensor");
   command
       .add_option("--lcm-channel", options->channels,
                   "Another LCM channel, with ifog.channel_t; may stand several times")
@@ -155,7 +134,7 @@ void add_record(const Command& program) {
   command.callback([options] {
     if (options->file_bytes > options->bytes / 4.0)
       throw WrongUsage("--file-bytes", "is more than a quarter of --bytes, expected room for four files");
-    LcmRecorder(*options).run();
+    record(*options);
   });
 }
 

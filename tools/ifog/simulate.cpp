@@ -14,7 +14,7 @@
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/simulate/simulator.h"
@@ -46,7 +46,7 @@ struct Simulate {
         throw WrongUsage(output,
                          "is a capture in columns, which no driver encodes; expected .kvh, .bin or .log");
       write_columns(long_table(made.capture), scenario, output);
-      say("%s: %zu samples\n", output.c_str(), made.capture.size());
+      say("{}: {} samples\n", output, made.capture.size());
     } else {
       write_recording(long_table(made.capture), scenario, output, encoding, axis);
     }
@@ -55,7 +55,7 @@ struct Simulate {
       write_columns(long_table(simulate::truth_capture(made.truth, made.capture)), scenario, truth);
     else
       write_file(truth, simulate::truth_json(made.truth));
-    say("%s: the truth\n", truth.c_str());
+    say("{}: the truth\n", truth);
   }
 };
 
@@ -75,8 +75,7 @@ void add_simulate(const Command& program) {
                      "and each effect");
   const Option seed = command.add_option("--seed", state->seed, "Instead of the scenario's");
   state->encoding.add_driver_to(command);
-  command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to")
-      .type_name("NAME");
+  command.add_option("--axis", state->axis, "Axis of the driver that a single-axis capture goes to");
   command.footer(
       "Examples:\n  ifog simulate /usr/share/ifogd/scenarios/rest.toml --output rest.csv.gz --truth "
       "rest.truth.json");

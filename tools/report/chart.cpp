@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/chart.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "filters/units/told_time.h"
 #include "tools/report/plot_data.h"
 #include "tools/report/text.h"
 
@@ -36,7 +37,7 @@ const char* css_class(Role role) {
   return "";
 }
 
-std::string fixed(double value) { return formatted("%.1f", value); }
+std::string fixed(double value) { return fmt::format("{:.1f}", value); }
 
 // Fewer ticks on low panels.
 int y_ticks(double pixels) { return std::clamp(static_cast<int>(pixels / 48.0), 2, 6); }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/coefficients.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 
 #include "filters/units/field_units.h"
-#include "filters/units/told_time.h"
 #include "tools/report/text.h"
 
 namespace ifog::report {
@@ -19,7 +20,7 @@ std::string value_and_error(double value, double error) {
           ? std::clamp(static_cast<int>(std::floor(std::log10(value)) - std::floor(std::log10(error))) + 2, 2,
                        8)
           : 3;
-  return formatted("%.*g ± %.2g", digits, value, error);
+  return fmt::format("{:.{}g} ± {:.2g}", value, digits, error);
 }
 
 }  // namespace
@@ -39,41 +40,34 @@ const std::vector<NamedCoefficient>& named_coefficients() {
 
 std::string bound_text(double upper) {
   // Rounds with the library and adds one in the last place if the result is too small.
-  std::string text = formatted("%.2g", upper);
+  std::string text = fmt::format("{:.2g}", upper);
   const double shown = std::strtod(text.c_str(), nullptr);
   if (!(upper > 0.0) || shown >= upper) return text;
-  return formatted("%.2g", shown + std::pow(10.0, std::floor(std::log10(upper)) - 1.0));
+  return fmt::format("{:.2g}", shown + std::pow(10.0, std::floor(std::log10(upper)) - 1.0));
 }
 
 std::string coefficient_lines(const NoiseCoefficients& found) {
   std::string lines;
   for (const NamedCoefficient& named : named_coefficients()) {
     const NoiseCoefficient& c = found.*named.member;
-    const std::string meaning = padded(named.meaning, 18);
-    const std::string from =
-        c.from_s > 0.0 ? formatted("  from %.3g s on; below, a filter holds the curve down", c.from_s) : "";
-    lines +=
-        c.present
-            ? formatted(
-                  "  %s  %s %s %s  (%.4g ± %.2g %s)%s\n", named.letter, meaning.c_str(),
-                  padded(value_and_error(c.value * named.factor, c.std_error * named.factor), 24).c_str(),
-                  padded(named.unit, 7).c_str(), c.value, c.std_error, named.si_unit, from.c_str())
-            : formatted("  %s  %s not seen; below %s %s\n", named.letter, meaning.c_str(),
-                        bound_text(c.upper * named.factor).c_str(), named.unit);
+    lines += fmt::format("  {}  {:<18} ", named.letter, named.meaning);
+    lines += c.present ? fmt::format("{:<24} {:<7}  ({:.4g} ± {:.2g} {})",
+                                     value_and_error(c.value * named.factor, c.std_error * named.factor),
+                                     named.unit, c.value, c.std_error, named.si_unit)
+                       : fmt::format("not seen; below {} {}", bound_text(c.upper * named.factor), named.unit);
+    if (c.present && c.from_s > 0.0)
+      lines += fmt::format("  from {:.3g} s on; below, a filter holds the curve down", c.from_s);
+    lines += '\n';
   }
   return lines;
 }
 
 nlohmann::ordered_json coefficients_json(const NoiseCoefficients& found) {
-  const auto finite = [](double value) {
-    return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
-  };
   auto out = nlohmann::ordered_json::object();
   for (const NamedCoefficient& named : named_coefficients()) {
     const NoiseCoefficient& c = found.*named.member;
-    out[named.letter] = {{"value", c.value},         {"std_error", finite(c.std_error)},
-                         {"upper", finite(c.upper)}, {"unit", named.si_unit},
-                         {"present", c.present},     {"from_tau_s", c.from_s}};
+    out[named.letter] = {{"value", c.value},      {"std_error", c.std_error}, {"upper", c.upper},
+                         {"unit", named.si_unit}, {"present", c.present},     {"from_tau_s", c.from_s}};
   }
   return out;
 }
@@ -84,8 +78,7 @@ nlohmann::ordered_json markov_json(const std::optional<MarkovNoise>& found) {
   return {{"sigma_radps", markov.sigma_radps},
           {"correlation_s", markov.correlation_s},
           {"lower_s", markov.lower_s},
-          {"upper_s", std::isfinite(markov.upper_s) ? nlohmann::ordered_json(markov.upper_s)
-                                                    : nlohmann::ordered_json(nullptr)},
+          {"upper_s", markov.upper_s},
           {"K", markov.walk},
           {"K_until_s", markov.walk_until_s}};
 }

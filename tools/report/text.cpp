@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/report/text.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
 
 #include "drivers/ifog/quoted.h"
-#include "filters/units/told_time.h"
 
 namespace ifog::report {
 namespace {
 
-std::string printed(const char* format, int digits, double value) { return formatted(format, digits, value); }
+std::string with_decimals(double value, int decimals) { return fmt::format("{:.{}f}", value, decimals); }
 
 // With a true minus sign and powers of ten as superscripts.
 std::string typeset(const std::string& plain) {
@@ -69,15 +70,15 @@ std::string number(double value, int digits) {
   if (!std::isfinite(value)) return "–";
   if (value == 0.0) return "0";
   // Rounding may reach the next decade: 999.9 with three digits is 1000.
-  const double rounded = std::strtod(printed("%.*e", digits - 1, value).c_str(), nullptr);
+  const double rounded = std::strtod(fmt::format("{:.{}e}", value, digits - 1).c_str(), nullptr);
   const int power = decade(rounded);
-  if (power >= -4 && power < 6) return typeset(printed("%.*f", std::max(0, digits - 1 - power), rounded));
+  if (power >= -4 && power < 6) return typeset(with_decimals(rounded, std::max(0, digits - 1 - power)));
   return at_power(rounded, digits - 1, power);
 }
 
 std::string at_power(double value, int decimals, int power) {
   if (value == 0.0) return "0";
-  const std::string plain = typeset(printed("%.*f", decimals, value / std::pow(10.0, power)));
+  const std::string plain = typeset(with_decimals(value / std::pow(10.0, power), decimals));
   return power == 0 ? plain : plain + " × 10" + superscript(power);
 }
 
@@ -88,8 +89,8 @@ std::string with_error(double value, double std_error) {
   const bool plain = power >= -4 && power < 6;
   const double scale = plain ? 1.0 : std::pow(10.0, power);
   const int decimals = std::clamp(1 - decade(std_error / scale), 0, 12);
-  const std::string both = typeset(printed("%.*f", decimals, value / scale)) + " ± " +
-                           printed("%.*f", decimals, std_error / scale);
+  const std::string both =
+      typeset(with_decimals(value / scale, decimals)) + " ± " + with_decimals(std_error / scale, decimals);
   return plain ? both : "(" + both + ") × 10" + superscript(power);
 }
 

@@ -17,13 +17,6 @@ inline std::size_t characters_in(std::string_view text) {
       std::ranges::count_if(text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; }));
 }
 
-// Padded with blanks to `width` characters.
-inline std::string padded(std::string text, std::size_t width) {
-  if (const std::size_t characters = characters_in(text); characters < width)
-    text.append(width - characters, ' ');
-  return text;
-}
-
 // Escapes any text for HTML and XML.
 std::string escaped(std::string_view text);
 

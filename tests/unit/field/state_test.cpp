@@ -108,7 +108,7 @@ TEST_F(StateFolder, ANewProposalTakesTheOldOnesPlaceAndRemovalLeavesNothing) {
 
 TEST_F(StateFolder, BookmarksComeBack) {
   EXPECT_FALSE(read_bookmark(folder(), "nose"));
-  write_bookmark(folder(), "nose", {17, "2026-01-31T02:30:00Z", "nothing found"});
+  write_bookmark(folder(), {"nose", 17, "2026-01-31T02:30:00Z", "nothing found"});
   EXPECT_EQ(read_bookmark(folder(), "nose")->until, 17U);
   EXPECT_EQ(read_bookmark(folder(), "nose")->said, "nothing found");
 }
@@ -257,7 +257,7 @@ TEST_F(StateFolder, NothingIsWrittenThroughALink) {
   write("elsewhere", "mine");
   fs::create_symlink("elsewhere", path("nose.night.json"));
   EXPECT_NE(complaint([&] {
-              write_bookmark(folder(), "nose", {1, "now", "said"});
+              write_bookmark(folder(), {"nose", 1, "now", "said"});
             }).find("no regular file"),
             std::string::npos);
   EXPECT_EQ(content("elsewhere"), "mine");

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog allan: overlapping Allan deviation and noise coefficients of captures.
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "tools/ifog/allan/allan_picture.h"
 #include "tools/ifog/allan/allan_record.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/commands.h"
@@ -96,8 +94,7 @@ void add_allan(const Command& program) {
   a->options.part.add_to(command);
   command.add_option("--json", a->json, "Write the analysis here, in SI");
   command.add_option("--plot", a->picture, "Write a picture here (.svg or .png)")
-      .check(report::wrong_picture_name)
-      .type_name("FILE");
+      .check(report::wrong_picture_name);
   command.callback([a] { run_allan(*a); });
 }
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/allan/allan_picture.h"
-
+// Allan deviations as a picture.
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -8,6 +7,7 @@
 #include <utility>
 
 #include "filters/units/field_units.h"
+#include "tools/ifog/allan/allan_record.h"
 #include "tools/report/picture.h"
 #include "tools/report/text.h"
 

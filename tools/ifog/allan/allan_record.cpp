@@ -17,6 +17,7 @@
 #include "tools/ifog/allan/logged_rate.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -74,10 +75,9 @@ void find_rest_of(AnalysedPart& part, const AllanOptions& options) {
   try {
     require_rest(part.rest, period_s, part.shown_time_s(0));
   } catch (const std::invalid_argument& error) {
-    throw std::runtime_error(
-        part.capture + ": " + error.what() + (references.empty() ? "" : ", or --minus-reference") +
-        ", or --moving keep" +
-        (references.empty() ? "" : "; a sensor turned with a reference is for ifog diagnose"));
+    throw refusal("{}: {}{}, or --moving keep{}", part.capture, error.what(),
+                  references.empty() ? "" : ", or --minus-reference",
+                  references.empty() ? "" : "; a sensor turned with a reference is for ifog diagnose");
   }
   part.slow_turns = slow_turns_in_words(part.rest, period_s, part.shown_time_s(0));
 }
@@ -88,7 +88,7 @@ Samples less_reference(const std::string& name, const LongTable& table, std::spa
   const auto column = std::find_if(table.columns.begin(), table.columns.end(),
                                    [&](const LongColumn& c) { return c.name == wanted; });
   if (column == table.columns.end())
-    throw std::runtime_error(name + ": no column " + wanted + ", expected one for --minus-reference");
+    throw refusal("{}: no column {}, expected one for --minus-reference", name, wanted);
   const std::span<const double> reference = column->values;
   Samples error;
   error.reserve(rate.size());
@@ -142,7 +142,7 @@ std::vector<AnalysedRate> rates_of(const std::string& name, const LongTable& tab
     fail_at(name, table.header_line,
             "no rate column, expected 'rate_radps', 'rate_x_radps', … or those of `ifog denoise`");
   if (rates.empty() && left_out.empty())
-    throw std::runtime_error(name + ": --axis is " + in_quotes(wanted) + ", expected " + expected_axes(axes));
+    throw refusal("{}: --axis is {}, expected {}", name, in_quotes(wanted), expected_axes(axes));
   if (rates.empty()) refuse_without_rates(name, rows.end - rows.begin);
   for (const std::string& dead : left_out) tell_left_out(name, dead, rows.end - rows.begin);
   return rates;
@@ -192,8 +192,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
                                        const AllanOptions& options) {
   const TimePart::Rows rows = options.part.rows(table.time_s, table.origin, name);
   const std::span<const double> time_s = rows.of(table.time_s);
-  if (time_s.size() < 3)
-    throw std::runtime_error(name + ": " + std::to_string(time_s.size()) + " samples, expected at least 3");
+  if (time_s.size() < 3) throw refusal("{}: {} samples, expected at least 3", name, time_s.size());
   AnalysedPart part{name, table, rows, time_s, naming(name, [&] { return sample_clock(time_s); })};
   find_rest_of(part, options);
   const std::vector<AnalysedRate> rates = rates_of(name, table, rows, options.axis);
@@ -216,7 +215,7 @@ std::vector<AllanRecord> allan_records(const std::string& name, const LongTable&
     try {
       std::rethrow_exception(each);
     } catch (const std::runtime_error& error) {
-      warn("%s: the axis is dropped\n", error.what());
+      warn("{}: the axis is dropped\n", error.what());
     }
   }
   return analysed;

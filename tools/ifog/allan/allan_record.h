@@ -14,6 +14,7 @@
 #include "filters/rest/value_faults.h"
 #include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/captures/time_part.h"
+#include "tools/report/chart.h"
 #include "tools/report/coefficients.h"
 
 namespace ifog::tools {
@@ -66,5 +67,8 @@ nlohmann::ordered_json allan_json(const std::vector<AllanRecord>& records, const
 void print_allan(const AllanRecord& record, const AllanOptions& options);
 // One line per record, if there are several.
 void print_comparison(const std::vector<AllanRecord>& records);
+// Logarithmic axes, confidence bands and the fitted noise terms.
+report::Chart allan_chart(const std::string& title, const std::vector<AllanRecord>& records);
+void draw_allan(const std::string& path, const std::vector<AllanRecord>& records);
 
 }  // namespace ifog::tools

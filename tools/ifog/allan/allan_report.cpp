@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // An Allan analysis as JSON (SI) and as a table (the field's units).
+#include <fmt/core.h>
+
 #include <array>
 #include <cmath>
 
 #include "filters/units/field_units.h"
-#include "filters/units/told_time.h"
 #include "tools/ifog/allan/allan_record.h"
-#include "tools/ifog/console/listed_fields.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -32,9 +32,9 @@ ordered_json theo1_json(const std::vector<LongPoint>& points) {
     out[key] = ordered_json::array();
   for (const LongPoint& point : points) {
     out["tau_s"].push_back(point.tau);
-    out["adev_radps"].push_back(as_json(std::sqrt(point.variance)));
-    out["lower_radps"].push_back(as_json(point.interval.lower_radps));
-    out["upper_radps"].push_back(as_json(point.interval.upper_radps));
+    out["adev_radps"].push_back(std::sqrt(point.variance));
+    out["lower_radps"].push_back(point.interval.lower_radps);
+    out["upper_radps"].push_back(point.interval.upper_radps);
     out["degrees_of_freedom"].push_back(point.interval.degrees);
     out["bias"].push_back(point.bias);
   }
@@ -42,8 +42,9 @@ ordered_json theo1_json(const std::vector<LongPoint>& points) {
 }
 
 void print_point(double tau_s, double variance, const AllanInterval& interval, const char* remark) {
-  say("  %12.6g  %12.5g  %12.5g … %-10.5g  %9.4g  %s%s\n", tau_s, std::sqrt(variance) / kDegreePerHour,
-      interval.lower_radps / kDegreePerHour, interval.upper_radps / kDegreePerHour, interval.degrees,
+  say("  {:12.6g}  {:12.5g}  {:12.5g} … {:<10.5g}  {:9.4g}  {}{}\n", tau_s,
+      std::sqrt(variance) / kDegreePerHour, interval.lower_radps / kDegreePerHour,
+      interval.upper_radps / kDegreePerHour, interval.degrees,
       variance > 0.0 ? term_name(interval.strongest) : "none", remark);
 }
 
@@ -73,9 +74,9 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
       axis[key] = ordered_json::array();
     for (std::size_t i = 0; i < record.points.size(); ++i) {
       const AllanInterval& interval = record.intervals[i];
-      axis["adev_radps"].push_back(as_json(std::sqrt(record.points[i].variance)));
-      axis["lower_radps"].push_back(as_json(interval.lower_radps));
-      axis["upper_radps"].push_back(as_json(interval.upper_radps));
+      axis["adev_radps"].push_back(std::sqrt(record.points[i].variance));
+      axis["lower_radps"].push_back(interval.lower_radps);
+      axis["upper_radps"].push_back(interval.upper_radps);
       axis["degrees_of_freedom"].push_back(interval.degrees);
       axis["noise_type"].push_back(term_name(interval.strongest));
       axis["terms"].push_back(record.points[i].terms);
@@ -86,7 +87,7 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
     axis["coefficients"] = report::coefficients_json(record.fit ? *record.fit : NoiseCoefficients{});
     if (!record.fit)
       for (auto& term : axis["coefficients"]) term["std_error"] = term["upper"] = nullptr;
-    axis["misfit"] = record.fit ? as_json(record.fit->misfit) : ordered_json(nullptr);
+    axis["misfit"] = record.fit ? ordered_json(record.fit->misfit) : ordered_json(nullptr);
     axis["gauss_markov"] = record.fit ? report::markov_json(record.fit->markov) : ordered_json(nullptr);
     axis["noise_changes"] = report::noise_changes_json(record.noise_changes);
     axis["findings"] = ordered_json::array();
@@ -101,12 +102,12 @@ ordered_json allan_json(const std::vector<AllanRecord>& records, const AllanOpti
 }
 
 void print_allan(const AllanRecord& record, const AllanOptions& options) {
-  say("%s%s%s: %zu samples at %.9g Hz, %.6g s, mean %.5g °/h\n", record.capture.c_str(),
-      record.label().empty() ? "" : " ", record.label().c_str(), record.samples, record.sample_rate_hz,
+  say("{}{}{}: {} samples at {:.9g} Hz, {:.6g} s, mean {:.5g} °/h\n", record.capture,
+      record.label().empty() ? "" : " ", record.label(), record.samples, record.sample_rate_hz,
       static_cast<double>(record.samples) / record.sample_rate_hz, record.mean_radps / kDegreePerHour);
-  for (const std::string& note : record.notes) say("  note: %s\n", note.c_str());
-  say("  %12s  %12s  %25s  %9s  %s\n", "tau s", "sigma deg/h",
-      formatted("%.3g %% interval", 100.0 * options.confidence).c_str(), "degrees", "noise here");
+  for (const std::string& note : record.notes) say("  note: {}\n", note);
+  say("  {:>12}  {:>12}  {:>25}  {:>9}  {}\n", "tau s", "sigma deg/h",
+      fmt::format("{:.3g} % interval", 100.0 * options.confidence), "degrees", "noise here");
   // Prints three points per decade, and all points that were requested.
   double next = 0.0;
   for (std::size_t i = 0; i < record.points.size(); ++i) {
@@ -121,8 +122,8 @@ void print_allan(const AllanRecord& record, const AllanOptions& options) {
   for (const LongPoint& point : record.longer)
     print_point(point.tau, point.variance, point.interval, "  (Theo1, corrected for its bias)");
   if (record.trusted_tau_s > 0.0)
-    say("  Accurate to 25 %% for τ up to %.4g s; a longer record shows more.\n", record.trusted_tau_s);
-  if (record.fit) say("%s", report::coefficient_lines(*record.fit).c_str());
+    say("  Accurate to 25 % for τ up to {:.4g} s; a longer record shows more.\n", record.trusted_tau_s);
+  if (record.fit) say("{}", report::coefficient_lines(*record.fit));
 }
 
 }  // namespace ifog::tools

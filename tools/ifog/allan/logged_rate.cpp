@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/allan/logged_rate.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -15,6 +17,7 @@
 #include "filters/units/field_units.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/captures/usable_axes.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -37,19 +40,20 @@ std::vector<std::size_t> asked_multiples(const std::string& name, const AllanOpt
   for (const double tau : options.tau_s) {
     const double exact = tau / period;
     if (!(exact >= 0.5 && std::round(exact) <= static_cast<double>(most))) {
-      outside = name + ": --tau " + six_digits(tau) + " s is outside what " + words_for(options.kind) +
-                " can tell of the longest stretch, expected " + six_digits(period) + " to " +
-                six_digits(static_cast<double>(most) * period) + " s";
+      outside = fmt::format(
+          "{}: --tau {} s is outside what {} can tell of the longest stretch, expected {} to {} s", name,
+          six_digits(tau), words_for(options.kind), six_digits(period),
+          six_digits(static_cast<double>(most) * period));
       record.notes.push_back(outside);
       continue;
     }
     m.push_back(static_cast<std::size_t>(std::max(1.0, std::round(exact))));
     const double used = static_cast<double>(m.back()) * period;
     if (std::abs(used / tau - 1.0) > 1e-6)
-      record.notes.push_back(name + ": --tau " + six_digits(tau) +
-                             " s is no multiple of the sample time; used: " + six_digits(used) + " s");
+      record.notes.push_back(fmt::format("{}: --tau {} s is no multiple of the sample time; used: {} s", name,
+                                         six_digits(tau), six_digits(used)));
   }
-  if (m.empty()) throw std::runtime_error(outside);
+  if (m.empty()) throw refusal("{}", outside);
   return m;
 }
 
@@ -67,7 +71,7 @@ double trusted_tau(const AngleSum& sum, const TermVariances& noise, Deviation ki
 void note_holes(const LoggedRate& logged, bool refuse, AllanRecord& record) {
   const SampleClock& clock = logged.of.clock;
   const auto note = [&](std::size_t row, const std::string& what) {
-    if (refuse) throw std::runtime_error(logged.of.place(row) + ": " + what + ", expected none");
+    if (refuse) throw refusal("{}: {}, expected none", logged.of.place(row), what);
     record.notes.push_back(logged.of.place(row) + ": " + what);
   };
   std::size_t nans = 0, first_nan = 0;
@@ -127,7 +131,7 @@ std::string AnalysedPart::place(std::size_t row) const {
   return capture + (line > 0 ? ":" + std::to_string(line) : ": sample " + std::to_string(row));
 }
 
-std::string six_digits(double value) { return formatted("%.6g", value); }
+std::string six_digits(double value) { return fmt::format("{:.6g}", value); }
 
 AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const std::string& axis,
                     const Rest& rest, const AllanOptions& options) {
@@ -144,7 +148,7 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
 
   const std::vector<Stretch> parts =
       common(stretches(logged.of.time_s, logged.rate, logged.of.clock), rest.at_rest);
-  if (parts.empty()) throw std::runtime_error(name + ": " + column + " has no values");
+  if (parts.empty()) throw refusal("{}: {} has no values", name, column);
   const auto shown_time_s = [&](std::size_t row) { return logged.of.shown_time_s(row); };
   // A filter's gain makes jumps of its own; faults of the logger are visible in the raw rate.
   record.findings.assign(logged.repeats.begin(), logged.repeats.end());
@@ -160,8 +164,7 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
   record.longest = sum.longest();
   record.mean_radps = sum.mean_radps();
   if (record.longest < 2)
-    throw std::runtime_error(name + ": " + column +
-                             " has no two samples in a row, expected a record without so many gaps");
+    throw refusal("{}: {} has no two samples in a row, expected a record without so many gaps", name, column);
   if (sum.filled() > 0)
     record.notes.push_back(name + ": " + column + ": averages reach across " + std::to_string(sum.filled()) +
                            (sum.filled() == 1 ? " missing sample" : " missing samples") +
@@ -184,10 +187,10 @@ AllanRecord analyse(const LoggedRate& logged, const std::string& signal, const s
                                 ? followed_channel(rate, parts, logged.of.rows.begin, period,
                                                    logged.of.table.outlines, *record.fit)
                                 : std::nullopt) {
-    fits_badly(
-        formatted("slow means of the rate follow %s by %.2g %% of their variance: an effect of it would pass "
-                  "for noise, and the error bars of B, K and R allow for that; run ifog diagnose",
-                  followed->name.c_str(), 100.0 * followed->share));
+    fits_badly(fmt::format(
+        "slow means of the rate follow {} by {:.2g} % of their variance: an effect of it would pass "
+        "for noise, and the error bars of B, K and R allow for that; run ifog diagnose",
+        followed->name, 100.0 * followed->share));
     add(record.findings.back().text);
   }
   record.noise_changes = noise_changes(rate, parts, period, shown_time_s);

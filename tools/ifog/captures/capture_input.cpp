@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/captures/capture_input.h"
 
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -21,7 +20,8 @@
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -89,20 +89,13 @@ CsvLayout CaptureInput::layout() const {
   return out;
 }
 
-void CaptureInput::tell(const std::vector<std::string>& notices, const std::vector<std::string>& faults) {
-  for (const std::string& notice : notices) warn("%s\n", notice.c_str());
-  for (const std::string& fault : faults) warn("%s\n", fault.c_str());
-}
-
 void CaptureInput::add_driver_to(const Command& command) {
   command.add_option("--driver", driver, "Driver that understands the recording (see 'ifog drivers')")
       .type_name("NAME");
   command.add_option("--option", options, "Option of the driver; may stand several times")
       .type_name("KEY=VALUE");
-  command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc")
-      .type_name("FILE");
-  command.add_option("--channel", channel, "CAN interface in a candump log, or channel in an LCM log")
-      .type_name("NAME");
+  command.add_option("--dbc", dbc, "Vector DBC file; without --driver chooses the driver dbc");
+  command.add_option("--channel", channel, "CAN interface in a candump log, or channel in an LCM log");
 }
 
 std::string CaptureInput::as_typed() const {
@@ -166,33 +159,22 @@ RecordingCounts CaptureInput::for_each_sample(InputFile& file, DriverInstance& i
   if (counts.samples != 0) return counts;
   std::string why;
   for (const std::string& loss : losses(counts)) why += (why.empty() ? "" : "; ") + loss;
-  throw std::runtime_error(file.path() + ": driver " + driver_name() + " finds no sample in it" +
-                           (why.empty() ? "" : " (" + why + ")"));
-}
-
-void CaptureInput::build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder) const {
-  const std::string& path = file.path();
-  const RecordingCounts counts = naming(path, [&] {
-    return for_each_sample(file, instance, [&](const ifog_sample& sample) { builder.add(sample); });
-  });
-  for (const auto& lines : {losses(counts), builder.remarks()})
-    for (const std::string& line : lines) warn("%s: %s\n", path.c_str(), line.c_str());
+  throw refusal("{}: driver {} finds no sample in it{}", file.path(), driver_name(),
+                why.empty() ? "" : " (" + why + ")");
 }
 
 FileKind CaptureInput::readable(const InputFile& file) const {
   std::string other = foreign_can_log(file.head());
   if (other.empty() && !has_driver()) other = foreign_container(file.head());
-  if (!other.empty()) throw std::runtime_error(file.path() + ": " + other);
+  if (!other.empty()) throw refusal("{}: {}", file.path(), other);
   if (has_ending(file.path(), ".toml"))
-    throw std::runtime_error(file.path() +
-                             ": is a TOML file, expected a capture; a model is given by --model FILE");
+    throw refusal("{}: is a TOML file, expected a capture; a model is given by --model FILE", file.path());
   const FileKind found = kind(file);
   if (found == FileKind::capture && has_driver())
-    throw std::runtime_error(file.path() +
-                             ": is a capture in columns, expected none of --driver and --dbc with it");
+    throw refusal("{}: is a capture in columns, expected none of --driver and --dbc with it", file.path());
   if ((found == FileKind::bytes || found == FileKind::candump || found == FileKind::unknown) && !has_driver())
-    throw std::runtime_error(
-        file.path() + ": is no capture in columns, expected --driver NAME (or --dbc FILE) to decode it with");
+    throw refusal("{}: is no capture in columns, expected --driver NAME (or --dbc FILE) to decode it with",
+                  file.path());
   return found;
 }
 
@@ -204,7 +186,8 @@ RowNotes CaptureInput::column_rows(InputFile& file, RowSink& sink) const {
     throw WrongUsage("--group", "cannot go with " + in_quotes(file.path()) + ", expected an HDF5 file");
   const ReadingProgress progress(file);
   RowNotes notes = hdf5 ? read_hdf5_rows(file, group, layout(), sink) : read_csv_rows(file, layout(), sink);
-  tell(notes.notices, notes.faults);
+  for (const auto& lines : {notes.notices, notes.faults})
+    for (const std::string& line : lines) warn("{}\n", line);
   return notes;
 }
 
@@ -212,14 +195,8 @@ LongTable CaptureInput::read_long_columns(InputFile& file, const LongTableSink::
   LongTable table;
   LongTableSink sink(table, wanted);
   static_cast<RowNotes&>(table) = column_rows(file, sink);
-  keep_rates(table, file.path());
+  table.keep_rate_rows(file.path());
   return table;
-}
-
-void CaptureInput::keep_rates(LongTable& table, const std::string& path) {
-  const std::size_t before = table.notices.size();
-  table.keep_rate_rows(path);
-  tell({table.notices.begin() + static_cast<std::ptrdiff_t>(before), table.notices.end()}, {});
 }
 
 // A log has rates as messages; with a driver it has a device's bytes instead.
@@ -229,8 +206,8 @@ bool CaptureInput::holds_rates(const InputFile& file, FileKind found) const {
 
 RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
   const FileKind found = readable(file);
-  const ReadingProgress progress(file);
   if (found == FileKind::capture) return column_rows(file, sink);
+  const ReadingProgress progress(file);
   if (holds_rates(file, found)) {
     read_lcm_log(file, channel, sink);
     return {};
@@ -243,7 +220,11 @@ RowNotes CaptureInput::read_rows(InputFile& file, RowSink& sink) const {
   DriverInstance instance = make_driver();
   CaptureBuilder builder(instance.description(), sink);
   if (instance.takes_can()) builder.keep_stamps(zero_of_stamps(file.head()));
-  build(file, instance, builder);
+  const RecordingCounts counts = naming(file.path(), [&] {
+    return for_each_sample(file, instance, [&](const ifog_sample& sample) { builder.add(sample); });
+  });
+  for (const auto& lines : {losses(counts), builder.remarks()})
+    for (const std::string& line : lines) warn("{}: {}\n", file.path(), line);
   builder.finish();
   return {};
 }
@@ -257,7 +238,7 @@ LongTable CaptureInput::read_long(InputFile& file, const LongTableSink::Wanted& 
   static_cast<RowNotes&>(table) = read_rows(file, sink);
   // A driver declares what its device can send, so columns without values are dropped.
   if (!whole) table.drop_unknown(file.path());
-  if (found == FileKind::capture) keep_rates(table, file.path());
+  if (found == FileKind::capture) table.keep_rate_rows(file.path());
   return table;
 }
 

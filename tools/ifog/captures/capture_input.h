@@ -15,10 +15,6 @@
 #include "tools/ifog/captures/table/long_table.h"
 #include "tools/ifog/console/options/command.h"
 
-namespace ifog {
-class CaptureBuilder;
-}  // namespace ifog
-
 namespace ifog::tools {
 
 struct CaptureInput {
@@ -88,9 +84,6 @@ struct CaptureInput {
   RowNotes column_rows(InputFile& file, RowSink& sink) const;
   [[nodiscard]] FileKind readable(const InputFile& file) const;
   [[nodiscard]] bool holds_rates(const InputFile& file, FileKind found) const;
-  void build(InputFile& file, DriverInstance& instance, CaptureBuilder& builder) const;
-  static void keep_rates(LongTable& table, const std::string& path);
-  static void tell(const std::vector<std::string>& notices, const std::vector<std::string>& faults);
 };
 
 }  // namespace ifog::tools

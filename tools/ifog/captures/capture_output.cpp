@@ -4,10 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "drivers/capture/candump/candump.h"
@@ -17,55 +19,42 @@
 #include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/table/column_writer.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
 
-void to_bytes(CaptureEncoder& encoder, std::size_t rows, const std::string& to) {
-  std::vector<std::uint8_t> bytes;
+// Writes the encoder's bytes or frames, a block of them as `text_of` makes it, and returns their number.
+template <typename Part, typename TextOf>
+std::size_t write_encoded(CaptureEncoder& encoder, std::size_t rows, const std::string& to,
+                          const TextOf& text_of) {
+  std::vector<Part> block;
   std::size_t count = 0;
   Progress progress("encoding", rows);
   OutputFile file(to);
   const auto write = [&] {
-    file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
-    count += bytes.size();
-    bytes.clear();
+    file.write(text_of(block));
+    count += block.size();
+    block.clear();
     progress.at(encoder.rows_done());
   };
-  while (encoder.next(bytes))
+  while (encoder.next(block))
     if (encoder.rows_done() % RowBatch::kRows == 0) write();
   write();
   file.finish();
-  say("%s: %zu samples, %zu bytes\n", to.c_str(), rows - encoder.rows_left_out(), count);
+  return count;
 }
 
-void to_candump(CaptureEncoder& encoder, std::size_t rows, const std::string& to, const CaptureInput& input) {
-  const std::string interface = input.channel.empty() ? "vcan0" : input.channel;
+std::string bytes_in(const std::vector<std::uint8_t>& block) { return {block.begin(), block.end()}; }
+
+std::string candump_lines(const std::vector<ifog_can_frame>& block, const std::string& interface) {
   std::string text;
-  std::size_t count = 0;
-  std::vector<ifog_can_frame> frames;
   std::array<char, kCandumpLineMax> line{};
-  Progress progress("encoding", rows);
-  OutputFile file(to);
-  const auto write = [&] {
-    file.write(text);
-    text.clear();
-    progress.at(encoder.rows_done());
-  };
-  while (encoder.next(frames)) {
-    for (const ifog_can_frame& frame : frames)
-      text.append(line.data(), format_candump_line(frame, interface, line.data()));
-    count += frames.size();
-    frames.clear();
-    if (encoder.rows_done() % RowBatch::kRows == 0) write();
-  }
-  write();
-  file.finish();
-  say("%s: %zu samples in %zu frames on %s\n", to.c_str(), rows - encoder.rows_left_out(), count,
-      interface.c_str());
+  for (const ifog_can_frame& frame : block)
+    text.append(line.data(), format_candump_line(frame, interface, line.data()));
+  return text;
 }
 
 }  // namespace
@@ -81,13 +70,20 @@ void expect_capture_name(const std::string& option, const std::string& path, con
 
 void write_columns(const LongTable& table, const std::string& from, const std::string& to) {
   const CaptureShape shape = capture_shape(table.names(), from, table);
-  LongRows rows(table, shape);
-  ColumnWriter file(to, table.comments, rows.names());
-  Progress progress("writing " + std::filesystem::path(to).filename().string(), table.size());
-  for (std::size_t done = 0; rows.next(); progress.at(done)) {
-    file.rows(rows.rows(), rows.origin());
-    done += rows.rows().front().size();
+  // In the order of a capture: rates, references, channels.
+  std::vector<std::size_t> order(table.columns.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::ranges::sort(order, {},
+                    [&](std::size_t c) { return std::pair(shape.places[c].kind, shape.places[c].at); });
+  std::vector<std::string> names{"time_s"};
+  std::vector<std::span<const double>> columns{table.time_s};
+  for (const std::size_t c : order) {
+    names.push_back(table.columns[c].name);
+    columns.emplace_back(table.columns[c].values);
   }
+  ColumnWriter file(to, table.comments, names);
+  Progress progress("writing " + std::filesystem::path(to).filename().string(), table.size());
+  file.rows(columns, table.origin, [&](std::size_t done) { progress.at(done); });
   file.finish();
 }
 
@@ -106,31 +102,37 @@ void write_recording(const LongTable& table, const std::string& from, const std:
                                                  : "bytes, expected a name ending in .bin or .kvh"));
   try {
     CaptureEncoder encoder(capture, driver, rate_hz, axis);
-    for (const std::string& notice : encoder.notices()) warn("%s: %s\n", from.c_str(), notice.c_str());
-    if (log)
-      to_candump(encoder, table.size(), to, input);
-    else
-      to_bytes(encoder, table.size(), to);
+    for (const std::string& notice : encoder.notices()) warn("{}: {}\n", from, notice);
+    if (log) {
+      const std::string interface = input.channel.empty() ? "vcan0" : input.channel;
+      const std::size_t frames = write_encoded<ifog_can_frame>(
+          encoder, table.size(), to, [&](const auto& block) { return candump_lines(block, interface); });
+      say("{}: {} samples in {} frames on {}\n", to, table.size() - encoder.rows_left_out(), frames,
+          interface);
+    } else {
+      const std::size_t bytes = write_encoded<std::uint8_t>(encoder, table.size(), to, bytes_in);
+      say("{}: {} samples, {} bytes\n", to, table.size() - encoder.rows_left_out(), bytes);
+    }
     if (encoder.rows_left_out() != 0)
-      warn("%s: %zu rows without a rate are dropped: the format cannot say so\n", from.c_str(),
+      warn("{}: {} rows without a rate are dropped: the format cannot say so\n", from,
            encoder.rows_left_out());
     if (const double lost_s = encoder.time_lost_s();
         std::abs(lost_s) > std::max(1.5 / encoder.rate_hz(), 1e-3 * encoder.elapsed_s()))
       warn(
-          "%s: its %.6g s become %.6g s: the format has no clock, and whoever reads it counts %g samples a "
-          "second\n",
-          from.c_str(), encoder.elapsed_s(), encoder.elapsed_s() - lost_s, encoder.rate_hz());
+          "{}: its {:.6g} s become {:.6g} s: the format has no clock, and whoever reads it counts {:g} "
+          "samples a second\n",
+          from, encoder.elapsed_s(), encoder.elapsed_s() - lost_s, encoder.rate_hz());
     if (encoder.rows_at_full_scale() != 0)
       warn(
-          "%s: %zu samples at or beyond the sensor's full scale, which every reader of the frames takes for "
+          "{}: {} samples at or beyond the sensor's full scale, which every reader of the frames takes for "
           "missing\n",
-          from.c_str(), encoder.rows_at_full_scale());
+          from, encoder.rows_at_full_scale());
   } catch (const std::runtime_error& error) {
     const std::string line = error.what();
     throw std::runtime_error(line.starts_with(from) || line.starts_with(to) ? line : from + ": " + line);
   }
   if (driver.description().nominal_rate_hz > 0.0 && input.settings().count("rate_hz") == 0)
-    say("to decode it again, add --option rate_hz=%.7g\n", driver.description().nominal_rate_hz);
+    say("to decode it again, add --option rate_hz={:.7g}\n", driver.description().nominal_rate_hz);
 }
 
 }  // namespace ifog::tools

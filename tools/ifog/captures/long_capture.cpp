@@ -5,6 +5,7 @@
 #include "tools/ifog/captures/model_axes.h"
 
 namespace ifog::tools {
+
 CaptureView view_of(const LongTable& table, const std::string& path) {
   const CaptureShape shape = capture_shape(table.header, path, table);
   CaptureView view;
@@ -33,21 +34,23 @@ CaptureView view_of(const LongTable& table, const std::string& path) {
   return view;
 }
 
-void LongCapture::cut(const TimePart& part, const std::string& name) { view_ = this->part(part, name); }
-
-CaptureView LongCapture::part(const TimePart& part, const std::string& name) const {
-  CaptureView out = view_;
-  const TimePart::Rows rows = part.rows(view_.time_s, view_.origin, name);
+CaptureView rows_of(CaptureView view, const TimePart::Rows& rows) {
   const auto keep = [&](std::span<const double>& values) {
     if (!values.empty()) values = rows.of(values);
   };
-  if (out.since_power_up_s && rows.begin < view_.size())
-    *out.since_power_up_s += view_.time_s[rows.begin] - view_.time_s.front();
-  keep(out.time_s);
-  for (std::span<const double>& rate : out.rate_radps) keep(rate);
-  for (std::span<const double>& reference : out.reference_rate_radps) keep(reference);
-  for (CaptureView::Channel& channel : out.channels) keep(channel.values);
-  return out;
+  if (view.since_power_up_s && rows.begin < view.size())
+    *view.since_power_up_s += view.time_s[rows.begin] - view.time_s.front();
+  keep(view.time_s);
+  for (std::span<const double>& rate : view.rate_radps) keep(rate);
+  for (std::span<const double>& reference : view.reference_rate_radps) keep(reference);
+  for (CaptureView::Channel& channel : view.channels) keep(channel.values);
+  return view;
+}
+
+void LongCapture::cut(const TimePart& part, const std::string& name) { view_ = this->part(part, name); }
+
+CaptureView LongCapture::part(const TimePart& part, const std::string& name) const {
+  return rows_of(view_, part.rows(view_.time_s, view_.origin, name));
 }
 
 void LongCapture::correct(const Model& model) {

@@ -17,6 +17,9 @@ namespace ifog::tools {
 // reference without its rate.
 [[nodiscard]] CaptureView view_of(const LongTable& table, const std::string& path);
 
+// The rows of a view.
+[[nodiscard]] CaptureView rows_of(CaptureView view, const TimePart::Rows& rows);
+
 class LongCapture {
  public:
   // Throws as view_of().

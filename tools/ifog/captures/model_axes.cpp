@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
@@ -11,6 +10,7 @@
 #include "filters/effects/form.h"
 #include "filters/model_file/channel_names.h"
 #include "filters/model_file/covariance.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -31,7 +31,7 @@ std::string place_of(const Model& model, const std::string& channel) {
 void tell_model_of_one_axis(const Model& model, const std::string& path,
                             const std::vector<std::string>& axes) {
   if (const std::string remark = effects_of_no_axis(model, axes); !remark.empty())
-    warn("%s: %s\n", path.c_str(), remark.c_str());
+    warn("{}: {}\n", path, remark);
 }
 
 Model without_axes(Model model, const std::vector<std::string>& axes) {
@@ -47,9 +47,9 @@ Model without_axes(Model model, const std::vector<std::string>& axes) {
     if (is_out(effect.axis)) continue;
     const bool of_rate = is_out(axis_of_rate(effect.channel));
     if (of_rate || is_out(axis_of_rate(effect.with_channel))) {
-      warn("not corrected: %s of %s%s: that axis was dropped\n", effect.form.c_str(),
-           printable(of_rate ? effect.channel : effect.with_channel).c_str(),
-           effect.axis.empty() ? "" : (" in " + effect.axis).c_str());
+      warn("not corrected: {} of {}{}: that axis was dropped\n", effect.form,
+           printable(of_rate ? effect.channel : effect.with_channel),
+           effect.axis.empty() ? "" : " in " + effect.axis);
       continue;
     }
     for (std::size_t row = first; row < all; ++row) rows.push_back(row);
@@ -70,8 +70,8 @@ std::vector<Samples> compensated_rates(const CaptureView& capture, const Model& 
     for (const CaptureView::Channel& channel : capture.channels)
       if (channel.name == name) found = &channel;
     if (!found)
-      throw std::runtime_error("the model wants channel " + in_quotes(name) + place_of(model, name) +
-                               ", which the capture does not have");
+      throw refusal("the model wants channel {}{}, which the capture does not have", in_quotes(name),
+                    place_of(model, name));
     series.channels.emplace_back(found->values);
   }
   std::vector<Samples> out(capture.axes.size(), Samples(capture.size()));

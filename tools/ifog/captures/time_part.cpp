@@ -3,19 +3,15 @@
 
 #include <optional>
 #include <span>
-#include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
 #include "filters/units/told_time.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
-
-void keep(const TimePart::Rows& rows, Samples& values) {
-  if (!values.empty()) values.keep(rows.begin, rows.end);
-}
 
 // Index of the first row from `begin` on that is not before `wanted`.
 std::size_t first_from(std::span<const double> time_s, const TimeOrigin& origin, std::size_t begin,
@@ -59,17 +55,9 @@ TimePart::Rows TimePart::rows(std::span<const double> time_s, const TimeOrigin& 
 }
 
 void TimePart::refuse_empty(double first_s, double last_s, const std::string& name) const {
-  throw std::runtime_error(name + ": nothing between --from" + (from.text.empty() ? "" : " " + from.text) +
-                           " and --to" + (to.text.empty() ? "" : " " + to.text) + ", expected times within " +
-                           told_time(first_s) + " … " + told_time(last_s) + " s");
-}
-
-std::size_t TimePart::cut(Samples& time_s, const TimeOrigin& origin, std::span<Samples* const> columns,
-                          const std::string& name) const {
-  const Rows kept = rows(time_s, origin, name);
-  keep(kept, time_s);
-  for (Samples* const column : columns) keep(kept, *column);
-  return kept.begin;
+  throw refusal("{}: nothing between --from{} and --to{}, expected times within {} … {} s", name,
+                from.text.empty() ? "" : " " + from.text, to.text.empty() ? "" : " " + to.text,
+                told_time(first_s), told_time(last_s));
 }
 
 }  // namespace ifog::tools

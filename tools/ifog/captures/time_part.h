@@ -8,7 +8,6 @@
 #include <string>
 
 #include "drivers/capture/times/time_stamps.h"
-#include "filters/series/samples.h"
 #include "tools/ifog/console/options/command.h"
 
 namespace ifog::tools {
@@ -36,11 +35,6 @@ struct TimePart {
                           const std::string& name) const;
   // Throws the same error for times that were not kept.
   [[noreturn]] void refuse_empty(double first_s, double last_s, const std::string& name) const;
-
-  // Drops the rows outside; returns the previous number. name: for messages; columns: as long as the times,
-  // or empty. Throws std::runtime_error with one line if no row is inside.
-  std::size_t cut(Samples& time_s, const TimeOrigin& origin, std::span<Samples* const> columns,
-                  const std::string& name) const;
 };
 
 }  // namespace ifog::tools

@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <span>
-#include <stdexcept>
 
 #include "drivers/capture/columns/column_names.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/units/told_time.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -22,8 +22,7 @@ void tell_missing(const std::string& name, const std::string& axis, const Captur
   const auto missing = static_cast<std::size_t>(std::ranges::count_if(rate, none));
   if (missing == 0) return;
   const auto first = static_cast<std::size_t>(std::find_if(rate.begin(), rate.end(), none) - rate.begin());
-  warn("%s: %s\n", name.c_str(),
-       missing_in_words(rate_of(axis), missing, rate.size(), capture.shown_time_s(first)).c_str());
+  warn("{}: {}\n", name, missing_in_words(rate_of(axis), missing, rate.size(), capture.shown_time_s(first)));
 }
 
 bool has_value(std::span<const double> values) {
@@ -42,8 +41,8 @@ bool repeats_one_value(std::span<const double> values) {
 
 void tell_stuck(const std::string& name, const std::string& axis, std::span<const double> rate) {
   const double value = *std::find_if(rate.begin(), rate.end(), [](double v) { return !std::isnan(v); });
-  warn("%s: %s is %.6g rad/s in all of its %zu rows: the axis is stuck, and dropped\n", name.c_str(),
-       rate_of(axis).c_str(), value, rate.size());
+  warn("{}: {} is {:.6g} rad/s in all of its {} rows: the axis is stuck, and dropped\n", name, rate_of(axis),
+       value, rate.size());
 }
 
 // Unusable axes of one capture.
@@ -83,7 +82,7 @@ std::string missing_in_words(const std::string& column, std::size_t missing, std
 }
 
 void tell_left_out(const std::string& name, const std::string& column, std::size_t rows) {
-  warn("%s: %s is missing in all %zu rows: the axis is dropped\n", name.c_str(), column.c_str(), rows);
+  warn("{}: {} is missing in all {} rows: the axis is dropped\n", name, column, rows);
 }
 
 std::string expected_axes(const std::vector<std::string>& axes) {
@@ -94,8 +93,7 @@ std::string expected_axes(const std::vector<std::string>& axes) {
 }
 
 void refuse_without_rates(const std::string& name, std::size_t rows) {
-  throw std::runtime_error(name + ": no axis has a value in any of " + std::to_string(rows) +
-                           " rows, expected rates");
+  throw refusal("{}: no axis has a value in any of {} rows, expected rates", name, rows);
 }
 
 std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
@@ -107,8 +105,7 @@ std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
   for (std::size_t c = 0; c < captures.size(); ++c) {
     CaptureView left = captures[c];
     leave_out(all, left);
-    if (left.axes.empty())
-      throw std::runtime_error(names[c] + ": no axis is left that can be used in every capture");
+    if (left.axes.empty()) throw refusal("{}: no axis is left that can be used in every capture", names[c]);
   }
   return all;
 }
@@ -125,16 +122,7 @@ void leave_out(const std::vector<std::string>& axes, CaptureView& capture) {
   }
 }
 
-void keep_usable_axes(std::vector<CaptureView>& captures, const std::vector<std::string>& names) {
-  const std::vector<std::string> out = unusable_axes(captures, names);
-  for (CaptureView& capture : captures) leave_out(out, capture);
-}
-
-void keep_usable_axes(CaptureView& capture, const std::string& name) {
-  leave_out(unusable(capture, name), capture);
-}
-
-void keep_usable_axes(LongTable& table, const std::string& name) {
+void leave_out_dead_axes(LongTable& table, const std::string& name) {
   std::string axis;
   std::size_t rates = 0, alive = 0;
   for (const LongColumn& column : table.columns)

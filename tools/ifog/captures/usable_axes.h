@@ -30,11 +30,10 @@ std::string expected_axes(const std::vector<std::string>& axes);
 // left.
 std::vector<std::string> unusable_axes(const std::vector<CaptureView>& captures,
                                        const std::vector<std::string>& names);
+// Drops these axes.
 void leave_out(const std::vector<std::string>& axes, CaptureView& capture);
 
-// Drops the unusable axes. Of a table only those without values: `denoise` behaves as the daemon.
-void keep_usable_axes(std::vector<CaptureView>& captures, const std::vector<std::string>& names);
-void keep_usable_axes(CaptureView& capture, const std::string& name);
-void keep_usable_axes(LongTable& table, const std::string& name);
+// Drops and reports the axes without values only: `denoise` behaves as the daemon.
+void leave_out_dead_axes(LongTable& table, const std::string& name);
 
 }  // namespace ifog::tools

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog compare: every adaptation rule on one capture, with the same settings.
 #include "filters/compare/compare.h"
-#include "filters/units/told_time.h"
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
@@ -34,6 +35,7 @@
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/options/filter_options.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/tune/rest_columns.h"
 #include "tools/report/picture.h"
@@ -128,7 +130,7 @@ json settings_json(const FilterSettings& s) {
 json row_json(const ComparisonRow& row, const std::string& axis, const FilterSettings& settings) {
   json adev = json::object();
   for (std::size_t i = 0; i < kComparedTaus.size(); ++i)
-    adev[formatted("%g", kComparedTaus[i])] = as_json(row.adev_radps[i]);
+    adev[fmt::format("{:g}", kComparedTaus[i])] = as_json(row.adev_radps[i]);
   json out{{"rule", row.rule},
            {"axis", axis},
            {"settings", settings_json(settings)},
@@ -154,52 +156,49 @@ json row_json(const ComparisonRow& row, const std::string& axis, const FilterSet
   return out;
 }
 
-std::string figure_cell(const std::optional<double>& value, double scale, const char* format) {
+std::string figure_cell(const std::optional<double>& value, double scale, fmt::format_string<double> format) {
   if (!value || !std::isfinite(*value)) return "-";
-  return formatted(format, *value * scale);
+  return fmt::format(format, *value * scale);
 }
 
 void print_axis(const Comparison& result, int axis, bool reference, const Verdict& verdict) {
-  say("%-10s %7s %10s", "rule", "above", "std");
-  for (const double tau : kComparedTaus) say(" %9s", formatted("ADEV %gs", tau).c_str());
-  if (reference) say(" %10s %10s %8s", "RMSE", "bias", "lag s");
-  say(" %11s %8s %7s %7s %6s %7s %7s\n", "heading deg", "max", "at rest", "lag-1", "NIS", "20s 90%",
-      "5s 90%");
+  say("{:<10} {:>7} {:>10}", "rule", "above", "std");
+  for (const double tau : kComparedTaus) say(" {:>9}", fmt::format("ADEV {:g}s", tau));
+  if (reference) say(" {:>10} {:>10} {:>8}", "RMSE", "bias", "lag s");
+  say(" {:>11} {:>8} {:>7} {:>7} {:>6} {:>7} {:>7}\n", "heading deg", "max", "at rest", "lag-1", "NIS",
+      "20s 90%", "5s 90%");
   std::size_t rule = 0;
   for (const ComparisonRow& row : result.rows) {
     if (row.axis != axis) continue;
     const bool is_rule = row.rule != "raw";
-    say("%-10s %7s %10s", row.rule.c_str(),
-        is_rule ? figure_cell(verdict.above[rule++], 100.0, "%.2g %%").c_str() : "",
-        figure_cell(row.std_radps, 1.0 / kDegreePerHour, "%.4g").c_str());
+    say("{:<10} {:>7} {:>10}", row.rule, is_rule ? figure_cell(verdict.above[rule++], 100.0, "{:.2g} %") : "",
+        figure_cell(row.std_radps, 1.0 / kDegreePerHour, "{:.4g}"));
     for (const auto& value : row.adev_radps)
-      say(" %9s", figure_cell(value, 1.0 / kDegreePerHour, "%.4g").c_str());
+      say(" {:>9}", figure_cell(value, 1.0 / kDegreePerHour, "{:.4g}"));
     if (reference)
-      say(" %10s %10s %8s", figure_cell(row.rmse_radps, 1.0 / kDegreePerHour, "%.4g").c_str(),
-          figure_cell(row.bias_radps, 1.0 / kDegreePerHour, "%.3g").c_str(),
-          figure_cell(row.lag_s, 1.0, "%.4f").c_str());
+      say(" {:>10} {:>10} {:>8}", figure_cell(row.rmse_radps, 1.0 / kDegreePerHour, "{:.4g}"),
+          figure_cell(row.bias_radps, 1.0 / kDegreePerHour, "{:.3g}"), figure_cell(row.lag_s, 1.0, "{:.4f}"));
     if (!is_rule) {
       say("\n");
       continue;
     }
-    say(" %11.2e %8.1e %7.3f %7s %6s %7s %7s\n", row.heading_end_rad / kDegree, row.heading_max_rad / kDegree,
-        row.share_at_rest, figure_cell(row.whiteness_lag1, 1.0, "%.3f").c_str(),
-        figure_cell(row.nis_typical, 1.0, "%.2f").c_str(),
-        figure_cell(row.step[0].samples, 1.0, "%.0f").c_str(),
-        figure_cell(row.step[1].samples, 1.0, "%.0f").c_str());
+    say(" {:11.2e} {:8.1e} {:7.3f} {:>7} {:>6} {:>7} {:>7}\n", row.heading_end_rad / kDegree,
+        row.heading_max_rad / kDegree, row.share_at_rest, figure_cell(row.whiteness_lag1, 1.0, "{:.3f}"),
+        figure_cell(row.nis_typical, 1.0, "{:.2f}"), figure_cell(row.step[0].samples, 1.0, "{:.0f}"),
+        figure_cell(row.step[1].samples, 1.0, "{:.0f}"));
   }
 }
 
 std::vector<Verdict> print_axes(const CaptureView& capture, const Comparison& result, bool moves) {
   std::vector<Verdict> verdicts;
   for (std::size_t a = 0; a < capture.axes.size(); ++a) {
-    if (!capture.axes[a].empty()) say("\naxis %s\n", capture.axes[a].c_str());
+    if (!capture.axes[a].empty()) say("\naxis {}\n", capture.axes[a]);
     Verdict& verdict = verdicts.emplace_back(verdict_of(result, static_cast<int>(a)));
     if (moves && verdict.figure != "rmse_radps")
       verdict.text =
           "not judged: the rule that removes most motion would be best; expected rest, or a reference";
     print_axis(result, static_cast<int>(a), !capture.reference_rate_radps[a].empty(), verdict);
-    say("%s\n", verdict.text.c_str());
+    say("{}\n", verdict.text);
   }
   return verdicts;
 }
@@ -243,12 +242,11 @@ void run_compare(const CompareArguments& options) {
   });
   read.cut(options.part, options.capture);
   CaptureView capture = read.view();
-  keep_usable_axes(capture, options.capture);
+  leave_out(unusable_axes({capture}, {options.capture}), capture);
   ComparisonInput in;
   in.time_s = capture.time_s;
   if (capture.size() < 16)
-    throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
-                             " rows, expected at least 16");
+    throw refusal("{}: {} rows, expected at least 16", options.capture, capture.size());
   in.period_s = sample_clock(capture.time_s).period_s;
   const Motion motion = motion_of(capture, in.period_s);
   if (motion.left_out) in.at_rest = motion.rest.at_rest;
@@ -268,22 +266,22 @@ void run_compare(const CompareArguments& options) {
   const Comparison result = compare_rules(in, compare);
 
   const FilterSettings& s = compare.settings;
-  say("%s: %zu samples at %.6g Hz; state %s, Q %.4g (rad/s)^2/s, R %.4g (rad/s)^2, window %d\n",
-      options.capture.c_str(), capture.size(), 1.0 / in.period_s, s.state.c_str(), s.process_noise,
-      s.measurement_noise, s.window);
-  if (!motion.words.empty()) say("note: %s\n", motion.words.c_str());
+  say("{}: {} samples at {:.6g} Hz; state {}, Q {:.4g} (rad/s)^2/s, R {:.4g} (rad/s)^2, window {}\n",
+      options.capture, capture.size(), 1.0 / in.period_s, s.state, s.process_noise, s.measurement_noise,
+      s.window);
+  if (!motion.words.empty()) say("note: {}\n", motion.words);
   say("above: what the verdict's figure is more than the best rule's; rates in deg/h; heading: integral of "
       "denoised - compensated; at rest: share of samples outside\n"
       "manoeuvres, and of their innovations lag-1: correlation, NIS: squares over their variance, median "
       "over\n"
-      "that of a normal law; steps of 20 and 5 sigma in samples to 90 %%\n");
+      "that of a normal law; steps of 20 and 5 sigma in samples to 90 %\n");
   const std::vector<Verdict> verdicts =
       print_axes(capture, result, !motion.words.empty() && !motion.left_out);
   if (!options.json_file.empty())
     write_comparison(options, capture, in.period_s, motion, result, s, verdicts);
   if (!options.plot_file.empty()) {
     draw_comparison(options.plot_file, capture, result, compare.rules, verdicts);
-    say("picture: %s\n", options.plot_file.c_str());
+    say("picture: {}\n", options.plot_file);
   }
 }
 
@@ -298,8 +296,7 @@ void add_compare(const Command& program) {
   command.add_option("--model", options->model, "model file whose [filter] gives the settings");
   command.add_option("--json", options->json_file, "write the figures as JSON");
   command.add_option("--plot", options->plot_file, "write a picture, .svg or .png")
-      .check(report::wrong_picture_name)
-      .type_name("FILE");
+      .check(report::wrong_picture_name);
   options->input.add_to(command);
   options->part.add_to(command);
   add_filter_options(command, options->choice, false);

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/compare/verdict.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <optional>
 
 #include "filters/units/field_units.h"
-#include "filters/units/told_time.h"
 
 namespace ifog::tools {
 namespace {
@@ -54,15 +55,15 @@ Verdict verdict_of(const Comparison& result, int axis) {
     if (above > kAlike) ++others;
     if (above <= kAlike && r - 1 != out.best) alike += (alike.empty() ? "" : ", ") + rows[r]->rule;
   }
-  out.text = formatted("%s: %s %.4g °/h, raw %.4g", rows[out.best + 1]->rule.c_str(), figure.words,
-                       out.best_radps / kDegreePerHour, out.raw_radps / kDegreePerHour);
+  out.text = fmt::format("{}: {} {:.4g} °/h, raw {:.4g}", rows[out.best + 1]->rule, figure.words,
+                         out.best_radps / kDegreePerHour, out.raw_radps / kDegreePerHour);
   out.text =
       (out.best_radps < out.raw_radps ? "best is " : "none is better than raw, the best rule is ") + out.text;
   if (others == 0)
-    out.text += formatted("; all rules within %.2g %% of it", 100.0 * most);
+    out.text += fmt::format("; all rules within {:.2g} % of it", 100.0 * most);
   else
     out.text += (alike.empty() ? "" : "; within 1 % of it " + alike) +
-                formatted("; others up to %.3g %% above", 100.0 * most);
+                fmt::format("; others up to {:.3g} % above", 100.0 * most);
   return out;
 }
 

@@ -5,22 +5,17 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
-#include <memory>
 #include <new>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "daemon/config/version_text.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
-#include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
-#include "tools/ifog/console/options/describe.h"
-#include "tools/ifog/console/options/help_text.h"
-#include "tools/ifog/console/options/usage_error.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/options/parser_texts.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -31,21 +26,6 @@ std::vector<std::string> words;
 
 // Exit code of a shell for a program that SIGPIPE ended.
 constexpr int kEndedBySigpipe = 128 + 13;
-
-class HelpFormat final : public CLI::Formatter {
- public:
-  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
-    return broken_lines(Formatter::make_help(app, std::move(name), mode), column_width_, help_width());
-  }
-};
-
-}  // namespace
-
-std::string typed_command() { return typed; }
-
-std::vector<std::string> typed_words() { return words; }
-
-namespace {
 
 // `ifog help [command]` is `ifog [command] --help`; the parser rejects unknown commands.
 std::vector<std::string> with_help_as_option(const CLI::App& app, int argc, char** argv) {
@@ -67,13 +47,13 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   for (int i = 1; i < argc; ++i) typed += " " + shell_word(argv[i]);
   CLI::App app{"ifog: Allan analysis, denoising, diagnosis, replay and monitoring of fibre-optic gyros",
                "ifog"};
-  app.formatter(std::make_shared<HelpFormat>());
+  app.formatter(help_format());
   app.require_subcommand(1);
   app.set_version_flag("--version", version_text("ifog"));
   app.add_flag_callback(
       "--describe",
       [&app] {
-        say("%s", describe(app).c_str());
+        say("{}", describe(app));
         throw CLI::Success();
       },
       "Print every command with its options as JSON and exit");
@@ -87,15 +67,15 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
   int status = 0;
   try {
     app.parse(count, arguments.data());
-    if (const std::string written = written_in_words(); !written.empty()) say("%s\n", written.c_str());
+    if (const std::string written = written_in_words(); !written.empty()) say("{}\n", written);
   } catch (const CLI::ParseError& error) {
     std::ostringstream out, complaint;  // the parser treats --help and --version as errors too
     status = app.exit(error, out, complaint) == 0 ? 0 : 2;
-    say("%s", out.str().c_str());
-    if (status != 0) warn("%s", usage_error(app, count, arguments.data(), error.what()).c_str());
+    say("{}", out.str());
+    if (status != 0) warn("{}", usage_error(app, count, arguments.data(), error.what()));
   } catch (const WrongUsage& error) {
     status = 2;
-    warn("%s", usage_error(app, count, arguments.data(), error.what()).c_str());
+    warn("{}", usage_error(app, count, arguments.data(), error.what()));
   } catch (const Failed&) {
     status = 1;
   }
@@ -104,6 +84,10 @@ int parse_and_run(int argc, char** argv, std::span<const AddCommand> commands) {
 }
 
 }  // namespace
+
+std::string typed_command() { return typed; }
+
+std::vector<std::string> typed_words() { return words; }
 
 // Every exception of a command ends here: one line and exit code 1.
 int run_command_line(int argc, char** argv, std::span<const AddCommand> commands) {
@@ -115,7 +99,7 @@ int run_command_line(int argc, char** argv, std::span<const AddCommand> commands
   } catch (const ReaderGone&) {
     return kEndedBySigpipe;
   } catch (const std::exception& error) {
-    warn("ifog: %s\n", printable(error.what(), kLongestMessage).c_str());
+    warn("ifog: {}\n", printable(error.what(), kLongestMessage));
   } catch (...) {
     warn("ifog: failed for an unknown reason\n");
   }

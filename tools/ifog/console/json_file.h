@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The --json option of every command.
+// JSON as text, and the --json option of every command.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -9,10 +9,15 @@
 
 namespace ifog::tools {
 
-// Invalid UTF-8 in names from files becomes U+FFFD.
+// NaN and infinity become null, invalid UTF-8 in names from files U+FFFD. indent: −1 for a single line.
+template <typename Json>
+std::string json_text(const Json& json, int indent = 2) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 template <typename Json>
 void write_json(const std::string& path, const Json& json, int indent = 2) {
-  write_file(path, json.dump(indent, ' ', false, Json::error_handler_t::replace) + "\n");
+  write_file(path, json_text(json, indent) + "\n");
 }
 
 }  // namespace ifog::tools

@@ -8,7 +8,6 @@
 //   }
 #pragma once
 
-#include <cmath>
 #include <concepts>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -21,7 +20,7 @@ namespace ifog::tools {
 template <typename T, typename Of>
 concept Is = std::same_as<std::remove_const_t<T>, Of>;
 
-// NaN and infinity become null; for a bound, null means unbounded.
+// The library writes NaN and infinity as null; for a bound, null means unbounded.
 class FieldsWriter {
  public:
   template <typename T>
@@ -40,8 +39,6 @@ class FieldsWriter {
       FieldsWriter io;
       fields(io, value);
       return io.json;
-    } else if constexpr (std::floating_point<T>) {
-      return std::isfinite(value) ? nlohmann::ordered_json(value) : nlohmann::ordered_json(nullptr);
     } else {
       return value;
     }
@@ -105,6 +102,14 @@ class FieldsReader {
 template <typename T>
 nlohmann::ordered_json as_json(const T& value) {
   return FieldsWriter::of(value);
+}
+
+// The schema's name, followed by the fields of `what`.
+template <typename T>
+nlohmann::ordered_json with_schema(const char* schema, const T& what) {
+  nlohmann::ordered_json out{{"schema", schema}};
+  out.update(as_json(what));
+  return out;
 }
 
 template <typename T>

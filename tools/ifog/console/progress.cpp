@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/console/progress.h"
 
+#include <fmt/core.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
+#include <condition_variable>
 #include <cstdio>
 #include <exception>
+#include <mutex>
 #include <system_error>
+#include <utility>
 
 #include "drivers/ifog/quoted.h"
 
@@ -17,7 +20,7 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr std::chrono::milliseconds kQuiet = 1s, kBetween = 250ms, kLeastPause = 100ms;
+constexpr std::chrono::milliseconds kQuiet = 1s, kBetween = 250ms;
 
 std::mutex line;           // of the terminal
 bool bar_on_line = false;  // guarded by `line`
@@ -27,69 +30,53 @@ double seconds(Progress::Clock::duration span) { return std::chrono::duration<do
 
 }  // namespace
 
-Progress::Progress(const std::string& what, std::size_t total, Between between)
+Progress::Progress(const std::string& what, std::size_t total)
     : outer_(innermost.exchange(this)),
       what_(printable(what)),  // may contain an axis name from the capture
-      terminal_(isatty(STDERR_FILENO) == 1),
       start_(Clock::now()),
-      total_(total),
-      step_(start_),
-      drawn_at_(start_) {
-  if (!terminal_ || between != Between::redraw) return;
+      total_(total) {
+  if (isatty(STDERR_FILENO) != 1) return;
   try {
-    between_ = std::thread([this] { redraw_between(); });
+    drawing_ = std::jthread([this](const std::stop_token& end) { redraw(end); });
   } catch (const std::system_error&) {
-    // Without a thread, only at() redraws.
+    // Without a thread nothing is drawn.
   }
 }
 
 Progress::~Progress() {
-  if (between_.joinable()) {
-    {
-      const std::lock_guard lock(mutex_);
-      end_ = true;
-    }
-    ended_.notify_all();
-    between_.join();
-  }
+  drawing_ = {};
   innermost = outer_;
-  if (drawn_) clear_progress();
+  clear_progress();
 }
 
 // If memory for drawing is exhausted, this thread must not end the program.
-void Progress::redraw_between() noexcept try {
-  std::unique_lock lock(mutex_);
-  if (ended_.wait_for(lock, kQuiet, [this] { return end_; })) return;
-  do draw(Clock::now());
-  while (!ended_.wait_for(lock, kBetween, [this] { return end_; }));
+void Progress::redraw(const std::stop_token& end) noexcept try {
+  std::mutex mutex;
+  std::condition_variable_any ended;
+  std::unique_lock lock(mutex);
+  std::size_t before = 0;
+  for (Clock::time_point step = start_;
+       !ended.wait_for(lock, end, kBetween, [&] { return end.stop_requested(); });) {
+    const Clock::time_point now = Clock::now();
+    const std::size_t done = done_;
+    if (std::exchange(before, done) != done) step = now;
+    if (now - start_ >= kQuiet && innermost == this) draw(now, step, done);
+  }
 } catch (const std::exception&) {
 }
 
-void Progress::at(std::size_t done, std::size_t total) {
-  if (!terminal_) return;
-  const auto now = Clock::now();
-  const std::lock_guard lock(mutex_);
-  if (done != done_) step_ = now;
-  done_ = done;
-  total_ = total;
-  if (now - start_ >= kQuiet) draw(now);
-}
-
-void Progress::draw(Clock::time_point now) {
-  if (innermost != this || (drawn_ && now - drawn_at_ < kLeastPause)) return;
-  drawn_at_ = now;
-  drawn_ = true;
+// step: when `done` was reached.
+void Progress::draw(Clock::time_point now, Clock::time_point step, std::size_t done) const {
   std::string text = what_;
-  if (total_ > 0) {
+  const std::size_t total = total_;
+  if (total > 0) {
     constexpr std::size_t kWidth = 30;
-    const double share = std::min(1.0, static_cast<double>(done_) / static_cast<double>(total_));
+    const double share = std::min(1.0, static_cast<double>(done) / static_cast<double>(total));
     const auto filled = static_cast<std::size_t>(share * static_cast<double>(kWidth));
-    text += " [" + std::string(filled, '#') + std::string(kWidth - filled, '.') + "] " +
-            std::to_string(static_cast<int>(100.0 * share)) + " %";
+    text += fmt::format(" [{:.<{}}] {} %", std::string(filled, '#'), kWidth, static_cast<int>(100.0 * share));
   }
-  const std::string left = time_left(seconds(step_ - start_), seconds(now - step_), done_, total_);
-  text +=
-      ", " + (left.empty() ? std::to_string(static_cast<long>(seconds(now - start_))) + " s so far" : left);
+  const std::string left = time_left(seconds(step - start_), seconds(now - step), done, total);
+  text += left.empty() ? fmt::format(", {:.0f} s so far", std::floor(seconds(now - start_))) : ", " + left;
   const std::lock_guard lock(line);
   bar_on_line = true;
   std::fprintf(stderr, "\r%s\x1b[K", text.c_str());
@@ -110,12 +97,12 @@ std::string time_left(double until_step_s, double since_step_s, std::size_t done
       until_step_s * static_cast<double>(total - done) / static_cast<double>(done) - since_step_s;
   if (left_s <= 0.0) return "";
   const auto up_to = [&](double step) { return static_cast<long>(std::ceil(left_s / step)); };
-  if (left_s <= 20.0) return std::to_string(up_to(1.0)) + " s left";
-  if (left_s <= 90.0) return std::to_string(up_to(5.0) * 5) + " s left";
+  if (left_s <= 20.0) return fmt::format("{} s left", up_to(1.0));
+  if (left_s <= 90.0) return fmt::format("{} s left", up_to(5.0) * 5);
   const long minutes = up_to(60.0);
-  if (minutes < 60) return std::to_string(minutes) + " min left";
-  return std::to_string(minutes / 60) + " h" +
-         (minutes % 60 == 0 ? "" : " " + std::to_string(minutes % 60) + " min") + " left";
+  if (minutes < 60) return fmt::format("{} min left", minutes);
+  if (minutes % 60 == 0) return fmt::format("{} h left", minutes / 60);
+  return fmt::format("{} h {} min left", minutes / 60, minutes % 60);
 }
 
 void clear_progress() {

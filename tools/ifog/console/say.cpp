@@ -8,19 +8,17 @@
 #include <array>
 #include <cerrno>
 #include <csignal>
-#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
-#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <vector>
 
 #include "drivers/ifog/quoted.h"
-#include "filters/units/told_time.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -50,19 +48,9 @@ void put(const std::string& text, std::FILE* where) {
 
 }  // namespace
 
-void say(const char* format, ...) {
-  std::va_list arguments;
-  va_start(arguments, format);
-  put(printable_lines(formatted_list(format, arguments)), people);
-  va_end(arguments);
-}
+void say_text(const std::string& text) { put(printable_lines(text), people); }
 
-void warn(const char* format, ...) {
-  std::va_list arguments;
-  va_start(arguments, format);
-  put(printable_lines(formatted_list(format, arguments)), stderr);
-  va_end(arguments);
-}
+void warn_text(const std::string& text) { put(printable_lines(text), stderr); }
 
 void data_to_standard_output(const std::string& option) {
   if (!data_option.empty())
@@ -95,7 +83,7 @@ void finish_saying() {
   if (std::fflush(stdout) != 0 && failure == 0) failure = errno;
   if (failure == EPIPE) throw ReaderGone();
   if (std::ferror(stdout) != 0 || failure != 0)
-    throw std::runtime_error("standard output: cannot write: " + std::generic_category().message(failure));
+    throw refusal("standard output: cannot write: {}", std::generic_category().message(failure));
 }
 
 void prepare_standard_streams() {

@@ -3,19 +3,33 @@
 // escaped, and text goes to standard error if data goes to standard output.
 #pragma once
 
+#include <fmt/core.h>
+
 #include <cstddef>
 #include <exception>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ifog::tools {
 
+// Writes text to standard output, or to standard error if data goes there.
+void say_text(const std::string& text);
+// Writes text to standard error.
+void warn_text(const std::string& text);
+
 // Prints to standard output, or to standard error if data goes there. Line ends are allowed; other control
 // characters are shown as \xNN. Use printable() for a name that may contain a line end.
-[[gnu::format(printf, 1, 2)]] void say(const char* format, ...);
+template <typename... Values>
+void say(fmt::format_string<Values...> format, Values&&... values) {
+  say_text(fmt::format(format, std::forward<Values>(values)...));
+}
 
 // To standard error: errors and warnings.
-[[gnu::format(printf, 1, 2)]] void warn(const char* format, ...);
+template <typename... Values>
+void warn(fmt::format_string<Values...> format, Values&&... values) {
+  warn_text(fmt::format(format, std::forward<Values>(values)...));
+}
 
 // Reserves standard output for the data of this option; say() then prints to standard error. Call it before
 // the first say(). Throws WrongUsage if another option has it.

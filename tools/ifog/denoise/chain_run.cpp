@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <memory>
-#include <stdexcept>
 #include <utility>
 
 #include "daemon/sensor/facts.h"
 #include "daemon/sensor/sensor_parts.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -20,12 +20,12 @@ std::unique_ptr<ChainParts> parts_of(const ChainSettings& settings, const std::s
     return made(settings);
   } catch (const ModelMisfit& misfit) {
     const std::string line = misfit.line > 0 ? ":" + std::to_string(misfit.line) : "";
-    throw std::runtime_error(model_path + line + ": " + misfit.what());
+    throw refusal("{}{}: {}", model_path, line, misfit.what());
   } catch (const std::exception& error) {
     ChainSettings without = settings;
     without.model.reset();
     static_cast<void>(made(without));  // throws if the model is not the cause
-    throw std::runtime_error(model_path + ": " + error.what());
+    throw refusal("{}: {}", model_path, error.what());
   }
 }
 
@@ -47,8 +47,8 @@ ChainSettings recording_settings(const OfflineSettings& settings, const DriverIn
                                  const std::string& path) {
   const ifog_description& description = driver.description();
   if (!(settings.sensor.nominal_rate_hz > 0.0) && !(description.nominal_rate_hz > 0.0))
-    throw std::runtime_error(path + ": driver " + driver.table().name +
-                             " does not know the sample rate, expected --rate HZ or --option rate_hz=HZ");
+    throw refusal("{}: driver {} does not know the sample rate, expected --rate HZ or --option rate_hz=HZ",
+                  path, driver.table().name);
   ChainSettings out = sensor_chain_settings(settings.sensor, description, settings.model);
   out.learned = settings.learned;
   out.since_power_up_s = settings.since_power_up_s;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog denoise: the daemon's signal chain over a capture or a recording.
+#include <fmt/core.h>
+
 #include <cmath>
 #include <cstdint>
 #include <memory>
@@ -34,8 +36,9 @@
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/options/filter_options.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/denoise_picture.h"
 #include "tools/ifog/denoise/denoise_settings.h"
@@ -104,22 +107,21 @@ void tell_unusable(const std::string& name, const DenoisedRows& rows, const Offl
     const DenoisedRows::AxisMoments& axis = rows.moments(a);
     const std::string column = result.axes[a].empty() ? "rate" : "rate_" + result.axes[a];
     const std::string missing = missing_in_words(column, axis.missing, rows.written(), axis.first_missing_s);
-    if (!missing.empty()) warn("%s: %s\n", name.c_str(), missing.c_str());
+    if (!missing.empty()) warn("{}: {}\n", name, missing);
     if (axis.stuck > 0)
       warn(
-          "%s: %s repeats one value in %zu of %zu rows, stuck, at full scale or finer than its steps: no "
+          "{}: {} repeats one value in {} of {} rows, stuck, at full scale or finer than its steps: no "
           "measurement "
           "there\n",
-          name.c_str(), column.c_str(), axis.stuck, rows.written());
+          name, column, axis.stuck, rows.written());
   }
   const IncrementerCounts& counts = result.counts;
   for (const std::string& line :
        not_measured_in_words(counts.saturated, counts.implausible, counts.ambiguous))
-    warn("%s: %s\n", name.c_str(), line.c_str());
+    warn("{}: {}\n", name, line);
   if (result.model.empty()) return;
   const auto of_model = [&](std::uint64_t samples, const char* what) {
-    if (samples != 0)
-      warn("%s: %llu samples %s\n", name.c_str(), static_cast<unsigned long long>(samples), what);
+    if (samples != 0) warn("{}: {} samples {}\n", name, samples, what);
   };
   of_model(rows.counts().stale,
            "without a value of a channel that the model wants, or with one too old: corrected with the last "
@@ -130,8 +132,8 @@ void tell_unusable(const std::string& name, const DenoisedRows& rows, const Offl
 
 void tell_axis(const std::string& axis, const DenoisedRows::AxisMoments& moments) {
   const std::string name = axis.empty() ? "" : "axis " + axis + ": ";
-  if (std::isnan(moments.raw.mean())) return say("%sno value\n", name.c_str());
-  say("%sstd raw %.4g, compensated %.4g, denoised %.4g deg/h\n", name.c_str(),
+  if (std::isnan(moments.raw.mean())) return say("{}no value\n", name);
+  say("{}std raw {:.4g}, compensated {:.4g}, denoised {:.4g} deg/h\n", name,
       moments.raw.deviation() / kDegreePerHour, moments.compensated.deviation() / kDegreePerHour,
       moments.denoised.deviation() / kDegreePerHour);
 }
@@ -145,7 +147,7 @@ std::string gaps_in_words(const OfflineResult& result) {
     out = std::to_string(counts.missing) + " more lost in " + std::to_string(counts.gaps) +
           (counts.gaps == 1 ? " gap" : " gaps");
   if (!one_run)
-    out += formatted(", %.6g s between %zu runs not recorded", result.between_runs_s, result.runs);
+    out += fmt::format(", {:.6g} s between {} runs not recorded", result.between_runs_s, result.runs);
   return out;
 }
 
@@ -155,51 +157,49 @@ void tell_not_as_published(const DenoiseOptions& options, const DenoisedRows& ro
   if (!options.config.empty()) return;
   if (result.not_as_published_from_s)
     warn(
-        "%s: from %s s on, until the filter has settled, this need not be what was published: the "
+        "{}: from {} s on, until the filter has settled, this need not be what was published: the "
         "recording lacks something there\n",
-        options.capture.c_str(), told_time(rows.origin().in_s(*result.not_as_published_from_s)).c_str());
+        options.capture, told_time(rows.origin().in_s(*result.not_as_published_from_s)));
   if (result.merged > 0)
     warn(
-        "%s: %llu samples, the first about %s s, were published as one with others (the ring was full): so "
+        "{}: {} samples, the first about {} s, were published as one with others (the ring was full): so "
         "many rows more than messages, and until the filter has settled behind each not what was published\n",
-        options.capture.c_str(), static_cast<unsigned long long>(result.merged),
-        told_time(rows.origin().in_s(result.merged_from_s.value_or(0.0))).c_str());
+        options.capture, result.merged, told_time(rows.origin().in_s(result.merged_from_s.value_or(0.0))));
 }
 
 void tell(const DenoiseOptions& options, const DenoisedRows& rows, const OfflineResult& result) {
-  for (const std::string& effect : result.left_out)
-    warn("%s: not corrected: %s\n", options.model.c_str(), effect.c_str());
+  for (const std::string& effect : result.left_out) warn("{}: not corrected: {}\n", options.model, effect);
   if (result.refused_clock)
-    warn("%s: the device's clock %s by arrivals and number of samples: not used once that was seen\n",
-         options.capture.c_str(), clock_speed(*result.refused_clock).c_str());
+    warn("{}: the device's clock {} by arrivals and number of samples: not used once that was seen\n",
+         options.capture, clock_speed(*result.refused_clock));
   if (result.counts.mixed > 0)
-    warn("%s: %llu samples come from two devices, mixed, and are dropped: which of them is wanted?\n",
-         options.capture.c_str(), static_cast<unsigned long long>(result.counts.mixed));
+    warn("{}: {} samples come from two devices, mixed, and are dropped: which of them is wanted?\n",
+         options.capture, result.counts.mixed);
   if (rows.none_filtered())
     warn(
-        "%s: %s: denoised is the compensated rate; expected a --model of 'ifog tune' at rest, or "
+        "{}: {}: denoised is the compensated rate; expected a --model of 'ifog tune' at rest, or "
         "--process-noise and --measurement-noise\n",
-        options.capture.c_str(),
+        options.capture,
         result.noise_known ? "these rows are before the noise is known"
         : static_cast<double>(result.counts.samples) < Walk::kStretch
             ? "4096 samples at rest are needed to learn the noise"
             : "no 4096 samples in a row are white (dither, lines, drift, motion)");
   tell_unusable(options.capture, rows, result);
   tell_not_as_published(options, rows, result);
-  say("%s: %zu samples at %g Hz, %s\n", options.capture.c_str(), rows.written(), result.sample_rate_hz,
-      gaps_in_words(result).c_str());
+  say("{}: {} samples at {:g} Hz, {}\n", options.capture, rows.written(), result.sample_rate_hz,
+      gaps_in_words(result));
   if (result.runs > 1 || result.exchanges > 0)
-    say("%zu run(s) of the daemon, model or filter exchanged %zu time(s): %s; at the end\n", result.runs,
+    say("{} run(s) of the daemon, model or filter exchanged {} time(s): {}; at the end\n", result.runs,
         result.exchanges,
         !options.config.empty()         ? "each run from its beginning, as configured"
         : options.overrides_recording() ? "each as it was, but for what the command line says"
                                         : "each as it was");
   const FilterSettings& filter = result.filter;
   if (rows.none_filtered())
-    say("filter %s, state %s: not run\n", filter.rule.c_str(), filter.state.c_str());
+    say("filter {}, state {}: not run\n", filter.rule, filter.state);
   else
-    say("filter %s, state %s, process noise %.4g (rad/s)^2/s, measurement noise %.4g (rad/s)^2%s\n",
-        filter.rule.c_str(), filter.state.c_str(), filter.process_noise, filter.measurement_noise,
+    say("filter {}, state {}, process noise {:.4g} (rad/s)^2/s, measurement noise {:.4g} (rad/s)^2{}\n",
+        filter.rule, filter.state, filter.process_noise, filter.measurement_noise,
         result.noise_learned ? " (from the first seconds of the capture)" : "");
   for (std::size_t a = 0; a < result.axes.size(); ++a) tell_axis(result.axes[a], rows.moments(a));
 }
@@ -225,7 +225,7 @@ void tell_other_rate(const DenoiseOptions& options, double rate_hz, const LongTa
   if (!(rate_hz > 0.0) || table.size() < 2) return;
   const double own_hz = 1.0 / median_step(table.time_s);
   if (std::abs(rate_hz / own_hz - 1.0) > kAlike)
-    warn("%s: %s is %g Hz, the capture's own times say %.6g Hz\n", options.capture.c_str(),
+    warn("{}: {} is {:g} Hz, the capture's own times say {:.6g} Hz\n", options.capture,
          options.nominal_rate_hz > 0.0 ? "--rate" : "the configuration's rate", rate_hz, own_hz);
 }
 
@@ -248,7 +248,7 @@ OfflineResult denoise_table(const DenoiseOptions& options, InputFile& capture, c
                             DenoisedRows& rows, const OfflineSink& sink) {
   LongTable table = options.input.read_long(capture);
   table.clean_and_tell(leave_out_placeholders, options.capture);
-  keep_usable_axes(table, options.capture);
+  leave_out_dead_axes(table, options.capture);
   rows.count_from(table.origin);
   OfflineSettings of = settings();
   tell_other_rate(options, of.sensor.nominal_rate_hz, table);
@@ -296,10 +296,10 @@ void run_denoise(DenoiseOptions options) {
              (kind == FileKind::lcm_log && options.input.has_driver())) {
     if (!options.input.has_driver()) {
       const std::string foreign = foreign_container(capture.head());
-      throw std::runtime_error(
-          options.capture + ": " +
-          (foreign.empty() ? "is no capture in columns, expected --driver NAME, --dbc FILE or --config F"
-                           : foreign));
+      throw refusal("{}: {}", options.capture,
+                    foreign.empty()
+                        ? "is no capture in columns, expected --driver NAME, --dbc FILE or --config F"
+                        : foreign);
     }
     DriverInstance driver = options.input.make_driver(folders);
     result = denoise_recording(options.input, capture, driver, settings(), sink);
@@ -330,23 +330,19 @@ void add_denoise(const Command& program) {
   command
       .add_option("-o,--output", options->output,
                   "CSV or HDF5 (.h5): time_s, raw, compensated, denoised, variance by axis")
-      .required()
-      .type_name("FILE");
+      .required();
   options->input.add_to(command);
   add_filter_options(command, options->filter);
   command.add_flag("--smooth", options->smooth,
                    "Add columns smoothed, smoothed_variance: from the whole recording, later samples too");
-  command.add_option("--model", options->model, "Model file of the sensor").type_name("FILE");
-  command
-      .add_option("--noise", options->noise,
-                  "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say")
-      .type_name("FILE");
-  command
-      .add_option("--config", options->config,
-                  "Take all settings from the daemon's configuration; of a flight recording else those it "
-                  "was recorded with")
-      .type_name("FILE");
-  command.add_option("--sensor", options->sensor, "Which sensor of the configuration").type_name("NAME");
+  command.add_option("--model", options->model, "Model file of the sensor");
+  command.add_option(
+      "--noise", options->noise,
+      "Noise that the daemon has learned (NAME.noise.toml), where neither settings nor model say");
+  command.add_option("--config", options->config,
+                     "Take all settings from the daemon's configuration; of a flight recording else those it "
+                     "was recorded with");
+  command.add_option("--sensor", options->sensor, "Which sensor of the configuration");
   command
       .add_option("--rate", options->nominal_rate_hz,
                   "Nominal sample rate, Hz; else the driver's or the capture's")
@@ -366,10 +362,8 @@ void add_denoise(const Command& program) {
       .type_name("S");
   options->part.add_to(command, "Write nothing before this time, s; filter from the beginning",
                        "Write nothing from this time on, s");
-  command.add_option("--json", options->json, "Summary as JSON").type_name("FILE");
-  command.add_option("--plot", options->picture, "Picture, .svg or .png")
-      .check(report::wrong_picture_name)
-      .type_name("FILE");
+  command.add_option("--json", options->json, "Summary as JSON");
+  command.add_option("--plot", options->picture, "Picture, .svg or .png").check(report::wrong_picture_name);
   command.callback([options] { run_denoise(*options); });
 }
 

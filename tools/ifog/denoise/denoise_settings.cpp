@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <stdexcept>
 #include <system_error>
 
 #include "daemon/sensor/sensor_parts.h"
@@ -13,6 +12,7 @@
 #include "filters/settings/filter_table.h"
 #include "tools/ifog/captures/configured_files.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/field/field.h"
 
 namespace ifog::tools {
@@ -24,9 +24,9 @@ const SensorConfig& chosen(const Config& config, const DenoiseOptions& options) 
         return options.sensor.empty() ? config.sensors.size() == 1 : sensor.name == options.sensor;
       });
   if (found != config.sensors.end()) return *found;
-  throw std::runtime_error(options.config + ": " +
-                           (options.sensor.empty() ? "has several sensors; expected --sensor NAME"
-                                                   : "has no sensor \"" + printable(options.sensor) + "\""));
+  throw refusal("{}: {}", options.config,
+                options.sensor.empty() ? "has several sensors; expected --sensor NAME"
+                                       : "has no sensor \"" + printable(options.sensor) + "\"");
 }
 
 void take_driver(const ConfiguredSensor& from, CaptureInput& input) {

@@ -6,22 +6,18 @@
 #include <span>
 #include <utility>
 
-#include "drivers/capture/times/row_sink.h"
 #include "tools/ifog/captures/usable_axes.h"
 
 namespace ifog::tools {
-
-constexpr std::size_t kRowsTogether = std::size_t{1} << 14U;  // rows per write
 
 DenoisedRows::DenoisedRows(std::string output, TimePart part, bool keep, bool smooth)
     : output_(std::move(output)), part_(std::move(part)), keep_(keep || smooth), smooth_(smooth) {}
 
 void DenoisedRows::begin(const std::vector<std::string>& axes) {
-  axes_ = axes;
   moments_.resize(axes.size());
   columns_.axes.resize(axes.size());
   std::vector<std::string> names{"time_s"};
-  for (const std::string& axis : axes_) {
+  for (const std::string& axis : axes) {
     const std::string suffix = (axis.empty() ? "" : "_" + axis) + "_";
     for (const char* const name : {"raw", "compensated", "denoised"})
       names.push_back(name + suffix + "radps");
@@ -30,21 +26,22 @@ void DenoisedRows::begin(const std::vector<std::string>& axes) {
     names.push_back("smoothed" + suffix + "radps");
     names.push_back("smoothed_variance" + suffix + "rad2ps2");
   }
-  pending_.resize(names.size());
   file_.emplace(output_, "", names);
 }
 
-void DenoisedRows::append(double value) { pending_[place_++].push_back(value); }
-
-void DenoisedRows::end_row() {
-  place_ = 0;
-  if (pending_.front().size() >= kRowsTogether) flush();
+std::vector<Samples*> DenoisedRows::written_columns() {
+  std::vector<Samples*> out{&columns_.time_s};
+  for (DenoisedAxis& axis : columns_.axes) {
+    out.insert(out.end(), {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance});
+    if (smooth_) out.insert(out.end(), {&axis.smoothed, &axis.smoothed_variance});
+  }
+  return out;
 }
 
-void DenoisedRows::flush() {
-  if (pending_.front().empty()) return;
-  file_->rows(std::vector<std::span<const double>>(pending_.begin(), pending_.end()), origin_);
-  for (std::vector<double>& column : pending_) column.clear();
+void DenoisedRows::write() {
+  std::vector<std::span<const double>> columns;
+  for (const Samples* const column : written_columns()) columns.emplace_back(*column);
+  file_->rows(columns, origin_);
 }
 
 void DenoisedRows::count(const ChainOutput& out) {
@@ -59,28 +56,26 @@ bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
   const double shown_s = origin_.in_s(time_s);
   if (extent_.rows++ == 0) extent_.first_s = shown_s;
   extent_.last_s = shown_s;
-  if (keep_) {
-    columns_.time_s.push_back(time_s);
-    columns_.dt_s.push_back(increment.dt_s);
-  }
   const bool begun = !part_.from.is_after(origin_, time_s);
   extent_.over = extent_.over || (begun && !part_.to.is_after(origin_, time_s));
   const bool inside = begun && !extent_.over;
   if (inside) {
     ++extent_.written;
     count(out);
-    if (!smooth_) append(time_s);
+  } else if (!smooth_) {  // which uses all rows
+    return false;
   }
-  for (std::size_t a = 0; a < axes_.size(); ++a) {
+  if (!begun) ++extent_.kept_before;
+  columns_.time_s.push_back(time_s);
+  if (smooth_) columns_.dt_s.push_back(increment.dt_s);
+  for (std::size_t a = 0; a < columns_.axes.size(); ++a) {
     const double raw = increment.rate_radps[a], compensated = out.compensated_radps[a],
-                 denoised = out.estimate.denoised_radps[a], variance = out.estimate.variance_rad2ps2[a];
-    if (keep_) {
-      DenoisedAxis& axis = columns_.axes[a];
-      axis.raw.push_back(raw);
-      axis.compensated.push_back(compensated);
-      axis.denoised.push_back(denoised);
-      axis.variance.push_back(variance);
-    }
+                 denoised = out.estimate.denoised_radps[a];
+    DenoisedAxis& axis = columns_.axes[a];
+    axis.raw.push_back(raw);
+    axis.compensated.push_back(compensated);
+    axis.denoised.push_back(denoised);
+    axis.variance.push_back(out.estimate.variance_rad2ps2[a]);
     if (!inside) continue;
     AxisMoments& of_axis = moments_[a];
     if (!std::isfinite(raw) && of_axis.missing++ == 0) of_axis.first_missing_s = shown_s;
@@ -88,10 +83,11 @@ bool DenoisedRows::add(double time_s, const Increment& increment, const ChainOut
     of_axis.raw.add(raw);
     of_axis.compensated.add(compensated);
     of_axis.denoised.add(denoised);
-    if (smooth_) continue;
-    for (const double value : {raw, compensated, denoised, variance}) append(value);
   }
-  if (inside && !smooth_) end_row();
+  if (!keep_ && columns_.time_s.size() == RowBatch::kRows) {
+    write();
+    for (Samples* const column : written_columns()) column->keep(0, 0);
+  }
   return inside;
 }
 
@@ -101,22 +97,10 @@ void DenoisedRows::finish(const std::string& name) {
         return axis.missing == extent_.written;
       }))
     refuse_without_rates(name, extent_.written);
-  if (keep_) {
-    std::vector<Samples*> all{&columns_.dt_s};
-    for (DenoisedAxis& axis : columns_.axes)
-      all.insert(all.end(), {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance, &axis.smoothed,
-                             &axis.smoothed_variance});
-    part_.cut(columns_.time_s, origin_, all, name);
-  }
-  for (std::size_t i = 0; smooth_ && i < columns_.time_s.size(); ++i) {
-    append(columns_.time_s[i]);
-    for (const DenoisedAxis& axis : columns_.axes)
-      for (const auto* const series : {&axis.raw, &axis.compensated, &axis.denoised, &axis.variance,
-                                       &axis.smoothed, &axis.smoothed_variance})
-        append((*series)[i]);
-    end_row();
-  }
-  flush();
+  if (smooth_)
+    for (Samples* const column : written_columns())
+      column->keep(extent_.kept_before, extent_.kept_before + extent_.written);
+  write();
   file_->finish();
 }
 

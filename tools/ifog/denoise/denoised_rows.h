@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes the chain's output for each sample at once; keeps rows only for a picture or for smoothing.
+// Writes the chain's output in blocks; keeps all rows only for a picture or for smoothing.
 #pragma once
 
 #include <cstdint>
@@ -38,8 +38,8 @@ class DenoisedRows {
     std::size_t stuck = 0;         // rows in which the chain finds that the sensor repeats one value
   };
 
-  // Writes the rows in `part`, CSV or HDF5 by the name. keep: also keeps the columns; smooth: writes nothing
-  // before finish().
+  // Writes the rows in `part`, CSV or HDF5 by the name. keep: keeps the columns, and writes nothing before
+  // finish(); smooth: the same with the rows outside of `part`, and with the smoothed columns.
   DenoisedRows(std::string output, TimePart part, bool keep, bool smooth);
 
   // Call it once, before the first sample.
@@ -49,7 +49,7 @@ class DenoisedRows {
   [[nodiscard]] const TimeOrigin& origin() const { return origin_; }
   // True if the sample is in the part.
   bool add(double time_s, const Increment& increment, const ChainOutput& out);
-  // The kept columns of all rows, after the last sample; smoothing fills the last two.
+  // The kept columns, after the last sample; smoothing fills the last two. After finish() those of the part.
   [[nodiscard]] DenoisedColumns& columns() { return columns_; }
   // Ends the rows of the part. name: of the capture. Throws std::runtime_error with one line if there are
   // none or none has a value, or as OutputFile does.
@@ -63,23 +63,22 @@ class DenoisedRows {
   [[nodiscard]] const AxisMoments& moments(std::size_t axis) const { return moments_[axis]; }
 
  private:
-  void append(double value);
-  void end_row();
-  void flush();
+  // In the order of the file.
+  std::vector<Samples*> written_columns();
+  // Writes the rows in columns_.
+  void write();
   void count(const ChainOutput& out);
 
   std::string output_;
   std::optional<ColumnWriter> file_;
   TimePart part_;
   bool keep_, smooth_;
-  std::vector<std::string> axes_;
-  std::vector<std::vector<double>> pending_;  // by column: rows of the next block
-  std::size_t place_ = 0;                     // of the next value in its row
-  DenoisedColumns columns_;
+  DenoisedColumns columns_;  // the rows of the next write; if they are kept, of all
   std::vector<AxisMoments> moments_;
   Counts counts_;
   struct Extent {
     std::size_t rows = 0, written = 0;
+    std::size_t kept_before = 0;  // rows before the part, for smoothing
     double first_s = 0.0, last_s = 0.0;
     bool over = false;  // after the end of the part
   } extent_;

@@ -151,8 +151,7 @@ OfflineResult denoise_flight(FlightInput& flight, DriverInstance& driver,
                                 [&](const FlightHeader& header) { chain.file(header); },
                                 [&](std::uint64_t) { chain.merged(); }};
   const RecordingCounts counts = flight.for_each_sample(driver, samples);
-  for (const std::string& loss : losses(counts))
-    warn("%s: %s\n", flight.header().sensor.c_str(), loss.c_str());
+  for (const std::string& loss : losses(counts)) warn("{}: {}\n", flight.header().sensor, loss);
   return chain.finish();
 }
 

@@ -43,9 +43,9 @@ void ModelTrial::tell(const std::string& capture) const {
     if (!shares_[axis] || !shares_[axis]->denied) continue;
     const std::string of_axis = axes_[axis].empty() ? "" : "axis " + axes_[axis] + ": ";
     warn(
-        "%s: %s%.0f ± %.0f %% of what the model corrects is in this capture, expected 100 %%: the effect "
+        "{}: {}{:.0f} ± {:.0f} % of what the model corrects is in this capture, expected 100 %: the effect "
         "only ran along with its channels when it was fitted; run ifog diagnose on both captures together\n",
-        capture.c_str(), of_axis.c_str(), 100.0 * shares_[axis]->share, 100.0 * shares_[axis]->share_error);
+        capture, of_axis, 100.0 * shares_[axis]->share, 100.0 * shares_[axis]->share_error);
   }
 }
 

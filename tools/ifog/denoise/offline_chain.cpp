@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <span>
-#include <stdexcept>
 #include <utility>
 
 #include "daemon/sensor/facts.h"
@@ -16,6 +15,7 @@
 #include "filters/model_file/channel_names.h"
 #include "filters/series/median_step.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/denoise/chain_run.h"
 
@@ -45,8 +45,7 @@ std::vector<std::size_t> chosen_channels(const LongTable& capture, const Capture
         (all || used(model, capture.columns[c].name)))
       out.push_back(c);
   if (out.size() > static_cast<std::size_t>(kMaxChannels))
-    throw std::runtime_error("the model uses " + std::to_string(out.size()) + " channels, expected at most " +
-                             std::to_string(kMaxChannels));
+    throw refusal("the model uses {} channels, expected at most {}", out.size(), kMaxChannels);
   return out;
 }
 
@@ -63,7 +62,7 @@ ChainSettings chain_settings_of(const LongTable& capture, const std::string& pat
   ChainSettings out;
   out.facts.axes = static_cast<int>(shape.axes.size());
   if (capture.size() < 2 && settings.sensor.nominal_rate_hz <= 0.0)
-    throw std::runtime_error(path + ": has fewer than 2 samples, expected more or --rate HZ");
+    throw refusal("{}: has fewer than 2 samples, expected more or --rate HZ", path);
   out.facts.nominal_rate_hz = settings.sensor.nominal_rate_hz > 0.0 ? settings.sensor.nominal_rate_hz
                                                                     : rate_of(capture.time_s, clock);
   out.facts.frame_channels = out.facts.channels = static_cast<int>(channels.size());
@@ -157,7 +156,7 @@ OfflineResult denoise_recording(const CaptureInput& input, InputFile& file, Driv
     if (const Increment* const increment = chain.run(reading, out))
       chain.count(sink.sample(times.now_s(), *increment, out));
   });
-  for (const std::string& loss : losses(counts)) warn("%s: %s\n", file.path().c_str(), loss.c_str());
+  for (const std::string& loss : losses(counts)) warn("{}: {}\n", file.path(), loss);
   return chain.finish();
 }
 

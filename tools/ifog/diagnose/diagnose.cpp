@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "drivers/capture/files/output_file.h"
-#include "filters/units/field_units.h"
 #include "tools/ifog/captures/capture_input.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/time_part.h"
@@ -19,8 +18,7 @@
 #include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/diagnose/diagnosis_json.h"
-#include "tools/ifog/diagnose/diagnosis_text.h"
+#include "tools/ifog/diagnose/axis_diagnosis.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/tune/noise_left.h"
 
@@ -33,7 +31,7 @@ struct DiagnoseArguments {
   std::vector<std::string> captures;
   std::string model, write_model, json, report;
   AxesToDiagnose wanted;
-  std::optional<double> since_power_up_s, latitude_deg;
+  std::optional<double> since_power_up_s;
   bool quiet = false;
 };
 
@@ -76,12 +74,10 @@ void run_diagnose(const DiagnoseArguments& arguments) {
     captures.push_back(read[c].view());
     leave_out(not_usable, captures.back());
   }
-  AxesToDiagnose wanted = arguments.wanted;
-  if (arguments.latitude_deg) wanted.latitude_rad = *arguments.latitude_deg * kDegree;
-  const std::vector<AxisDiagnosis> found = diagnose_axes(captures, arguments.captures, wanted);
+  const std::vector<AxisDiagnosis> found = diagnose_axes(captures, arguments.captures, arguments.wanted);
   if (!arguments.quiet) {
     for (const AxisDiagnosis& each : found)
-      say("%s%s", &each == &found.front() ? "" : "\n", diagnosis_text(each).c_str());
+      say("{}{}", &each == &found.front() ? "" : "\n", diagnosis_text(each));
   }
   if (!arguments.json.empty()) write_json(arguments.json, diagnosis_json(found));
   if (!arguments.write_model.empty()) {
@@ -89,7 +85,7 @@ void run_diagnose(const DiagnoseArguments& arguments) {
     const std::size_t longest = longest_of(captures);
     const std::string fitted = fit_noise_left(model, model_with({}, found, arguments.captures, hashes),
                                               captures[longest], arguments.captures[longest]);
-    if (!arguments.quiet && !fitted.empty()) say("\n%s\n", fitted.c_str());
+    if (!arguments.quiet && !fitted.empty()) say("\n{}\n", fitted);
     write_file(arguments.write_model, model_text(model));
   }
   if (arguments.quiet) forget_written_files();
@@ -118,29 +114,23 @@ void add_diagnose(const Command& program) {
   command.add_option("--json", arguments->json, "write the diagnosis as JSON");
   command.add_option("--report", arguments->report, "write the diagnosis as one self-contained HTML page");
   command
-      .add_option("--significance", arguments->wanted.significance,
+      .add_option("--significance", arguments->wanted.options.significance,
                   "chance of a false effect, after correction for all tried")
       .within(1e-9, 0.5)
       .shows_default();
   command
-      .add_option("--fit-from", arguments->wanted.fit_from,
+      .add_option("--fit-from", arguments->wanted.options.fit_from,
                   "fit from this share of each capture's time; the rest judges")
       .within(0.0, 0.9);
   command
-      .add_option("--fit-to", arguments->wanted.fit_to,
+      .add_option("--fit-to", arguments->wanted.options.fit_to,
                   "fit up to this share of each capture's time; the rest judges")
       .within(0.1, 1.0);
-  command.add_flag("--earth", arguments->wanted.earth,
-                   "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; "
-                   "otherwise it is shown");
-  command
-      .add_option("--latitude", arguments->latitude_deg,
-                  "of the captures, degrees: bounds what can be the Earth's rate")
-      .within(-90.0, 90.0);
-  command.add_flag("--allow-motion-channels", arguments->wanted.allow_motion_channels,
+  arguments->wanted.add_earth_to(command);
+  command.add_flag("--allow-motion-channels", arguments->wanted.options.allow_motion_channels,
                    "without a reference rate, too, trace error to channels that sense motion: what they "
                    "explain may be rotation");
-  command.add_flag("--allow-proxies", arguments->wanted.allow_proxies,
+  command.add_flag("--allow-proxies", arguments->wanted.options.allow_proxies,
                    "correct by coefficients beyond what makers specify, too");
   command.add_flag("--quiet", arguments->quiet, "no report on the console");
   command.callback([arguments] { run_diagnose(*arguments); });

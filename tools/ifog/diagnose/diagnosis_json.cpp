@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/diagnose/diagnosis_json.h"
+#include "tools/ifog/diagnose/axis_diagnosis.h"
 
 #include "filters/effects/form.h"
-#include "tools/ifog/console/listed_fields.h"
 #include "tools/report/coefficients.h"
 
 namespace ifog::tools {
@@ -28,7 +27,7 @@ Json noise_terms_json(const NoiseTerms& noise) {
   Json json = Json::object();
   const char* const names[] = {"Q_rad", "N_radps_rthz", "B_radps", "K_radps2_rthz", "R_radps2"};
   for (std::size_t i = 0; i < kNoiseTerms.size(); ++i)
-    if (const std::optional<double>& value = noise.*kNoiseTerms[i].second) json[names[i]] = as_json(*value);
+    if (const std::optional<double>& value = noise.*kNoiseTerms[i].second) json[names[i]] = *value;
   return json;
 }
 
@@ -38,9 +37,8 @@ Json effect_json(const FoundEffect& found) {
   if (found.effect.shown_only) json["subtracted"] = false;
   Json parameters = Json::object();
   for (const ModelParameter& parameter : found.effect.parameters) {
-    parameters[parameter.name] = {{"value", as_json(parameter.value)},
-                                  {"std_error", as_json(parameter.std_error)},
-                                  {"unit", parameter.unit}};
+    parameters[parameter.name] = {
+        {"value", parameter.value}, {"std_error", parameter.std_error}, {"unit", parameter.unit}};
   }
   json["parameters"] = parameters;
   if (has_channel(form_named(found.effect.form).value_or(Form::kLine))) {
@@ -54,9 +52,9 @@ Json effect_json(const FoundEffect& found) {
                      {"period", found.effect.period},
                      {"kind", found.effect.angle ? "angle_rad" : "rate_radps"}};
   }
-  json["p_value"] = as_json(found.p_value);
-  json["variance_explained"] = as_json(found.variance_explained);
-  json["likelihood_ratio"] = as_json(found.likelihood_ratio);
+  json["p_value"] = found.p_value;
+  json["variance_explained"] = found.variance_explained;
+  json["likelihood_ratio"] = found.likelihood_ratio;
   return json;
 }
 
@@ -64,29 +62,29 @@ Json alternative_json(const Indistinguishable& each) {
   Json json;
   json["effects"] = Json::array();
   for (const Effect& effect : each.effects) json["effects"].push_back(name_json(effect));
-  json["correlation"] = as_json(each.correlation);
+  json["correlation"] = each.correlation;
   json["separate_by"] = each.separate_by;
   return json;
 }
 
 Json figures_json(const std::map<std::string, double>& figures) {
   Json json = Json::object();
-  for (const auto& [name, value] : figures) json[name] = as_json(value);
+  for (const auto& [name, value] : figures) json[name] = value;
   return json;
 }
 
 Json unexplained_json(const Diagnosis& diagnosis) {
   const Unexplained& unexplained = diagnosis.unexplained;
-  Json json = {{"fraction", as_json(unexplained.fraction)},
-               {"means_s", as_json(unexplained.means_s)},
+  Json json = {{"fraction", unexplained.fraction},
+               {"means_s", unexplained.means_s},
                {"kind", unexplained.kind},
                {"hint", unexplained.hint}};
   if (unexplained.frequency_hz > 0.0) json["frequency_hz"] = unexplained.frequency_hz;
   if (!unexplained.times_s.empty()) json["times_s"] = unexplained.times_s;
   if (diagnosis.hysteresis) {
     json["channel"] = diagnosis.hysteresis->channel;
-    json["half_width"] = as_json(diagnosis.hysteresis->half_width);
-    json["coefficient"] = as_json(diagnosis.hysteresis->coefficient);
+    json["half_width"] = diagnosis.hysteresis->half_width;
+    json["coefficient"] = diagnosis.hysteresis->coefficient;
   }
   return json;
 }
@@ -98,9 +96,7 @@ Json heading_json(const HeadingPrediction& heading) {
 Json delays_json(const std::vector<ReferenceDelay>& delays) {
   Json json = Json::array();
   for (const ReferenceDelay& each : delays) {
-    json.push_back({{"capture", each.record},
-                    {"delay_s", as_json(each.delay_s)},
-                    {"std_error_s", as_json(each.std_error_s)}});
+    json.push_back({{"capture", each.record}, {"delay_s", each.delay_s}, {"std_error_s", each.std_error_s}});
   }
   return json;
 }
@@ -108,9 +104,7 @@ Json delays_json(const std::vector<ReferenceDelay>& delays) {
 Json delays_json(const std::vector<ChannelDelay>& delays) {
   Json json = Json::array();
   for (const ChannelDelay& each : delays)
-    json.push_back({{"channel", each.channel},
-                    {"delay_s", as_json(each.delay_s)},
-                    {"std_error_s", as_json(each.std_error_s)}});
+    json.push_back({{"channel", each.channel}, {"delay_s", each.delay_s}, {"std_error_s", each.std_error_s}});
   return json;
 }
 
@@ -152,9 +146,7 @@ Json diagnosis_json(const std::vector<AxisDiagnosis>& axes) {
   });
   list("effects", &Diagnosis::effects, [](const FoundEffect& found) { return effect_json(found); });
   put("bias", [](const Diagnosis& d) {
-    return d.bias ? Json{{"value", as_json(d.bias->value)},
-                         {"std_error", as_json(d.bias->std_error)},
-                         {"unit", "rad/s"}}
+    return d.bias ? Json{{"value", d.bias->value}, {"std_error", d.bias->std_error}, {"unit", "rad/s"}}
                   : Json(nullptr);
   });
   put("before", [](const Diagnosis& d) { return figures_json(d.before); });

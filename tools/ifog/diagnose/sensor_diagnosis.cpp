@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -27,6 +29,7 @@
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/report/pages/diagnosis_page.h"
 
 namespace ifog::tools {
@@ -110,8 +113,8 @@ void require_each_once(const std::vector<CaptureView>& captures, const std::vect
       if (!whole && common.rows <= kByChance) continue;
       const std::string where =
           whole ? "" : " from " + told_time(common.from_s) + " to " + told_time(common.to_s) + " s";
-      throw std::runtime_error(names[later] + ": holds the same samples as " + names[c] + where +
-                               ", expected each record once");
+      throw refusal("{}: holds the same samples as {}{}, expected each record once", names[later], names[c],
+                    where);
     }
 }
 
@@ -147,20 +150,31 @@ std::string vertical_rate(const CaptureView& capture, const std::vector<AxisDiag
   for (const AxisDiagnosis& each : found)
     variance = std::max(variance, mean_variance(each.diagnosis.noise_posterior, span_s));
   if (std::abs(up) > kEarth || variance > std::pow(0.1 * kEarth, 2)) return "";
-  return formatted(
-      "the rate along the mean specific force is %.3f °/h; if the sensor stood still, that is the "
-      "Earth's rate at latitude %.2f°",
+  return fmt::format(
+      "the rate along the mean specific force is {:.3f} °/h; if the sensor stood still, that is the "
+      "Earth's rate at latitude {:.2f}°",
       up / kDegreePerHour, std::asin(up / kEarth) / kDegree);
 }
 
 }  // namespace
+
+void AxesToDiagnose::add_earth_to(const Command& command) {
+  command.add_flag("--earth", options.subtract_earth_rate,
+                   "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; "
+                   "otherwise it is shown");
+  command
+      .add_taken<double>(
+          "--latitude", [this](double degrees) { options.latitude_rad = degrees * kDegree; },
+          "of the captures, degrees: bounds what can be the Earth's rate")
+      .within(-90.0, 90.0);
+}
 
 std::vector<Record> records_of(const std::vector<CaptureView>& captures,
                                const std::vector<std::string>& names, std::size_t axis) {
   std::vector<Record> records;
   for (std::size_t c = 0; c < captures.size(); ++c) {
     if (captures[c].axes != captures.front().axes)
-      throw std::runtime_error(names[c] + ": has other axes than " + names[0]);
+      throw refusal("{}: has other axes than {}", names[c], names[0]);
     records.push_back(record_of(captures[c], names[c], axis));
   }
   return records;
@@ -203,21 +217,13 @@ std::vector<AxisDiagnosis> diagnose_each(const std::vector<CaptureView>& capture
                                          const std::vector<std::string>& names,
                                          const std::vector<std::size_t>& axes, const AxesToDiagnose& wanted) {
   if (axes.empty()) return {};
-  DiagnoseOptions options;
-  options.significance = wanted.significance;
-  options.fit_from = wanted.fit_from;
-  options.fit_to = wanted.fit_to;
-  options.subtract_earth_rate = wanted.earth;
-  options.latitude_rad = wanted.latitude_rad;
-  options.allow_motion_channels = wanted.allow_motion_channels;
-  options.allow_proxies = wanted.allow_proxies;
-  SharedProgress progress("diagnose", axes.size(), options.most_effects + 1);
+  SharedProgress progress("diagnose", axes.size(), wanted.options.most_effects + 1);
   std::vector<AxisDiagnosis> found(axes.size());
   std::vector<std::exception_ptr> failed(axes.size());
   // One thread per axis: with two processors and two threads, the third axis would leave one idle.
   const auto threads = wanted.threads == 0 ? static_cast<unsigned>(axes.size()) : wanted.threads;
   share_out(axes.size(), threads, [&](std::size_t i) {
-    DiagnoseOptions own = options;
+    DiagnoseOptions own = wanted.options;
     own.axis = found[i].axis = captures.front().axes[axes[i]];
     own.progress = [&, i](std::size_t done, std::size_t) { progress.at(i, done); };
     try {
@@ -241,8 +247,7 @@ std::vector<AxisDiagnosis> diagnose_axes(const std::vector<CaptureView>& capture
   const std::vector<std::string>& axes = captures.front().axes;
   for (const std::string& axis : wanted.axes)
     if (std::find(axes.begin(), axes.end(), axis) == axes.end())
-      throw std::runtime_error(names[0] + ": --axis is " + in_quotes(axis) + ", expected " +
-                               expected_axes(axes));
+      throw refusal("{}: --axis is {}, expected {}", names[0], in_quotes(axis), expected_axes(axes));
   require_each_once(captures, names);
   std::vector<std::size_t> chosen;
   for (std::size_t axis = 0; axis < axes.size(); ++axis)

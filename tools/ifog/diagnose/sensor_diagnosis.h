@@ -3,25 +3,24 @@
 // the model that corrects them.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "drivers/capture/capture.h"
 #include "filters/diagnosis/diagnose.h"
 #include "filters/model_file/model.h"
-#include "tools/ifog/diagnose/diagnosis_json.h"
+#include "tools/ifog/console/options/command.h"
+#include "tools/ifog/diagnose/axis_diagnosis.h"
 
 namespace ifog::tools {
 
 struct AxesToDiagnose {
   std::vector<std::string> axes;  // empty: all
-  double significance = 0.01;
-  double fit_from = 0.0, fit_to = 1.0;  // DiagnoseOptions, like the following members
-  bool earth = false;
-  std::optional<double> latitude_rad;
-  bool allow_motion_channels = false, allow_proxies = false;
-  unsigned threads = 0;  // axes in parallel; 0: all. The result does not depend on it
+  DiagnoseOptions options;        // without the axis and the progress
+  unsigned threads = 0;           // axes in parallel; 0: all. The result does not depend on it
+
+  // Adds --earth and --latitude to a command; this must outlive it.
+  void add_earth_to(const Command& command);
 };
 
 // names: of the captures, for messages, one each. Throws std::runtime_error with one line: captures with

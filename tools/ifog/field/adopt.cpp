@@ -5,7 +5,6 @@
 #include <exception>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,10 +16,12 @@
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/field/axis_health.h"
 #include "tools/ifog/field/exchange.h"
 #include "tools/ifog/field/history.h"
+#include "tools/ifog/field/status_text.h"
 #include "tools/ifog/field/watch.h"
 
 namespace ifog::tools {
@@ -36,12 +37,13 @@ const char* or_none(const std::string& identity) { return identity.empty() ? "no
 
 Proposal waiting(const std::string& state, const std::string& sensor, const ModelName& in_use) {
   std::optional<Proposal> found = read_proposal(state, sensor);
-  if (!found) throw std::runtime_error("no proposal waits for sensor " + in_quotes(sensor) + " in " + state);
+  if (!found) throw refusal("no proposal waits for sensor {} in {}", in_quotes(sensor), state);
   if (found->against != in_use)
-    throw std::runtime_error("the proposal of " + printable(found->made) + " for sensor " +
-                             in_quotes(sensor) + " was made against model " +
-                             or_none(found->against.identity) + ", in use is " + or_none(in_use.identity) +
-                             ": expected a new one, which the next night brings");
+    throw refusal(
+        "the proposal of {} for sensor {} was made against model {}, in use is {}: expected a new one, which "
+        "the next night brings",
+        printable(found->made), in_quotes(sensor), or_none(found->against.identity),
+        or_none(in_use.identity));
   return std::move(*found);
 }
 
@@ -86,10 +88,22 @@ void tell_innovations(const Watched& watched) {
     say("  innovations: no status from the daemon in this time\n");
     return;
   }
-  say("  innovations over %.0f s: %s; %lld gated, %lld divergences\n", watched.seconds,
-      axis_health(watched.nis, watched.whiteness).c_str(), static_cast<long long>(watched.gated),
-      static_cast<long long>(watched.divergences));
-  if (!watched.noticed.empty()) say("  noticed: %s\n", printable(watched.noticed, kLongestMessage).c_str());
+  say("  innovations over {:.0f} s: {}; {} gated, {} divergences\n", watched.seconds,
+      axis_health(watched.nis, watched.whiteness), watched.gated, watched.divergences);
+  if (!watched.noticed.empty()) say("  noticed: {}\n", printable(watched.noticed, kLongestMessage));
+}
+
+// Writes the change into the history and exchanges the model, in this order, so that an interruption loses
+// nothing.
+void exchange(ModelExchange& place, const std::optional<Model>& model, const ModelInUse& before,
+              History& history, ModelChange change) {
+  history.add(std::move(change), before.model);
+  try {
+    place.exchange(model, before.model);
+  } catch (...) {
+    history.take_back();
+    throw;
+  }
 }
 
 struct Adoption {
@@ -111,22 +125,14 @@ Adoption take_into_use(const Field& field, const SensorConfig& sensor,
   now.exchange = std::make_unique<ModelExchange>(field, sensor, now.before.name);
   History history(field.state(), sensor.name);
   history.drop_incomplete_change(now.before.name);
-  // In this order (history, exchange, removal of the proposal) an interruption loses nothing.
-  history.add({"adopt", utc_now(), now.proposal.model, now.before.name, now.proposal.why, now.proposal.gain,
-               "", recorded_before},
-              now.before.model);
-  try {
-    now.exchange->exchange(now.model, now.before.model);
-  } catch (...) {
-    history.take_back();
-    throw;
-  }
+  exchange(*now.exchange, now.model, now.before, history,
+           {"adopt", utc_now(), now.proposal.model, now.before.name, now.proposal.why, now.proposal.gain, "",
+            recorded_before});
   remove_proposal(field.state(), sensor.name);
   return now;
 }
 
 void adopt(const AdoptArguments& arguments) {
-  will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
@@ -134,17 +140,17 @@ void adopt(const AdoptArguments& arguments) {
   const std::optional<std::uint64_t> recorded_before = last_recording(sensor);
   const Adoption now = take_into_use(field, sensor, recorded_before);
   const Proposal& proposal = now.proposal;
-  say("%s: model %s in place of %s: %s\n", sensor.name.c_str(), proposal.model.identity.c_str(),
-      or_none(now.before.name.identity), printable(proposal.why, kLongestMessage).c_str());
+  say("{}: model {} in place of {}: {}\n", sensor.name, proposal.model.identity,
+      or_none(now.before.name.identity), printable(proposal.why, kLongestMessage));
   const auto unwatched = [&](const std::string& why) {
     if (!arguments.json.empty()) write_json(arguments.json, adoption_json(proposal, {}, why));
   };
   if (!now.exchange->daemon_runs()) {
     const std::string why = "the daemon does not run: it begins with this model, and nothing was watched";
-    say("  %s\n", why.c_str());
+    say("  {}\n", why);
     return unwatched(why);
   }
-  say("  the daemon uses it; promised: %s\n", gain_text(proposal.gain).c_str());
+  say("  the daemon uses it; promised: {}\n", gain_text(proposal.gain));
   if (arguments.watch_s <= 0.0) return unwatched("nothing was watched");
   catch_interrupts();
   const Watched watched = watch(now.exchange->live(), field, sensor, now.before.model.value_or(Model{}),
@@ -153,21 +159,20 @@ void adopt(const AdoptArguments& arguments) {
   std::string text = outcome(watched);
   if (!watched.whole)
     text += " (watched for " + std::to_string(static_cast<int>(watched.seconds)) + " s only)";
-  say("  %s\n", text.c_str());
+  say("  {}\n", text);
   if (!arguments.json.empty()) write_json(arguments.json, adoption_json(proposal, watched, text));
   try {
     keep_outcome(field, sensor.name, proposal.model, text);
   } catch (const std::exception& error) {
-    warn("ifog adopt: the outcome is not in the history: %s\n", error.what());
+    warn("ifog adopt: the outcome is not in the history: {}\n", error.what());
   }
   if (verdict_of(watched.gain) == PromiseVerdict::broken) {
-    warn("ifog adopt: back with: %s\n", field.command("revert", sensor.name).c_str());
+    warn("ifog adopt: back with: {}\n", field.command("revert", sensor.name));
     throw Failed("the promise was broken");
   }
 }
 
 void revert(const AdoptArguments& arguments) {
-  will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
@@ -178,35 +183,26 @@ void revert(const AdoptArguments& arguments) {
   history.drop_incomplete_change(now.name);
   const ModelChange* const in_force = history.in_force();
   if (in_force == nullptr)
-    throw std::runtime_error("nothing was adopted for sensor " + in_quotes(sensor.name) +
-                             " that could be reverted");
+    throw refusal("nothing was adopted for sensor {} that could be reverted", in_quotes(sensor.name));
   if (now.name != in_force->model)
-    throw std::runtime_error("sensor " + in_quotes(sensor.name) + " uses model " +
-                             or_none(now.name.identity) + ", last adopted was " +
-                             printable(in_force->model.identity) +
-                             ": expected that one, it was changed by other means");
+    throw refusal(
+        "sensor {} uses model {}, last adopted was {}: expected that one, it was changed by other means",
+        in_quotes(sensor.name), or_none(now.name.identity), printable(in_force->model.identity));
   const std::optional<Model> back = history.kept(in_force->replaced);
   if (back) require_that_it_fits(field, sensor, *back);
-  ModelExchange exchange(field, sensor, now.name);
+  ModelExchange place(field, sensor, now.name);
   const ModelName name = in_force->replaced;
   const std::string when = utc_now();
-  history.add({"revert", when, name, now.name, "", {}, "", last_recording(sensor)}, now.model);
-  try {
-    exchange.exchange(back, now.model);
-  } catch (...) {
-    history.take_back();
-    throw;
-  }
-  say("%s: model %s is in place again, %s is kept\n", sensor.name.c_str(), or_none(name.identity),
-      now.name.identity.c_str());
-  if (!exchange.daemon_runs()) say("  the daemon does not run: it begins with this model\n");
+  exchange(place, back, now, history, {"revert", when, name, now.name, "", {}, "", last_recording(sensor)});
+  say("{}: model {} is in place again, {} is kept\n", sensor.name, or_none(name.identity), now.name.identity);
+  if (!place.daemon_runs()) say("  the daemon does not run: it begins with this model\n");
   if (!arguments.json.empty())
     write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.revert/1"},
                                                       {"sensor", sensor.name},
                                                       {"when", when},
                                                       {"model", name.identity},
                                                       {"replaced", now.name.identity},
-                                                      {"running", exchange.daemon_runs()}});
+                                                      {"running", place.daemon_runs()}});
 }
 
 }  // namespace

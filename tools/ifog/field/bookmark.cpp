@@ -15,21 +15,11 @@ std::string path_of(const std::string& state, const std::string& sensor) {
   return (std::filesystem::path(state) / (sensor + ".night.json")).string();
 }
 
-struct NightFile {
-  std::string sensor;
-  const Bookmark& bookmark;
-};
-
-template <typename Io, Is<NightFile> T>
-void fields(Io& io, T& of) {
-  io("sensor", of.sensor);
-  fields(io, of.bookmark);
-}
-
 }  // namespace
 
 template <typename Io, Is<Bookmark> T>
 void fields(Io& io, T& of) {
+  io("sensor", of.sensor);
   io("until", of.until);
   io("when", of.when);
   io("said", of.said);
@@ -42,8 +32,8 @@ std::optional<Bookmark> read_bookmark(const std::string& state, const std::strin
   return with_keys(path, [&]() -> std::optional<Bookmark> { return from_json<Bookmark>(*file); });
 }
 
-void write_bookmark(const std::string& state, const std::string& sensor, const Bookmark& bookmark) {
-  write_state_json(path_of(state, sensor), kNightSchema, NightFile{sensor, bookmark});
+void write_bookmark(const std::string& state, const Bookmark& bookmark) {
+  write_state_json(path_of(state, bookmark.sensor), kNightSchema, bookmark);
 }
 
 }  // namespace ifog::tools

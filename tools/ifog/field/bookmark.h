@@ -10,6 +10,7 @@
 namespace ifog::tools {
 
 struct Bookmark {
+  std::string sensor;
   std::uint64_t until = 0;  // number of the last processed recording
   std::string when;         // UTC
   std::string said;         // one line
@@ -17,6 +18,6 @@ struct Bookmark {
 
 // nullopt before the first night. Throws std::runtime_error with one line if the file is damaged.
 [[nodiscard]] std::optional<Bookmark> read_bookmark(const std::string& state, const std::string& sensor);
-void write_bookmark(const std::string& state, const std::string& sensor, const Bookmark& bookmark);
+void write_bookmark(const std::string& state, const Bookmark& bookmark);
 
 }  // namespace ifog::tools

@@ -9,6 +9,7 @@
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "msgs/state_name.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -35,8 +36,8 @@ void require_that_it_fits(const Field& field, const SensorConfig& sensor, const 
     const ChainParts parts(
         sensor_chain_settings(sensor, driver.description(), std::make_shared<const Model>(model)));
   } catch (const std::exception& error) {
-    throw std::runtime_error("sensor " + in_quotes(sensor.name) + " cannot run with the model " +
-                             model.identity() + ": " + error.what());
+    throw refusal("sensor {} cannot run with the model {}: {}", in_quotes(sensor.name), model.identity(),
+                  error.what());
   }
 }
 
@@ -48,14 +49,13 @@ ModelExchange::ModelExchange(const Field& field, const SensorConfig& sensor, con
   if (!daemon_) return;
   live_ = std::make_unique<LiveStatus>(field.state(), *daemon_);
   if (!live_->ask(kStatusWithin, [&](const Statuses& all) { return all.contains(sensor_); }))
-    throw std::runtime_error(process(*daemon_) + " has no sensor " + in_quotes(sensor_) +
-                             ", expected it: nobody would see whether it uses a model");
+    throw refusal("{} has no sensor {}, expected it: nobody would see whether it uses a model",
+                  process(*daemon_), in_quotes(sensor_));
   const status_t& status = *live_->of(sensor_);
   if (status.state != status_t::STATE_RUNNING) throw std::runtime_error(not_running(status));
   if (status.model != in_use.identity)
-    throw std::runtime_error("sensor " + in_quotes(sensor_) + " runs with model " +
-                             printable(in_words(status.model)) + ", " + path_ + " holds " +
-                             in_words(in_use.identity) + ", expected the same: let the daemon reload first");
+    throw refusal("sensor {} runs with model {}, {} holds {}, expected the same: let the daemon reload first",
+                  in_quotes(sensor_), printable(in_words(status.model)), path_, in_words(in_use.identity));
 }
 
 void ModelExchange::put(const std::optional<Model>& model) const {
@@ -69,7 +69,7 @@ void ModelExchange::put(const std::optional<Model>& model) const {
 void ModelExchange::ask_for_reload() {
   // The daemon may have been restarted.
   const std::optional<pid_t> now = running_daemon(field_.state());
-  if (!now) throw std::runtime_error(process(*daemon_) + " has ended, and none runs in its place");
+  if (!now) throw refusal("{} has ended, and none runs in its place", process(*daemon_));
   live_ = std::make_unique<LiveStatus>(field_.state(), *now);
   live_->reload(kEffectWithin);
 }
@@ -109,7 +109,7 @@ void ModelExchange::exchange(const std::optional<Model>& model, const std::optio
   } catch (const std::exception& error) {
     then = std::string("; ") + error.what() + ", let it reload" + then;
   }
-  throw std::runtime_error(why + then);
+  throw refusal("{}{}", why, then);
 }
 
 }  // namespace ifog::tools

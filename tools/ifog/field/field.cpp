@@ -8,7 +8,6 @@
 
 #include <cerrno>
 #include <filesystem>
-#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <vector>
@@ -19,14 +18,15 @@
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/toml_file.h"
 #include "tools/ifog/captures/configured_files.h"
+#include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 
 void FieldOptions::add_to(const Command& command) {
-  command
-      .add_option("--config", config, std::string("the daemon's configuration; default: ") + kServiceConfig)
-      .type_name("FILE");
+  command.add_option("--config", config,
+                     std::string("the daemon's configuration; default: ") + kServiceConfig);
   command
       .add_option(
           "--state", state,
@@ -47,6 +47,7 @@ std::string Field::command(const std::string& name, const std::string& sensor) c
 }
 
 Field::Field(const FieldOptions& options) : typed_(options.as_typed()) {
+  will_read("--config", options.config);
   config_path_ = options.config.empty() ? kServiceConfig : options.config;
   std::error_code none;
   if (!options.config.empty() || std::filesystem::exists(config_path_, none))
@@ -62,7 +63,7 @@ Field::Field(const FieldOptions& options) : typed_(options.as_typed()) {
 
 const Config& Field::required_config() const {
   if (!config_)
-    throw std::runtime_error(config_path_ + ": is not there, expected the daemon's configuration (--config)");
+    throw refusal("{}: is not there, expected the daemon's configuration (--config)", config_path_);
   return *config_;
 }
 
@@ -72,7 +73,7 @@ const SensorConfig& Field::sensor(const std::string& name) const {
     if (sensor.name == name) return sensor;
     known.emplace_back(sensor.name);
   }
-  throw std::runtime_error(config_path_ + ": no sensor " + in_quotes(name) + meant_or_known(name, known));
+  throw refusal("{}: no sensor {}{}", config_path_, in_quotes(name), meant_or_known(name, known));
 }
 
 std::string Field::model_path(const SensorConfig& sensor) const {
@@ -84,12 +85,12 @@ void share_with_the_group() { ::umask(S_IWOTH); }
 StateLock::StateLock(const std::string& folder)
     : fd_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (fd_ < 0)
-    throw std::runtime_error(folder + ": cannot open: " + std::generic_category().message(errno) +
-                             ", expected the daemon's state folder (--state)");
+    throw refusal("{}: cannot open: {}, expected the daemon's state folder (--state)", folder,
+                  std::generic_category().message(errno));
   if (::flock(fd_, LOCK_EX | LOCK_NB) == 0) return;
-  throw std::runtime_error(folder + (errno == EWOULDBLOCK
-                                         ? ": another command works in it just now, try again when it is done"
-                                         : ": cannot lock: " + std::generic_category().message(errno)));
+  if (errno == EWOULDBLOCK)
+    throw refusal("{}: another command works in it just now, try again when it is done", folder);
+  throw refusal("{}: cannot lock: {}", folder, std::generic_category().message(errno));
 }
 
 }  // namespace ifog::tools

@@ -2,9 +2,9 @@
 #include "tools/ifog/field/history.h"
 
 #include <filesystem>
-#include <stdexcept>
 
 #include "daemon/state/state_folder.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
@@ -87,8 +87,7 @@ void History::drop_incomplete_change(const ModelName& in_use) {
 std::optional<Model> History::kept(const ModelName& name) const {
   if (name.sha256.empty()) return std::nullopt;
   Model model = parsed_state_file(kept_path(name), parse_model);
-  if (name_of(model) != name)
-    throw std::runtime_error(kept_path(name) + ": is another model than " + name.identity);
+  if (name_of(model) != name) throw refusal("{}: is another model than {}", kept_path(name), name.identity);
   return model;
 }
 

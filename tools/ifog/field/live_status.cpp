@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstring>
-#include <stdexcept>
 #include <string_view>
 #include <thread>
 
 #include "daemon/state/running_mark.h"
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -46,7 +46,7 @@ bool LiveStatus::ask(std::chrono::milliseconds most, const std::function<bool(co
 void LiveStatus::reload(std::chrono::milliseconds most) const {
   const std::string refused = ask_daemon(folder_, daemon_, DaemonQuestion::reload, most);
   if (!refused.empty())
-    throw std::runtime_error("the daemon refused to reload: " + printable(refused, kLongestMessage));
+    throw refusal("the daemon refused to reload: {}", printable(refused, kLongestMessage));
 }
 
 const status_t* LiveStatus::of(const std::string& sensor) const {

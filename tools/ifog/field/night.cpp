@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // ifog night: diagnoses what the flight recorder stored since the last run, and proposes a new model if it
 // improves held-out data. Adopts nothing and needs neither device nor daemon.
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cstdint>
 #include <ctime>
@@ -9,7 +11,6 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,13 +19,14 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
 #include "filters/model_file/sha256.h"
-#include "filters/units/told_time.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/diagnose/sensor_diagnosis.h"
 #include "tools/ifog/field/bookmark.h"
@@ -75,7 +77,8 @@ bool pays(const AxisGain& gain) {
 }
 
 std::string in_hours(double seconds) {
-  return seconds < 7200.0 ? formatted("%.0f min", seconds / 60.0) : formatted("%.1f h", seconds / 3600.0);
+  return seconds < 7200.0 ? fmt::format("{:.0f} min", seconds / 60.0)
+                          : fmt::format("{:.1f} h", seconds / 3600.0);
 }
 
 std::string effects_text(const std::vector<AxisDiagnosis>& found) {
@@ -91,29 +94,53 @@ std::string effects_text(const std::vector<AxisDiagnosis>& found) {
   return out;
 }
 
-// Processes one sensor; the result is one line of text.
+// Without the time of power-up the daemon's warm-up correction cannot be repeated. Then the remaining drift
+// would be attributed to another cause and corrected twice.
+bool needs_power_up(const SensorConfig& sensor, const ModelInUse& in_use) {
+  return sensor.powered_with_computer && in_use.model &&
+         std::ranges::count(in_use.model->effects, "warm_up", &Effect::form) > 0;
+}
+
+std::string recordings_name(const SensorConfig& sensor, const std::vector<RecordedFile>& files) {
+  const std::string first = std::filesystem::path(files.front().path).filename().string();
+  const std::string last = std::filesystem::path(files.back().path).filename().string();
+  return sensor.name + " " + first + (files.size() > 1 ? " to " + last : "");
+}
+
+// Time when the newest recording will be closed; "" if none is being written.
+std::string closing(const SensorConfig& sensor, const std::vector<RecordedFile>& files) {
+  if (files.empty() || !files.back().open) return "";
+  const RecordedFile& last = files.back();
+  std::tm opened{};
+  if (strptime(last.opened.c_str(), "%Y-%m-%dT%H:%M:%SZ", &opened) == nullptr) return "";
+  const std::time_t at = timegm(&opened) + static_cast<std::time_t>(sensor.record.file_s);
+  return fmt::format("; the one that is being written, {:.1f} MB, closes at {:.1f} MB or at {}{}",
+                     static_cast<double>(last.bytes) * 1e-6,
+                     static_cast<double>(sensor.record.file_bytes) * 1e-6, utc_text(at),
+                     at < std::time(nullptr) ? ", which is over: does ifogd run?" : "");
+}
+
+struct NightResult {
+  std::string said;  // one line
+  bool failed = false;
+  std::string proposed;  // identity of the proposed model, "": none
+  std::string promise;   // outcome of the last adoption as text; "" if not evaluated
+};
+
+// Processes one sensor.
 class Night {
  public:
   Night(const NightArguments& arguments, const Field& field, const SensorConfig& sensor)
       : arguments_(arguments), field_(field), sensor_(sensor) {}
 
-  std::string run();
-  // True if the recordings could not be evaluated; run() returned the reason.
-  [[nodiscard]] bool failed() const { return failed_; }
-  // Identity of the proposed model, "": none.
-  [[nodiscard]] const std::string& proposed() const { return proposed_; }
-  // Outcome of the last adoption as text; "" if not evaluated.
-  [[nodiscard]] const std::string& promise() const { return promise_; }
+  NightResult run();
 
  private:
+  std::string process();
   std::string judge(const std::vector<RecordedFile>& all);
-  [[nodiscard]] std::string why_not_judged(const ModelInUse& in_use, const Recorded& recorded) const;
-  [[nodiscard]] bool corrects_warm_up(const ModelInUse& in_use) const;
   std::string diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
                        const ModelInUse& in_use);
   void judge_last_adoption(const std::vector<RecordedFile>& files, const ModelInUse& in_use);
-  [[nodiscard]] std::string closing(const std::vector<RecordedFile>& files) const;
-  [[nodiscard]] std::string recordings_name(const std::vector<RecordedFile>& files) const;
   void propose(Proposal proposal, const Model& model, const Recorded& recorded,
                const std::vector<AxisDiagnosis>& found, const std::string& name,
                const std::vector<std::string>& hashes);
@@ -122,14 +149,24 @@ class Night {
   const Field& field_;
   const SensorConfig& sensor_;
   bool processed_ = false;  // these recordings need not be processed again
-  bool failed_ = false;
-  std::string proposed_, promise_;
+  NightResult result_;
 };
 
-std::string Night::run() {
+// An error of one sensor does not stop the others.
+NightResult Night::run() {
+  try {
+    result_.said = process();
+  } catch (const std::exception& error) {
+    result_.said = error.what();
+    result_.failed = true;
+  }
+  return result_;
+}
+
+std::string Night::process() {
   if (sensor_.record.folder.empty()) return "nothing is recorded ([sensor.record])";
   std::vector<RecordedFile> files = recorded_files(sensor_);
-  const std::string written = closing(files);
+  const std::string written = closing(sensor_, files);
   std::erase_if(files, [](const RecordedFile& file) { return file.open; });
   const std::optional<Bookmark> bookmark = read_bookmark(field_.state(), sensor_.name);
   // Lower numbers belong to a new folder.
@@ -143,12 +180,12 @@ std::string Night::run() {
     said = judge(newest(std::move(files), arguments_.most_bytes));
   } catch (const std::exception& error) {
     said = error.what();
-    failed_ = true;
+    result_.failed = true;
   }
   // The stored text must not quote content of a recording.
   if (processed_) {
     const StateLock hand(field_.state());
-    write_bookmark(field_.state(), sensor_.name, {until, utc_now(), failed_ ? kCannotBeJudged : said});
+    write_bookmark(field_.state(), {sensor_.name, until, utc_now(), result_.failed ? kCannotBeJudged : said});
   }
   return said;
 }
@@ -158,8 +195,8 @@ std::string Night::judge(const std::vector<RecordedFile>& all) {
   // Across several power-ups a warm-up would be found that is not there.
   const std::vector<RecordedFile> files = sensor_.powered_with_computer ? of_one_power_up(all) : all;
   if (files.size() < all.size())
-    warn("%s: of several times that it was switched on the longest is judged: %zu of %zu recordings\n",
-         sensor_.name.c_str(), files.size(), all.size());
+    warn("{}: of several times that it was switched on the longest is judged: {} of {} recordings\n",
+         sensor_.name, files.size(), all.size());
   // Unreadable recordings stay unreadable; an error while writing a proposal may pass.
   processed_ = true;
   const Recorded recorded = read_recorded(sensor_, files, field_.required_config().plugin_folders);
@@ -170,26 +207,13 @@ std::string Night::judge(const std::vector<RecordedFile>& all) {
            in_hours(static_cast<double>(recorded.rest.samples) * recorded.period_s) + " recorded, expected " +
            in_hours(arguments_.least_rest_s) + " at least: waits for more";
   }
-  if (std::string why = why_not_judged(in_use, recorded); !why.empty()) return why;
+  if (needs_power_up(sensor_, in_use) && !recorded.capture.view().since_power_up_s)
+    return "the model in use corrects a warm-up by the time since power-up, which these recordings do not "
+           "say: diagnose them by hand with --since-power-up";
   judge_last_adoption(files, in_use);
   std::string said = diagnose(recorded, files, in_use);
   processed_ = true;
   return said;
-}
-
-// Without the time of power-up the daemon's warm-up correction cannot be repeated. Then the remaining drift
-// would be attributed to another cause and corrected twice.
-std::string Night::why_not_judged(const ModelInUse& in_use, const Recorded& recorded) const {
-  if (!corrects_warm_up(in_use) || recorded.capture.view().since_power_up_s) return "";
-  return "the model in use corrects a warm-up by the time since power-up, which these recordings do not say: "
-         "diagnose them by hand with --since-power-up";
-}
-
-bool Night::corrects_warm_up(const ModelInUse& in_use) const {
-  if (!sensor_.powered_with_computer || !in_use.model) return false;
-  const auto& effects = in_use.model->effects;
-  return std::any_of(effects.begin(), effects.end(),
-                     [](const Effect& each) { return each.form == "warm_up"; });
 }
 
 // Evaluates the last adoption with everything recorded since.
@@ -210,35 +234,16 @@ void Night::judge_last_adoption(const std::vector<RecordedFile>& files, const Mo
     Watched watched;
     watched.gain = weigh_models(recorded, history.kept(last.replaced).value_or(Model{}), *in_use.model, 0);
     if (watched.gain.empty()) return;
-    promise_ = outcome(watched);
-    const std::string text = "night of " + utc_now() + ": " + promise_;
-    say("%s: %s\n", sensor_.name.c_str(), text.c_str());
+    result_.promise = outcome(watched);
+    const std::string text = "night of " + utc_now() + ": " + result_.promise;
+    say("{}: {}\n", sensor_.name, text);
     const StateLock hand(field_.state());
     if (History fresh(field_.state(), sensor_.name);
         !fresh.changes().empty() && fresh.changes().back().when == last.when)
       fresh.set_outcome(text);
   } catch (const std::exception& error) {
-    warn("%s: the last adoption cannot be judged: %s\n", sensor_.name.c_str(), error.what());
+    warn("{}: the last adoption cannot be judged: {}\n", sensor_.name, error.what());
   }
-}
-
-// Time when the newest recording will be closed; "" if none is being written.
-std::string Night::closing(const std::vector<RecordedFile>& files) const {
-  if (files.empty() || !files.back().open) return "";
-  const RecordedFile& last = files.back();
-  std::tm opened{};
-  if (strptime(last.opened.c_str(), "%Y-%m-%dT%H:%M:%SZ", &opened) == nullptr) return "";
-  const std::time_t at = timegm(&opened) + static_cast<std::time_t>(sensor_.record.file_s);
-  return formatted("; the one that is being written, %.1f MB, closes at %.1f MB or at %s",
-                   static_cast<double>(last.bytes) * 1e-6,
-                   static_cast<double>(sensor_.record.file_bytes) * 1e-6, utc_text(at).c_str()) +
-         (at < std::time(nullptr) ? std::string(", which is over: does ifogd run?") : "");
-}
-
-std::string Night::recordings_name(const std::vector<RecordedFile>& files) const {
-  const std::string first = std::filesystem::path(files.front().path).filename().string();
-  const std::string last = std::filesystem::path(files.back().path).filename().string();
-  return sensor_.name + " " + first + (files.size() > 1 ? " to " + last : "");
 }
 
 std::string Night::diagnose(const Recorded& recorded, const std::vector<RecordedFile>& files,
@@ -249,9 +254,9 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   corrected.rate_radps.assign(rates.begin(), rates.end());
   leave_out(unusable_axes({recorded.capture.view()}, {sensor_.name}), corrected);
   AxesToDiagnose wanted;
-  wanted.fit_to = kFitTo;
+  wanted.options.fit_to = kFitTo;
   wanted.threads = 1;  // the daemon runs on the same processors
-  const std::string name = recordings_name(files);
+  const std::string name = recordings_name(sensor_, files);
   std::vector<AxisDiagnosis> found = diagnose_axes({corrected}, {name}, wanted);
   std::erase_if(found, [](const AxisDiagnosis& axis) { return axis.diagnosis.effects.empty(); });
   if (found.empty()) return "nothing found that the model in use leaves";
@@ -279,7 +284,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
   // If the model has no filter, the daemon learns the noise, and this stays so.
   const std::string fitted =
       model.filter ? fit_noise_left(model, model_with({}, found, {name}, hashes), corrected, name) : "";
-  if (!fitted.empty()) say("%s: %s\n", sensor_.name.c_str(), fitted.c_str());
+  if (!fitted.empty()) say("{}: {}\n", sensor_.name, fitted);
   require_that_it_fits(field_, sensor_, model);
   Proposal proposal;
   proposal.against = in_use.name;
@@ -288,7 +293,7 @@ std::string Night::diagnose(const Recorded& recorded, const std::vector<Recorded
                  in_hours(proposal.gain.front().kept.seconds) + " held out";
   const std::string why = proposal.why;
   propose(std::move(proposal), model, recorded, found, name, hashes);
-  proposed_ = model.identity();
+  result_.proposed = model.identity();
   return "proposes model " + model.identity() + " against " +
          (in_use.name.identity.empty() ? "none" : in_use.name.identity) + ": " + why;
 }
@@ -309,40 +314,27 @@ void Night::propose(Proposal proposal, const Model& model, const Recorded& recor
 }
 
 void run_nights(const NightArguments& arguments) {
-  will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   share_with_the_group();
   const Field field(arguments.field);
   for (const std::string& name : arguments.sensors) (void)field.sensor(name);
   if (std::error_code none; !std::filesystem::is_directory(field.state(), none))
-    throw std::runtime_error(field.state() + ": is no folder, expected the daemon's state folder (--state)");
+    throw refusal("{}: is no folder, expected the daemon's state folder (--state)", field.state());
   bool failed = false;
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
   for (const SensorConfig& sensor : field.required_config().sensors) {
     if (!arguments.sensors.empty() &&
         std::find(arguments.sensors.begin(), arguments.sensors.end(), sensor.name) == arguments.sensors.end())
       continue;
-    std::string said;
-    Night night(arguments, field, sensor);
-    bool good = false;
-    try {
-      said = night.run();
-      good = !night.failed();
-    } catch (const std::exception& error) {
-      said = error.what();
-    }
-    const std::string line = sensor.name + ": " + printable(said, kLongestMessage);
-    // An error of one sensor does not stop the others.
-    if (good)
-      say("%s\n", line.c_str());
-    else
-      warn("%s\n", line.c_str());
-    failed = failed || !good;
+    const NightResult night = Night(arguments, field, sensor).run();
+    const std::string line = sensor.name + ": " + printable(night.said, kLongestMessage);
+    night.failed ? warn("{}\n", line) : say("{}\n", line);
+    failed = failed || night.failed;
     all.push_back({{"sensor", sensor.name},
-                   {"failed", !good},
-                   {"said", said},
-                   {"proposed", night.proposed()},
-                   {"promise", night.promise()}});
+                   {"failed", night.failed},
+                   {"said", night.said},
+                   {"proposed", night.proposed},
+                   {"promise", night.promise}});
   }
   if (!arguments.json.empty())
     write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.night_report/1"}, {"sensors", all}});
@@ -356,7 +348,7 @@ void add_night(const Command& program) {
   const Command command = program.add_subcommand(
       "night", "Diagnose what was recorded since the last time, and propose a model where that pays");
   arguments->field.add_to(command);
-  command.add_option("--sensor", arguments->sensors, "only these sensors").type_name("NAME");
+  command.add_option("--sensor", arguments->sensors, "only these sensors");
   command.add_option("--least-rest", arguments->least_rest_s, "with less time at rest wait for more, s")
       .within(60.0, 1e7)
       .shows_default()

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/field/proposal.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <filesystem>
 #include <stdexcept>
@@ -9,7 +11,7 @@
 #include "daemon/state/state_folder.h"
 #include "filters/model_file/sha256.h"
 #include "filters/units/field_units.h"
-#include "filters/units/told_time.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
@@ -42,7 +44,7 @@ void remove_others(const std::string& state, const std::string& sensor, const st
 // Files named in the index must be in the same folder.
 void require_plain_name(const std::string& name, const std::string& path) {
   if (name.empty() || name != fs::path(name).filename().string())
-    throw std::runtime_error(path + ": names a file outside of its folder");
+    throw refusal("{}: names a file outside of its folder", path);
 }
 
 }  // namespace
@@ -85,9 +87,9 @@ std::string gain_text(const std::vector<AxisGain>& gain) {
         std::min_element(each.kept.errors.begin(), each.kept.errors.end(),
                          [&](const ErrorOfMeans& a, const ErrorOfMeans& b) { return ratio(a) < ratio(b); });
     if (best == each.kept.errors.end()) continue;
-    out += formatted("%s%s%sRMS of %g s means %.4g -> %.4g °/h", out.empty() ? "" : ", ", each.axis.c_str(),
-                     each.axis.empty() ? "" : ": ", best->averaging_s, best->before_radps / kDegreePerHour,
-                     best->after_radps / kDegreePerHour);
+    out += fmt::format("{}{}{}RMS of {:g} s means {:.4g} -> {:.4g} °/h", out.empty() ? "" : ", ", each.axis,
+                       each.axis.empty() ? "" : ": ", best->averaging_s, best->before_radps / kDegreePerHour,
+                       best->after_radps / kDegreePerHour);
   }
   return out;
 }
@@ -125,7 +127,7 @@ std::optional<Proposal> read_proposal(const std::string& state, const std::strin
   if (!index) return std::nullopt;
   return with_keys(path, [&]() -> std::optional<Proposal> {
     auto out = from_json<Proposal>(*index);
-    if (out.sensor != sensor) throw std::runtime_error(path + ": belongs to another sensor");
+    if (out.sensor != sensor) throw refusal("{}: belongs to another sensor", path);
     require_plain_name(out.model_file, path);
     require_plain_name(out.report_file, path);
     return out;
@@ -136,8 +138,8 @@ Model proposed_model(const std::string& state, const Proposal& proposal) {
   const std::string path = inside(state, proposal.model_file);
   Model model = parsed_state_file(path, parse_model);
   if (name_of(model).sha256 != proposal.model.sha256)
-    throw std::runtime_error(path + ": is another model than that of the proposal, expected " +
-                             proposal.model.identity);
+    throw refusal("{}: is another model than that of the proposal, expected {}", path,
+                  proposal.model.identity);
   return model;
 }
 

@@ -11,6 +11,7 @@
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/field/proposal.h"
@@ -33,7 +34,6 @@ std::string why_stale(const Field& field, const Proposal& proposal) {
 }
 
 void list_proposals(const ProposalsArguments& arguments) {
-  will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
   nlohmann::ordered_json all = nlohmann::ordered_json::array();
@@ -45,11 +45,10 @@ void list_proposals(const ProposalsArguments& arguments) {
       any = true;
       const std::string why_not = why_stale(field, *found);
       const std::string report = (std::filesystem::path(field.state()) / found->report_file).string();
-      say("%s  of %s against model %s%s%s\n  %s\n  report %s\n", name.c_str(), printable(found->made).c_str(),
-          found->against.identity.empty() ? "none" : printable(found->against.identity).c_str(),
-          printable(why_not).c_str(), why_not.empty() ? "" : ": not to be adopted",
-          printable(found->why, kLongestMessage).c_str(), report.c_str());
-      if (why_not.empty()) say("  adopt with: %s\n", field.command("adopt", name).c_str());
+      say("{}  of {} against model {}{}{}\n  {}\n  report {}\n", name, printable(found->made),
+          found->against.identity.empty() ? "none" : printable(found->against.identity), printable(why_not),
+          why_not.empty() ? "" : ": not to be adopted", printable(found->why, kLongestMessage), report);
+      if (why_not.empty()) say("  adopt with: {}\n", field.command("adopt", name));
       all.push_back({{"sensor", name},
                      {"made", found->made},
                      {"why", found->why},
@@ -59,11 +58,11 @@ void list_proposals(const ProposalsArguments& arguments) {
                      {"report", report},
                      {"gain", as_json(found->gain)}});
     } catch (const std::exception& error) {
-      warn("%s\n", error.what());
+      warn("{}\n", error.what());
       damaged = true;
     }
   }
-  if (!any && !damaged) say("no proposal waits in %s\n", field.state().c_str());
+  if (!any && !damaged) say("no proposal waits in {}\n", field.state());
   if (!arguments.json.empty())
     write_json(arguments.json, nlohmann::ordered_json{{"schema", "ifog.proposals/1"}, {"proposals", all}});
   if (damaged) throw Failed("damaged");

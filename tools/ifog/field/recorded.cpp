@@ -9,14 +9,13 @@
 #include <deque>
 #include <filesystem>
 #include <optional>
-#include <span>
-#include <stdexcept>
 #include <string_view>
 
 #include "drivers/capture/files/input_file.h"
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/captures/reading_progress.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -87,7 +86,7 @@ std::vector<RecordedFile> recorded_files(const SensorConfig& sensor) {
     out.push_back(std::move(file));
   }
   if (error && error != std::errc::no_such_file_or_directory)
-    throw std::runtime_error(folder.string() + ": cannot read: " + error.message());
+    throw refusal("{}: cannot read: {}", folder.string(), error.message());
   std::sort(out.begin(), out.end(),
             [](const RecordedFile& a, const RecordedFile& b) { return a.number < b.number; });
   return out;
@@ -116,7 +115,7 @@ std::vector<RecordedFile> of_one_power_up(const std::vector<RecordedFile>& files
 Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFile>& files,
                        const std::vector<std::string>& plugin_folders) {
   const std::string folder = (fs::path(sensor.record.folder) / sensor.name).string();
-  if (files.empty()) throw std::runtime_error(folder + ": no recordings");
+  if (files.empty()) throw refusal("{}: no recordings", folder);
   std::deque<std::string> paths;
   for (const RecordedFile& file : files) paths.push_back(file.path);
   InputFile input(folder, std::move(paths));
@@ -125,7 +124,7 @@ Recorded read_recorded(const SensorConfig& sensor, const std::vector<RecordedFil
   DriverInstance driver = flight.make_driver("", {}, plugin_folders, &sensor);
   LongCapture read(flight.table(driver), folder);
   const CaptureView& capture = read.view();
-  if (capture.size() < 2) throw std::runtime_error(folder + ": fewer than two samples recorded");
+  if (capture.size() < 2) throw refusal("{}: fewer than two samples recorded", folder);
   const double period_s = sample_clock(capture.time_s).period_s;
   Rest rest = find_rest(capture.rate_radps, {}, period_s);
   return {std::move(read), period_s, std::move(rest)};

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/field/state_json.h"
 
-#include <stdexcept>
-
 #include "daemon/state/state_folder.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/input_limits.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -22,8 +21,8 @@ void require_depth(const std::string& path, std::string_view text) {
       quoted = true;
     } else if (c == '[' || c == '{') {
       if (++depth > kInputLimits.json_depth)
-        throw std::runtime_error(path + ": is JSON nested deeper than " +
-                                 std::to_string(kInputLimits.json_depth) + ", which no file of ours is");
+        throw refusal("{}: is JSON nested deeper than {}, which no file of ours is", path,
+                      kInputLimits.json_depth);
     } else if ((c == ']' || c == '}') && depth > 0) {
       --depth;
     }
@@ -33,8 +32,7 @@ void require_depth(const std::string& path, std::string_view text) {
 }  // namespace
 
 nlohmann::json parse_json(const std::string& text, const std::string& path) {
-  if (text.size() > kInputLimits.json_bytes)
-    throw std::runtime_error(path + ": is longer than any JSON of ours");
+  if (text.size() > kInputLimits.json_bytes) throw refusal("{}: is longer than any JSON of ours", path);
   require_depth(path, text);
   return nlohmann::json::parse(text, nullptr, false);
 }
@@ -44,14 +42,14 @@ std::optional<nlohmann::json> read_state_json(const std::string& path, const std
   if (!text) return std::nullopt;
   const nlohmann::json json = parse_json(*text, path);
   if (json.is_discarded() || !json.is_object())
-    throw std::runtime_error(path + ": is no JSON object, expected schema " + schema);
+    throw refusal("{}: is no JSON object, expected schema {}", path, schema);
   const auto found = json.find("schema");
   if (found == json.end() || *found != schema)
-    throw std::runtime_error(path + ": schema is " +
-                             (found == json.end()  ? "missing"
-                              : found->is_string() ? "another"
-                                                   : found->type_name()) +
-                             ", expected " + schema);
+    throw refusal("{}: schema is {}, expected {}", path,
+                  found == json.end()  ? "missing"
+                  : found->is_string() ? "another"
+                                       : found->type_name(),
+                  schema);
   return json;
 }
 
@@ -59,8 +57,8 @@ void refuse_keys(const std::string& path, const nlohmann::json::exception& error
   // Removes the library's prefix "[json.exception.out_of_range.403] ".
   const std::string what = error.what();
   const std::size_t words = what.find("] ");
-  throw std::runtime_error(
-      path + ": damaged: " + printable(words == std::string::npos ? what : what.substr(words + 2)));
+  throw refusal("{}: damaged: {}", path,
+                printable(words == std::string::npos ? what : what.substr(words + 2)));
 }
 
 }  // namespace ifog::tools

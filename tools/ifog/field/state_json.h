@@ -7,6 +7,7 @@
 #include <string>
 
 #include "daemon/state/state_folder.h"
+#include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/listed_fields.h"
 
 namespace ifog::tools {
@@ -18,12 +19,9 @@ namespace ifog::tools {
 [[nodiscard]] std::optional<nlohmann::json> read_state_json(const std::string& path,
                                                             const std::string& schema);
 
-// The schema's name, followed by the fields of `what`.
 template <typename T>
 void write_state_json(const std::string& path, const char* schema, const T& what) {
-  nlohmann::ordered_json file{{"schema", schema}};
-  file.update(as_json(what));
-  write_state_file(path, file.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  write_state_file(path, json_text(with_schema(schema, what)) + "\n");
 }
 
 // Throws std::runtime_error with one line: the file and its error.

@@ -16,15 +16,14 @@
 #include "msgs/state_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/hertz.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/hertz.h"
 #include "tools/ifog/console/say.h"
-#include "tools/ifog/field/axis_health.h"
-#include "tools/ifog/field/books.h"
 #include "tools/ifog/field/field.h"
 #include "tools/ifog/field/history.h"
 #include "tools/ifog/field/live_status.h"
+#include "tools/ifog/field/status_text.h"
 
 namespace ifog::tools {
 namespace {
@@ -87,12 +86,12 @@ std::string losses_text(const status_t& status) {
 }
 
 void say_live(const status_t& status) {
-  say("  losses: %s\n  %s%s\n", losses_text(status).c_str(), books_text(status).c_str(),
+  say("  losses: {}\n  {}{}\n", losses_text(status), books_text(status),
       books_balance(status) ? ": balanced" : ": DO NOT BALANCE");
-  say("  health: %s; %lld manoeuvres, %lld divergences, %lld samples out of the model's range\n",
-      axis_health(status.nis_mean, status.whiteness).c_str(), static_cast<long long>(status.manoeuvres),
-      static_cast<long long>(status.divergences), static_cast<long long>(status.out_of_range));
-  if (!status.notice.empty()) say("  noticed: %s\n", printable(status.notice, kLongestMessage).c_str());
+  say("  health: {}; {} manoeuvres, {} divergences, {} samples out of the model's range\n",
+      axis_health(status.nis_mean, status.whiteness), status.manoeuvres, status.divergences,
+      status.out_of_range);
+  if (!status.notice.empty()) say("  noticed: {}\n", printable(status.notice, kLongestMessage));
 }
 
 void say_recorded(const status_t* live, const std::optional<std::string>& recordings) {
@@ -104,43 +103,41 @@ void say_recorded(const status_t* live, const std::optional<std::string>& record
   }
   const std::string where = recordings && !recordings->empty() ? " in " + printable(*recordings) : "";
   if (live == nullptr)
-    say("  recorded:%s\n", where.c_str());
+    say("  recorded:{}\n", where);
   else
-    say("  recorded: %lld deliveries, %lld lost; %.1f MB written%s\n",
-        static_cast<long long>(live->record_deliveries), static_cast<long long>(live->record_lost),
-        static_cast<double>(live->record_file_bytes) * 1e-6, where.c_str());
+    say("  recorded: {} deliveries, {} lost; {:.1f} MB written{}\n", live->record_deliveries,
+        live->record_lost, static_cast<double>(live->record_file_bytes) * 1e-6, where);
 }
 
 // adopt: the command that adopts the proposal.
 void say_sensor(const std::string& name, const status_t* live, const Kept& kept, const std::string& adopt) {
   if (live != nullptr) {
-    say("%s  %s%s%s  %s in, %s published\n", printable(name).c_str(), state_name(live->state),
-        live->fault.empty() ? "" : ": ", printable(live->fault).c_str(),
-        in_hertz(live->input_rate_hz).c_str(), in_hertz(live->output_rate_hz).c_str());
+    say("{}  {}{}{}  {} in, {} published\n", printable(name), state_name(live->state),
+        live->fault.empty() ? "" : ": ", printable(live->fault), in_hertz(live->input_rate_hz),
+        in_hertz(live->output_rate_hz));
     say_live(*live);
   } else {
-    say("%s  nothing known of now\n", printable(name).c_str());
+    say("{}  nothing known of now\n", printable(name));
   }
   say_recorded(live, kept.recordings);
   const std::string model = live != nullptr ? live->model : kept.model.identity;
-  say("  model: %s%s%s%s\n", model.empty() ? "none" : printable(model).c_str(),
+  say("  model: {}{}{}{}\n", model.empty() ? "none" : printable(model),
       live == nullptr ? " when the daemon starts" : "",
       live != nullptr && live->model_since != 0 ? " since " : "",
-      live != nullptr && live->model_since != 0 ? utc(live->model_since).c_str() : "");
+      live != nullptr && live->model_since != 0 ? utc(live->model_since) : "");
   if (live != nullptr && live->model != kept.model.identity)
-    say("  its file holds %s: let the daemon reload\n",
-        kept.model.identity.empty() ? "none" : kept.model.identity.c_str());
+    say("  its file holds {}: let the daemon reload\n",
+        kept.model.identity.empty() ? "none" : kept.model.identity);
   if (kept.last)
-    say("  %s %s%s%s\n", kept.last->what == "adopt" ? "adopted" : "reverted",
-        printable(kept.last->when).c_str(), kept.last->outcome.empty() ? "" : ": ",
-        printable(kept.last->outcome, kLongestMessage).c_str());
+    say("  {} {}{}{}\n", kept.last->what == "adopt" ? "adopted" : "reverted", printable(kept.last->when),
+        kept.last->outcome.empty() ? "" : ": ", printable(kept.last->outcome, kLongestMessage));
   if (kept.proposal)
-    say("  proposal of %s: %s\n  %s\n", printable(kept.proposal->made).c_str(),
-        printable(kept.proposal->why, kLongestMessage).c_str(),
+    say("  proposal of {}: {}\n  {}\n", printable(kept.proposal->made),
+        printable(kept.proposal->why, kLongestMessage),
         kept.gone                              ? "the configuration has no such sensor: not to be adopted"
-        : kept.proposal->against == kept.model ? ("adopt with: " + adopt).c_str()
+        : kept.proposal->against == kept.model ? "adopt with: " + adopt
                                                : "it was made against another model: not to be adopted");
-  if (!kept.damaged.empty()) say("  %s\n", kept.damaged.c_str());
+  if (!kept.damaged.empty()) say("  {}\n", kept.damaged);
 }
 
 ordered_json sensor_json(const std::string& name, const status_t* live, const Kept& kept) {
@@ -255,23 +252,22 @@ Running running(const Field& field, double wait_s) {
              [](const auto&) { return true; });
     out.statuses = live.all();
   } catch (const std::exception& error) {
-    warn("%s\n", error.what());
+    warn("{}\n", error.what());
   }
   return out;
 }
 
 void show_status(const StatusArguments& arguments) {
-  will_read("--config", arguments.field.config);
   will_write("--json", arguments.json, kJsonEndings);
   const Field field(arguments.field);
   const Running now = running(field, arguments.wait_s);
   const std::string where = "state folder " + field.state();
   if (arguments.csv)
-    say("%s\n", csv_line(nullptr).c_str());
+    say("{}\n", csv_line(nullptr));
   else if (now.process != 0)
-    say("ifogd runs, process %d, %s\n", static_cast<int>(now.process), where.c_str());
+    say("ifogd runs, process {}, {}\n", now.process, where);
   else
-    say("ifogd does not run with %s; this is what the folder knows\n", where.c_str());
+    say("ifogd does not run with {}; this is what the folder knows\n", where);
   ordered_json sensors = ordered_json::array();
   for (const std::string& name : names_of(field, now.statuses)) {
     const Kept kept = kept_of(field, name);
@@ -279,7 +275,7 @@ void show_status(const StatusArguments& arguments) {
     const status_t* const live = found == now.statuses.end() ? nullptr : &found->second;
     sensors.push_back(sensor_json(name, live, kept));
     if (arguments.csv)
-      say("%s\n", csv_line(&sensors.back()).c_str());
+      say("{}\n", csv_line(&sensors.back()));
     else
       say_sensor(name, live, kept, field.command("adopt", name));
   }

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/field/watch.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <optional>
 #include <utility>
 
-#include "filters/units/told_time.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 
@@ -58,7 +59,7 @@ void weigh(Watched& out, const Field& field, const SensorConfig& sensor, const M
     if (out.gain.empty()) out.not_weighed = "the two models corrected alike meanwhile";
   } catch (const std::exception& error) {
     // The history must not quote content of a recording.
-    warn("%s\n", error.what());
+    warn("{}\n", error.what());
     out.not_weighed = "the recordings could not be used";
   }
 }
@@ -97,7 +98,7 @@ Watched watch(LiveStatus& live, const Field& field, const SensorConfig& sensor, 
         return passed() >= seconds;
       });
     } catch (const std::exception& error) {
-      warn("%s\n", error.what());
+      warn("{}\n", error.what());
     }
   }
   out.seconds = std::min(passed(), seconds);
@@ -112,8 +113,8 @@ std::string outcome(const Watched& watched) {
   for (const AxisGain& axis : watched.gain) {
     figures += (figures.empty() ? "" : ", ") + (axis.axis.empty() ? "" : axis.axis + ": ") +
                (std::isfinite(axis.kept.share_error)
-                    ? formatted("%.0f ± %.0f %% of the predicted improvement was achieved",
-                                100.0 * axis.kept.share, 100.0 * axis.kept.share_error)
+                    ? fmt::format("{:.0f} ± {:.0f} % of the predicted improvement was achieved",
+                                  100.0 * axis.kept.share, 100.0 * axis.kept.share_error)
                     : "the new model's correction did not move");
   }
   if (const std::string errors = gain_text(watched.gain); !errors.empty()) figures += "; " + errors;

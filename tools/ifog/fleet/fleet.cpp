@@ -15,13 +15,12 @@
 #include "drivers/capture/files/output_file.h"
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/utc_now.h"
-#include "filters/units/field_units.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/fleet/engine.h"
@@ -43,7 +42,6 @@ struct FleetArguments {
   std::size_t jobs = 0;
   std::optional<std::size_t> one;
   bool dry_run = false;
-  std::optional<double> latitude_deg;
   FleetSettings settings;
 };
 
@@ -61,20 +59,21 @@ class FleetRun {
       : manifest_(manifest),
         results_(results),
         options_(arguments.settings.text()),
-        level_(arguments.settings.wanted.significance),
+        level_(arguments.settings.wanted.options.significance),
         engine_(engine_named(arguments, results)) {
-    population_.type = manifest.type;
+    population_.type = type_.type = manifest.type;
     population_.significance = level_;
     for (const FleetGyro& gyro : manifest.gyros) population_.serials.push_back(gyro.serial);
   }
 
-  void dry_run() { say("%s", engine_->in_words(undiagnosed()).c_str()); }
+  void dry_run() { say("{}", engine_->in_words(undiagnosed())); }
 
   void run() {
     diagnose_all();
     if (diagnosed_.gyros.empty()) {
       forget_with_prior();
-      results_.forget_population();
+      results_.forget("fleet.json");
+      results_.forget("fleet.html");
       tell_failures();
       throw Failed("no gyro was diagnosed");
     }
@@ -109,7 +108,7 @@ class FleetRun {
     std::map<std::size_t, std::string> ended;
     std::vector<std::size_t> left = missing();
     if (left.empty()) return ended;
-    say("%s %zu of %zu gyros\n", what, left.size(), manifest_.gyros.size());
+    say("{} {} of {} gyros\n", what, left.size(), manifest_.gyros.size());
     for (const std::size_t gyro : left) forget_failure(gyro);
     for (std::size_t attempt = 0; attempt < kAttempts && !left.empty(); ++attempt) {
       Progress progress(what, left.size());
@@ -134,20 +133,20 @@ class FleetRun {
   // Removes the failure of an earlier run.
   void forget_failure(std::size_t gyro) const {
     const FleetGyro& of = manifest_.gyros[gyro];
-    if (const auto done = results_.done(of); done && done->failed) results_.forget_done(of);
+    if (const auto done = results_.done(of); done && done->failed) results_.forget(of, "gyro.json");
     if (type_.id.empty()) return;
     if (const auto measured = results_.measured(of, type_.id); measured && measured->failed)
-      results_.forget_measured(of, type_.id);
+      results_.forget(of, measured_name(type_.id));
   }
 
   // Removes results of an earlier run.
   void forget_with_prior() const {
-    for (const FleetGyro& gyro : manifest_.gyros) results_.forget_with_prior(gyro);
+    for (const FleetGyro& gyro : manifest_.gyros) results_.forget(gyro, "with_prior.toml");
   }
 
   void diagnose_all() {
     absent_ = without_captures();
-    if (!absent_.empty() || !undiagnosed().empty()) results_.forget_type();
+    if (!absent_.empty() || !undiagnosed().empty()) results_.forget("type.json");
     const auto said_why = [&](std::size_t gyro) {
       const std::optional<GyroDone> done = results_.done(manifest_.gyros[gyro]);
       return done && done->failed.has_value();
@@ -175,12 +174,12 @@ class FleetRun {
     if (diagnosed_.gyros.size() < kFewestOfType) {
       population_.remarks.push_back("fleet statistics need " + std::to_string(kFewestOfType) +
                                     " gyros; see each gyro's report");
-      results_.forget_type();
+      results_.forget("type.json");
       return;
     }
     type_.effects = type_candidates(diagnosed_.found, diagnosed_.gyros.size(), level_);
     for (std::size_t round = 0; !type_.effects.empty(); ++round) {
-      results_.write_type(manifest_.type, type_);
+      results_.write(type_);
       std::vector<Population::Failure> failed;
       measured_ = measure_all(failed);
       const bool enough = measured_.size() >= kFewestOfType;
@@ -199,7 +198,7 @@ class FleetRun {
     population_.remarks.push_back(
         "no effect is the type's: none shows in more gyros than false alarms explain, or what shows is not "
         "the same in them");
-    results_.write_type(manifest_.type, type_);
+    results_.write(type_);
   }
 
   std::map<std::size_t, GyroMeasured> measure_all(std::vector<Population::Failure>& failed) {
@@ -239,19 +238,19 @@ class FleetRun {
 
   void tell_failures() {
     for (const Population::Failure& each : population_.failed)
-      warn("%s: %s\n", population_.serials[each.gyro].c_str(), printable(each.why, kLongestMessage).c_str());
+      warn("{}: {}\n", population_.serials[each.gyro], printable(each.why, kLongestMessage));
   }
 
   void tell() {
-    say("%s: %zu of %zu gyros diagnosed\n", printable(manifest_.type).c_str(), diagnosed_.gyros.size(),
+    say("{}: {} of {} gyros diagnosed\n", printable(manifest_.type), diagnosed_.gyros.size(),
         manifest_.gyros.size());
-    for (const TypeEffect& each : population_.effects) say("  %s\n", report::in_words(each).c_str());
-    for (const std::string& remark : population_.remarks) say("  %s\n", remark.c_str());
+    for (const TypeEffect& each : population_.effects) say("  {}\n", report::in_words(each));
+    for (const std::string& remark : population_.remarks) say("  {}\n", remark);
     for (const StandingOut& each : population_.standing_out)
-      say("  outlier %s: %s, robust z = %.1f\n", population_.serials[each.gyro].c_str(),
-          printable(population_.parameters[each.parameter].name).c_str(), each.z);
+      say("  outlier {}: {}, robust z = {:.1f}\n", population_.serials[each.gyro],
+          printable(population_.parameters[each.parameter].name), each.z);
     tell_failures();
-    say("%s\n%s\n", results_.path("fleet.html").c_str(), results_.path("fleet.json").c_str());
+    say("{}\n{}\n", results_.path("fleet.html"), results_.path("fleet.json"));
   }
 
   const Manifest& manifest_;
@@ -275,8 +274,7 @@ void end_with_the_terminal() {
   if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &interrupt, nullptr);
 }
 
-void run_fleet(FleetArguments& arguments) {
-  if (arguments.latitude_deg) arguments.settings.wanted.latitude_rad = *arguments.latitude_deg * kDegree;
+void run_fleet(const FleetArguments& arguments) {
   const Manifest manifest = read_manifest(arguments.manifest);
   if (arguments.one && *arguments.one >= manifest.gyros.size())
     throw WrongUsage("--one", std::to_string(*arguments.one) + " is no gyro of " + arguments.manifest +
@@ -327,17 +325,11 @@ void add_fleet(const Command& program) {
   arguments->settings.part.add_to(command);
   command.add_option("--axis", arguments->settings.wanted.axes, "only these axes");
   command
-      .add_option("--significance", arguments->settings.wanted.significance,
+      .add_option("--significance", arguments->settings.wanted.options.significance,
                   "chance of a false effect in a gyro, after correction for all tried")
       .within(1e-9, 0.5)
       .shows_default();
-  command.add_flag("--earth", arguments->settings.wanted.earth,
-                   "subtract what is the Earth's rate by its size in a gyro that tilts or is turned; "
-                   "otherwise it is shown");
-  command
-      .add_option("--latitude", arguments->latitude_deg,
-                  "of the captures, degrees: bounds what can be the Earth's rate")
-      .within(-90.0, 90.0);
+  arguments->settings.wanted.add_earth_to(command);
   command.footer("Example:\n  ifog fleet lot7.toml --jobs 8");
   command.callback([arguments] { run_fleet(*arguments); });
 }

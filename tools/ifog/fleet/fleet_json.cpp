@@ -44,10 +44,10 @@ Json gyro_json(const Population& population, const EffectInGyro& each) {
   return {{"serial", population.serials[each.gyro]},
           {"own", as_json(each.own)},
           {"not_measured", each.not_measured.empty() ? Json(nullptr) : Json(each.not_measured)},
-          {"likelihood_ratio", as_json(each.likelihood_ratio)},
+          {"likelihood_ratio", each.likelihood_ratio},
           {"found_alone", each.found_alone},
-          {"probability", as_json(each.probability)},
-          {"chance", as_json(each.chance)},
+          {"probability", each.probability},
+          {"chance", each.chance},
           {"found", each.found},
           {"with_prior", as_json(each.with_prior)}};
 }
@@ -69,15 +69,15 @@ Json parameter_json(const Population& population, const PopulationParameter& par
                {"axis", parameter.axis},
                {"unit", parameter.unit},
                {"of_logarithm", parameter.logarithmic},
-               {"median", as_json(parameter.robust.median)},
-               {"robust_sigma", as_json(parameter.robust.sigma)},
+               {"median", parameter.robust.median},
+               {"robust_sigma", parameter.robust.sigma},
                {"spread", parameter.spread ? spread_json(*parameter.spread) : Json(nullptr)},
                {"gyros", Json::array()}};
   for (std::size_t i = 0; i < parameter.gyros.size(); ++i)
     json["gyros"].push_back({{"serial", population.serials[parameter.gyros[i]]},
-                             {"value", as_json(parameter.values[i].value)},
-                             {"std_error", as_json(parameter.values[i].std_error)},
-                             {"robust_z", as_json(parameter.z[i])}});
+                             {"value", parameter.values[i].value},
+                             {"std_error", parameter.values[i].std_error},
+                             {"robust_z", parameter.z[i]}});
   return json;
 }
 
@@ -105,7 +105,7 @@ Json fleet_json(const Population& population) {
     json["standing_out"].push_back({{"serial", population.serials[each.gyro]},
                                     {"parameter", parameter.name},
                                     {"axis", parameter.axis},
-                                    {"robust_z", as_json(each.z)}});
+                                    {"robust_z", each.z}});
   }
   for (const FoundInGyro& each : population.own) {
     Json effect = as_json(each.effect);

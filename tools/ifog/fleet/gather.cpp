@@ -92,7 +92,7 @@ Diagnosed gather_diagnosed(const Results& results, const Manifest& manifest, con
       diagnosed.gyros.push_back(i);
       diagnosed.models[i] = std::move(model);
     } catch (const std::exception& error) {  // from the file, the JSON or its numbers
-      results.forget_done(gyro);
+      results.forget(gyro, "gyro.json");
       failed.push_back({i, std::string(error.what()) + "; the next run diagnoses it again"});
     }
   }

@@ -13,6 +13,7 @@
 #include "tools/ifog/captures/usable_axes.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -32,7 +33,8 @@ Opened read_captures(const FleetGyro& gyro, const FleetSettings& settings) {
     opened.read.back().cut(settings.part, path);
     opened.captures.push_back(opened.read.back().view());
   }
-  keep_usable_axes(opened.captures, gyro.captures);
+  const std::vector<std::string> unusable = unusable_axes(opened.captures, gyro.captures);
+  for (CaptureView& capture : opened.captures) leave_out(unusable, capture);
   return opened;
 }
 
@@ -44,7 +46,7 @@ void diagnose_gyro(const Results& results, const FleetGyro& gyro, const FleetSet
   Model model = model_with({}, found, gyro.captures, opened.hashes);
   model.sensor = gyro.serial;
   const std::string model_path = results.path(gyro, "model.toml");
-  results.forget_done(gyro);  // until all files belong to this diagnosis
+  results.forget(gyro, "gyro.json");  // until all files belong to this diagnosis
   write_json(results.path(gyro, "diagnosis.json"), diagnosis_json(found));
   write_file(model_path, model_text(model));
   write_file(results.path(gyro, "report.html"),
@@ -82,15 +84,15 @@ void refuse_without_error(AxisMeasured& axis) {
     const ModelParameter& coefficient = each.effect.parameters.front();
     if (!std::isfinite(coefficient.value) || !std::isfinite(coefficient.std_error) ||
         !(coefficient.std_error > 0.0))
-      throw std::runtime_error(each.effect.form + " of " + each.effect.channel +
-                               " has no finite error on these captures");
+      throw refusal("{} of {} has no finite error on these captures", each.effect.form, each.effect.channel);
   }
 }
 
-GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const FleetSettings& settings,
-                          const TypeToMeasure& type, const Opened& opened) {
+std::vector<AxisMeasured> measure_gyro(const Results& results, const FleetGyro& gyro,
+                                       const FleetSettings& settings, const TypeToMeasure& type,
+                                       const Opened& opened) {
   const Model model = read_model(results.path(gyro, "model.toml"));
-  GyroMeasured measured;
+  std::vector<AxisMeasured> measured;
   const std::vector<std::string>& axes = opened.captures.front().axes;
   for (std::size_t a = 0; a < axes.size(); ++a) {
     AxisMeasured axis;
@@ -100,7 +102,7 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
     if (wanted.together.empty()) continue;
     MeasuredEffects found = naming(gyro.captures.front(), [&] {
       return measure_effects(records_of(opened.captures, gyro.captures, a), wanted, axes[a],
-                             settings.wanted.significance);
+                             settings.wanted.options.significance);
     });
     for (std::size_t i = 0; i < numbers.size(); ++i)
       axis.together.push_back({std::move(found.together[i]), numbers[i]});
@@ -109,7 +111,7 @@ GyroMeasured measure_gyro(const Results& results, const FleetGyro& gyro, const F
     axis.means = std::move(found.means);
     axis.ranges = std::move(found.ranges);
     refuse_without_error(axis);
-    measured.axes.push_back(std::move(axis));
+    measured.push_back(std::move(axis));
   }
   return measured;
 }
@@ -126,9 +128,13 @@ std::string files_of(const DriverSettings& settings) {
 }  // namespace
 
 std::string FleetSettings::text() const {
-  const nlohmann::json of_diagnosis = {wanted.axes,  part.from.text,
-                                       part.to.text, wanted.significance,
-                                       wanted.earth, wanted.latitude_rad.value_or(NAN)};
+  const DiagnoseOptions& options = wanted.options;
+  const nlohmann::json of_diagnosis = {wanted.axes,
+                                       part.from.text,
+                                       part.to.text,
+                                       options.significance,
+                                       options.subtract_earth_rate,
+                                       options.latitude_rad.value_or(NAN)};
   // Another version may have other results.
   return "ifog " IFOG_VERSION + input.as_typed() + files_of(input.settings()) + of_diagnosis.dump();
 }
@@ -160,25 +166,25 @@ void work_on(const Results& results, const FleetGyro& gyro, const FleetSettings&
       opened = read_captures(gyro, settings);
       diagnose_gyro(results, gyro, settings, *opened);
     } catch (const std::runtime_error& error) {
-      results.write_done(gyro, {inputs, error.what()});
+      results.write(gyro, GyroDone{gyro.serial, gyro.captures, inputs, error.what()});
       throw;
     }
-    results.write_done(gyro, {inputs, std::nullopt});
-    say("%s: diagnosed\n", gyro.serial.c_str());
+    results.write(gyro, GyroDone{gyro.serial, gyro.captures, inputs, std::nullopt});
+    say("{}: diagnosed\n", gyro.serial);
   }
   const std::optional<TypeToMeasure> type = results.type();
   if (!type || type->effects.empty() || is_measured(results, gyro, options, *type)) return;
-  GyroMeasured measured;
+  GyroMeasured measured{gyro.serial, type->id, inputs, std::nullopt, {}};
   try {
     if (!opened) opened = read_captures(gyro, settings);
-    measured = measure_gyro(results, gyro, settings, *type, *opened);
+    measured.axes = measure_gyro(results, gyro, settings, *type, *opened);
   } catch (const std::runtime_error& error) {
-    results.write_measured(gyro, type->id, {inputs, error.what(), {}});
+    measured.failed = error.what();
+    results.write(gyro, measured);
     throw;
   }
-  measured.inputs = inputs;
-  results.write_measured(gyro, type->id, measured);
-  say("%s: measured\n", gyro.serial.c_str());
+  results.write(gyro, measured);
+  say("{}: measured\n", gyro.serial);
 }
 
 }  // namespace ifog::tools

@@ -9,9 +9,9 @@
 #include <thread>
 
 #include "drivers/system/shell_word.h"
-#include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/fleet/engine.h"
 #include "tools/ifog/fleet/process.h"

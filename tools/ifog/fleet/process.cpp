@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/fleet/process.h"
 
+#include <fmt/core.h>
+
 #include <fcntl.h>
 #include <glib.h>
 #include <sys/mman.h>
@@ -13,12 +15,11 @@
 #include <csignal>
 #include <filesystem>
 #include <memory>
-#include <stdexcept>
 #include <system_error>
 #include <thread>
 
 #include "drivers/system/fd.h"
-#include "filters/units/told_time.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -26,7 +27,7 @@ namespace {
 constexpr std::chrono::milliseconds kBetweenLooks{5};
 
 [[noreturn]] void refuse(const std::string& what, int error) {
-  throw std::runtime_error(what + ": " + std::generic_category().message(error));
+  throw refusal("{}: {}", what, std::generic_category().message(error));
 }
 
 Fd opened(int fd, const std::string& name) {
@@ -62,7 +63,7 @@ pid_t spawn(const std::vector<std::string>& words, int in, int out) {
                              &tie_to_parent, &parent, &child, in, out, out, &error) != 0)
     return child;
   const std::unique_ptr<GError, decltype(&g_error_free)> owned(error, &g_error_free);
-  throw std::runtime_error(words.front() + ": cannot be started: " + owned->message);
+  throw refusal("{}: cannot be started: {}", words.front(), owned->message);
 }
 
 Fd memory(const char* name) { return opened(memfd_create(name, MFD_CLOEXEC), name); }
@@ -100,8 +101,9 @@ Ran run_to_end(const std::vector<std::string>& words, const std::string& input,
     }
   }
   Ran ran;
-  ran.ended = answered ? ending(status)
-                       : formatted("no answer within %g s", std::chrono::duration<double>(patience).count());
+  ran.ended = answered
+                  ? ending(status)
+                  : fmt::format("no answer within {:g} s", std::chrono::duration<double>(patience).count());
   std::array<char, 4096> part{};
   for (ssize_t got = 0, at = 0; (got = ::pread(out, part.data(), part.size(), at)) > 0; at += got)
     ran.said.append(part.data(), static_cast<std::size_t>(got));

@@ -8,13 +8,13 @@
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
-#include <stdexcept>
 #include <system_error>
 
 #include "drivers/capture/files/input_file.h"
 #include "drivers/ifog/quoted.h"
 #include "filters/model_file/sha256.h"
 #include "tools/ifog/console/json_file.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/field/state_json.h"
 
 namespace ifog::tools {
@@ -24,19 +24,15 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kShort = 16;  // hex digits of an id
-
-void forget(const std::string& path) {
-  std::error_code error;
-  fs::remove(path, error);
-  if (error) throw std::runtime_error(path + ": cannot be removed: " + error.message());
-}
+constexpr const char *kTypeSchema = "ifog.type/1", *kGyroSchema = "ifog.gyro/1",
+                     *kMeasuredSchema = "ifog.measured/1";
 
 void make_folder(const fs::path& path) {
   std::error_code error;
   fs::create_directories(path, error);
   if (error || !fs::is_directory(path))
-    throw std::runtime_error(path.string() + ": cannot make the folder: " +
-                             (error ? error.message() : "something of that name exists"));
+    throw refusal("{}: cannot make the folder: {}", path.string(),
+                  error ? error.message() : "something of that name exists");
 }
 
 // nullopt: missing, truncated, or from another program.
@@ -59,50 +55,6 @@ std::string stamp(const fs::path& path) {
   const auto time = fs::last_write_time(path, error);
   return path.string() + "\n" + (error ? "missing" : std::to_string(size)) + "\n" +
          (error ? "" : std::to_string(time.time_since_epoch().count())) + "\n";
-}
-
-// Content of the files after their schema.
-struct TypeFile {
-  std::string id, type;
-  std::vector<TypeCandidate> effects;
-};
-struct GyroFile {
-  std::string serial;
-  std::vector<std::string> captures;
-  GyroDone done;
-};
-struct MeasuredFile {
-  std::string serial, type;
-  GyroMeasured measured;
-};
-
-template <typename Io, Is<TypeFile> T>
-void fields(Io& io, T& of) {
-  io("id", of.id);
-  io("type", of.type);
-  io("effects", of.effects);
-}
-template <typename Io, Is<GyroFile> T>
-void fields(Io& io, T& of) {
-  io("serial", of.serial);
-  io("captures", of.captures);
-  io("inputs", of.done.inputs);
-  io("failed", of.done.failed);
-}
-template <typename Io, Is<MeasuredFile> T>
-void fields(Io& io, T& of) {
-  io("serial", of.serial);
-  io("type", of.type);
-  io("inputs", of.measured.inputs);
-  io("failed", of.measured.failed);
-  io("axes", of.measured.axes);
-}
-
-template <typename T>
-void write_marker(const std::string& path, const char* schema, const T& what) {
-  Json json{{"schema", schema}};
-  json.update(as_json(what));
-  write_json(path, json);
 }
 
 }  // namespace
@@ -136,6 +88,29 @@ void fields(Io& io, T& of) {
   io("ranges", of.ranges);
 }
 
+// Content of the files after their schema.
+template <typename Io, Is<TypeToMeasure> T>
+void fields(Io& io, T& of) {
+  io("id", of.id);
+  io("type", of.type);
+  io("effects", of.effects);
+}
+template <typename Io, Is<GyroDone> T>
+void fields(Io& io, T& of) {
+  io("serial", of.serial);
+  io("captures", of.captures);
+  io("inputs", of.inputs);
+  io("failed", of.failed);
+}
+template <typename Io, Is<GyroMeasured> T>
+void fields(Io& io, T& of) {
+  io("serial", of.serial);
+  io("type", of.type);
+  io("inputs", of.inputs);
+  io("failed", of.failed);
+  io("axes", of.axes);
+}
+
 Results::Results(std::string folder) : folder_(std::move(folder)) { make_folder(fs::path(folder_) / "log"); }
 
 std::string Results::path(const std::string& file) const { return (fs::path(folder_) / file).string(); }
@@ -155,60 +130,53 @@ std::string Results::see_log(std::size_t gyro) const {
 }
 
 std::string Results::path(const FleetGyro& gyro, const std::string& file) const {
-  return (fs::path(folder_) / "gyros" / gyro.serial / file).string();
+  return path("gyros/" + gyro.serial + "/" + file);
 }
 
 void Results::make_folder_of(const FleetGyro& gyro) const { make_folder(path(gyro, "")); }
 
 std::optional<TypeToMeasure> Results::type() const {
-  const auto file = read_marker<TypeFile>(path("type.json"), "ifog.type/1");
+  auto file = read_marker<TypeToMeasure>(path("type.json"), kTypeSchema);
   // The id becomes part of a file name.
-  if (!file || file->id.size() != kShort ||
-      file->id.find_first_not_of("0123456789abcdef") != std::string::npos)
-    return std::nullopt;
-  return TypeToMeasure{file->effects, file->id};
-}
-
-void Results::write_type(const std::string& type, TypeToMeasure& effects) const {
-  effects.id = sha256_hex(as_json(effects.effects).dump(-1, ' ', true, Json::error_handler_t::replace))
-                   .substr(0, kShort);
-  write_marker(path("type.json"), "ifog.type/1", TypeFile{effects.id, type, effects.effects});
-}
-
-void Results::forget_type() const { forget(path("type.json")); }
-
-void Results::forget_done(const FleetGyro& gyro) const { forget(path(gyro, "gyro.json")); }
-
-void Results::forget_measured(const FleetGyro& gyro, const std::string& type_id) const {
-  forget(path(gyro, "measured-" + type_id + ".json"));
-}
-
-void Results::forget_with_prior(const FleetGyro& gyro) const { forget(path(gyro, "with_prior.toml")); }
-
-void Results::forget_population() const {
-  forget(path("fleet.json"));
-  forget(path("fleet.html"));
+  if (file &&
+      (file->id.size() != kShort || file->id.find_first_not_of("0123456789abcdef") != std::string::npos))
+    file.reset();
+  return file;
 }
 
 std::optional<GyroDone> Results::done(const FleetGyro& gyro) const {
-  const auto file = read_marker<GyroFile>(path(gyro, "gyro.json"), "ifog.gyro/1");
-  return file ? std::optional(file->done) : std::nullopt;
-}
-
-void Results::write_done(const FleetGyro& gyro, const GyroDone& done) const {
-  write_marker(path(gyro, "gyro.json"), "ifog.gyro/1", GyroFile{gyro.serial, gyro.captures, done});
+  return read_marker<GyroDone>(path(gyro, "gyro.json"), kGyroSchema);
 }
 
 std::optional<GyroMeasured> Results::measured(const FleetGyro& gyro, const std::string& type_id) const {
-  const auto file = read_marker<MeasuredFile>(path(gyro, "measured-" + type_id + ".json"), "ifog.measured/1");
-  return file ? std::optional(file->measured) : std::nullopt;
+  return read_marker<GyroMeasured>(path(gyro, measured_name(type_id)), kMeasuredSchema);
 }
 
-void Results::write_measured(const FleetGyro& gyro, const std::string& type_id,
-                             const GyroMeasured& measured) const {
-  write_marker(path(gyro, "measured-" + type_id + ".json"), "ifog.measured/1",
-               MeasuredFile{gyro.serial, type_id, measured});
+void Results::write(TypeToMeasure& type) const {
+  type.id =
+      sha256_hex(as_json(type.effects).dump(-1, ' ', true, Json::error_handler_t::replace)).substr(0, kShort);
+  write_json(path("type.json"), with_schema(kTypeSchema, type));
 }
+
+void Results::write(const FleetGyro& gyro, const GyroDone& done) const {
+  write_json(path(gyro, "gyro.json"), with_schema(kGyroSchema, done));
+}
+
+void Results::write(const FleetGyro& gyro, const GyroMeasured& measured) const {
+  write_json(path(gyro, measured_name(measured.type)), with_schema(kMeasuredSchema, measured));
+}
+
+void Results::forget(const std::string& file) const {
+  std::error_code error;
+  fs::remove(path(file), error);
+  if (error) throw refusal("{}: cannot be removed: {}", path(file), error.message());
+}
+
+void Results::forget(const FleetGyro& gyro, const std::string& file) const {
+  forget("gyros/" + gyro.serial + "/" + file);
+}
+
+std::string measured_name(const std::string& type_id) { return "measured-" + type_id + ".json"; }
 
 std::string identity_of(const FleetGyro& gyro, const std::string& options) {
   std::string text = options + "\n";

@@ -25,13 +25,16 @@ namespace ifog::tools {
 
 // The type's effects, all on the axes of one sensor.
 struct TypeToMeasure {
+  std::string id;    // of the effects; 16 hex digits
+  std::string type;  // its name
   std::vector<TypeCandidate> effects;
-  std::string id;  // of the file's content; 16 hex digits
 };
 
 // State of a gyro's own diagnosis.
 struct GyroDone {
-  std::string inputs;                 // its captures and options
+  std::string serial;
+  std::vector<std::string> captures;
+  std::string inputs;                 // identity_of() the captures and options
   std::optional<std::string> failed;  // reason if it failed
 };
 
@@ -50,6 +53,8 @@ struct AxisMeasured {
 };
 
 struct GyroMeasured {
+  std::string serial;
+  std::string type;  // its id
   std::string inputs;
   std::optional<std::string> failed;
   std::vector<AxisMeasured> axes;
@@ -76,19 +81,20 @@ class Results {
   [[nodiscard]] std::optional<GyroMeasured> measured(const FleetGyro& gyro, const std::string& type_id) const;
 
   // Also sets the id of the effects.
-  void write_type(const std::string& type, TypeToMeasure& effects) const;
-  void forget_type() const;
-  void forget_done(const FleetGyro& gyro) const;
-  void forget_measured(const FleetGyro& gyro, const std::string& type_id) const;
-  // Removes the gyro's results that depend on the population, and those of the population.
-  void forget_with_prior(const FleetGyro& gyro) const;
-  void forget_population() const;
-  void write_done(const FleetGyro& gyro, const GyroDone& done) const;
-  void write_measured(const FleetGyro& gyro, const std::string& type_id, const GyroMeasured& measured) const;
+  void write(TypeToMeasure& type) const;
+  void write(const FleetGyro& gyro, const GyroDone& done) const;
+  void write(const FleetGyro& gyro, const GyroMeasured& measured) const;
+
+  // Removes a file, if it exists, by its name in the folder or in that of a gyro. Throws as above.
+  void forget(const std::string& file) const;
+  void forget(const FleetGyro& gyro, const std::string& file) const;
 
  private:
   std::string folder_;
 };
+
+// Name of the file with a type's measured effects, in the gyro's folder.
+std::string measured_name(const std::string& type_id);
 
 // Identifies the captures with these options: by size and time of the files, because reading days of data
 // takes too long.

@@ -8,9 +8,10 @@
 #include "drivers/ifog/quoted.h"
 #include "drivers/system/shell_word.h"
 #include "filters/model_file/sha256.h"
-#include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_line.h"
 #include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/fleet/engine.h"
 #include "tools/ifog/fleet/process.h"
@@ -71,7 +72,7 @@ class SlurmEngine : public Engine {
                                          const std::function<void(std::size_t)>& done) override {
     // Jobs of an interrupted run are not submitted twice.
     if (under_way(0.0) > 0)
-      say("waiting for the array %s, which is under way\n", name_.c_str());
+      say("waiting for the array {}, which is under way\n", name_);
     else
       for (const std::string& script : scripts(gyros)) submit(script);
     wait(gyros.size(), done);
@@ -110,8 +111,8 @@ class SlurmEngine : public Engine {
 
   static void submit(const std::string& script) {
     const Ran ran = run_to_end({"sbatch", "--parsable"}, script, kAnswer);
-    if (!ran.ended.empty()) throw std::runtime_error("sbatch: " + how(ran));
-    say("submitted the array %s\n", first_line(ran.said).c_str());
+    if (!ran.ended.empty()) throw refusal("sbatch: {}", how(ran));
+    say("submitted the array {}\n", first_line(ran.said));
   }
 
   // Number of this fleet's jobs that have not ended. patience_s: for a Slurm that does not answer.
@@ -122,7 +123,7 @@ class SlurmEngine : public Engine {
           {"squeue", "--noheader", "--array", "--me", "--name=" + name_, "--format=%i"}, "", kAnswer);
       if (ran.ended.empty()) return jobs_in(ran.said);
       if (Seconds(std::chrono::steady_clock::now() - since).count() >= patience_s)
-        throw std::runtime_error("squeue: " + how(ran));
+        throw refusal("squeue: {}", how(ran));
       pause(kFirstPause_s);
     }
   }
@@ -141,9 +142,9 @@ class SlurmEngine : public Engine {
     while (std::chrono::steady_clock::now() < until) {
       if (interrupted()) {
         warn(
-            "ifog: interrupted; the array %s continues, and the same command takes it up (scancel --name=%s "
+            "ifog: interrupted; the array {} continues, and the same command takes it up (scancel --name={} "
             "ends it)\n",
-            name_.c_str(), name_.c_str());
+            name_, name_);
         throw Failed("interrupted");
       }
       std::this_thread::sleep_for(std::chrono::milliseconds(100));

@@ -2,23 +2,18 @@
 #include "tools/ifog/monitor/message_json.h"
 
 #include <array>
-#include <cstdint>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "msgs/counters.h"
 #include "msgs/flag_names.h"
 #include "msgs/state_name.h"
+#include "tools/ifog/console/json_file.h"
 
 namespace ifog::tools {
 namespace {
 
 using nlohmann::ordered_json;
-
-// Names may contain any bytes; invalid UTF-8 is replaced.
-std::string line(const ordered_json& json) {
-  return json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
-}
 
 ordered_json of(const char* type, std::string_view sensor) {
   return {{"schema", "ifog.monitor/1"}, {"type", type}, {"sensor", sensor}};
@@ -68,7 +63,7 @@ std::string message_json(std::string_view sensor, const rate_t& message) {
   out["group_delay"] = message.group_delay;
   out["correlation_time"] = message.correlation_time;
   out["model"] = message.model;
-  return line(out);
+  return json_text(out, -1);
 }
 
 std::string message_json(std::string_view sensor, const status_t& message) {
@@ -91,7 +86,7 @@ std::string message_json(std::string_view sensor, const status_t& message) {
   out["channel_value"] = message.channel_value;
   out["channel_age_s"] = message.channel_age_s;
   out["allan_rate_radps"] = message.allan_rate_radps;
-  return line(out);
+  return json_text(out, -1);
 }
 
 std::string message_json(std::string_view sensor, const imu_t& message) {
@@ -100,7 +95,7 @@ std::string message_json(std::string_view sensor, const imu_t& message) {
   out["delta_v"] = message.delta_v;
   out["moved_s"] = message.moved_s;
   out["temperature_degC"] = message.temperature_degC;
-  return line(out);
+  return json_text(out, -1);
 }
 
 }  // namespace ifog::tools

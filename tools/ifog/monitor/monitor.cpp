@@ -2,13 +2,10 @@
 #include "tools/ifog/monitor/monitor.h"
 
 #include <poll.h>
-#include <signal.h>
-#include <sys/signalfd.h>
 #include <unistd.h>
 
 #include <ifog/decode.h>
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <memory>
 #include <mutex>
@@ -22,42 +19,28 @@
 #include "msgs/channel_name.h"
 #include "tools/ifog/commands.h"
 #include "tools/ifog/console/command_files.h"
+#include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/options/command.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/monitor/message_json.h"
 
 namespace ifog::tools {
-namespace {
-
-// Signals that end the monitor; blocked in every thread so that run() receives them.
-sigset_t blocked_signals() {
-  sigset_t set;
-  sigemptyset(&set);
-  sigaddset(&set, SIGINT);
-  sigaddset(&set, SIGTERM);
-  sigprocmask(SIG_BLOCK, &set, nullptr);
-  return set;
-}
-
-}  // namespace
-
 Monitor::Monitor(const MonitorOptions& options)
     : options_(options),
       listener_(options.url, [this](const lcm_recv_buf_t& message,
                                     const std::string& channel) { take(message, channel); }),
       known_(options.field) {
+  catch_interrupts();  // before the screen, which would catch them in another way
   // All sensors, so that for an unknown name the publishing ones can be listed.
   listener_.listen_to_sensor("");
   if (!options.json.empty()) json_.emplace(options.json);
   const bool people = isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1;
   if (!options.web.empty()) {
-    blocked_signals();  // before threads are started
     web_ = std::make_unique<WebMonitor>(*page_address(options.web), sensors_, known_,
                                         [this] { return waiting().front() + " " + waiting().back(); });
-    say("http://%s/ shows it; Ctrl-C ends this\n", options.web.find(':') == std::string::npos
-                                                       ? ("localhost:" + options.web).c_str()
-                                                       : options.web.c_str());
+    say("http://{}/ shows it; Ctrl-C ends this\n",
+        options.web.find(':') == std::string::npos ? "localhost:" + options.web : options.web);
     finish_saying();
   } else if (people && !options.plain && !options.once && options.json.empty()) {
     screen_.emplace();
@@ -139,13 +122,13 @@ void Monitor::say_what_is_waited_for() {
   if (screen_ || waiting_reported_ || !sensors_.empty() || seconds_since(start_) < kPatience_s) return;
   waiting_reported_ = true;
   if (const std::string others = who_publishes(); !others.empty()) {
-    warn("%s; these publish: %s\n", (waiting().front() + " " + waiting().back()).c_str(), others.c_str());
+    warn("{}; these publish: {}\n", waiting().front() + " " + waiting().back(), others);
     return;
   }
   warn(
-      "%s; is ifogd running, with this lcm_url, and a route for its multicast "
+      "{}; is ifogd running, with this lcm_url, and a route for its multicast "
       "(ip route add 224.0.0.0/4 dev lo)?\n",
-      (waiting().front() + " " + waiting().back()).c_str());
+      waiting().front() + " " + waiting().back());
 }
 
 bool Monitor::received_any() const {
@@ -159,20 +142,18 @@ bool Monitor::all_shown() const {
 }
 
 bool Monitor::run() {
-  const sigset_t set = blocked_signals();
-  const int stop = signalfd(-1, &set, SFD_CLOEXEC);
   auto shown = start_;
-  std::array<pollfd, 3> wanted{pollfd{stop, POLLIN, 0}, pollfd{listener_.descriptor(), POLLIN, 0},
-                               pollfd{screen_ ? STDIN_FILENO : -1, POLLIN, 0}};
+  pollfd wanted[2]{{listener_.descriptor(), POLLIN, 0}, {screen_ ? STDIN_FILENO : -1, POLLIN, 0}};
+  const pollfd &messages = wanted[0], &keys = wanted[1];
   if (screen_) draw();
   auto drawn = start_;
   for (bool on = true; on;) {
-    const int ready = poll(wanted.data(), wanted.size(), 50);
+    const int ready = poll(wanted, 2, 50);
     if (reader_gone()) throw ReaderGone();
-    if (ready > 0 && (wanted[0].revents & POLLIN) != 0) break;
+    if (interrupted()) break;
     const auto held = web_ ? std::unique_lock(web_->guard()) : std::unique_lock<std::mutex>();
-    if (ready > 0 && (wanted[1].revents & POLLIN) != 0) listener_.take();
-    const bool pressed = ready > 0 && wanted[2].revents != 0;
+    if (ready > 0 && (messages.revents & POLLIN) != 0) listener_.take();
+    const bool pressed = ready > 0 && keys.revents != 0;
     if (seconds_since(shown) >= 1.0) {
       end_interval(seconds_since(shown));
       shown = Clock::now();
@@ -183,11 +164,10 @@ bool Monitor::run() {
     if (!screen_ || (!pressed && ready >= 0 && seconds_since(drawn) < 0.25)) continue;
     for (int key = screen_->key(); on && key != 0; key = screen_->key()) on = obey(key);
     // A closed terminal is always ready for reading.
-    if ((wanted[2].revents & (POLLHUP | POLLERR)) != 0) break;
+    if ((keys.revents & (POLLHUP | POLLERR)) != 0) break;
     draw();
     drawn = Clock::now();
   }
-  close(stop);
   web_.reset();
   look_.paused.reset();
   if (!options_.once && options_.web.empty() && seconds_since(shown) > 0.2)
@@ -204,14 +184,13 @@ bool Monitor::run() {
 void add_monitor(const Command& program) {
   const Command command = program.add_subcommand("monitor", "Show live what the daemon publishes");
   auto options = std::make_shared<MonitorOptions>();
-  command.add_option("--sensor", options->sensor, "Only this sensor").type_name("NAME");
+  command.add_option("--sensor", options->sensor, "Only this sensor");
   command.add_option("--seconds", options->seconds, "Stop after this long").positive();
   command.add_flag("--once", options->once, "Stop after one second of data of every sensor");
   command.add_flag("--plain", options->plain, "Lines instead of a screen with keys, at a terminal, too");
-  command
-      .add_option("--json", options->json,
-                  "Instead of the figures every message as a line of JSON to this file; - is standard output")
-      .type_name("FILE");
+  command.add_option(
+      "--json", options->json,
+      "Instead of the figures every message as a line of JSON to this file; - is standard output");
   command
       .add_option("--web", options->web,
                   "Instead of the figures a page for a browser, at this port of 127.0.0.1 or of another "
@@ -235,10 +214,10 @@ void add_monitor(const Command& program) {
     Monitor monitor(*options);
     if (!monitor.run()) {
       if (const std::string others = monitor.who_publishes(); !others.empty())
-        warn("ifog monitor: --sensor %s: none of that name publishes, expected one of: %s\n",
-             in_quotes(options->sensor).c_str(), others.c_str());
+        warn("ifog monitor: --sensor {}: none of that name publishes, expected one of: {}\n",
+             in_quotes(options->sensor), others);
       else
-        warn("ifog monitor: nothing heard on %s\n", options->url.c_str());
+        warn("ifog monitor: nothing heard on {}\n", options->url);
       throw Failed("nothing heard");
     }
   });

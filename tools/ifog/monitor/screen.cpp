@@ -12,9 +12,9 @@
 #include <cstdlib>
 #include <cstring>
 #include <cwchar>
-#include <stdexcept>
 #include <utility>
 
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -49,8 +49,8 @@ Screen::Screen() {
   screen_ = newterm(nullptr, stdout, stdin);
   if (screen_ == nullptr) {
     const char* const term = std::getenv("TERM");
-    throw std::runtime_error(std::string("terminal ") + (term != nullptr ? term : "of no name (TERM)") +
-                             ": cannot be drawn on; --plain writes lines");
+    throw refusal("terminal {}: cannot be drawn on; --plain writes lines",
+                  term != nullptr ? term : "of no name (TERM)");
   }
   cbreak();
   noecho();

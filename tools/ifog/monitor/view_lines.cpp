@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/monitor/view_lines.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "drivers/ifog/quoted.h"
 #include "filters/units/field_units.h"
-#include "filters/units/told_time.h"
 #include "msgs/axis_name.h"
 #include "msgs/state_name.h"
-#include "tools/ifog/console/options/hertz.h"
-#include "tools/ifog/field/books.h"
+#include "tools/ifog/console/hertz.h"
+#include "tools/ifog/field/status_text.h"
 #include "tools/ifog/monitor/spark_line.h"
 #include "tools/report/text.h"
 
@@ -45,22 +46,23 @@ Unit unit_for(double rate_radps, RateUnit wanted) {
 
 // An error above 10 % is not the clock's: a recording is played at another speed.
 std::string clock_text(double offset_ppm) {
-  return std::abs(offset_ppm) > 1e5 ? "not in real time" : formatted("%+.0f ppm", offset_ppm);
+  return std::abs(offset_ppm) > 1e5 ? "not in real time" : fmt::format("{:+.0f} ppm", offset_ppm);
 }
 
 std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& style) {
   const AxisView& axis = sensor.axes()[a];
   const Unit unit = unit_for(axis.rate_radps, style.unit);
-  const auto number = [&](const char* sign, double radps) -> std::string {
-    if (!std::isfinite(radps)) return "-";
-    const std::string format = std::string("%") + sign + "." + std::to_string(unit.decimals) + "f";
-    return formatted(format.c_str(), radps / unit.radps);
+  const auto number = [&](double radps) -> std::string {
+    return std::isfinite(radps) ? fmt::format("{:.{}f}", radps / unit.radps, unit.decimals) : "-";
+  };
+  const auto with_sign = [&](double radps) -> std::string {
+    return std::isfinite(radps) ? fmt::format("{:+.{}f}", radps / unit.radps, unit.decimals) : "-";
   };
   const std::string rate = "  " + std::string(axis_name(a, sensor.axes().size())) + "  " +
-                           number("+", axis.rate_radps) + " " + unit.name,
-                    noise = "  noise " + number("", axis.noise_radps),
-                    raw = " (raw " + number("", axis.raw_noise_radps) + ")",
-                    angle = formatted("  angle %+.6f°", axis.angle_rad / kDegree);
+                           with_sign(axis.rate_radps) + " " + unit.name,
+                    noise = "  noise " + number(axis.noise_radps),
+                    raw = " (raw " + number(axis.raw_noise_radps) + ")",
+                    angle = fmt::format("  angle {:+.6f}°", axis.angle_rad / kDegree);
   if (!std::isfinite(axis.rate_radps) && axis.angle_rad == 0.0)
     return "  " + std::string(axis_name(a, sensor.axes().size())) + "  not measured";
   // If there is not enough space, the least important parts are dropped first.
@@ -70,7 +72,7 @@ std::string axis_line(const SensorView& sensor, std::size_t a, const LineStyle& 
   constexpr std::size_t kMostSpark = 60, kLeastSpark = 4;
   if (style.width == 0) return out;
   // Height of the line in the rate's unit.
-  const auto scale = [&](const SparkLine& line) { return "  span " + number("", line.span); };
+  const auto scale = [&](const SparkLine& line) { return "  span " + number(line.span); };
   const std::size_t used = report::characters_in(out) + 2;
   if (used + kLeastSpark > style.width) return out;
   const std::size_t room = std::min(kMostSpark, style.width - used);
@@ -95,13 +97,13 @@ std::string model_text(const std::string& identity, const KnownSensor* known) {
 std::string head_line(std::string_view name, const SensorView& sensor, const KnownSensor* known) {
   std::string out = printable(name);
   if (sensor.silent())
-    out += formatted("  no message for %.0f s: has ifogd ended?", sensor.silent_s());
+    out += fmt::format("  no message for {:.0f} s: has ifogd ended?", sensor.silent_s());
   else if (sensor.live_status() != nullptr)
     out += std::string("  ") + state_name(sensor.live_status()->state);
   else if (sensor.status_age_s() > SensorView::kStale_s)
-    out += formatted("  no status for %.0f s", sensor.status_age_s());
+    out += fmt::format("  no status for {:.0f} s", sensor.status_age_s());
   if (sensor.judged()) out += "  " + in_hertz(sensor.message_rate_hz());
-  out += formatted("  %lld messages", static_cast<long long>(sensor.messages()));
+  out += fmt::format("  {} messages", sensor.messages());
   return out + (sensor.silent() ? "" : model_text(sensor.model(), known));
 }
 
@@ -113,8 +115,8 @@ std::vector<std::string> channels(const status_t& status, const KnownSensor* kno
     const double age_s = status.channel_age_s[i];
     if (!std::isfinite(age_s) && (known == nullptr || !known->channels.contains(status.channel_name[i])))
       continue;
-    std::string value = !std::isfinite(age_s) ? "no value" : formatted("%.6g", status.channel_value[i]);
-    if (std::isfinite(age_s) && age_s > kFresh_s) value += formatted(" (%.0f s old)", age_s);
+    std::string value = !std::isfinite(age_s) ? "no value" : fmt::format("{:.6g}", status.channel_value[i]);
+    if (std::isfinite(age_s) && age_s > kFresh_s) value += fmt::format(" ({:.0f} s old)", age_s);
     out.push_back(printable(status.channel_name[i]) + " " + value);
   }
   return out;
@@ -124,14 +126,14 @@ std::vector<std::string> health(const status_t& status) {
   std::vector<std::string> out;
   // Samples from a file have no latency, and an axis without values has no mean square.
   if (status.latency_max_us > 0.0)
-    out.push_back(formatted("latency p50 %.0f p99 %.0f max %.0f us", status.latency_p50_us,
-                            status.latency_p99_us, status.latency_max_us));
+    out.push_back(fmt::format("latency p50 {:.0f} p99 {:.0f} max {:.0f} us", status.latency_p50_us,
+                              status.latency_p99_us, status.latency_max_us));
   out.push_back("clock " + clock_text(status.clock_offset_ppm));
   const std::size_t axes = std::min(status.nis_mean.size(), status.whiteness.size());
   for (std::size_t a = 0; a < axes; ++a)
     if (status.nis_mean[a] != 0.0)
       out.push_back(std::string(axis_name(a, axes)) +
-                    formatted(" NIS %.2f whiteness %+.2f", status.nis_mean[a], status.whiteness[a]));
+                    fmt::format(" NIS {:.2f} whiteness {:+.2f}", status.nis_mean[a], status.whiteness[a]));
   return out;
 }
 

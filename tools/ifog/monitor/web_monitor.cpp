@@ -8,6 +8,7 @@
 
 #include "drivers/ifog/quoted.h"
 #include "msgs/axis_name.h"
+#include "tools/ifog/console/json_file.h"
 #include "tools/ifog/monitor/view_lines.h"
 
 namespace ifog::tools {
@@ -71,8 +72,7 @@ std::string WebMonitor::data(const std::string& wanted) {
     out["chosen"] = shown->first;
     out["sensor"] = of_sensor(shown->first, shown->second, known_.of(shown->first));
   }
-  // Names may contain any bytes.
-  return out.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
+  return json_text(out, -1);
 }
 
 }  // namespace ifog::tools

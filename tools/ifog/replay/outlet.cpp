@@ -6,10 +6,10 @@
 
 #include <cerrno>
 #include <ctime>
-#include <stdexcept>
 #include <system_error>
 
 #include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -37,8 +37,7 @@ bool Outlet::send(const void* bytes, std::size_t n, bool whole) {
     const ssize_t accepted = write(at, n);
     // Part of a datagram is a different datagram; a second write cannot repair that.
     if (whole && accepted > 0 && static_cast<std::size_t>(accepted) != n)
-      throw std::runtime_error(name_ + ": cannot send: " + std::to_string(accepted) + " of " +
-                               std::to_string(n) + " bytes of a frame were accepted");
+      throw refusal("{}: cannot send: {} of {} bytes of a frame were accepted", name_, accepted, n);
     if (accepted > 0) {
       at += accepted;
       n -= static_cast<std::size_t>(accepted);
@@ -50,9 +49,9 @@ bool Outlet::send(const void* bytes, std::size_t n, bool whole) {
     // Of an earlier datagram that nobody received; a sensor goes on sending.
     if (whole && error == ECONNREFUSED) continue;
     if (error == EINTR) continue;
-    if (error == EPIPE) throw std::runtime_error(name_ + ": the reader went away");
+    if (error == EPIPE) throw refusal("{}: the reader went away", name_);
     if (error != EAGAIN && error != ENOBUFS)
-      throw std::runtime_error(name_ + ": cannot send: " + std::generic_category().message(error));
+      throw refusal("{}: cannot send: {}", name_, std::generic_category().message(error));
     ++retries_;
     pause(error);
   }

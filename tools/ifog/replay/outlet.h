@@ -27,7 +27,6 @@ class Outlet {
 
   // Number of writes that the system rejected (ENOBUFS, EAGAIN) or accepted in part.
   [[nodiscard]] std::uint64_t retries() const { return retries_; }
-  [[nodiscard]] int fd() const { return fd_; }
 
  protected:
   // System calls, for tests: write() as write(2); pause() waits for space for a limited time.

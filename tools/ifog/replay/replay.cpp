@@ -14,7 +14,6 @@
 #include <exception>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 #include <system_error>
 
@@ -26,6 +25,7 @@
 #include "tools/ifog/console/interrupt.h"
 #include "tools/ifog/console/json_file.h"
 #include "tools/ifog/console/options/command.h"
+#include "tools/ifog/console/options/command_errors.h"
 #include "tools/ifog/console/progress.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/replay/replay_target.h"
@@ -36,7 +36,8 @@ namespace {
 
 struct ReplaySettings {
   ReplaySource source;
-  std::string to, json;
+  ReplayDestination to;
+  std::string json;
   SerialSettings line;
   double speed = 1.0;
   std::uint64_t loops = 1;  // 0: unlimited
@@ -56,9 +57,6 @@ struct ReplayResult {
 // From the start to the first deadline, so that the first item is delayed like the others.
 constexpr std::int64_t kLead_ns = 20'000'000;
 constexpr std::int64_t kLongestSleep_ns = 100'000'000;
-// The progress bar is drawn only in pauses of at least this length.
-constexpr std::int64_t kPauseForProgress_ns = 2'000'000;
-constexpr std::int64_t kProgressEvery_ns = 500'000'000;  // interval within a long pause
 
 // False: interrupted.
 bool sleep_until(std::int64_t due_ns, std::int64_t spin_ns) {
@@ -88,36 +86,26 @@ void replay(const ReplayTimeline& timeline, const ReplaySettings& settings, Repl
   const bool paced = settings.speed > 0.0;
   const auto spin_ns = static_cast<std::int64_t>(settings.spin_us * 1e3);
   const std::int64_t round = round_ns(timeline);
-  // Progress by recorded time if paced, so that pauses count.
-  constexpr double kPerSecond = 1e3;
-  const double length_s = static_cast<double>(round) * 1e-9 * static_cast<double>(settings.loops);
-  const auto steps = [&](double recorded_s) { return static_cast<std::size_t>(recorded_s * kPerSecond); };
-  Progress progress("replay", paced ? steps(length_s) : result.wanted, Progress::Between::nothing);
+  // Progress by recorded time if paced, in ms, so that pauses count.
+  const auto in_ms = [](double time_ns) { return static_cast<std::size_t>(time_ns * 1e-6); };
+  Progress progress("replay", paced ? in_ms(static_cast<double>(round) * static_cast<double>(settings.loops))
+                                    : result.wanted);
   Pace pace(paced ? settings.speed : 1.0);
   result.begin_ns = monotonic_ns() + (paced ? kLead_ns : 0);
   pace.start(timeline.time_ns(0), result.begin_ns);
+  // False: interrupted.
+  const auto send = [&](std::size_t i, std::int64_t shift) {
+    const std::int64_t recorded_ns = timeline.time_ns(i) + shift, due = pace.due_ns(recorded_ns);
+    if (paced ? !sleep_until(due, spin_ns) : interrupted()) return false;
+    if (!target.send(i)) return false;
+    if (paced) result.late.add(monotonic_ns() - due);
+    ++result.sent;
+    progress.at(paced ? in_ms(static_cast<double>(recorded_ns - timeline.time_ns(0))) : result.sent);
+    return true;
+  };
   bool going = true;
-  for (std::uint64_t loop = 0; going && (settings.loops == 0 || loop < settings.loops); ++loop) {
-    const std::int64_t shift = static_cast<std::int64_t>(loop) * round;
-    for (std::size_t i = 0; going && i < n; ++i) {
-      const std::int64_t due = pace.due_ns(timeline.time_ns(i) + shift);
-      const auto tell = [&] {
-        const double since_s = static_cast<double>(monotonic_ns() - result.begin_ns) * 1e-9;
-        progress.at(paced ? steps(std::clamp(since_s * settings.speed, 0.0, length_s)) : result.sent);
-      };
-      if (settings.loops != 0 && (!paced || due - monotonic_ns() > kPauseForProgress_ns)) tell();
-      for (std::int64_t now = monotonic_ns();
-           paced && settings.loops != 0 && due - now > 2 * kProgressEvery_ns && going; now = monotonic_ns()) {
-        going = sleep_until(now + kProgressEvery_ns, 0);
-        tell();
-      }
-      if (!going) break;
-      going = paced ? sleep_until(due, spin_ns) && target.send(i) : !interrupted() && target.send(i);
-      if (!going) break;
-      if (paced) result.late.add(monotonic_ns() - due);
-      ++result.sent;
-    }
-  }
+  for (std::uint64_t loop = 0; going && (settings.loops == 0 || loop < settings.loops); ++loop)
+    for (std::size_t i = 0; going && i < n; ++i) going = send(i, static_cast<std::int64_t>(loop) * round);
   target.finish();
 }
 
@@ -126,7 +114,7 @@ void prepare(const ReplaySettings& settings) {
   prctl(PR_SET_TIMERSLACK, 1UL);
   if (!settings.realtime) return;
   const auto going_without = [](const char* what) {
-    warn("ifog replay: no %s (%s), going on without\n", what, std::generic_category().message(errno).c_str());
+    warn("ifog replay: no {} ({}), going on without\n", what, std::generic_category().message(errno));
   };
   if (mlockall(MCL_CURRENT | MCL_FUTURE) != 0) going_without("locked memory");
   sched_param priority{};
@@ -143,14 +131,13 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
             const ReplayResult& result) {
   const bool paced = settings.speed > 0.0 && result.sent > 0;
   const std::string of = result.wanted > result.sent ? " of " + std::to_string(result.wanted) : "";
-  say("%ssent %llu%s %s in %.3f s, %llu retries\n",
+  say("{}sent {}{} {} in {:.3f} s, {} retries\n",
       result.failed   ? "failed: "
       : interrupted() ? "interrupted: "
                       : "",
-      static_cast<unsigned long long>(result.sent), of.c_str(), timeline.is_can() ? "frames" : "blocks",
-      result.seconds, static_cast<unsigned long long>(target.retries()));
+      result.sent, of, timeline.is_can() ? "frames" : "blocks", result.seconds, target.retries());
   if (paced)
-    say("lateness p50 %.1f µs, p99 %.1f µs, max %.1f µs\n", result.late.percentile_us(0.5),
+    say("lateness p50 {:.1f} µs, p99 {:.1f} µs, max {:.1f} µs\n", result.late.percentile_us(0.5),
         result.late.percentile_us(0.99), result.late.max_us());
   if (settings.json.empty()) return;
   nlohmann::json json = {{"schema", "ifog.replay/1"},
@@ -171,7 +158,7 @@ void report(const ReplaySettings& settings, const ReplayTimeline& timeline, cons
 }
 
 void run(ReplaySettings settings) {
-  const ReplayDestination to = ReplayDestination::parse(settings.to);
+  const ReplayDestination& to = settings.to;
   settings.source.input.will_read("capture", settings.source.path);
   if (to.kind == ReplayDestination::Kind::standard_output) will_write("--to", "-");
   if (to.kind == ReplayDestination::Kind::file) will_write("--to", to.name);
@@ -198,24 +185,13 @@ void run(ReplaySettings settings) {
   try {
     replay(timeline, settings, *target, result);
   } catch (const std::exception& error) {
-    warn("ifog replay: %s\n", error.what());
+    warn("ifog replay: {}\n", error.what());
     result.failed = true;
   }
   result.sent -= target->buffered();
   result.seconds = std::max(0.0, static_cast<double>(monotonic_ns() - result.begin_ns) * 1e-9);
   report(settings, timeline, *target, result);
   if (!complete(result)) throw Failed("not all was sent");
-}
-
-// "" or the error in the value, for CLI11.
-std::string names_a_target(const std::string& text) {
-  try {
-    ReplayDestination::parse(text);
-    return {};
-  } catch (const std::runtime_error& error) {
-    const std::string said = error.what();
-    return said.starts_with("--to ") ? said.substr(5) : said;
-  }
 }
 
 }  // namespace
@@ -230,11 +206,11 @@ void add_replay(const Command& program) {
                   "Flight recording, candump log, raw bytes, or a capture (.csv, .h5)")
       .required();
   command
-      .add_option("--to", settings->to,
-                  "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
-                  "fifo:PATH or - (standard output)")
-      .required()
-      .check(names_a_target);
+      .add_taken<std::string>(
+          "--to", [settings](const std::string& text) { settings->to = ReplayDestination::parse(text); },
+          "can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT (listens there), file:PATH, "
+          "fifo:PATH or - (standard output)")
+      .required();
   command.add_option("--format", source.format, "of the recording")
       .one_of({"auto", "candump", "bytes", "csv"})
       .shows_default();

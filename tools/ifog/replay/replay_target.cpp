@@ -13,7 +13,6 @@
 #include <cerrno>
 #include <charconv>
 #include <span>
-#include <stdexcept>
 #include <system_error>
 
 #include "drivers/capture/candump/candump.h"
@@ -23,6 +22,8 @@
 #include "drivers/transport/can/can_socket.h"
 #include "drivers/transport/network/ip_socket.h"
 #include "tools/ifog/console/interrupt.h"
+#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -32,7 +33,7 @@ constexpr int kLook_ms = 100;                   // between checks for an interru
 constexpr std::size_t kBufferSize = 1U << 16U;  // buffer size in bytes if items have no deadlines
 
 [[noreturn]] void fail(const std::string& name, const std::string& what, int error) {
-  throw std::runtime_error(name + ": " + what + ": " + std::generic_category().message(error));
+  throw refusal("{}: {}: {}", name, what, std::generic_category().message(error));
 }
 
 // Null if interrupted while waiting for the FIFO's reader.
@@ -40,8 +41,8 @@ std::unique_ptr<OutputFile> open_fifo(const std::string& name) {
   struct stat info {};
   const bool there = stat(name.c_str(), &info) == 0;
   if (!there && mkfifo(name.c_str(), 0644) != 0) fail(name, "cannot make a FIFO", errno);
-  if (there && !S_ISFIFO(info.st_mode)) throw std::runtime_error(name + ": is no FIFO, expected one");
-  warn("%s: waiting for a reader\n", name.c_str());
+  if (there && !S_ISFIFO(info.st_mode)) throw refusal("{}: is no FIFO, expected one", name);
+  warn("{}: waiting for a reader\n", name);
   for (;;) {
     const int fd = open(name.c_str(), O_WRONLY | O_CLOEXEC);
     if (fd >= 0) return std::make_unique<OutputFile>(name, fd);
@@ -49,11 +50,6 @@ std::unique_ptr<OutputFile> open_fifo(const std::string& name) {
     if (errno != EINTR) fail(name, "cannot open for writing", errno);
   }
 }
-
-struct HostAndPort {
-  IpAddress host;
-  std::uint16_t port = 0;
-};
 
 // "127.0.0.1:4001" or "[::1]:4001".
 HostAndPort read_host_and_port(const std::string& text) {
@@ -68,8 +64,8 @@ HostAndPort read_host_and_port(const std::string& text) {
                      std::from_chars(text.data() + colon + 1, end, port).ptr == end && port >= 1 &&
                      port <= 65535;
   if (!whole || !address || address->is_v6() != bracketed)
-    throw std::runtime_error("--to is " + in_quotes(text) +
-                             ", expected a numeric address and a port, 127.0.0.1:4001 or [::1]:4001");
+    throw WrongUsage("--to", "is " + in_quotes(text) +
+                                 ", expected a numeric address and a port, 127.0.0.1:4001 or [::1]:4001");
   return {*address, static_cast<std::uint16_t>(port)};
 }
 
@@ -79,8 +75,7 @@ sockaddr_storage socket_address(const HostAndPort& at, const std::string& name, 
   return *address;
 }
 
-IpSocket connected_udp(const std::string& name) {
-  const HostAndPort to = read_host_and_port(name);
+IpSocket connected_udp(const HostAndPort& to, const std::string& name) {
   socklen_t size = 0;
   const sockaddr_storage address = socket_address(to, name, size);
   IpSocket socket(to.host.family(), SOCK_DGRAM, name);
@@ -89,8 +84,7 @@ IpSocket connected_udp(const std::string& name) {
 }
 
 // Listens like a sensor or serial server and accepts the first client. Not open if interrupted.
-IpSocket served_tcp(const std::string& name) {
-  const HostAndPort at = read_host_and_port(name);
+IpSocket served_tcp(const HostAndPort& at, const std::string& name) {
   socklen_t size = 0;
   const sockaddr_storage address = socket_address(at, name, size);
   IpSocket listener(at.host.family(), SOCK_STREAM, name);
@@ -98,7 +92,7 @@ IpSocket served_tcp(const std::string& name) {
     fail(name, "cannot listen", error);
   if (const int error = listener.bind(address, size); error != 0) fail(name, "cannot listen", error);
   if (listen(listener.fd(), 1) != 0) fail(name, "cannot listen", errno);
-  warn("%s: waiting for a connection\n", name.c_str());
+  warn("{}: waiting for a connection\n", name);
   for (;;) {
     IpSocket served = IpSocket::accepted(listener);
     if (served.is_open()) {
@@ -118,25 +112,24 @@ IpSocket served_tcp(const std::string& name) {
 }  // namespace
 
 ReplayDestination ReplayDestination::parse(const std::string& text) {
-  if (text == "-") return {Kind::standard_output, "standard output"};
-  for (const auto& [prefix, kind] : {std::pair{"can:", Kind::can},
+  if (text == "-") return {Kind::standard_output, "standard output", {}};
+  for (const auto& [prefix, kind] : {std::pair<std::string, Kind>{"can:", Kind::can},
                                      {"serial:", Kind::serial},
                                      {"udp:", Kind::udp},
                                      {"tcp:", Kind::tcp},
                                      {"file:", Kind::file},
                                      {"fifo:", Kind::fifo}})
-    if (text.starts_with(prefix) && text.size() > std::string(prefix).size()) {
-      ReplayDestination out{kind, text.substr(std::string(prefix).size())};
-      if (kind == Kind::udp || kind == Kind::tcp) read_host_and_port(out.name);
+    if (text.starts_with(prefix) && text.size() > prefix.size()) {
+      ReplayDestination out{kind, text.substr(prefix.size()), {}};
+      if (kind == Kind::udp || kind == Kind::tcp) out.at = read_host_and_port(out.name);
       if (kind == Kind::file && is_packed_name(out.name))
-        throw std::runtime_error("--to is " + in_quotes(text) +
-                                 ", expected a name without .gz: nothing is packed");
+        throw WrongUsage("--to",
+                         "is " + in_quotes(text) + ", expected a name without .gz: nothing is packed");
       return out;
     }
-  throw std::runtime_error(
-      "--to is " + in_quotes(text) +
-      ", expected can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT, file:PATH, "
-      "fifo:PATH or -");
+  throw WrongUsage("--to", "is " + in_quotes(text) +
+                               ", expected can:INTERFACE, serial:DEVICE, udp:HOST:PORT, tcp:HOST:PORT, "
+                               "file:PATH, fifo:PATH or -");
 }
 
 bool ReplayTarget::send(std::size_t i) {
@@ -170,10 +163,8 @@ bool ReplayTarget::flush() {
   return done;
 }
 
-bool ReplayTarget::finish() {
-  if (!flush()) return false;
-  finish_();
-  return true;
+void ReplayTarget::finish() {
+  if (flush()) finish_();
 }
 
 std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const ReplayTimeline& timeline,
@@ -184,14 +175,13 @@ std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const Rep
     return std::make_unique<ReplayTarget>(to.name, fd, form, timeline, buffering, std::move(finish));
   };
   const auto expect_bytes = [&](const char* where) {
-    if (timeline.is_can())
-      throw std::runtime_error(to.name + ": CAN frames cannot go " + where + ", expected bytes");
+    if (timeline.is_can()) throw refusal("{}: CAN frames cannot go {}, expected bytes", to.name, where);
   };
   switch (to.kind) {
     case Kind::can: {
       if (!timeline.is_can())
-        throw std::runtime_error(
-            to.name + ": raw bytes cannot go onto a CAN bus, expected a candump log or a CSV capture");
+        throw refusal("{}: raw bytes cannot go onto a CAN bus, expected a candump log or a CSV capture",
+                      to.name);
       const auto socket = std::make_shared<CanSocket>(to.name);
       socket->receive_nothing();
       return target(socket->fd(), Form::can_frames, [socket] {});
@@ -200,19 +190,19 @@ std::unique_ptr<ReplayTarget> open_target(const ReplayDestination& to, const Rep
       expect_bytes("onto a serial line");
       line.device = to.name;
       if (line.baud == 0) line.baud = timeline.baud;
-      if (line.baud == 0) throw std::runtime_error(to.name + ": no speed known, expected --baud");
+      if (line.baud == 0) throw refusal("{}: no speed known, expected --baud", to.name);
       std::string warning;
       const std::shared_ptr<SerialPort> port = open_serial_port(line, warning);
       return target(port->fd(), Form::stream, [port] { tcdrain(port->fd()); });
     }
     case Kind::udp: {
       expect_bytes("over UDP");
-      const auto socket = std::make_shared<IpSocket>(connected_udp(to.name));
+      const auto socket = std::make_shared<IpSocket>(connected_udp(to.at, to.name));
       return target(socket->fd(), Form::datagrams, [socket] {});
     }
     case Kind::tcp: {
       expect_bytes("over TCP");
-      const auto socket = std::make_shared<IpSocket>(served_tcp(to.name));
+      const auto socket = std::make_shared<IpSocket>(served_tcp(to.at, to.name));
       if (!socket->is_open()) return nullptr;
       return target(socket->fd(), Form::stream, [socket] {});
     }

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "drivers/transport/network/ip_address.h"
 #include "drivers/transport/serial/serial_port.h"
 #include "tools/ifog/replay/outlet.h"
 #include "tools/ifog/replay/replay_timeline.h"
@@ -31,8 +32,8 @@ class ReplayTarget {
   // Sends item i and returns when the system has accepted it; waits while the system has no space. False:
   // interrupted. Throws std::runtime_error if the target is closed.
   bool send(std::size_t i);
-  // Sends what is still buffered. False: interrupted.
-  bool finish();
+  // Sends what is still buffered, unless interrupted.
+  void finish();
   // Items in the buffer, accepted by send() but not yet by the system.
   [[nodiscard]] std::uint64_t buffered() const { return buffered_items_; }
   [[nodiscard]] std::uint64_t retries() const { return outlet_.retries(); }
@@ -49,13 +50,19 @@ class ReplayTarget {
   std::uint64_t buffered_items_ = 0;
 };
 
+struct HostAndPort {
+  IpAddress host;
+  std::uint16_t port = 0;
+};
+
 struct ReplayDestination {
   enum class Kind { can, serial, udp, tcp, file, fifo, standard_output };
   Kind kind = Kind::file;
   std::string name;  // interface, device, HOST:PORT or path
+  HostAndPort at;    // of udp and tcp
 
   // "can:vcan0", "serial:/dev/ttyS0", "udp:127.0.0.1:5000", "tcp:[::1]:4001", "file:PATH", "fifo:PATH" or
-  // "-". Throws std::runtime_error.
+  // "-". Throws WrongUsage for --to.
   static ReplayDestination parse(const std::string& text);
   [[nodiscard]] bool is_can() const { return kind == Kind::can; }
 };

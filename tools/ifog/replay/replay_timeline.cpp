@@ -15,6 +15,7 @@
 #include "filters/series/median_step.h"
 #include "tools/ifog/captures/flight/flight_input.h"
 #include "tools/ifog/captures/reading_progress.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -58,10 +59,10 @@ ReplayTimeline from_candump(const ReplaySource& source, InputFile& file) {
           two = two_interfaces(source.path, other, from);
       });
   if (lost.remote + lost.error > 0)
-    warn("%s: %zu remote and %zu error frames are not sent\n", source.path.c_str(), lost.remote, lost.error);
-  if (lost.cut_off) warn("%s: the last line is no whole frame and is not sent\n", source.path.c_str());
+    warn("{}: {} remote and {} error frames are not sent\n", source.path, lost.remote, lost.error);
+  if (lost.cut_off) warn("{}: the last line is no whole frame and is not sent\n", source.path);
   if (file.ends_early())
-    warn("%s: the gzip stream ends early (truncated file); what is there is sent\n", source.path.c_str());
+    warn("{}: the gzip stream ends early (truncated file); what is there is sent\n", source.path);
   if (source.prefer_can && !two.empty()) throw std::runtime_error(two);
   return timeline;
 }
@@ -81,9 +82,9 @@ void cut_by_driver(const ReplaySource& source, ReplayTimeline& timeline) {
   const ifog_description& d = driver.description();
   timeline.baud = d.baud;
   if (!driver.takes_bytes())
-    throw std::runtime_error(source.path + ": driver " + source.input.driver_name() + " takes no bytes");
+    throw refusal("{}: driver {} takes no bytes", source.path, source.input.driver_name());
   if (d.has_device_time == 0 && !(d.nominal_rate_hz > 0.0))
-    throw std::runtime_error(source.path + ": the frames carry no time, expected --option rate_hz=HZ");
+    throw refusal("{}: the frames carry no time, expected --option rate_hz=HZ", source.path);
   Timeline steps(d.sequence_modulus, d.nominal_rate_hz);
   double time_s = 0.0;
   for (std::size_t i = 0; i < timeline.bytes.size(); ++i)
@@ -97,15 +98,15 @@ void cut_by_driver(const ReplaySource& source, ReplayTimeline& timeline) {
       timeline.blocks.push_back({nanoseconds(time_s), i + 1});
     });
   if (timeline.blocks.empty())
-    throw std::runtime_error(source.path + ": no frame of driver " + source.input.driver_name() + " in it");
+    throw refusal("{}: no frame of driver {} in it", source.path, source.input.driver_name());
   timeline.blocks.back().end = timeline.bytes.size();
 }
 
 ReplayTimeline from_bytes(const ReplaySource& source, InputFile& file) {
   const bool even = source.block_bytes != 0 && source.rate_hz > 0.0;
   if (!even && !source.input.has_driver())
-    throw std::runtime_error(
-        source.path + ": raw bytes carry no times, expected --block BYTES and --rate HZ, or --driver NAME");
+    throw refusal("{}: raw bytes carry no times, expected --block BYTES and --rate HZ, or --driver NAME",
+                  source.path);
   const std::string text = file.bytes();
   ReplayTimeline timeline;
   timeline.bytes.assign(text.begin(), text.end());
@@ -116,15 +117,14 @@ ReplayTimeline from_bytes(const ReplaySource& source, InputFile& file) {
 
 ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
   if (!source.input.has_driver())
-    throw std::runtime_error(source.path +
-                             ": a capture in columns needs --driver NAME, whose frames its rows become");
+    throw refusal("{}: a capture in columns needs --driver NAME, whose frames its rows become", source.path);
   const LongCapture read(source.input.read_long_columns(file), source.path);
   const CaptureView& capture = read.view();
   const double rate_hz = capture.size() > 1 ? sample_rate_hz(median_step(capture.time_s)) : 0.0;
   const auto plugin = find_plugin(source.input.driver_name(), plugin_folders());
   DriverInstance driver(plugin, with_rate(rate_hz, *plugin, source.input.settings()));
   CaptureEncoder encoder(capture, driver, rate_hz, source.axis);
-  for (const std::string& notice : encoder.notices()) warn("%s: %s\n", source.path.c_str(), notice.c_str());
+  for (const std::string& notice : encoder.notices()) warn("{}: {}\n", source.path, notice);
   ReplayTimeline timeline;
   timeline.baud = driver.description().baud;
   if (driver.takes_can() && (source.prefer_can || !driver.takes_bytes())) {
@@ -137,7 +137,7 @@ ReplayTimeline from_capture(const ReplaySource& source, InputFile& file) {
             {nanoseconds(capture.time_s[encoder.rows_done() - 1]), timeline.bytes.size()});
   }
   if (encoder.rows_left_out() > 0)
-    warn("%s: %zu rows without a rate are not sent: the format cannot say so\n", source.path.c_str(),
+    warn("{}: {} rows without a rate are not sent: the format cannot say so\n", source.path,
          encoder.rows_left_out());
   return timeline;
 }
@@ -157,7 +157,7 @@ ReplayTimeline from_flight(const ReplaySource& source, InputFile& file) {
     }
   });
   if (flight.header().carries == FlightHeader::Carries::messages)
-    throw std::runtime_error(source.path + ": is a recording of LCM messages, expected one of a device");
+    throw refusal("{}: is a recording of LCM messages, expected one of a device", source.path);
   const SensorConfig sensor = flight.sensor();
   if (!sensor.transport.interface.empty()) timeline.interfaces = {sensor.transport.interface};
   if (!flight.header().interface.empty()) timeline.interfaces = {flight.header().interface};
@@ -190,12 +190,13 @@ ReplayTimeline read_timeline(const ReplaySource& source) {
       break;
     case FileKind::lcm_log:
     case FileKind::unknown:
-      throw std::runtime_error(source.path +
-                               ": neither a flight recording, a candump log, raw bytes nor a capture in "
-                               "columns by its name and first bytes; --format selects one");
+      throw refusal(
+          "{}: neither a flight recording, a candump log, raw bytes nor a capture in columns by its name and "
+          "first bytes; --format selects one",
+          source.path);
   }
   if (timeline.on.empty() && !source.input.channel.empty()) timeline.interfaces = {source.input.channel};
-  if (timeline.size() == 0) throw std::runtime_error(source.path + ": nothing in it to send");
+  if (timeline.size() == 0) throw refusal("{}: nothing in it to send", source.path);
   return timeline;
 }
 

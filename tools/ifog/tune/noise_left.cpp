@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tools/ifog/tune/noise_left.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <exception>
@@ -11,7 +13,7 @@
 #include "drivers/ifog/quoted.h"
 #include "filters/allan/stretches.h"
 #include "filters/tune/tune.h"
-#include "filters/units/told_time.h"
+#include "tools/ifog/captures/long_capture.h"
 #include "tools/ifog/captures/model_axes.h"
 #include "tools/ifog/tune/rest_columns.h"
 
@@ -19,18 +21,6 @@ namespace ifog::tools {
 namespace {
 
 constexpr std::size_t kMostRows = 200000;  // default of `ifog tune`
-
-CaptureView first_rows(CaptureView capture, std::size_t most) {
-  const std::size_t rows = std::min(capture.size(), most);
-  const auto shorten = [&](std::span<const double>& column) {
-    if (!column.empty()) column = column.first(rows);
-  };
-  shorten(capture.time_s);
-  for (auto& column : capture.rate_radps) shorten(column);
-  for (auto& column : capture.reference_rate_radps) shorten(column);
-  for (auto& channel : capture.channels) shorten(channel.values);
-  return capture;
-}
 
 TunedModel fitted(const CaptureView& rates, const std::string& state, const std::string& path) {
   const double period_s = sample_clock(rates.time_s).period_s;
@@ -51,7 +41,7 @@ std::string fit_noise_left(Model& model, const Model& added, const CaptureView& 
       model.filter && (model.filter->process_noise > 0.0 || model.filter->measurement_noise > 0.0);
   if (known && added.effects.empty()) return "";
   FilterSettings filter = model.filter.value_or(FilterSettings{});
-  CaptureView rates = first_rows(capture, kMostRows);
+  CaptureView rates = rows_of(capture, {0, std::min(capture.size(), kMostRows)});
   try {
     std::vector<Samples> left = compensated_rates(rates, added);
     for (std::size_t a = 0; a < left.size(); ++a) {
@@ -61,9 +51,9 @@ std::string fit_noise_left(Model& model, const Model& added, const CaptureView& 
       rates.reference_rate_radps[a] = {};
     }
     const TunedModel found = fitted(rates, filter.state, path);
-    std::string text = formatted(
-        "noise of the filter, fitted to the corrected rate: process_noise %.4g (rad/s)^2/s, "
-        "measurement_noise %.4g (rad/s)^2",
+    std::string text = fmt::format(
+        "noise of the filter, fitted to the corrected rate: process_noise {:.4g} (rad/s)^2/s, "
+        "measurement_noise {:.4g} (rad/s)^2",
         found.settings.process_noise, found.settings.measurement_noise);
     filter.process_noise = found.settings.process_noise;
     filter.measurement_noise = found.settings.measurement_noise;

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "drivers/capture/columns/column_names.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 
@@ -28,8 +29,8 @@ Rest mostly_at_rest(const CaptureView& capture, double period_s, const std::stri
   } catch (const std::invalid_argument& error) {
     const bool referenced = std::ranges::any_of(capture.reference_rate_radps,
                                                 [](const auto& reference) { return !reference.empty(); });
-    throw std::runtime_error(path + ": " + error.what() +
-                             (referenced ? "; a sensor turned with a reference is for ifog diagnose" : ""));
+    throw refusal("{}: {}{}", path, error.what(),
+                  referenced ? "; a sensor turned with a reference is for ifog diagnose" : "");
   }
   return rest;
 }

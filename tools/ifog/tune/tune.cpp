@@ -2,7 +2,8 @@
 // ifog tune: fits Q, R and the state model of a sensor at rest and writes a model file.
 #include "filters/tune/tune.h"
 #include "drivers/system/utc_now.h"
-#include "filters/units/told_time.h"
+
+#include <fmt/core.h>
 
 #include <filesystem>
 #include <map>
@@ -35,6 +36,7 @@
 #include "tools/ifog/console/naming.h"
 #include "tools/ifog/console/options/command.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 #include "tools/ifog/tune/rest_columns.h"
 #include "tools/report/coefficients.h"
@@ -60,13 +62,13 @@ std::string in_field_units(const TunedFigure& figure) {
   if (figure.unit == "rad/s^2/sqrt(Hz)") factor = 1.0 / kDegreePerHourPerRootHour, unit = "deg/h/sqrt(h)";
   if (figure.unit == "rad/s") factor = 1.0 / kDegreePerHour, unit = "deg/h";
   if (factor == 0.0) return "";
-  return formatted("   %.4g %s", figure.value * factor, unit);
+  return fmt::format("   {:.4g} {}", figure.value * factor, unit);
 }
 
 json rate_json(const RateFigures& figures) {
   json adev = json::object();
   for (std::size_t t = 0; t < kOutcomeTaus.size(); ++t)
-    if (figures.adev_radps[t]) adev[formatted("%g", kOutcomeTaus[t])] = *figures.adev_radps[t];
+    if (figures.adev_radps[t]) adev[fmt::format("{:g}", kOutcomeTaus[t])] = *figures.adev_radps[t];
   return {{"rms_radps", figures.rms_radps}, {"adev_radps", adev}};
 }
 
@@ -97,30 +99,28 @@ json model_json(const TunedModel& model, const std::vector<std::string>& axes) {
 }
 
 void print_models(const Tuning& tuning) {
-  say("%-28s %4s %16s %10s\n", "state model", "free", "ln likelihood", "BIC - best");
+  say("{:<28} {:>4} {:>16} {:>10}\n", "state model", "free", "ln likelihood", "BIC - best");
   for (const TunedModel& model : tuning.models)
-    say("%-28s %4d %16.1f %10.1f\n", model.settings.state.c_str(), model.parameters, model.log_likelihood,
+    say("{:<28} {:4} {:16.1f} {:10.1f}\n", model.settings.state, model.parameters, model.log_likelihood,
         model.bic - tuning.models.front().bic);
   const TunedModel& chosen = tuning.models[tuning.chosen];
-  say("\n%s\n", chosen.settings.state.c_str());
+  say("\n{}\n", chosen.settings.state);
   for (std::size_t i = 0; i < tuning.chosen; ++i)
-    say("  %s is likelier: rejected, %s\n", tuning.models[i].settings.state.c_str(),
-        tuning.models[i].passed_over.c_str());
+    say("  {} is likelier: rejected, {}\n", tuning.models[i].settings.state, tuning.models[i].passed_over);
   for (const TunedFigure& f : chosen.figures) {
     if (f.std_error)
-      say("  %-30s %12.5g ± %-9.2g %-18s%s\n", f.name.c_str(), f.value, *f.std_error, f.unit.c_str(),
-          in_field_units(f).c_str());
+      say("  {:<30} {:12.5g} ± {:<9.2g} {:<18}{}\n", f.name, f.value, *f.std_error, f.unit,
+          in_field_units(f));
     else
-      say("  %-30s %12.5g   %-9s %-18s%s\n", f.name.c_str(), f.value, "unknown", f.unit.c_str(),
-          in_field_units(f).c_str());
+      say("  {:<30} {:12.5g}   {:<9} {:<18}{}\n", f.name, f.value, "unknown", f.unit, in_field_units(f));
   }
   if (chosen.walk_is_bound) say("  no random walk is detectable: process_noise is its 1 sigma upper limit\n");
 }
 
 // One line per figure: measured, published with the selected model, and with the random walk.
-void print_figure(const char* name, double before, double after, const double* walk) {
-  say("  %-22s %12.4g %12.4g", name, before / kDegreePerHour, after / kDegreePerHour);
-  if (walk != nullptr) say(" %12.4g", *walk / kDegreePerHour);
+void print_figure(const std::string& name, double before, double after, const double* walk) {
+  say("  {:<22} {:12.4g} {:12.4g}", name, before / kDegreePerHour, after / kDegreePerHour);
+  if (walk != nullptr) say(" {:12.4g}", *walk / kDegreePerHour);
   say("\n");
 }
 
@@ -131,16 +131,16 @@ void print_held_out(const Tuning& tuning, const std::vector<std::string>& axes) 
     return m.held_out && m.settings.state == "random-walk";
   });
   const Outcome* walk = found == tuning.models.end() || &*found == &chosen ? nullptr : &*found->held_out;
-  say("\nfitted to the first half, the second half as denoise makes it, deg/h\n  %-22s %12s %12s%s\n", "",
-      "measured", "denoised", walk ? "  random-walk" : "");
+  say("\nfitted to the first half, the second half as denoise makes it, deg/h\n  {:<22} {:>12} {:>12}{}\n",
+      "", "measured", "denoised", walk ? "  random-walk" : "");
   for (std::size_t a = 0; a < axes.size(); ++a) {
     const RateFigures& before = chosen.held_out->before[a];
     const RateFigures& after = chosen.held_out->after[a];
-    if (!axes[a].empty()) say("  axis %s\n", axes[a].c_str());
+    if (!axes[a].empty()) say("  axis {}\n", axes[a]);
     print_figure("RMS", before.rms_radps, after.rms_radps, walk ? &walk->after[a].rms_radps : nullptr);
     for (std::size_t t = 0; t < kOutcomeTaus.size(); ++t) {
       if (!before.adev_radps[t] || !after.adev_radps[t]) continue;
-      print_figure(formatted("Allan deviation %g s", kOutcomeTaus[t]).c_str(), *before.adev_radps[t],
+      print_figure(fmt::format("Allan deviation {:g} s", kOutcomeTaus[t]), *before.adev_radps[t],
                    *after.adev_radps[t],
                    walk && walk->after[a].adev_radps[t] ? &*walk->after[a].adev_radps[t] : nullptr);
     }
@@ -276,10 +276,9 @@ void run_tune(const TuneArguments& options) {
   LongCapture read = read_rates(options, before);
   read.cut(options.part, options.capture);
   CaptureView capture = read.view();
-  keep_usable_axes(capture, options.capture);
+  leave_out(unusable_axes({capture}, {options.capture}), capture);
   if (capture.size() < 3)
-    throw std::runtime_error(options.capture + ": " + std::to_string(capture.size()) +
-                             " rows, expected at least 200");
+    throw refusal("{}: {} rows, expected at least 200", options.capture, capture.size());
   const SampleClock clock = sample_clock(capture.time_s);
   const double period = clock.period_s;
   Progress progress("fitting state models",
@@ -300,22 +299,20 @@ void run_tune(const TuneArguments& options) {
   tune_options.states = options.states;
   tune_options.progress = progress.teller();
   const Tuning tuning = naming(options.capture, [&] { return tune(axes, period, tune_options); });
-  say("%s: %zu samples at %.6g Hz%s\n", options.capture.c_str(), tuning.samples, 1.0 / period,
+  say("{}: {} samples at {:.6g} Hz{}\n", options.capture, tuning.samples, 1.0 / period,
       capture.axes.size() > 1 ? ", all axes under one model" : "");
-  if (left > 0) say("the last %zu rows are dropped; --samples %zu takes all\n", left, capture.size());
-  for (const std::string& note : notes) say("note: %s\n", note.c_str());
+  if (left > 0) say("the last {} rows are dropped; --samples {} takes all\n", left, capture.size());
+  for (const std::string& note : notes) say("note: {}\n", note);
   print_models(tuning);
   print_held_out(tuning, capture.axes);
   for (const auto& [axis, found] : noise)
-    say("\nnoise%s%s at rest\n%s", axis.empty() ? "" : " of ", axis.c_str(),
-        report::coefficient_lines(found.terms).c_str());
+    say("\nnoise{}{} at rest\n{}", axis.empty() ? "" : " of ", axis, report::coefficient_lines(found.terms));
   if (!options.json_file.empty())
     write_json(options.json_file, tuning_json(options, tuning, left, period, noise, capture.axes));
   if (!options.write_model.empty()) {
     write_file(options.write_model, model_text(model_of(before, tuning, noise, options.capture)));
-    say("\nto use it: ifog denoise %s%s --model %s --output denoised.csv\n",
-        shell_file(options.capture).c_str(), options.input.as_typed().c_str(),
-        shell_file(options.write_model).c_str());
+    say("\nto use it: ifog denoise {}{} --model {} --output denoised.csv\n", shell_file(options.capture),
+        options.input.as_typed(), shell_file(options.write_model));
   }
 }
 

@@ -5,7 +5,6 @@
 #include <limits>
 #include <map>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include "daemon/sensor/flight_header.h"
@@ -16,6 +15,7 @@
 #include "filters/model_file/kept_noise.h"
 #include "tools/ifog/console/command_files.h"
 #include "tools/ifog/console/naming.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -49,7 +49,7 @@ DriverInstance driver_of_run(const std::string& name, const DriverSettings& sett
   for (const std::string& key : file_settings(plugin->table(), settings))
     will_read("option " + key + " of driver " + name, settings.at(key));
   DriverInstance made(std::move(plugin), settings);
-  for (const std::string& warning : made.warnings()) warn("%s\n", warning.c_str());
+  for (const std::string& warning : made.warnings()) warn("{}\n", warning);
   return made;
 }
 
@@ -91,8 +91,8 @@ DriverInstance FlightInput::made() const {
       const auto found = header().files.find(value);
       if (settings.contains(key)) continue;
       if (names_file && found == header().files.end() && !own.contains(key))
-        throw std::runtime_error("does not carry the file of its driver's option " + key + ", expected " +
-                                 (key == "dbc" ? "--dbc FILE" : "--option " + key + "=FILE"));
+        throw refusal("does not carry the file of its driver's option {}, expected {}", key,
+                      key == "dbc" ? "--dbc FILE" : "--option " + key + "=FILE");
       settings[key] = !names_file || found != header().files.end() ? value : own.at(key);
       if (!names_file || found == header().files.end()) continue;
       UnnamedFile& text = carried.emplace_back();
@@ -111,9 +111,9 @@ std::shared_ptr<const Model> FlightInput::model(const SensorConfig& sensor) cons
   const auto found = header().files.find(sensor.model);
   if (sensor.model.empty()) return nullptr;
   if (found == header().files.end())
-    throw std::runtime_error(file_.path() +
-                             ": does not carry the model that it was recorded with, expected --model FILE or "
-                             "--config FILE");
+    throw refusal(
+        "{}: does not carry the model that it was recorded with, expected --model FILE or --config FILE",
+        file_.path());
   return std::make_shared<const Model>(parse_model(found->second, sensor.model));
 }
 
@@ -124,8 +124,7 @@ std::optional<LearnedNoise> FlightInput::noise(const SensorConfig& sensor) const
 }
 
 void FlightInput::tell_losses() const {
-  for (const std::string& loss : losses(reader_.counts()))
-    warn("%s: %s\n", file_.path().c_str(), loss.c_str());
+  for (const std::string& loss : losses(reader_.counts())) warn("{}: {}\n", file_.path(), loss);
 }
 
 RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const RecordedSamples& sink) {
@@ -152,8 +151,7 @@ RecordingCounts FlightInput::for_each_sample(DriverInstance& driver, const Recor
     counts.bytes_at_end = driver.counters().bytes_skipped - before;
     add(driver.counters(), counts.driver);
     tell_losses();
-    if (counts.samples == 0)
-      throw std::runtime_error("driver " + std::string(driver.table().name) + " finds no sample in it");
+    if (counts.samples == 0) throw refusal("driver {} finds no sample in it", driver.table().name);
     return counts;
   });
 }
@@ -178,7 +176,7 @@ std::optional<double> FlightInput::build(DriverInstance& driver, CaptureBuilder&
                                {},
                                [&](const FlightHeader&) { builder.go_on_as(driver.description()); }});
   for (const auto& lines : {losses(counts), builder.remarks()})
-    for (const std::string& line : lines) warn("%s: %s\n", file_.path().c_str(), line.c_str());
+    for (const std::string& line : lines) warn("{}: {}\n", file_.path(), line);
   // From the first file's header; later power-ups are visible in the times.
   const auto powered_ns = header().powered_ns;
   if (!powered_ns || first_ns < *powered_ns) return std::nullopt;

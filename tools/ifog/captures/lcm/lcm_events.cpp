@@ -7,11 +7,11 @@
 #include <cerrno>
 #include <cstring>
 #include <lcm/lcm-cpp.hpp>
-#include <stdexcept>
 #include <string_view>
 
 #include "drivers/capture/recording.h"
 #include "tools/ifog/captures/flight/flight_input.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -30,7 +30,7 @@ std::int64_t type_hash(std::span<const std::uint8_t> message) {
 }
 
 LcmEvents::LcmEvents(const std::string& path) : path_(path), file_(std::fopen(path.c_str(), "rb")) {
-  if (!file_) throw std::runtime_error(path + ": cannot open as an LCM log: " + std::strerror(errno));
+  if (!file_) throw refusal("{}: cannot open as an LCM log: {}", path, std::strerror(errno));
   fseeko(file_.get(), 0, SEEK_END);
   size_ = static_cast<std::size_t>(std::max<off_t>(0, ftello(file_.get())));
   std::rewind(file_.get());
@@ -103,16 +103,16 @@ std::span<const std::uint8_t> LcmEvents::window(std::size_t from, std::size_t by
   return all.subspan(from - read_from_, std::min(bytes, all.size() - (from - read_from_)));
 }
 
-void LcmEvents::fail() const { throw std::runtime_error(path_ + ": " + std::strerror(errno)); }
+void LcmEvents::fail() const { throw refusal("{}: {}", path_, std::strerror(errno)); }
 
 void LcmEvents::say_damage(const std::string& path) const {
   if (places_ > 0)
     warn(
-        "%s: %zu bytes in %zu place(s) are no messages and are dropped, the first from byte %zu on (is the "
+        "{}: {} bytes in {} place(s) are no messages and are dropped, the first from byte {} on (is the "
         "file damaged?)\n",
-        path.c_str(), damaged_, places_, first_place_);
+        path, damaged_, places_, first_place_);
   if (size_ > at_)
-    warn("%s: its last %zu bytes are no whole message (is the file cut off?)\n", path.c_str(), size_ - at_);
+    warn("{}: its last {} bytes are no whole message (is the file cut off?)\n", path, size_ - at_);
 }
 
 NamedLog::NamedLog(InputFile& file) : name_(file.path()) {

@@ -3,12 +3,12 @@
 
 #include <algorithm>
 #include <cctype>
-#include <stdexcept>
 #include <utility>
 
 #include "daemon/config/lcm_url.h"
 #include "drivers/ifog/quoted.h"
-#include "tools/ifog/console/options/wrong_usage.h"
+#include "tools/ifog/console/options/command_errors.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 
@@ -26,15 +26,14 @@ const std::string& usable(const std::string& url) {
 
 LcmListener::LcmListener(const std::string& url, Handler handler)
     : handler_(std::move(handler)), lcm_(lcm_create(usable(url).c_str())) {
-  if (lcm_ == nullptr) throw std::runtime_error("--lcm-url " + printable(url) + ": LCM cannot use it");
+  if (lcm_ == nullptr) throw refusal("--lcm-url {}: LCM cannot use it", printable(url));
 }
 
 LcmListener::~LcmListener() { lcm_destroy(lcm_); }
 
 void LcmListener::listen_to(const std::string& pattern) {
   lcm_subscription_t* const subscription = lcm_subscribe(lcm_, pattern.c_str(), &LcmListener::received, this);
-  if (subscription == nullptr)
-    throw std::runtime_error("\"" + printable(pattern) + "\": no name LCM can listen to");
+  if (subscription == nullptr) throw refusal("\"{}\": no name LCM can listen to", printable(pattern));
   // Long enough that a slow terminal or disk loses no messages.
   lcm_subscription_set_queue_capacity(subscription, 100'000);
 }

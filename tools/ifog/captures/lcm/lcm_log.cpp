@@ -11,7 +11,6 @@
 #include <optional>
 #include <set>
 #include <span>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -25,6 +24,7 @@
 #include "tools/ifog/captures/lcm/lcm_loss.h"
 #include "tools/ifog/captures/lcm/peer_reader.h"
 #include "tools/ifog/console/progress.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
@@ -34,34 +34,28 @@ bool carries_rates(const std::string& channel) {
   return channel_name(channel).content == ChannelContent::rate;
 }
 
-// The first channel with our rates, or else with a supported type of another program.
-std::string first_channel(const NamedLog& source, const std::string& path) {
-  LcmEvents log(source.name());
-  std::string peer, bytes;
-  while (const LcmEvents::Event* event = log.next()) {
-    if (carries_rates(event->channel)) return event->channel;
-    if (peer.empty() && peer_type(event->data) != nullptr) peer = event->channel;
-    if (bytes.empty() && carries_bytes(event->data)) bytes = event->channel;
-  }
-  if (!peer.empty()) return peer;
-  throw std::runtime_error(
-      path + (bytes.empty() ? ": has no channel IFOG_<NAME>, and none with rates of another program's type"
-                            : ": has bytes of a device on " + printable(bytes) +
-                                  ", expected --driver NAME to decode them with"));
-}
-
-// A log and its channel of rates: the requested one, or else the first, which must then be the only one
-// (look_through).
+// A log and its channel of rates: the requested one, or else the first with our rates, or else the first with
+// a supported type of another program. Without a request it must be the only one (look_through).
 struct ChosenLog {
   ChosenLog(InputFile& file, const std::string& channel)
-      : path(file.path()), source(file), asked_for(!channel.empty()) {
-    rates = asked_for ? channel : first_channel(source, path);
+      : path(file.path()), source(file), asked_for(!channel.empty()), rates(channel) {
+    std::string bytes;
     LcmEvents log(source.name());
     while (const LcmEvents::Event* event = log.next()) {
-      if (event->channel != rates) continue;
-      if (const PeerType* const type = peer_type(event->data)) peer.emplace(*type);
-      return;
+      const bool wanted = asked_for ? event->channel == channel : carries_rates(event->channel);
+      const PeerType* const type = peer_type(event->data);
+      if (wanted || (rates.empty() && type != nullptr)) {
+        rates = event->channel;
+        peer = type != nullptr ? std::optional<PeerReader>(*type) : std::nullopt;
+      }
+      if (wanted) return;
+      if (bytes.empty() && carries_bytes(event->data)) bytes = event->channel;
     }
+    if (!rates.empty()) return;
+    if (bytes.empty())
+      throw refusal("{}: has no channel IFOG_<NAME>, and none with rates of another program's type", path);
+    throw refusal("{}: has bytes of a device on {}, expected --driver NAME to decode them with", path,
+                  printable(bytes));
   }
   std::string path;
   NamedLog source;
@@ -150,7 +144,7 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
       continue;
     }
     const auto refuse = [&](const std::string& why) {
-      throw std::runtime_error(path + ": message " + std::to_string(number) + " on " + wanted + " " + why);
+      throw refusal("{}: message {} on {} {}", path, number, wanted, why);
     };
     const auto take = [&](MeasuredRate&& message) {
       if (axes == 0) axes = message.raw.size();
@@ -172,19 +166,18 @@ void for_each_rate(ChosenLog& chosen, const RateSink& sink, const OtherSink& oth
   order.flush(hand_on);
   if (way.had_two_publishers())
     warn(
-        "%s: two publishers sent on %s (two daemons, or a log played at the same time): their messages are "
+        "{}: two publishers sent on {} (two daemons, or a log played at the same time): their messages are "
         "mixed\n",
-        path.c_str(), printable(wanted).c_str());
-  if (axes == 0) throw std::runtime_error(path + ": has no message on channel " + wanted);
+        path, printable(wanted));
+  if (axes == 0) throw refusal("{}: has no message on channel {}", path, wanted);
   if (way.lost() > 0)
-    warn("%s: %lld samples on %s are missing by their counts (%s lost them)\n", path.c_str(),
-         static_cast<long long>(way.lost()), printable(wanted).c_str(),
-         chosen.peer ? "the sensor, its driver or LCM" : "LCM or the recorder");
+    warn("{}: {} samples on {} are missing by their counts ({} lost them)\n", path, way.lost(),
+         printable(wanted), chosen.peer ? "the sensor, its driver or LCM" : "LCM or the recorder");
   if (left_out > 0)
     warn(
-        "%s: %zu messages on %s came twice or after one that follows, and are dropped (two recorders wrote "
+        "{}: {} messages on {} came twice or after one that follows, and are dropped (two recorders wrote "
         "at once, or a clock was set back)\n",
-        path.c_str(), left_out, printable(wanted).c_str());
+        path, left_out, printable(wanted));
   log.say_damage(path);
 }
 
@@ -209,15 +202,14 @@ void look_through(ChosenLog& chosen, LcmChannels& channels) {
   with_rates.insert(chosen.rates);
   std::string list;
   for (const std::string& each : with_rates) list += (list.empty() ? "" : ", ") + printable(each);
-  throw std::runtime_error(chosen.path + ": has several channels, expected --channel with one of " + list);
+  throw refusal("{}: has several channels, expected --channel with one of {}", chosen.path, list);
 }
 
 // Prints the date of t = 0, which the times do not contain.
 void tell_start(const std::string& path, const rate_t& first) {
   const TimeOrigin origin = TimeOrigin::of(first.utime * 1000);
   if (origin == TimeOrigin{}) return;
-  warn("%s: t = 0 is %s, the first message\n", path.c_str(),
-       utc_text(origin.s, "%Y-%m-%d %H:%M:%S UTC").c_str());
+  warn("{}: t = 0 is {}, the first message\n", path, utc_text(origin.s, "%Y-%m-%d %H:%M:%S UTC"));
 }
 
 }  // namespace
@@ -254,9 +246,8 @@ void read_lcm_log(InputFile& file, const std::string& channel, RowSink& sink) {
 void read_published(InputFile& file, const std::string& channel, RowSink& sink) {
   ChosenLog chosen(file, channel);
   if (chosen.peer)
-    throw std::runtime_error(chosen.path + ": " + printable(chosen.rates) + " carries " +
-                             std::string(chosen.peer->type().name) +
-                             ", expected --channel with one that carries ifog.rate_t");
+    throw refusal("{}: {} carries {}, expected --channel with one that carries ifog.rate_t", chosen.path,
+                  printable(chosen.rates), chosen.peer->type().name);
   LcmChannels unused(chosen.rates);
   if (!chosen.asked_for) look_through(chosen, unused);
   RowBatch rows(sink);

@@ -5,10 +5,10 @@
 
 #include <optional>
 #include <set>
-#include <stdexcept>
 
 #include "drivers/ifog/quoted.h"
 #include "tools/ifog/captures/lcm/lcm_events.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -46,12 +46,13 @@ std::string only_channel(const NamedLog& source, const std::string& path) {
     if (carries_bytes(event->data)) found.insert(event->channel);
   if (found.size() == 1) return *found.begin();
   if (found.empty())
-    throw std::runtime_error(path +
-                             ": no channel carries bytes of a device (senlcm.raw_t, bot_core.raw_t, "
-                             "senlcm.raw_ascii_t), expected none of --driver and --dbc");
+    throw refusal(
+        "{}: no channel carries bytes of a device (senlcm.raw_t, bot_core.raw_t, senlcm.raw_ascii_t), "
+        "expected none of --driver and --dbc",
+        path);
   std::string list;
   for (const std::string& each : found) list += (list.empty() ? "" : ", ") + printable(each);
-  throw std::runtime_error(path + ": several channels carry bytes, expected --channel with one of " + list);
+  throw refusal("{}: several channels carry bytes, expected --channel with one of {}", path, list);
 }
 
 }  // namespace
@@ -65,7 +66,7 @@ RecordingCounts decode_logged_bytes(InputFile& file, DriverInstance& driver, con
                                     const std::function<void(const ifog_sample&)>& sink) {
   const std::string path = file.path();
   if (!driver.takes_bytes())
-    throw std::runtime_error(path + ": is an LCM log, and this driver takes CAN frames, not bytes");
+    throw refusal("{}: is an LCM log, and this driver takes CAN frames, not bytes", path);
   constexpr std::int64_t kMost_us = std::int64_t{1} << 53U;  // beyond any date, and representable in ns
   const NamedLog source(file);
   const std::string wanted = channel.empty() ? only_channel(source, path) : channel;
@@ -78,8 +79,9 @@ RecordingCounts decode_logged_bytes(InputFile& file, DriverInstance& driver, con
     if (event->channel != wanted) continue;
     const std::optional<Piece> piece = reader.read(event->data);
     if (!piece || piece->utime < 0 || piece->utime > kMost_us)
-      throw std::runtime_error(path + ": message " + std::to_string(number) + " on " + printable(wanted) +
-                               " is no senlcm.raw_t, bot_core.raw_t or senlcm.raw_ascii_t that can be");
+      throw refusal(
+          "{}: message {} on {} is no senlcm.raw_t, bot_core.raw_t or senlcm.raw_ascii_t that can be", path,
+          number, printable(wanted));
     driver.decode_bytes(piece->bytes, piece->utime * 1000, [&](const ifog_sample& sample) {
       ++counts.samples;
       sink(sample);

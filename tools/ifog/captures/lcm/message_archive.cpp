@@ -3,17 +3,17 @@
 
 #include <ifog/decode.h>
 
-#include <stdexcept>
 #include <utility>
 
 #include "drivers/ifog/quoted.h"
 #include "msgs/channel_name.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 
 void MessageArchive::open(std::int64_t now_ns, std::int64_t wall_ns) {
   archive_.turn(now_ns, wall_ns);
-  if (archive_.error() != 0) throw std::runtime_error(archive_.path() + ": " + archive_.complaint());
+  if (archive_.error() != 0) throw refusal("{}: {}", archive_.path(), archive_.complaint());
 }
 
 void MessageArchive::tell_lost(std::int64_t wall_ns) {

@@ -3,18 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
-#include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "drivers/capture/columns/column_names.h"
 #include "filters/threads/share_out.h"
+#include "tools/ifog/console/refusal.h"
 #include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
-
-using Kind = CaptureShape::Place::Kind;
 
 std::vector<std::string> LongTable::names() const {
   std::vector<std::string> out;
@@ -26,7 +23,7 @@ void LongTable::drop_unknown(const std::string& path) {
   const bool any = std::any_of(columns.begin(), columns.end(), [](const LongColumn& column) {
     return column.known && column.name.starts_with("rate");
   });
-  if (!any) throw std::runtime_error(path + ": the device marks every value of every axis invalid");
+  if (!any) throw refusal("{}: the device marks every value of every axis invalid", path);
   drop_dead_axes();
   std::erase_if(header, [&](const std::string& name) {
     return std::any_of(columns.begin(), columns.end(),
@@ -47,7 +44,7 @@ void LongTable::clean_and_tell(Rule rule, const std::string& path) {
   clean(rule);
   for (const LongColumn& column : columns)
     for (const ValueFault& repeat : column.repeats)
-      warn("%s\n", faults.emplace_back(path + ": " + column.name + ": " + repeat.text).c_str());
+      warn("{}\n", faults.emplace_back(path + ": " + column.name + ": " + repeat.text));
 }
 
 std::vector<std::string> LongTable::drop_dead_axes() {
@@ -101,28 +98,6 @@ void LongTableSink::take(RowBlock& rows) {
     column.known =
         column.known || std::any_of(values.begin(), values.end(), [](double v) { return !std::isnan(v); });
   });
-}
-
-LongRows::LongRows(const LongTable& table, const CaptureShape& shape)
-    : table_(table), names_{"time_s"}, views_{table.time_s} {
-  for (const Kind kind : {Kind::rate, Kind::reference, Kind::channel}) {
-    const std::size_t many = kind == Kind::channel ? shape.channels : shape.axes.size();
-    for (std::size_t at = 0; at < many; ++at)
-      for (std::size_t c = 0; c < shape.places.size(); ++c)
-        if (shape.places[c].kind == kind && shape.places[c].at == at) {
-          names_.push_back(table.columns[c].name);
-          views_.emplace_back(table.columns[c].values);
-        }
-  }
-  rows_.resize(views_.size());
-}
-
-bool LongRows::next() {
-  const std::size_t count = std::min(RowBatch::kRows, table_.size() - at_);
-  if (count == 0) return false;
-  for (std::size_t i = 0; i < views_.size(); ++i) rows_[i] = views_[i].subspan(at_, count);
-  at_ += count;
-  return true;
 }
 
 LongTable long_table(Capture capture) {

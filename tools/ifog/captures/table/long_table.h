@@ -3,7 +3,6 @@
 #pragma once
 
 #include <functional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -42,8 +41,8 @@ struct LongTable : RowNotes {
   // The same, and prints them on standard error; path: of the capture.
   void clean_and_tell(Rule rule, const std::string& path);
   // For a table merged from sensors of different rates, e.g. a gyro in every fourth row: keeps only rows with
-  // a rate, with the channels' latest values. Then the clock is that of the rates. Adds a notice. Does
-  // nothing if rates are in adjacent rows. path: of the capture.
+  // a rate, with the channels' latest values. Then the clock is that of the rates. Prints so on
+  // standard error. Does nothing if rates are in adjacent rows. path: of the capture.
   void keep_rate_rows(const std::string& path);
   // Drops the axes that never have a rate, with their references; returns them.
   std::vector<std::string> drop_dead_axes();
@@ -66,26 +65,6 @@ class LongTableSink final : public RowSink {
   LongTable& table_;
   Wanted wanted_;
   std::vector<std::size_t> from_, outlined_;  // column of the rows, by column and by outline of the table
-};
-
-// Blocks of a table's rows in the order of a capture: rates, references, channels.
-class LongRows {
- public:
-  // The table must outlive this.
-  LongRows(const LongTable& table, const CaptureShape& shape);
-
-  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }  // time_s first
-  // The next rows, by name; false at the end. Valid until the next call.
-  bool next();
-  [[nodiscard]] std::span<const std::span<const double>> rows() const { return rows_; }
-  [[nodiscard]] const TimeOrigin& origin() const { return table_.origin; }
-
- private:
-  const LongTable& table_;
-  std::vector<std::string> names_;
-  std::vector<std::span<const double>> views_;
-  std::vector<std::span<const double>> rows_;
-  std::size_t at_ = 0;
 };
 
 }  // namespace ifog::tools

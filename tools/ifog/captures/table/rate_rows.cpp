@@ -6,6 +6,7 @@
 
 #include "drivers/capture/columns/column_names.h"
 #include "tools/ifog/captures/table/long_table.h"
+#include "tools/ifog/console/say.h"
 
 namespace ifog::tools {
 namespace {
@@ -65,8 +66,8 @@ void LongTable::keep_rate_rows(const std::string& path) {
   // Line numbers apply to the rows of the file.
   header_line = 0;
   lines.clear();
-  notices.push_back(path + ": " + std::to_string(size()) + " of " + std::to_string(before) +
-                    " rows have a rate, and only they are read: the others are of a faster sensor");
+  warn("{}: {} of {} rows have a rate, and only they are read: the others are of a faster sensor\n", path,
+       size(), before);
 }
 
 }  // namespace ifog::tools

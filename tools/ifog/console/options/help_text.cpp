@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/console/options/help_text.h"
-
 #include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cstddef>
+#include <memory>
+#include <string>
 #include <string_view>
+#include <utility>
 
+#include "tools/ifog/console/options/parser_texts.h"
 #include "tools/report/text.h"
 
 namespace ifog::tools {
@@ -36,8 +40,8 @@ std::string broken(std::string_view line, std::size_t indent, std::size_t width)
   return out;
 }
 
-}  // namespace
-
+// Breaks the parser's two columns, the second of which begins at `column`, into lines of at most `width`,
+// without repeated empty lines. Examples are not broken.
 std::string broken_lines(const std::string& help, std::size_t column, std::size_t width) {
   std::string out;
   bool empty = false;
@@ -57,6 +61,7 @@ std::string broken_lines(const std::string& help, std::size_t column, std::size_
   return out;
 }
 
+// Width of the terminal on standard output, limited to readable lines; 100 for other outputs.
 std::size_t help_width() {
   constexpr std::size_t kUsual = 100, kLeast = 60;
   winsize size{};
@@ -64,5 +69,16 @@ std::size_t help_width() {
     return kUsual;
   return std::clamp<std::size_t>(size.ws_col, kLeast, 2 * kLeast);
 }
+
+class HelpFormat final : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const override {
+    return broken_lines(Formatter::make_help(app, std::move(name), mode), column_width_, help_width());
+  }
+};
+
+}  // namespace
+
+std::shared_ptr<CLI::FormatterBase> help_format() { return std::make_shared<HelpFormat>(); }
 
 }  // namespace ifog::tools

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tools/ifog/console/options/usage_error.h"
+#include "tools/ifog/console/options/parser_texts.h"
 
 #include <CLI/CLI.hpp>
 #include <algorithm>

@@ -14,12 +14,12 @@
 #include <cerrno>
 #include <charconv>
 #include <semaphore>
-#include <stdexcept>
 #include <system_error>
 #include <thread>
 #include <utility>
 
 #include "page_source.h"
+#include "tools/ifog/console/refusal.h"
 
 namespace ifog::tools {
 namespace {
@@ -138,8 +138,8 @@ class PageServer::Server final : public httplib::Server {
     });
     errno = 0;
     if (!bind_to_port(address.host, address.port, AI_NUMERICHOST))
-      throw std::runtime_error("--web " + address.host + " port " + std::to_string(address.port) +
-                               ": cannot listen: " + std::generic_category().message(errno));
+      throw refusal("--web {} port {}: cannot listen: {}", address.host, address.port,
+                    std::generic_category().message(errno));
     thread_ = std::thread([this] {
       listen_after_bind();
       ended_ = true;

@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// The balances of bytes, frames and samples in status_t as text.
+// Parts of status_t as text, for all commands that show a status.
 #pragma once
 
+#include <fmt/core.h>
+
+#include <cstddef>
 #include <ifog/status_t.hpp>
 #include <string>
 #include <vector>
 
+#include "msgs/axis_name.h"
+
 namespace ifog::tools {
 
-// In parts between which a line may be broken.
+// The balances of bytes, frames and samples, in parts between which a line may be broken.
 inline std::vector<std::string> books_parts(const status_t& status) {
   const auto n = [](std::int64_t count) { return std::to_string(count); };
   std::vector<std::string> out;
@@ -38,6 +43,18 @@ inline bool books_balance(const status_t& s) {
          (!of_can || s.frames_read == s.frames_good + s.frames_format + s.frames_other) &&
          s.samples_decoded == s.samples_in + s.samples_repeated &&
          s.samples_in == s.samples_published + s.samples_merged + s.lcm_failures + s.samples_waiting;
+}
+
+// "x NIS 0.97, whiteness +0.01; y no value", from nis_mean and whiteness in status_t, or means of them. A
+// mean square of exactly 0 means that the axis had no value.
+inline std::string axis_health(const std::vector<double>& nis, const std::vector<double>& whiteness) {
+  std::string out;
+  for (std::size_t a = 0; a < nis.size(); ++a) {
+    out += a == 0 ? "" : "; ";
+    out += axis_name(a, nis.size());
+    out += nis[a] == 0.0 ? " no value" : fmt::format(" NIS {:.3f}, whiteness {:+.3f}", nis[a], whiteness[a]);
+  }
+  return out;
 }
 
 }  // namespace ifog::tools

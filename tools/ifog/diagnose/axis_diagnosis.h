@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A diagnosis as JSON, schema ifog.diagnosis/1.
+// The diagnosis of an axis, as JSON and as text.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -15,8 +15,11 @@ struct AxisDiagnosis {
   Diagnosis diagnosis;
 };
 
-// One axis: the keys of the schema at the top level. Several axes: effects, alternatives and noise of all
+// Schema ifog.diagnosis/1. One axis: the keys of the schema at the top level. Several axes: effects, alternatives and noise of all
 // axes have an "axis", and the figures are objects by axis.
 nlohmann::ordered_json diagnosis_json(const std::vector<AxisDiagnosis>& axes);
+
+// For the console.
+std::string diagnosis_text(const AxisDiagnosis& axis);
 
 }  // namespace ifog::tools
