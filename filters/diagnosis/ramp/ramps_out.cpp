@@ -20,6 +20,7 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
   WithoutRamps parts;
   parts.records = records;
   if (records.empty()) return parts;
+  std::vector<RampFit> fits;
   for (const RecordChannel& channel : records.front().channels) {
     const auto wraps = [&](const Record& record) {
       return wrap_period(values_of(record, channel.name)) > 0.0;
@@ -28,18 +29,26 @@ WithoutRamps take_out_ramps(const std::vector<Record>& records, double significa
     for (Record& record : parts.records) {
       std::erase_if(record.channels, [&](const RecordChannel& other) { return other.name == channel.name; });
     }
-    if (auto ramp = fit_ramp(records, channel.name, significance)) parts.ramps.push_back(std::move(*ramp));
+    if (auto ramp = fit_ramp(records, channel.name, significance)) fits.push_back(std::move(*ramp));
   }
-  if (parts.ramps.empty()) {
+  if (fits.empty()) {
     RebuiltRamp rebuilt = rebuild_ramp(parts.records, significance);
-    if (rebuilt.fit) parts.ramps.push_back(std::move(*rebuilt.fit));
+    if (rebuilt.fit) fits.push_back(std::move(*rebuilt.fit));
     parts.remark = std::move(rebuilt.remark);
   }
-  if (parts.ramps.empty()) return parts;
+  if (fits.empty()) return parts;
+  double total = 0.0;
+  for (const Record& record : records) total += variance_of(error_of(record));
+  for (RampFit& fit : fits) {
+    double explained = 0.0;
+    for (const Samples& each : fit.correction) explained += variance_of(each);
+    fit.found.variance_explained = std::min(1.0, explained / total);
+    parts.ramps.push_back(std::move(fit.found));
+  }
   for (std::size_t r = 0; r < records.size(); ++r) {
     Samples rate(records[r].rate_radps);
-    for (const RampFit& ramp : parts.ramps)
-      for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= ramp.correction[r][i];
+    for (const RampFit& fit : fits)
+      for (std::size_t i = 0; i < rate.size(); ++i) rate[i] -= fit.correction[r][i];
     parts.rates.push_back(std::move(rate));
   }
   for (std::size_t r = 0; r < records.size(); ++r) parts.records[r].rate_radps = parts.rates[r];

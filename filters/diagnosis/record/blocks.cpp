@@ -243,6 +243,12 @@ std::size_t BlockGrid::longest() const {
   return most;
 }
 
+std::optional<std::size_t> BlockData::index_of(std::string_view name) const {
+  const auto found = std::ranges::find(channels, name, &FineChannel::name);
+  if (found == channels.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - channels.begin());
+}
+
 BlockData cut_to_blocks(const std::vector<Record>& records, std::size_t most_blocks) {
   check_columns(records);
   BlockData data;

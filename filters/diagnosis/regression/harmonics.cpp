@@ -126,7 +126,7 @@ NoiseFit add_one(const BlockGrid& grid, const Columns& columns, const NoiseFit& 
         NoiseShape start = with_hump(grid, fit.shape, hump, white, of);
         DampedHarmonic& mine = start.harmonics.back();
         mine.decay = std::max(mine.decay / wider, kLeastDecay);
-        const double value = fit_whitened(grid, start, columns).log_likelihood;
+        const double value = fit_whitened(grid, start, columns).log_likelihood();
         if (value > best.log_likelihood) best = {start, value, 0.0};
       }
     }

@@ -27,8 +27,8 @@ std::string unexplained_despite_claims(const Diagnosis& diagnosis, std::size_t c
 std::string other_unit_in_words(const Diagnosis& diagnosis);
 
 // Sentence on the channels that cannot be used: not in every record, without a value, or constant; empty if
-// there is none. ramps: channels already used by a ramp.
+// there is none. ramps: effects that already use channels.
 std::string unused_channels(const std::vector<Record>& records, const BlockData& data,
-                            const std::vector<std::string>& ramps);
+                            const std::vector<FoundEffect>& ramps);
 
 }  // namespace ifog

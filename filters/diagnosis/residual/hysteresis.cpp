@@ -35,12 +35,12 @@ std::pair<Hysteresis, NoiseFit> likeliest_loop(const BlockData& data, const std:
   for (const double share : kShares) {
     const double width = share * (source.high - source.low);
     columns.rightCols(1) = hysteresis_loop(data, channel, width);
-    const double value = fit_whitened(data.grid, shape, columns).log_likelihood;
+    const double value = fit_whitened(data.grid, shape, columns).log_likelihood();
     if (value > most) most = value, loop.half_width = width;
   }
   columns.rightCols(1) = hysteresis_loop(data, channel, loop.half_width);
   const NoiseFit best = fit_noise(data.grid, columns, shape);
-  loop.coefficient = solve(data.grid, best.shape, columns).tail(1)[0];
+  loop.coefficient = fit_whitened(data.grid, best.shape, columns).coefficients().tail(1)[0];
   return {loop, best};
 }
 
@@ -65,13 +65,10 @@ Eigen::VectorXd hysteresis_loop(const BlockData& data, std::size_t channel, doub
 }
 
 void take_out(const Hysteresis& loop, const BlockData& data, BlockGrid& grid) {
-  for (std::size_t c = 0; c < data.channels.size(); ++c) {
-    if (data.channels[c].name != loop.channel) continue;
-    const Eigen::VectorXd column = hysteresis_loop(data, c, loop.half_width);
-    for (std::size_t b = 0; b < grid.size(); ++b) {
-      const auto row = static_cast<Eigen::Index>(b);
-      if (grid.valid[b]) grid.error[row] -= loop.coefficient * column[row];
-    }
+  const Eigen::VectorXd column = hysteresis_loop(data, *data.index_of(loop.channel), loop.half_width);
+  for (std::size_t b = 0; b < grid.size(); ++b) {
+    const auto row = static_cast<Eigen::Index>(b);
+    if (grid.valid[b]) grid.error[row] -= loop.coefficient * column[row];
   }
 }
 

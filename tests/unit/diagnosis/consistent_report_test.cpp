@@ -196,12 +196,12 @@ Fitted fitted(const Trial& trial) {
   lagged.time_constant_s = 1.1 * kLag;
   const Columns columns = design(data, {lagged});
   found.noise = fit_noise(data.grid, columns);
-  found.coefficients = solve(data.grid, found.noise.shape, columns, &found.covariance);
+  fit_coefficients(data, found);
   Fitted fit;
   fit.joint = settle(data, found);
-  Findings findings = findings_of(data, data, found, fit.joint, "");
+  Findings findings = findings_of(data, found, fit.joint, "");
   fit.diagnosis.effects = findings.effects;
-  fit.diagnosis.covariance = covariance_of(findings.effects, fit.joint, 1, 1);
+  fit.diagnosis.covariance = covariance_of(findings.effects, fit.joint, data.grid, 1);
   fit.diagnosis.ranges = ranges_of(data, findings.effects);
   fit.diagnosis.noise_posterior = fit.joint.noise;
   return fit;
