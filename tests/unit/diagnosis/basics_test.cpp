@@ -25,13 +25,9 @@ struct Rows {
   std::string name = "temperature_degC";
 
   [[nodiscard]] Record record() const {
-    Record made;
-    made.name = "rows";
-    made.time_s = time;
-    made.rate_radps = rate;
-    if (!reference.empty()) made.reference_radps = reference;
-    if (!channel.empty()) made.channels = {{name, channel}};
-    return made;
+    std::vector<RecordChannel> channels;
+    if (!channel.empty()) channels.push_back({name, channel});
+    return made_record("rows", time, rate, channels, reference);
   }
 };
 
