@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "filters/diagnosis/ramp/ramp_comb.h"
@@ -91,11 +90,11 @@ double cycles_error_of(const UnbrokenPart& part, const RampComb& comb) {
   return std::sqrt(comb.table.left() / comb.table.samples / std::max(information, 1e-300));
 }
 
-// Random walk of the phase that the table cannot show: over the record a tenth of the phase that it resolves.
+// Random walk of the phase, cycles/sqrt(s), that the table does not show: over the record it spreads the phase as
+// much as one step of the table does.
 double unseen_walk(const UnbrokenPart& part, const RampComb& comb) {
-  constexpr double kSeen = 0.1;
   const double span_s = static_cast<double>(part.size()) * part.sample_s();
-  return kSeen / (std::numbers::pi * static_cast<double>(comb.table.angle_rad.size())) / std::sqrt(span_s);
+  return 1.0 / (static_cast<double>(comb.table.angle_rad.size()) * std::sqrt(12.0 * span_s));
 }
 
 // One cycle minus its mean, at twice the table's resolution and halfway between its steps, where linear
